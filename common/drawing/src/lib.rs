@@ -30,6 +30,6 @@ pub use error::DrawingError;
 pub use image::Image;
 pub use path::{Path, Rect};
 pub use raster::to_png;
-pub use scene::{MAX_SIDE, Scene, Stroke};
+pub use scene::{Label, MAX_SIDE, Scene, Stroke};
 pub use text::{Anchor, TextStyle, Weight};
 pub use vector::to_svg;

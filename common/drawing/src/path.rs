@@ -46,6 +46,24 @@ impl Rect {
         (self.x + self.width / 2.0, self.y + self.height / 2.0)
     }
 
+    /// Whether both cover some of the same area.
+    #[must_use]
+    pub fn overlaps(&self, other: &Rect) -> bool {
+        self.x < other.right()
+            && other.x < self.right()
+            && self.y < other.bottom()
+            && other.y < self.bottom()
+    }
+
+    /// Whether the other lies within.
+    #[must_use]
+    pub fn holds(&self, other: &Rect) -> bool {
+        self.x <= other.x
+            && self.y <= other.y
+            && other.right() <= self.right()
+            && other.bottom() <= self.bottom()
+    }
+
     /// The rectangle with each edge moved inwards, or outwards by less than 0.
     #[must_use]
     pub fn shrunk(&self, by: f64) -> Self {
@@ -234,6 +252,15 @@ mod tests {
             Piece::Close => None,
         };
         path.pieces.iter().filter_map(end).collect()
+    }
+
+    #[test]
+    fn rectangles_that_touch_do_not_overlap() {
+        let rect = Rect::new(1.0, 1.0, 2.0, 2.0);
+        assert!(rect.overlaps(&Rect::new(2.0, 2.0, 5.0, 5.0)));
+        assert!(!rect.overlaps(&Rect::new(3.0, 1.0, 2.0, 2.0)));
+        assert!(rect.holds(&Rect::new(1.0, 2.0, 2.0, 1.0)));
+        assert!(!rect.holds(&Rect::new(0.5, 2.0, 1.0, 1.0)));
     }
 
     #[test]

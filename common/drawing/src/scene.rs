@@ -39,13 +39,24 @@ pub(crate) enum Item {
     Clip(Rect, Vec<Item>),
 }
 
+/// A line of text in a picture, and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// What is written.
+    pub text: String,
+    /// From the top of its capitals to the foot of its descenders.
+    pub area: Rect,
+}
+
 /// A picture in the making.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     width: u32,
     height: u32,
     title: String,
+    /// The first is the background.
     items: Vec<Item>,
+    labels: Vec<Label>,
 }
 
 impl Scene {
@@ -66,6 +77,7 @@ impl Scene {
             height,
             title: title.into(),
             items: Vec::new(),
+            labels: Vec::new(),
         };
         scene.fill(Path::rect(scene.area()), background);
         Ok(scene)
@@ -87,6 +99,26 @@ impl Scene {
     #[must_use]
     pub fn area(&self) -> Rect {
         Rect::new(0.0, 0.0, self.width.into(), self.height.into())
+    }
+
+    /// All text of the picture, in the order in which it was written.
+    #[must_use]
+    pub fn labels(&self) -> &[Label] {
+        &self.labels
+    }
+
+    /// Cuts the picture below, or adds background there.
+    ///
+    /// # Errors
+    /// If the height is 0 or above [`MAX_SIDE`].
+    pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
+        check_size(self.width, height)?;
+        self.height = height;
+        let area = self.area();
+        if let Some(Item::Fill(background, _)) = self.items.first_mut() {
+            *background = Path::rect(area);
+        }
+        Ok(())
     }
 
     pub(crate) fn title(&self) -> &str {
@@ -118,12 +150,22 @@ impl Scene {
 
     /// Writes a line of text at a point of its base line.
     pub fn text(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
+        self.label(content, style.area_of(content, at));
         self.letters(text::outline(content, at, style), style);
     }
 
     /// The same, running up.
     pub fn text_upwards(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
+        let flat = style.area_of(content, at);
+        let (ahead, down) = (flat.right() - at.0, flat.y - at.1);
+        let turned = Rect::new(at.0 + down, at.1 - ahead, flat.height, flat.width);
+        self.label(content, turned);
         self.letters(text::outline(content, at, style).turned_up(at), style);
+    }
+
+    fn label(&mut self, text: &str, area: Rect) {
+        let text = text.to_owned();
+        self.labels.push(Label { text, area });
     }
 
     fn letters(&mut self, path: Path, style: &TextStyle) {
@@ -153,6 +195,7 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<(), DrawingError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Anchor;
 
     #[test]
     fn sides_out_of_range_are_refused() {
@@ -165,6 +208,33 @@ mod tests {
             "a picture of 0 x 9 pixels; allowed: 1 to 16384 along each side"
         );
         assert!(error(9, MAX_SIDE + 1).contains("9 x 16385"));
+    }
+
+    #[test]
+    fn the_background_fills_a_picture_of_another_height() {
+        let mut scene = Scene::new(9, 9, "", Color::WHITE).unwrap();
+        scene.set_height(14).unwrap();
+        assert_eq!(scene, Scene::new(9, 14, "", Color::WHITE).unwrap());
+        assert!(scene.set_height(0).is_err());
+    }
+
+    #[test]
+    fn labels_are_where_their_letters_are() {
+        let style = TextStyle::new(100.0, Color::rgb(0));
+        let at = (200.0, 300.0);
+        let mut scene = Scene::new(900, 900, "", Color::WHITE).unwrap();
+        scene.text("Ep", at, &style.anchored(Anchor::End));
+        scene.text_upwards("Ep", at, &style);
+        let width = style.width_of("Ep");
+        let [flat, turned] = scene.labels() else {
+            panic!("{:?}", scene.labels());
+        };
+        assert_eq!(flat.area, Rect::new(200.0 - width, 226.0, width, 98.0));
+        let expected = Rect::new(126.0, 300.0 - width, 98.0, width);
+        // Sums round.
+        let off = (turned.area.y - expected.y).abs() + (turned.area.x - expected.x).abs();
+        assert!(off < 1e-9, "{turned:?}");
+        assert!((turned.area.height - width).abs() < 1e-9 && turned.area.width == 98.0);
     }
 
     #[test]

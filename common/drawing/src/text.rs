@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 use crate::path::Piece;
-use crate::{Color, Path};
+use crate::{Color, Path, Rect};
 
 /// How heavy letters are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +87,24 @@ impl TextStyle {
         advances.sum::<f64>() * self.scale(face)
     }
 
+    /// What a line of text at a point of its base line covers: from the top of its
+    /// capitals to the foot of its descenders.
+    #[must_use]
+    pub fn area_of(&self, content: &str, (x, y): (f64, f64)) -> Rect {
+        let width = self.width_of(content);
+        let (above, below) = (0.74 * self.size, 0.24 * self.size);
+        Rect::new(x - self.before(width), y - above, width, above + below)
+    }
+
+    /// How much of a text stands left of the point given.
+    fn before(&self, width: f64) -> f64 {
+        match self.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => width / 2.0,
+            Anchor::End => width,
+        }
+    }
+
     fn scale(&self, face: &Face<'_>) -> f64 {
         self.size / f64::from(face.units_per_em())
     }
@@ -95,15 +113,9 @@ impl TextStyle {
 /// The outlines of a line of text at a point of its base line.
 pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> Path {
     let face = face(style.weight);
-    let width = style.width_of(content);
-    let start = match style.anchor {
-        Anchor::Start => x,
-        Anchor::Middle => x - width / 2.0,
-        Anchor::End => x - width,
-    };
     let mut pen = Pen {
         path: Path::new(),
-        at: (start, y),
+        at: (x - style.before(style.width_of(content)), y),
         scale: style.scale(face),
     };
     for letter in content.chars() {
@@ -222,7 +234,7 @@ mod tests {
     fn both_weights_have_what_is_written() {
         for weight in [Weight::Regular, Weight::Bold] {
             let face = face(weight);
-            for letter in "Az09 .,:%°±²·–≥σθ√#×".chars() {
+            for letter in "Az09 .,:%°±²·–−…≥σθ√#×".chars() {
                 assert!(face.glyph_index(letter).is_some(), "{weight:?} {letter}");
             }
         }

@@ -8,13 +8,12 @@ use geometry::Pose;
 use messages::Verdict;
 
 use super::extent::Extent;
-use super::marks;
-use super::page::{self, Entry, Heading, Page, Sample};
-use super::places;
+use super::legend::{Legend, Sample};
+use super::page::{self, Heading, Page};
 use super::scan::Size;
 use super::subject::{Ground, Subject};
-use super::theme;
 use super::view::View;
+use super::{axes, places, theme};
 use crate::PlotError;
 
 /// The body's height as a share of its width.
@@ -34,6 +33,8 @@ struct Film<'a> {
     bag: &'a str,
     width: u32,
     extent: Extent,
+    /// The same for all, so that nothing jumps.
+    legend: Legend,
 }
 
 /// The pictures of a drive, each drawn when it is asked for.
@@ -50,13 +51,15 @@ pub(super) fn frames<'a>(
     for subject in subjects {
         extent.include_all(subject.extent(ground, size.whole));
     }
-    let film = Film {
+    let mut film = Film {
         ground,
         subjects,
         bag,
         width: size.width,
         extent,
+        legend: Legend::default(),
     };
+    film.legend = film.names();
     (0..subjects.len()).map(move |i| Ok((film.draw(i)?, shown(subjects, i))))
 }
 
@@ -73,21 +76,45 @@ fn shown(subjects: &[Subject], i: usize) -> Duration {
 
 impl Film<'_> {
     fn draw(&self, i: usize) -> Result<Scene, PlotError> {
+        let mut page = self.page(i)?;
+        let view = axes::view_within(self.extent, page.body, page.unit);
+        page.legend = self.legend.clone();
+        self.ground.draw(&mut page, &view)?;
+        self.draw_places((&mut page.scene, &mut page.legend), &view, i);
+        axes::draw_metres(&mut page.scene, &view, page.unit);
+        Ok(page.finish()?)
+    }
+
+    fn page(&self, i: usize) -> Result<Page, PlotError> {
         let ratio = (self.extent.height() / self.extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-        let height = (page::body_width(self.width) * ratio).round();
-        let mut page = Page::new(self.width, height, &self.heading(i), &self.legend())?;
-        let view = View::fitting(self.extent, page.body);
-        self.ground.draw(&mut page.scene, &view)?;
-        let unit = page.unit;
-        page.scene.clipped(view.area(), |scene| {
-            let way = self.way(i).map(|pose| view.at((pose.x, pose.y)));
+        let (width, unit) = (page::body_width(self.width), page::unit(self.width));
+        let height = axes::height_for(ratio, width, unit);
+        Ok(Page::new(self.width, height, &self.heading(i))?)
+    }
+
+    fn draw_places(&self, (scene, legend): (&mut Scene, &mut Legend), view: &View, i: usize) {
+        let unit = page::unit(self.width);
+        let way: Vec<_> = self.way(i).map(|pose| view.at((pose.x, pose.y))).collect();
+        if way.len() > 1 {
             let stroke = Stroke::new(theme::BEST.with_opacity(0.6), WAY * unit);
-            scene.stroke(Path::polyline(way), stroke);
-        });
-        places::draw(&mut page.scene, &view, &self.subjects[i], unit);
-        marks::scale_bar(&mut page.scene, &view, unit);
-        page.frame(view.area());
-        Ok(page.scene)
+            legend.add(Sample::Line(stroke), "path of unique places");
+            scene.clipped(view.area(), |scene| {
+                scene.stroke(Path::polyline(way), stroke);
+            });
+        }
+        places::draw((scene, legend), view, &self.subjects[i], unit);
+    }
+
+    /// What any of the pictures shows beside the map.
+    fn names(&self) -> Legend {
+        let mut legend = Legend::default();
+        for i in 0..self.subjects.len() {
+            // A picture without a map, for its names alone.
+            let Ok(mut page) = self.page(i) else { continue };
+            let view = View::fitting(self.extent, page.body);
+            self.draw_places((&mut page.scene, &mut legend), &view, i);
+        }
+        legend
     }
 
     /// Where the robot was found without doubt, up to a scan.
@@ -107,23 +134,5 @@ impl Film<'_> {
             title: format!("{} · {seconds:.1} s", heading.title),
             ..heading
         }
-    }
-
-    /// The same for all, so that nothing jumps.
-    fn legend(&self) -> Vec<Entry> {
-        let mut entries = vec![(
-            Sample::Robot(theme::BEST),
-            "found by this scan alone".to_owned(),
-        )];
-        let classes = theme::CLASSES.map(theme::of_class);
-        let dots = classes.map(|(color, name)| (Sample::Dot(color), name.to_owned()));
-        entries.extend(dots);
-        if self.subjects.iter().any(|subject| subject.shown.len() > 1) {
-            entries.push((Sample::Robot(theme::OTHER), "other places".to_owned()));
-        }
-        if self.subjects.iter().any(|subject| subject.truth.is_some()) {
-            entries.push((Sample::Truth, "truth".to_owned()));
-        }
-        entries
     }
 }

@@ -13,8 +13,10 @@ use crate::PlotError;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
-Colours of beams: green ends at an obstacle, orange before one, red behind one, violet behind
-unknown space. Places that fit about as well are fainter, and shown from near below the map.
+Ends of beams: a green dot is at an obstacle, an orange triangle before one, a red cross behind
+one, a violet diamond behind unknown space. Places that fit about as well are fainter, and shown
+from near below the map or beside it. Text is 7 points or more on two columns of a journal (180
+mm); for one column, --width 600 has 6 points.
 
 Exit codes: 0 drawn, 1 failed, 2 wrong use";
 

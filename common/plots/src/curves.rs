@@ -3,8 +3,10 @@
 use drawing::{Path, Rect, Scene, Stroke};
 
 use super::axes::{self, Axis};
-use super::page::{self, Entry, Heading, Page, Sample};
+use super::legend::Sample;
+use super::page::{self, Heading, Page};
 use super::scale::Scale;
+use super::shapes::Shape;
 use super::theme;
 use crate::PlotError;
 
@@ -64,14 +66,9 @@ pub fn draw(chart: &Curves) -> Result<Scene, PlotError> {
         says: chart.says.clone(),
     };
     let unit = page::unit(width);
-    let height = (page::body_width(width) * HEIGHT).round();
-    let mut page = Page::new(width, height, &heading, &legend(chart, unit))?;
-    let area = axes::inside(page.body, unit);
+    let height = axes::height_for(HEIGHT, page::body_width(width), unit);
+    let mut page = Page::new(width, height, &heading)?;
     let scales = scales(chart);
-    axes::draw_grating(&mut page.scene, area, scales, unit);
-    for curve in &chart.curves {
-        draw_curve(&mut page.scene, curve, (area, scales), unit);
-    }
     let x = Axis {
         scale: scales.0,
         name: &chart.x,
@@ -80,8 +77,14 @@ pub fn draw(chart: &Curves) -> Result<Scene, PlotError> {
         scale: scales.1,
         name: &chart.y,
     };
+    let area = axes::inside(page.body, (&x, &y), unit);
+    axes::draw_grating(&mut page.scene, area, (x, y), unit);
+    for curve in &chart.curves {
+        draw_curve(&mut page, curve, (area, scales), unit);
+    }
+    name_others(&mut page, chart, scales.1);
     axes::draw(&mut page.scene, area, (x, y), unit);
-    Ok(page.scene)
+    Ok(page.finish()?)
 }
 
 fn scales(chart: &Curves) -> (Scale, Scale) {
@@ -106,57 +109,69 @@ fn stroke(curve: &Curve, unit: f64) -> Stroke {
     }
 }
 
-fn legend(chart: &Curves, unit: f64) -> Vec<Entry> {
-    let entry = |curve: &Curve| (Sample::Line(stroke(curve, unit)), curve.name.clone());
-    chart.curves.iter().map(entry).collect()
-}
-
-fn draw_curve(scene: &mut Scene, curve: &Curve, (area, (x, y)): (Rect, (Scale, Scale)), unit: f64) {
+fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Scale)), unit: f64) {
     let at = |px: f64, py: f64| {
         (
             area.x + area.width * x.share(px),
             area.bottom() - area.height * y.share(py),
         )
     };
-    let points: Vec<_> = curve
-        .points
-        .iter()
-        .map(|point| at(point.x, point.y))
-        .collect();
-    scene.stroke(Path::polyline(points.iter().copied()), stroke(curve, unit));
-    let solid = Stroke::new(stroke(curve, unit).color, 1.4 * unit);
-    let mut bars = Path::new();
+    let line = stroke(curve, unit);
+    let points = || curve.points.iter().map(|point| at(point.x, point.y));
+    page.scene.stroke(Path::polyline(points()), line);
+    let solid = Stroke::new(line.color, 1.4 * unit);
+    let (mut bars, mut beyond) = (Path::new(), Path::new());
     for point in &curve.points {
-        let Some((low, high)) = point.interval else {
-            continue;
-        };
-        let (low, high) = (at(point.x, low), at(point.x, high));
-        bars.add_line(low, high);
-        for (end_x, end_y) in [low, high] {
+        let (low, high) = point.interval.unwrap_or((point.y, point.y));
+        bars.add_line(at(point.x, low), at(point.x, high));
+        for end in [low, high]
+            .into_iter()
+            .filter(|&end| !y.is_below(end) && low < high)
+        {
+            let (end_x, end_y) = at(point.x, end);
             bars.add_line((end_x - 4.0 * unit, end_y), (end_x + 4.0 * unit, end_y));
         }
-    }
-    scene.stroke(bars, solid);
-    if !curve.is_dashed {
-        for point in points {
-            scene.fill(mark(curve.color, point, 4.5 * unit), solid.color);
+        if is_below(point, y) {
+            Shape::Down.add_to(&mut beyond, at(point.x, low), 4.5 * unit);
         }
+    }
+    page.scene.stroke(bars, solid);
+    page.scene.stroke(beyond, solid);
+    let shape = Shape::ALL[curve.color % Shape::ALL.len()];
+    if curve.is_dashed {
+        page.legend.add(Sample::Line(line), &*curve.name);
+        return;
+    }
+    page.legend.add(Sample::Curve(line, shape), &*curve.name);
+    let shown = curve.points.iter().filter(|point| !y.is_below(point.y));
+    for point in shown {
+        let mark = shape.at(at(point.x, point.y), 4.5 * unit);
+        page.scene.fill(mark, line.color);
     }
 }
 
-/// Each colour has a shape, too: a chart may be printed in black.
-fn mark(color: usize, (x, y): (f64, f64), size: f64) -> Path {
-    let corners: &[(f64, f64)] = match color % 4 {
-        0 => return Path::circle((x, y), size),
-        1 => &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
-        2 => &[(0.0, -1.3), (1.2, 0.9), (-1.2, 0.9)],
-        _ => &[(0.0, -1.4), (1.4, 0.0), (0.0, 1.4), (-1.4, 0.0)],
-    };
-    Path::polygon(corners.iter().map(|(u, v)| (x + size * u, y + size * v)))
+/// Whether a point, or its interval, goes on below the axis: a scale of decades has no 0.
+fn is_below(point: &CurvePoint, y: Scale) -> bool {
+    let low = point.interval.map_or(point.y, |(low, _)| low);
+    y.is_below(low.min(point.y))
+}
+
+/// Names the intervals, and what does not lie on the axis.
+fn name_others(page: &mut Page, chart: &Curves, y: Scale) {
+    let ink = Stroke::new(theme::INK, 1.4 * page.unit);
+    let mut points = chart.curves.iter().flat_map(|curve| &curve.points);
+    if points.clone().any(|point| point.interval.is_some()) {
+        page.legend.add(Sample::Bar(ink), "interval of 95 %");
+    }
+    if points.any(|point| is_below(point, y)) {
+        let sample = Sample::Outline(Shape::Down, theme::INK);
+        page.legend.add(sample, "goes on below the axis");
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::layout;
     use super::*;
 
     fn chart() -> Curves {
@@ -179,11 +194,34 @@ mod tests {
     #[test]
     fn axes_hold_the_points_and_their_intervals() {
         let (x, y) = scales(&chart());
-        assert_eq!(x, Scale::Even(0.0, 120.0));
+        assert_eq!(x, Scale::Even(0.0, 140.0));
         let Scale::Decades(low, high) = y else {
             panic!("{y:?}");
         };
         assert!(low <= 2.0 && high >= 30.0, "{low} {high}");
-        assert!(draw(&chart()).is_ok());
+    }
+
+    #[test]
+    fn what_lies_below_the_axis_is_said() {
+        let texts = |chart: &Curves| -> Vec<String> {
+            let scene = draw(chart).unwrap();
+            layout::check(&scene);
+            let labels = scene.labels().iter();
+            labels.map(|label| label.text.clone()).collect()
+        };
+        let has = |texts: &[String], name: &str| texts.iter().any(|text| text == name);
+        let whole = texts(&chart());
+        for name in ["a", "interval of 95 %", "p/n, %", "ratio"] {
+            assert!(has(&whole, name), "{name}: {whole:?}");
+        }
+        assert!(!has(&whole, "goes on below the axis"), "{whole:?}");
+        let mut below = chart();
+        below.curves[0].points[0].interval = Some((0.0, 4.0));
+        assert!(has(&texts(&below), "goes on below the axis"));
+        below.by_decades = false;
+        assert!(
+            !has(&texts(&below), "goes on below the axis"),
+            "0 is on this axis"
+        );
     }
 }

@@ -1,11 +1,12 @@
 //! Panels of cells and arrows: a method drawn step by step on a small map.
 
-use drawing::{Anchor, Color, Path, Rect, Scene, Stroke, TextStyle};
+use drawing::{Color, Path, Rect, Scene, Stroke};
 
 use super::axes::{self, Axis};
-use super::field;
-use super::page::{self, Entry, Heading, Page, Sample};
+use super::legend::{Legend, Sample};
+use super::page::{self, Heading, Page};
 use super::scale::Scale;
+use super::shapes::Shape;
 use super::theme;
 use crate::PlotError;
 
@@ -79,43 +80,63 @@ pub struct Diagram {
 pub fn draw(diagram: &Diagram) -> Result<Scene, PlotError> {
     let width = page::COMMON_WIDTH;
     let unit = page::unit(width);
-    let side = page::body_width(width) / 2.0;
+    let votes = Axis {
+        scale: Scale::Even(0.0, 1.0),
+        name: "share of the most votes",
+    };
+    let has_votes = diagram.panels.iter().flat_map(|panel| &panel.cells);
+    let has_votes = has_votes
+        .clone()
+        .any(|cell| matches!(cell, Cell::Free(share) if *share > 0.0));
+    let body = Rect::new(0.0, 0.0, page::body_width(width), f64::from(width));
+    let (rest, _) = axes::beside_bar(body, &votes, unit);
+    let side = if has_votes { rest.width } else { body.width } / 2.0;
     let ratios = diagram.panels.iter().map(|panel| {
         let (across, up) = panel.sides;
         up as f64 / across.max(1) as f64
     });
-    let body = axes::inside(Rect::new(0.0, 0.0, side, side), unit);
-    let rim = side - body.height + CAPTION * unit;
-    let height = body.width * ratios.fold(0.0, f64::max) + rim;
+    let ratio = ratios.fold(0.0, f64::max);
+    let height = axes::height_for(ratio, side, unit) + CAPTION * unit;
     let rows = diagram.panels.len().div_ceil(2) as f64;
     let heading = Heading {
         title: diagram.title.clone(),
         verdict: None,
         says: diagram.says.clone(),
     };
-    let mut page = Page::new(width, height * rows, &heading, &legend(diagram, unit))?;
+    let mut page = Page::new(width, height * rows, &heading)?;
     for (i, panel) in diagram.panels.iter().enumerate() {
         let (column, row) = ((i % 2) as f64, (i / 2) as f64);
         let (left, top) = (page.body.x + column * side, page.body.y + row * height);
-        draw_panel(
-            &mut page.scene,
-            panel,
-            Rect::new(left, top, side, height),
-            unit,
-        );
+        let area = Rect::new(left, top, side, height);
+        draw_panel(&mut page.scene, panel, area, unit);
     }
-    Ok(page.scene)
+    if has_votes {
+        let top = page.body.y + CAPTION * unit;
+        let beside = Rect::new(page.body.x, top, page.body.width, height - CAPTION * unit);
+        let (_, bar) = axes::beside_bar(beside, &votes, unit);
+        axes::draw_bar(&mut page.scene, bar, votes, theme::heat, unit);
+    }
+    name(&mut page.legend, diagram, unit);
+    Ok(page.finish()?)
 }
 
 fn draw_panel(scene: &mut Scene, panel: &Panel, area: Rect, unit: f64) {
-    let style = TextStyle::new(15.0 * unit, theme::INK).bold();
-    let caption = page::fitted(style, &panel.caption, area.width - 76.0 * unit);
-    let at = (area.x + 66.0 * unit, area.y + 24.0 * unit);
-    scene.text(&panel.caption, at, &caption.anchored(Anchor::Start));
     let top = area.y + CAPTION * unit;
     let below = Rect::new(area.x, top, area.width, area.bottom() - top);
-    let inside = axes::inside(below, unit);
     let (across, up) = (panel.sides.0 as f64, panel.sides.1 as f64);
+    let x = Axis {
+        scale: Scale::Even(0.0, across),
+        name: "x, cells",
+    };
+    let y = Axis {
+        scale: Scale::Even(0.0, up),
+        name: "y, cells",
+    };
+    let inside = axes::inside(below, (&x, &y), unit);
+    let style = theme::text(unit).bold();
+    let caption = theme::fitted(style, &panel.caption, area.right() - inside.x);
+    let at = (inside.x, area.y + 0.7 * CAPTION * unit);
+    scene.text(&panel.caption, at, &caption);
     let cell = (inside.width / across).min(inside.height / up);
     let grid = Rect::new(inside.x, inside.y, cell * across, cell * up);
     draw_cells(scene, panel, grid, cell);
@@ -130,14 +151,6 @@ fn draw_panel(scene: &mut Scene, panel: &Panel, area: Rect, unit: f64) {
         scene.fill(path.clone(), theme::TRUTH);
         scene.stroke(path, Stroke::new(Color::WHITE, 1.5 * unit));
     }
-    let x = Axis {
-        scale: Scale::Even(0.0, across),
-        name: "x, cells",
-    };
-    let y = Axis {
-        scale: Scale::Even(0.0, up),
-        name: "y, cells",
-    };
     axes::draw(scene, grid, (x, y), unit);
 }
 
@@ -151,7 +164,7 @@ fn draw_cells(scene: &mut Scene, panel: &Panel, grid: Rect, side: f64) {
             side,
         );
         let color = match cell {
-            Cell::Free(share) => field::heat(share),
+            Cell::Free(share) => theme::heat(share),
             Cell::Obstacle => theme::OCCUPIED,
             Cell::Boundary => theme::QUIET,
         };
@@ -183,6 +196,13 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
             to.1 - size * y - side * size * 0.5 * x,
         )
     };
+    // A rim keeps arrows legible over dark cells.
+    let rim = Color::WHITE.with_opacity(0.75);
+    let width = stroke(role, unit).width;
+    let barbs = Path::polyline([barb(1.0), to, barb(-1.0)]);
+    let around = Stroke::new(rim, width + 1.8 * unit);
+    scene.stroke(Path::line(from, to), around);
+    scene.stroke(barbs.clone(), around);
     scene.stroke(Path::line(from, to), stroke(role, unit));
     let foot = Path::circle(from, 2.6 * unit);
     scene.fill(foot, stroke(role, unit).color);
@@ -190,44 +210,40 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
         dash: 0.0,
         ..stroke(role, unit)
     };
-    scene.stroke(Path::polyline([barb(1.0), to, barb(-1.0)]), solid);
+    scene.stroke(barbs, solid);
 }
 
-fn legend(diagram: &Diagram, unit: f64) -> Vec<Entry> {
+fn name(legend: &mut Legend, diagram: &Diagram, unit: f64) {
     let panels = &diagram.panels;
-    let mut entries = vec![(Sample::Square(theme::QUIET), "boundary cell".to_owned())];
-    let mut cells = panels.iter().flat_map(|panel| &panel.cells);
-    if cells.any(|&cell| cell == Cell::Obstacle) {
-        let name = "obstacle behind it".to_owned();
-        entries.push((Sample::Square(theme::OCCUPIED), name));
+    let has = |cell: Cell| panels.iter().any(|panel| panel.cells.contains(&cell));
+    if has(Cell::Boundary) {
+        legend.add(Sample::Area(theme::QUIET), "boundary cell");
+    }
+    if has(Cell::Obstacle) {
+        legend.add(Sample::Area(theme::OCCUPIED), "obstacle behind it");
     }
     if panels.iter().any(|panel| panel.robot.is_some()) {
-        entries.push((Sample::Dot(theme::TRUTH), "robot".to_owned()));
+        legend.add(Sample::Mark(Shape::Circle, theme::TRUTH), "robot");
     }
     let roles = [
         (Role::Reading, "reading"),
         (Role::Projected, "projected reading"),
         (
             Role::Rejected,
-            "the same, which does not match or is blocked",
+            "projected reading that does not match or is blocked",
         ),
     ];
     for (role, name) in roles {
         let mut arrows = panels.iter().flat_map(|panel| &panel.arrows);
         if arrows.any(|arrow| arrow.role == role) {
-            entries.push((Sample::Line(stroke(role, unit)), name.to_owned()));
+            legend.add(Sample::Line(stroke(role, unit)), name);
         }
     }
-    entries.push((
-        Sample::Square(field::heat(0.25)),
-        "a quarter of the votes".to_owned(),
-    ));
-    entries.push((Sample::Square(field::heat(1.0)), "all votes".to_owned()));
-    entries
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::layout;
     use super::*;
 
     #[test]
@@ -248,7 +264,20 @@ mod tests {
             says: String::new(),
             panels: vec![panel.clone(); count],
         };
-        let height = |count| draw(&diagram(count)).unwrap().height();
+        let height = |count| {
+            let scene = draw(&diagram(count)).unwrap();
+            layout::check(&scene);
+            let texts = scene.labels().iter().map(|label| &*label.text);
+            let texts: Vec<&str> = texts.collect();
+            for name in ["robot", "reading", "share of the most votes", "x, cells"] {
+                assert!(texts.contains(&name), "{name}: {texts:?}");
+            }
+            assert!(
+                !texts.contains(&"boundary cell"),
+                "none is drawn: {texts:?}"
+            );
+            scene.height()
+        };
         assert_eq!(height(1), height(2));
         assert!(height(3) > height(2));
     }

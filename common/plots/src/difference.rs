@@ -1,25 +1,28 @@
 //! The picture of a difference: a scan where it is expected, and where it was found.
 //! Pure, and asks no engine: it draws its arguments.
 
-use drawing::{Color, Path, Scene};
+use drawing::Scene;
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;
 
 use super::extent::Extent;
+use super::legend::Sample;
 use super::marks;
-use super::page::{self, Heading, Page, Sample};
+use super::page::{self, Heading, Page};
 use super::places::{ROBOT, TRUTH};
+use super::shapes::Shape;
 use super::subject::Ground;
-use super::theme;
-use super::view::View;
+use super::{axes, theme};
 use crate::PlotError;
 
 /// Pixels along x.
 const WIDTH: u32 = 1200;
 /// The body's height as a share of its width.
-const HEIGHTS: (f64, f64) = (0.25, 0.75);
+const HEIGHTS: (f64, f64) = (0.25, 1.0);
 const DOT: f64 = 2.4;
+/// Of beams that end where they are expected, and where they were found.
+const SHAPES: [Shape; 2] = [Shape::Square, Shape::Circle];
 
 /// What is drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,43 +50,44 @@ pub fn draw(map: &OccupancyGrid, contrast: &Contrast) -> Result<Scene, PlotError
     };
     let extent = contrast.extent(&ground);
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let height = (page::body_width(WIDTH) * ratio).round();
+    let (width, unit) = (page::body_width(WIDTH), page::unit(WIDTH));
     let heading = Heading {
         title: contrast.title.clone(),
         verdict: None,
         says: contrast.says.clone(),
     };
-    let legend = [
-        (Sample::Truth, "expected".to_owned()),
-        (Sample::Robot(theme::BEST), "found".to_owned()),
+    let mut page = Page::new(WIDTH, axes::height_for(ratio, width, unit), &heading)?;
+    let view = axes::view_within(extent, page.body, unit);
+    ground.draw(&mut page, &view)?;
+    let Page { scene, legend, .. } = &mut page;
+    let both = [
+        (
+            contrast.expected,
+            theme::TRUTH,
+            "the scan where it is expected",
+        ),
+        (contrast.found, theme::BEST, "the scan where it was found"),
     ];
-    let mut page = Page::new(WIDTH, height, &heading, &legend)?;
-    let view = View::fitting(extent, page.body);
-    ground.draw(&mut page.scene, &view)?;
-    let unit = page.unit;
-    page.scene.clipped(view.area(), |scene| {
-        for (pose, color) in [
-            (contrast.expected, theme::TRUTH),
-            (contrast.found, theme::BEST),
-        ] {
+    scene.clipped(view.area(), |scene| {
+        for ((pose, color, name), shape) in both.into_iter().zip(SHAPES) {
             let ends = contrast.ends_at(pose);
-            dots(scene, &view, &ends, DOT * unit, color.with_opacity(0.6));
+            let color = color.with_opacity(0.6);
+            if marks::ends(scene, &view, ends.into_iter(), (shape, DOT * unit, color)) {
+                legend.add(Sample::Mark(shape, color), name);
+            }
         }
         if let Some(pose) = contrast.found {
-            marks::robot(
-                scene,
-                marks::placement(&view, pose),
-                ROBOT * unit,
-                theme::BEST,
-            );
+            let placement = marks::placement(&view, pose);
+            marks::robot(scene, placement, ROBOT * unit, theme::BEST);
+            legend.add(Sample::Robot(theme::BEST), "found");
         }
         if let Some(pose) = contrast.expected {
             marks::truth(scene, marks::placement(&view, pose), TRUTH * unit);
+            legend.add(Sample::Truth, "expected");
         }
     });
-    marks::scale_bar(&mut page.scene, &view, unit);
-    page.frame(view.area());
-    Ok(page.scene)
+    axes::draw_metres(&mut page.scene, &view, unit);
+    Ok(page.finish()?)
 }
 
 impl Contrast {
@@ -95,10 +99,9 @@ impl Contrast {
             extent.include(self.ends_at(pose));
             extent.include(pose.map(|pose| (pose.x, pose.y)));
         }
-        let all = ground.extent();
         match poses.iter().any(Option::is_some) {
-            true => extent.with_rim(0.04, 6.0).within(all),
-            false => all,
+            true => extent.with_rim(0.04, 6.0).within(ground.whole()),
+            false => ground.known(),
         }
     }
 
@@ -109,16 +112,11 @@ impl Contrast {
     }
 }
 
-fn dots(scene: &mut Scene, view: &View, ends: &[(f64, f64)], radius: f64, color: Color) {
-    let mut path = Path::new();
-    for &end in ends.iter().filter(|end| view.shows(**end)) {
-        path.add_circle(view.at(end), radius);
-    }
-    scene.fill(path, color);
-}
-
 #[cfg(test)]
 mod tests {
+    use drawing::Color;
+
+    use super::super::layout;
     use super::*;
 
     fn map() -> OccupancyGrid {
@@ -144,20 +142,24 @@ mod tests {
     }
 
     #[test]
-    fn both_poses_are_drawn_as_far_as_they_are_there() {
+    fn both_poses_are_drawn_and_named_as_far_as_they_are_there() {
         let pose = Some(Pose::new(4.0, 3.0, 0.3));
         let away = Some(Pose::new(6.0, 5.0, 2.0));
         let shown = |expected, found| {
             let scene = draw(&map(), &contrast(expected, found)).unwrap();
-            let marks = [theme::TRUTH, theme::BEST];
-            marks.map(|color| pixels(&scene, color))
+            layout::check(&scene);
+            let marks = [theme::TRUTH, theme::BEST].map(|color| pixels(&scene, color) > 0);
+            let names = ["expected", "found"].map(|name| {
+                let labels = scene.labels().iter();
+                labels.filter(|label| label.text.contains(name)).count()
+            });
+            (marks, names)
         };
-        // The legend alone has some of each.
-        let legend = shown(None, None);
-        let [expected, found] = shown(pose, away);
-        assert!(expected > legend[0] && found > legend[1]);
-        assert_eq!(shown(pose, None)[1], legend[1]);
-        assert_eq!(shown(None, away)[0], legend[0]);
+        // Each is named once as a pose, and once as the scan there.
+        assert_eq!(shown(pose, away), ([true, true], [2, 2]));
+        assert_eq!(shown(pose, None), ([true, false], [2, 0]));
+        assert_eq!(shown(None, away), ([false, true], [0, 2]));
+        assert_eq!(shown(None, None), ([false, false], [0, 0]));
     }
 
     #[test]

@@ -1,16 +1,18 @@
 //! A drive from above: the map, where the tracker had the robot, and where it was not
 //! sure.
 
-use drawing::{Path, Scene, Stroke};
+use drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::TrackState;
 
 use super::extent::Extent;
-use super::page::{self, Entry, Heading, Page, Sample};
+use super::legend::{Legend, Sample};
+use super::page::{self, Heading, Page};
+use super::subject::Ground;
 use super::view::View;
-use super::{ground, marks, theme};
+use super::{axes, theme};
 use crate::PlotError;
 
 /// A scan of a drive.
@@ -29,6 +31,9 @@ const WIDTH: u32 = 1200;
 
 /// They are as high as the drive asks for, within these shares of their width.
 const HEIGHTS: (f64, f64) = (0.3, 1.2);
+
+/// The size of marks, pixels of a picture of the common width.
+const MARK: f64 = 3.0;
 
 /// Around the drive, metres are shown.
 const MARGIN_M: f64 = 3.0;
@@ -53,53 +58,104 @@ pub fn draw(
     });
     let extent = Extent::of(corners).within(Extent::of_map(map));
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let height = (page::body_width(WIDTH) * ratio).round();
+    let (width, unit) = (page::body_width(WIDTH), page::unit(WIDTH));
     let heading = Heading {
         title,
         verdict: None,
         says,
     };
-    let mut page = Page::new(WIDTH, height, &heading, &legend())?;
-    let (unit, view) = (page.unit, View::fitting(extent, page.body));
-    let ink = ground::occupied(map, rules);
-    ground::draw(&mut page.scene, map, rules, &view, ink)?;
-    let at = |pose: Pose| view.at((pose.x, pose.y));
-    let path: Vec<_> = stops.iter().filter_map(|stop| stop.truth).map(at).collect();
-    for pair in path.windows(2) {
-        if let [from, to] = *pair {
-            let stroke = Stroke::new(theme::TRUTH, 1.2 * unit);
-            page.scene.stroke(Path::line(from, to), stroke);
+    let mut page = Page::new(WIDTH, axes::height_for(ratio, width, unit), &heading)?;
+    let view = axes::view_within(extent, page.body, unit);
+    let ground = Ground { map, rules };
+    ground.draw(&mut page, &view)?;
+    let Page { scene, legend, .. } = &mut page;
+    scene.clipped(view.area(), |scene| {
+        draw_path((scene, legend), &view, stops, unit);
+        for state in STATES {
+            draw_state((scene, legend), &view, (stops, state), unit);
         }
-    }
-    for stop in stops {
-        let Some(pose) = stop.pose else { continue };
-        if stop.state != TrackState::Searching {
-            let dot = Path::circle(at(pose), 2.4 * unit);
-            page.scene.fill(dot, theme::of_state(stop.state));
-        }
-    }
-    // Where nothing was known, the truth says where that was.
-    for stop in stops {
-        if let (TrackState::Searching, Some(truth)) = (stop.state, stop.truth) {
-            let dot = Path::circle(at(truth), 2.4 * unit);
-            page.scene.fill(dot, theme::of_state(stop.state));
-        }
-    }
-    marks::scale_bar(&mut page.scene, &view, unit);
-    page.frame(view.area());
-    Ok(page.scene)
+    });
+    axes::draw_metres(&mut page.scene, &view, unit);
+    Ok(page.finish()?)
 }
 
-fn legend() -> Vec<Entry> {
-    let states = [
-        (TrackState::Unique, "unique"),
-        (TrackState::Doubtful, "doubtful"),
-        (TrackState::Lost, "lost"),
-        (TrackState::Searching, "searching, at the true place"),
-    ];
-    let dots = states.map(|(state, name)| (Sample::Dot(theme::of_state(state)), name.to_owned()));
-    let truth = Stroke::new(theme::TRUTH, 1.2);
-    let mut all = dots.to_vec();
-    all.push((Sample::Line(truth), "true path".into()));
-    all
+/// What is rare is drawn last.
+const STATES: [TrackState; 4] = [
+    TrackState::Unique,
+    TrackState::Doubtful,
+    TrackState::Searching,
+    TrackState::Lost,
+];
+
+fn draw_path((scene, legend): (&mut Scene, &mut Legend), view: &View, stops: &[Stop], unit: f64) {
+    let truths = stops.iter().filter_map(|stop| stop.truth);
+    let path: Vec<_> = truths.map(|pose| view.at((pose.x, pose.y))).collect();
+    if path.len() > 1 {
+        let stroke = Stroke::new(theme::TRUTH.with_opacity(0.45), 1.6 * unit);
+        scene.stroke(Path::polyline(path), stroke);
+        legend.add(Sample::Line(stroke), "true path");
+    }
+}
+
+/// The marks of a state: where the tracker had the robot, or where it truly was while
+/// nothing was known.
+fn draw_state(
+    (scene, legend): (&mut Scene, &mut Legend),
+    view: &View,
+    (stops, state): (&[Stop], TrackState),
+    unit: f64,
+) {
+    let (color, shape, name) = theme::of_state(state);
+    let stops = stops.iter().filter(|stop| stop.state == state);
+    let place = |stop: &Stop| match state {
+        TrackState::Searching => stop.truth,
+        _ => stop.pose,
+    };
+    let (size, mut marks) = (MARK * unit, Path::new());
+    let mut count = 0;
+    for pose in stops.filter_map(place) {
+        shape.add_to(&mut marks, view.at((pose.x, pose.y)), size);
+        count += 1;
+    }
+    if count > 0 {
+        if state != TrackState::Unique {
+            scene.stroke(marks.clone(), Stroke::new(Color::WHITE, 1.6 * unit));
+        }
+        scene.fill(marks, color);
+        legend.add(Sample::Mark(shape, color), format!("{name} ({count})"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout;
+    use super::*;
+
+    #[test]
+    fn states_are_named_as_far_as_they_are_drawn() {
+        let map = OccupancyGrid::from_parts(90, 40, 0.1, Pose::IDENTITY, vec![0; 90 * 40]);
+        let stop = |state, x| Stop {
+            state,
+            pose: (state != TrackState::Searching).then_some(Pose::new(x, 2.0, 0.0)),
+            truth: Some(Pose::new(x, 2.1, 0.0)),
+        };
+        let stops = [
+            stop(TrackState::Searching, 1.0),
+            stop(TrackState::Unique, 2.0),
+            stop(TrackState::Unique, 3.0),
+        ];
+        let words = ("a drive".to_owned(), "scans".to_owned());
+        let scene = draw(&map.unwrap(), CellRules::default(), &stops, words).unwrap();
+        layout::check(&scene);
+        let all: Vec<&str> = scene.labels().iter().map(|label| &*label.text).collect();
+        for name in [
+            "true path",
+            "unique (2)",
+            "searching, at the true place (1)",
+            "x, m",
+        ] {
+            assert!(all.contains(&name), "{name}: {all:?}");
+        }
+        assert!(!all.iter().any(|name| name.starts_with("lost")));
+    }
 }

@@ -1,12 +1,15 @@
 //! The picture of a drive: how far off the best place of each scan is, and what
 //! the verdict says.
 
-use drawing::{Anchor, Color, Path, Rect, Scene, TextStyle};
+use drawing::{Path, Rect, Scene, Stroke};
 use messages::Verdict;
 use statistics::SUCCESS;
 
-use super::chart::Chart;
-use super::page::{self, Entry, Heading, Page, Sample};
+use super::axes::{self, Axis};
+use super::legend::{Legend, Sample};
+use super::page::{self, Heading, Page};
+use super::scale::Scale;
+use super::shapes::Shape;
 use super::theme;
 use crate::PlotError;
 
@@ -37,11 +40,7 @@ const VERDICTS: [Verdict; 4] = [
 ];
 /// The height of each chart as a share of the width.
 const HEIGHT: f64 = 0.24;
-/// The least errors that scales go down to: what a truth is good for.
-const LEAST: (f64, f64) = (0.001, 0.01);
-const LEFT: f64 = 84.0;
-const ABOVE: f64 = 30.0;
-const BELOW: f64 = 28.0;
+const MARK: f64 = 4.2;
 
 /// Draws the picture of at least one judged scan.
 ///
@@ -49,80 +48,141 @@ const BELOW: f64 = 28.0;
 /// The picture would be too large.
 pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> Result<Scene, PlotError> {
     let unit = page::unit(width);
-    let chart_height = (page::body_width(width) * HEIGHT).round();
-    let one = chart_height + (ABOVE + BELOW) * unit;
-    let heading = heading(judged, bag);
-    let mut page = Page::new(width, 2.0 * one, &heading, &legend(judged))?;
+    let one = axes::height_for(HEIGHT, page::body_width(width), unit);
+    let mut page = Page::new(width, 2.0 * one, &heading(judged, bag))?;
     let body = page.body;
-    let area = |top: f64| {
-        let left = body.x + LEFT * unit;
-        Rect::new(
-            left,
-            top + ABOVE * unit,
-            body.right() - left - 12.0 * unit,
-            chart_height,
-        )
-    };
-    let (most_m, most_deg) = SUCCESS;
-    let metres = Series {
-        name: "position",
-        unit_of_values: " m",
-        limit: most_m,
-        least: LEAST.0,
-        bound: f64::INFINITY,
-        value: |(metres, _)| metres,
-    };
-    let degrees = Series {
-        name: "heading",
-        unit_of_values: "°",
-        limit: most_deg,
-        least: LEAST.1,
-        bound: 180.0,
-        value: |(_, degrees)| degrees,
-    };
-    metres.draw(&mut page.scene, judged, area(body.y), unit);
-    degrees.draw(&mut page.scene, judged, area(body.y + one), unit);
-    Ok(page.scene)
+    name(&mut page.legend, judged, unit);
+    let areas = [0.0, 1.0].map(|i| Rect::new(body.x, body.y + one * i, body.width, one));
+    let parts = SERIES.iter().zip(areas).map(|(series, area)| {
+        let [time, error] = series.axes(judged);
+        (series, axes::inside(area, (&time, &error), unit))
+    });
+    // Both times run side by side.
+    let left = parts.clone().map(|(_, area)| area.x).fold(0.0, f64::max);
+    let right = parts
+        .clone()
+        .map(|(_, area)| area.right())
+        .fold(f64::MAX, f64::min);
+    for (series, area) in parts {
+        let area = Rect::new(left, area.y, right - left, area.height);
+        series.draw(&mut page, judged, area);
+    }
+    Ok(page.finish()?)
 }
 
 /// One of both errors.
 struct Series {
     name: &'static str,
-    unit_of_values: &'static str,
     /// What counts as found.
     limit: f64,
+    /// The least that an axis goes down to: what a truth is good for.
     least: f64,
-    /// No error is above.
-    bound: f64,
     value: fn((f64, f64)) -> f64,
 }
 
+const SERIES: [Series; 2] = [
+    Series {
+        name: "position error, m",
+        limit: SUCCESS.0,
+        least: 0.001,
+        value: |(metres, _)| metres,
+    },
+    Series {
+        name: "heading error, °",
+        limit: SUCCESS.1,
+        least: 0.01,
+        value: |(_, degrees)| degrees,
+    },
+];
+
 impl Series {
-    fn draw(&self, scene: &mut Scene, judged: &[Judged], area: Rect, unit: f64) {
+    fn axes(&self, judged: &[Judged]) -> [Axis<'static>; 2] {
+        // Beside the first and the last scan is some room.
+        let duration = duration_s(judged).max(1e-3);
+        let time = Axis {
+            scale: Scale::Even(-0.015 * duration, 1.015 * duration),
+            name: "time, s",
+        };
+        let error = Axis {
+            scale: self.scale(judged),
+            name: self.name,
+        };
+        [time, error]
+    }
+
+    fn draw(&self, page: &mut Page, judged: &[Judged], area: Rect) {
+        let unit = page.unit;
+        let [time, error] = self.axes(judged);
+        let scale = error.scale;
+        axes::draw_grating(&mut page.scene, area, (time, error), unit);
+        let height = |value: f64| area.bottom() - area.height * scale.share(value);
+        let y = height(self.limit);
+        let line = Path::line((area.x, y), (area.right(), y));
+        page.scene.stroke(line, limit_stroke(unit));
+        for verdict in VERDICTS {
+            let scans = judged.iter().filter(|scan| scan.verdict == verdict);
+            let at = |scan: &Judged| {
+                let x = area.x + area.width * time.scale.share(seconds(judged, scan));
+                let value = scan.off.map(self.value);
+                // What has no place stands at the top.
+                let y = value.map_or(area.y, height);
+                let shape = match value {
+                    None => Some(Shape::Cross),
+                    Some(value) => scale.is_below(value).then_some(Shape::Down),
+                };
+                ((x, y), shape)
+            };
+            draw_marks(page, verdict, scans.map(at));
+        }
+        axes::draw(&mut page.scene, area, (time, error), unit);
+    }
+
+    /// Of decades, from what a truth is good for to beyond the limit at least.
+    fn scale(&self, judged: &[Judged]) -> Scale {
         let values = judged.iter().filter_map(|judged| judged.off);
         let values = values.map(|off| (self.value)(off).max(self.least));
-        // The limit shall not lie on the edge.
-        let (least, most) = values.fold((self.limit, 1.5 * self.limit), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
-        let chart = Chart::new(area, duration_s(judged), (least, most), self.bound);
-        chart.draw_axes(scene, unit, self.unit_of_values);
-        let word = format!("{}{}", self.limit, self.unit_of_values);
-        chart.draw_limit(scene, unit, self.limit, &word);
-        for verdict in VERDICTS {
-            let mut dots = Path::new();
-            for scan in judged.iter().filter(|scan| scan.verdict == verdict) {
-                if let Some(off) = scan.off {
-                    let value = (self.value)(off).max(self.least);
-                    dots.add_circle(chart.at(seconds(judged, scan), value), 3.6 * unit);
-                }
+        let around = [self.limit, 1.5 * self.limit];
+        Scale::of_decades(values.chain(around))
+    }
+}
+
+/// Draws the marks of a verdict, and names those that have a shape of their own: of scans
+/// without a place, and of errors below the axis.
+fn draw_marks(
+    page: &mut Page,
+    verdict: Verdict,
+    marks: impl Iterator<Item = ((f64, f64), Option<Shape>)>,
+) {
+    let (color, common) = theme::of_verdict(verdict);
+    let (mut filled, mut outlined) = (Path::new(), Path::new());
+    for (at, shape) in marks {
+        let size = MARK * page.unit;
+        match shape {
+            None => common.add_to(&mut filled, at, size),
+            Some(Shape::Down) => {
+                Shape::Down.add_to(&mut outlined, at, size);
+                let name = format!("below the axis: less than {} m or {}°", LEAST.0, LEAST.1);
+                page.legend.add(BELOW, name);
             }
-            scene.fill(dots, theme::of_verdict(verdict).with_opacity(0.85));
+            Some(other) => {
+                other.add_to(&mut filled, at, size);
+                page.legend.add(NOWHERE, "no place, so no error");
+            }
         }
-        let style = TextStyle::new(15.0 * unit, theme::INK).bold();
-        let at = (area.x, area.y - 9.0 * unit);
-        let name = format!("error of the {}", self.name);
-        scene.text(&name, at, &style.anchored(Anchor::Start));
+    }
+    page.scene.fill(filled, color.with_opacity(0.85));
+    let outline = Stroke::new(color, 1.4 * page.unit);
+    page.scene.stroke(outlined, outline);
+}
+
+const LEAST: (f64, f64) = (SERIES[0].least, SERIES[1].least);
+const BELOW: Sample = Sample::Outline(Shape::Down, theme::INK);
+const NOWHERE: Sample = Sample::Mark(Shape::Cross, theme::INK);
+
+fn limit_stroke(unit: f64) -> Stroke {
+    Stroke {
+        dash: 6.0 * unit,
+        ..Stroke::new(theme::QUIET, 1.4 * unit)
     }
 }
 
@@ -157,29 +217,25 @@ fn heading(judged: &[Judged], bag: &str) -> Heading {
     }
 }
 
-fn legend(judged: &[Judged]) -> Vec<Entry> {
-    let mut entries = Vec::new();
+/// Names the verdicts and the limit.
+fn name(legend: &mut Legend, judged: &[Judged], unit: f64) {
     for verdict in VERDICTS {
         let scans = judged.iter().filter(|scan| scan.verdict == verdict);
         let count = scans.count();
         if count > 0 {
-            let color = theme::of_verdict(verdict);
-            entries.push((Sample::Dot(color), format!("{} {count}", verdict.as_str())));
+            let (color, shape) = theme::of_verdict(verdict);
+            let name = format!("{} ({count})", verdict.as_str());
+            legend.add(Sample::Mark(shape, color), name);
         }
     }
-    let nowhere = judged.iter().filter(|scan| scan.off.is_none()).count();
-    if nowhere > 0 {
-        let clear = Color::WHITE.with_opacity(0.0);
-        entries.push((
-            Sample::Dot(clear),
-            format!("{nowhere} of them without a place"),
-        ));
-    }
-    entries
+    let (most_m, most_deg) = SUCCESS;
+    let name = format!("counts as found: {most_m} m, {most_deg}°");
+    legend.add(Sample::Line(limit_stroke(unit)), name);
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::layout;
     use super::*;
 
     fn judged(second: i64, verdict: Verdict, off: Option<(f64, f64)>) -> Judged {
@@ -205,7 +261,27 @@ mod tests {
         );
         assert_eq!(duration_s(&all), 4.0);
         assert_eq!(seconds(&all, &all[1]), 1.0);
-        assert_eq!(legend(&all).len(), 4);
+    }
+
+    #[test]
+    fn what_has_no_error_or_one_below_the_axis_is_marked_and_named() {
+        let texts = |all: &[Judged]| -> Vec<String> {
+            let scene = draw(all, "r.mcap", 1200).unwrap();
+            layout::check(&scene);
+            let labels = scene.labels().iter();
+            labels.map(|label| label.text.clone()).collect()
+        };
+        let far = judged(5, Verdict::Unique, Some((0.1, 1.0)));
+        let below = "below the axis: less than 0.001 m or 0.01°";
+        let nowhere = "no place, so no error";
+        let has = |all: &[Judged], name: &str| texts(all).iter().any(|text| text == name);
+        assert!(has(&[far], "Unique (1)") && has(&[far], "counts as found: 0.5 m, 10°"));
+        assert!(!has(&[far], below) && !has(&[far], nowhere));
+        assert!(has(
+            &[far, judged(6, Verdict::Unique, Some((0.0, 1.0)))],
+            below
+        ));
+        assert!(has(&[far, judged(7, Verdict::NoScan, None)], nowhere));
     }
 
     #[test]

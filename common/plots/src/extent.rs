@@ -1,7 +1,8 @@
 //! Which part of the map is shown.
 
+use engine::grid::CellRules;
 use geometry::Pose;
-use map::OccupancyGrid;
+use map::{OccupancyGrid, UNKNOWN};
 
 /// A rectangle along the map's axes, metres. Empty until a point is included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +31,30 @@ impl Extent {
         let height = f64::from(map.height) * map.resolution_m;
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
         Extent::of(corners.map(|(x, y)| map.map_from_grid.transform(x, y)))
+    }
+
+    /// What holds all cells that are known; the whole map where none is.
+    pub(super) fn of_known(map: &OccupancyGrid, rules: CellRules) -> Self {
+        let (width, resolution) = (map.width as usize, map.resolution_m);
+        let mut extent = Extent::EMPTY;
+        for (y, row) in map.cells.chunks(width.max(1)).enumerate() {
+            let is_known = |&cell: &u8| {
+                cell != UNKNOWN && (cell <= rules.free_to || cell >= rules.occupied_from)
+            };
+            let first = row.iter().position(is_known);
+            let last = row.iter().rposition(is_known);
+            let (Some(first), Some(last)) = (first, last) else {
+                continue;
+            };
+            for (x, y) in [(first, y), (last + 1, y), (first, y + 1), (last + 1, y + 1)] {
+                let (x, y) = (x as f64 * resolution, y as f64 * resolution);
+                extent.include([map.map_from_grid.transform(x, y)]);
+            }
+        }
+        match extent == Extent::EMPTY {
+            true => Extent::of_map(map),
+            false => extent,
+        }
     }
 
     /// What lies within this many metres of a pose, along each axis.
@@ -106,6 +131,30 @@ mod tests {
         let extent = Extent::of([(1.0, 2.0), (f64::NAN, 50.0), (4.0, 3.0)]);
         assert_eq!((extent.width(), extent.height()), (3.0, 1.0));
         assert_eq!(extent.center(), (2.5, 2.5));
+    }
+
+    #[test]
+    fn only_what_is_known_of_a_map_is_held() {
+        let mut cells = vec![UNKNOWN; 12];
+        let map = |cells: &[u8]| {
+            // Four by three cells of half a metre, turned by a quarter.
+            let turned = Pose::new(1.0, 0.0, std::f64::consts::FRAC_PI_2);
+            OccupancyGrid::from_parts(4, 3, 0.5, turned, cells.to_vec()).unwrap()
+        };
+        let known = |cells: &[u8]| Extent::of_known(&map(cells), CellRules::default());
+        cells[11] = 50;
+        assert_eq!(
+            known(&cells),
+            Extent::of_map(&map(&cells)),
+            "neither free nor occupied"
+        );
+        cells[5] = 0;
+        cells[6] = 100;
+        let known = known(&cells);
+        // Columns 1 and 2 of row 1: the grid's x runs up, and its y to the left.
+        let off = (known.center().0 - 0.25).abs() + (known.center().1 - 1.0).abs();
+        assert!(off < 1e-9, "{known:?}");
+        assert!((known.width() - 0.5).abs() + (known.height() - 1.0).abs() < 1e-9);
     }
 
     #[test]

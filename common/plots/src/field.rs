@@ -10,8 +10,9 @@ use offline::{Field, frame_of, sides_of};
 use super::axes::{self, Axis};
 use super::extent::Extent;
 use super::ground::{self, Sampler};
+use super::legend::Sample;
 use super::marks;
-use super::page::{self, Heading, Page, Sample};
+use super::page::{self, Heading, Page};
 use super::scale::Scale;
 use super::scan::Size;
 use super::subject::{Ground, Subject};
@@ -19,21 +20,9 @@ use super::theme;
 use super::view::View;
 use crate::PlotError;
 
-const HEIGHTS: (f64, f64) = (0.25, 0.8);
-
-/// The colour of a share of the most votes, 0..=1: from nothing to dark.
-pub(super) fn heat(share: f64) -> Color {
-    // The palest tenth of the scale is not distinguished from paper.
-    let colorous::Color { r, g, b } =
-        colorous::YELLOW_ORANGE_RED.eval_continuous(share.clamp(0.0, 1.0));
-    let color = Color {
-        red: r,
-        green: g,
-        blue: b,
-        opacity: 1.0,
-    };
-    Color::WHITE.towards(color, 5.0 * share)
-}
+const HEIGHTS: (f64, f64) = (0.25, 1.0);
+/// About what the bar of colours takes from the width.
+const BAR_ROOM: f64 = 110.0;
 
 /// What a picture of votes is made of.
 #[derive(Debug)]
@@ -81,7 +70,7 @@ impl<'a> Votes<'a> {
                 verdict: None,
                 says,
             },
-            extent: Extent::of_map(map),
+            extent: Ground { map, rules }.known(),
             truth,
             width: page::COMMON_WIDTH,
         }
@@ -123,31 +112,30 @@ fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
 pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
     let extent = votes.extent;
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let height = (page::body_width(votes.width) * ratio).round();
-    let mut legend = vec![
-        (Sample::Square(WALL), "obstacle".to_owned()),
-        (Sample::Ellipse(theme::BEST), "most votes".to_owned()),
-    ];
-    if votes.truth.is_some() {
-        legend.push((Sample::Truth, "truth".to_owned()));
+    let (width, unit) = (page::body_width(votes.width), page::unit(votes.width));
+    let height = axes::height_for(ratio, width - BAR_ROOM * unit, unit);
+    let mut page = Page::new(votes.width, height, &votes.heading)?;
+    let (rest, bar) = axes::beside_bar(page.body, &votes.scale(), unit);
+    let view = axes::view_within(extent, rest, unit);
+    if fill(&mut page.scene, votes, &view)? {
+        page.legend.add(Sample::Area(WALL), "obstacle");
     }
-    let mut page = Page::new(votes.width, height, &votes.heading, &legend)?;
-    let unit = page.unit;
-    let (rest, bar) = axes::beside_bar(page.body, unit);
-    let view = View::fitting(extent, axes::inside(rest, unit));
-    fill(&mut page.scene, votes, &view)?;
-    page.scene.clipped(view.area(), |scene| {
-        if let Some(truth) = votes.truth {
-            marks::truth(scene, marks::placement(&view, truth), 7.0 * unit);
-        }
+    let Page { scene, legend, .. } = &mut page;
+    scene.clipped(view.area(), |scene| {
         if let Some(best) = best_position(votes.field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);
+            scene.stroke(ring.clone(), Stroke::new(Color::WHITE, 6.0 * unit));
             scene.stroke(ring, Stroke::new(theme::BEST, 2.4 * unit));
+            legend.add(Sample::Ring(theme::BEST), "most votes");
+        }
+        if let Some(truth) = votes.truth {
+            marks::truth(scene, marks::placement(&view, truth), 7.0 * unit);
+            legend.add(Sample::Truth, "truth");
         }
     });
     axes::draw_metres(&mut page.scene, &view, unit);
-    axes::draw_bar(&mut page.scene, bar, votes.scale(), heat, unit);
-    Ok(page.scene)
+    axes::draw_bar(&mut page.scene, bar, votes.scale(), theme::heat, unit);
+    Ok(page.finish()?)
 }
 
 /// Where most votes meet, in the map, metres.
@@ -158,12 +146,14 @@ pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
     Some((pose.x, pose.y))
 }
 
-fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<(), PlotError> {
+/// Fills a view with the votes and the walls; whether there is a wall.
+fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<bool, PlotError> {
     let (ground, field) = (&votes.ground, votes.field);
     let map = ground.map;
     let cells = Sampler::new(view, frame_of(map), sides_of(map));
     let under = Sampler::new(view, field.frame, field.sides);
     let most = f64::from(field.outcome.found.best.max(1));
+    let mut any_wall = false;
     ground::fill(scene, view, |column, row| {
         let mut highest = 0;
         under.each(column, row, |index| {
@@ -177,10 +167,11 @@ fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<(), PlotErr
                 walls += 1.0;
             }
         });
-        let color = heat(f64::from(highest) / most);
+        any_wall |= walls > 0.0;
+        let color = theme::heat(f64::from(highest) / most);
         color.towards(WALL, (walls / met.max(1.0)).sqrt())
     })?;
-    Ok(())
+    Ok(any_wall)
 }
 
 /// Walls stand back behind the votes.
@@ -189,22 +180,4 @@ pub(super) const WALL: Color = Color::rgb(0x7C_8896);
 pub(super) fn is_wall(map: &OccupancyGrid, rules: CellRules, index: usize) -> bool {
     let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
     value >= rules.occupied_from && value != UNKNOWN
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn more_votes_are_darker() {
-        let brightness = |share| {
-            let Color {
-                red, green, blue, ..
-            } = heat(share);
-            [red, green, blue].map(u32::from).iter().sum::<u32>()
-        };
-        assert_eq!(heat(0.0), Color::WHITE);
-        let steps: Vec<u32> = (0..=10).map(|i| brightness(f64::from(i) / 10.0)).collect();
-        assert!(steps.windows(2).all(|pair| pair[1] < pair[0]), "{steps:?}");
-    }
 }

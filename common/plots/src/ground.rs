@@ -8,6 +8,7 @@ use engine::grid::{CellRules, GridFrame};
 use map::{OccupancyGrid, UNKNOWN};
 use offline::{frame_of, sides_of};
 
+use super::legend::{Legend, Sample};
 use super::theme;
 use super::view::View;
 
@@ -80,39 +81,64 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// Draws the map. Occupied cells are those of `ink`, whatever share of a pixel
-/// they take; `ink` gives `None` for the others.
+/// Cells of a kind, their colour and their name.
+pub(super) type Ink = (Color, &'static str);
+
+/// Draws the map, and names what is seen of it. Occupied cells are those of `ink`, whatever
+/// share of a pixel they take; `ink` gives `None` for the others.
 pub(super) fn draw(
-    scene: &mut Scene,
-    map: &OccupancyGrid,
-    rules: CellRules,
+    (scene, legend): (&mut Scene, &mut Legend),
+    (map, rules): (&OccupancyGrid, CellRules),
     view: &View,
-    ink: impl Fn(usize) -> Option<Color>,
+    ink: impl Fn(usize) -> Option<Ink>,
 ) -> Result<(), DrawingError> {
     let sampler = Sampler::new(view, frame_of(map), sides_of(map));
+    let mut inks: Vec<Ink> = Vec::new();
+    let mut seen = Pixel::default();
     fill(scene, view, |column, row| {
         let mut pixel = Pixel::default();
         sampler.each(column, row, |index| {
             let cell = index.and_then(|index| Some((index, *map.cells.get(index)?)));
             match cell.map(|(index, value)| (ink(index), value)) {
                 None => pixel.outside += 1.0,
-                Some((Some(color), _)) => pixel.add_ink(color),
+                Some((Some(ink), _)) => {
+                    pixel.add_ink(ink.0);
+                    if !inks.contains(&ink) {
+                        inks.push(ink);
+                    }
+                }
                 Some((None, value)) if value <= rules.free_to && value != UNKNOWN => {
                     pixel.free += 1.0;
                 }
                 Some((None, _)) => pixel.unknown += 1.0,
             }
         });
+        seen.free += pixel.free;
+        seen.unknown += pixel.unknown;
+        seen.outside += pixel.outside;
         pixel.color()
-    })
+    })?;
+    inks.sort_unstable_by_key(|(_, name)| *name);
+    let grounds = [
+        (seen.free, (theme::FREE, "free")),
+        (seen.unknown, (theme::UNKNOWN, "unknown")),
+        (seen.outside, (theme::OUTSIDE, "beyond the map")),
+    ];
+    // Less of it is not seen.
+    let least = 1e-3 * (seen.free + seen.unknown + seen.outside);
+    let grounds = grounds.into_iter().filter(|(count, _)| *count > least);
+    for (color, name) in inks.into_iter().chain(grounds.map(|(_, ink)| ink)) {
+        legend.add(Sample::Area(color), name);
+    }
+    Ok(())
 }
 
 /// The ink of an ordinary map.
-pub(super) fn occupied(map: &OccupancyGrid, rules: CellRules) -> impl Fn(usize) -> Option<Color> {
+pub(super) fn occupied(map: &OccupancyGrid, rules: CellRules) -> impl Fn(usize) -> Option<Ink> {
     move |index| {
         let value = *map.cells.get(index)?;
         let is_occupied = value >= rules.occupied_from && value != UNKNOWN;
-        is_occupied.then_some(theme::OCCUPIED)
+        is_occupied.then_some((theme::OCCUPIED, "obstacle"))
     }
 }
 

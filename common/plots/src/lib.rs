@@ -19,7 +19,6 @@
 
 mod animation;
 mod axes;
-mod chart;
 mod command;
 mod config;
 mod curves;
@@ -31,16 +30,23 @@ mod errors;
 mod extent;
 mod field;
 mod ground;
+#[cfg(test)]
+mod layout;
+mod legend;
 mod marks;
+mod numbers;
 mod outline;
 mod page;
 mod places;
 mod places_on_map;
 mod scale;
 mod scan;
+mod shapes;
 mod sheet;
 mod subject;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod theme;
 mod view;
 

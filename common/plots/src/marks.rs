@@ -1,10 +1,14 @@
-//! What is drawn on a map: robots, the truth, ellipses, and a scale bar.
+//! Marks of more than one piece: robots, the truth, ellipses, bars and arrows.
 
-use drawing::{Anchor, Color, Path, Scene, Stroke, TextStyle};
+use drawing::{Color, Path, Scene, Stroke};
 use geometry::{Covariance, ELLIPSE_95, Pose};
 
+use super::shapes::Shape;
 use super::theme;
 use super::view::View;
+
+/// How much the inside of an ellipse covers.
+pub(super) const INSIDE: f32 = 0.12;
 
 /// A point of the picture, and a heading in the map, radians.
 pub(super) type Placement = ((f64, f64), f64);
@@ -46,28 +50,49 @@ pub(super) fn ellipse(
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
     let mut path = Path::new();
     path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);
-    scene.fill(path.clone(), stroke.color.with_opacity(0.12));
+    scene.fill(path.clone(), stroke.color.with_opacity(INSIDE));
     scene.stroke(path, stroke);
 }
 
-/// A bar of a round length in the lower left corner.
-pub(super) fn scale_bar(scene: &mut Scene, view: &View, unit: f64) {
-    let area = view.area();
-    let metres = round_length(0.22 * area.width / view.pixels_per_m());
-    let length = metres * view.pixels_per_m();
-    let (left, base) = (area.x + 14.0 * unit, area.bottom() - 14.0 * unit);
-    let end = |x: f64| [(x, base - 5.0 * unit), (x, base + 5.0 * unit)];
-    let mut bar = Path::line((left, base), (left + length, base));
-    for x in [left, left + length] {
-        bar.add_polyline(end(x));
+/// The ends of beams that are shown; whether there is one.
+pub(super) fn ends(
+    scene: &mut Scene,
+    view: &View,
+    ends: impl Iterator<Item = (f64, f64)>,
+    (shape, size, color): (Shape, f64, Color),
+) -> bool {
+    let mut path = Path::new();
+    for end in ends.filter(|&end| view.shows(end)) {
+        shape.add_to(&mut path, view.at(end), size);
     }
-    scene.stroke(bar.clone(), Stroke::new(Color::WHITE, 6.0 * unit));
-    scene.stroke(bar, Stroke::new(theme::INK, 2.0 * unit));
-    let style = TextStyle::new(14.0 * unit, theme::INK)
-        .anchored(Anchor::Middle)
-        .with_halo(Color::WHITE, 4.0 * unit);
-    let at = (left + length / 2.0, base - 9.0 * unit);
-    scene.text(&length_text(metres), at, &style);
+    let is_any = !path.is_empty();
+    scene.fill(path, color);
+    is_any
+}
+
+/// An upright bar with ends, from a point down.
+pub(super) fn bar(scene: &mut Scene, (x, top): (f64, f64), length: f64, stroke: Stroke) {
+    let half = 2.5 * stroke.width;
+    let mut path = Path::line((x, top), (x, top + length));
+    for y in [top, top + length] {
+        path.add_line((x - half, y), (x + half, y));
+    }
+    scene.stroke(path, stroke);
+}
+
+/// An arrow that points down at a point.
+pub(super) fn arrow_down(scene: &mut Scene, (x, tip): (f64, f64), length: f64, stroke: Stroke) {
+    let barb = 2.3 * stroke.width;
+    let mut path = Path::line((x, tip - length), (x, tip));
+    let barbs = [
+        (x - barb, tip - 1.5 * barb),
+        (x, tip),
+        (x + barb, tip - 1.5 * barb),
+    ];
+    path.add_polyline(barbs);
+    let rim = Stroke::new(Color::WHITE, 2.3 * stroke.width);
+    scene.stroke(path.clone(), rim);
+    scene.stroke(path, stroke);
 }
 
 /// A point in front of a placement, and to its left, pixels.
@@ -80,40 +105,11 @@ fn placed((at, yaw): Placement, ahead: f64, left: f64) -> (f64, f64) {
     )
 }
 
-/// The longest of 1, 2, 5, 10 and so on that is not above `metres`.
-fn round_length(metres: f64) -> f64 {
-    let power = 10f64.powf(metres.log10().floor());
-    let factors = [5.0, 2.0, 1.0];
-    let fits = factors.into_iter().find(|factor| factor * power <= metres);
-    fits.unwrap_or(1.0) * power
-}
-
-fn length_text(metres: f64) -> String {
-    match metres {
-        m if m >= 1000.0 => format!("{} km", m / 1000.0),
-        m if m >= 1.0 => format!("{m} m"),
-        m => format!("{} cm", (100.0 * m).round()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
-
-    #[test]
-    fn lengths_of_bars_are_round() {
-        for (metres, expected) in [
-            (9.99, "5 m"),
-            (10.0, "10 m"),
-            (0.34, "20 cm"),
-            (49.0, "20 m"),
-            (2100.0, "2 km"),
-        ] {
-            assert_eq!(length_text(round_length(metres)), expected);
-        }
-    }
 
     #[test]
     fn ahead_of_a_robot_that_faces_up_is_up() {

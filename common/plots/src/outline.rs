@@ -5,19 +5,18 @@ use drawing::Scene;
 use engine::boundary;
 use engine::grid::Grid;
 
+use super::axes;
 use super::ground;
-use super::marks;
-use super::page::{self, Heading, Page, Sample};
+use super::page::{self, Heading, Page};
 use super::scan::Size;
 use super::subject::Ground;
 use super::theme;
-use super::view::View;
 use crate::PlotError;
 
 /// The body's height as a share of its width at most.
 const HIGHEST: f64 = 1.3;
 
-/// Draws the whole map; `grid` is the same map as rays see it.
+/// Draws what is known of the map; `grid` is the same map as rays see it.
 ///
 /// # Errors
 /// The picture would be too large.
@@ -35,36 +34,24 @@ pub(super) fn draw(
             *mark = true;
         }
     }
-    let extent = ground.extent();
+    let extent = ground.known();
     let ratio = (extent.height() / extent.width()).clamp(0.2, HIGHEST);
-    let height = (page::body_width(size.width) * ratio).round();
-    let legend = [
-        (
-            Sample::Square(theme::BOUNDARY),
-            format!("boundary {}", boundary.len()),
-        ),
-        (
-            Sample::Square(theme::OCCUPIED),
-            "occupied behind it".to_owned(),
-        ),
-        (Sample::Square(theme::UNKNOWN), "unknown".to_owned()),
-    ];
-    let mut page = Page::new(size.width, height, &heading(ground, grid, name), &legend)?;
-    let view = View::fitting(extent, page.body);
+    let (width, unit) = (page::body_width(size.width), page::unit(size.width));
+    let height = axes::height_for(ratio, width, unit);
+    let mut page = Page::new(size.width, height, &heading(ground, grid, name))?;
+    let view = axes::view_within(extent, page.body, unit);
     let occupied = ground::occupied(ground.map, ground.rules);
     ground::draw(
-        &mut page.scene,
-        ground.map,
-        ground.rules,
+        (&mut page.scene, &mut page.legend),
+        (ground.map, ground.rules),
         &view,
         |index| match is_boundary.get(index) {
-            Some(true) => Some(theme::BOUNDARY),
-            _ => occupied(index),
+            Some(true) => Some((theme::BOUNDARY, "boundary cell")),
+            _ => occupied(index).map(|(color, _)| (color, "obstacle behind it")),
         },
     )?;
-    marks::scale_bar(&mut page.scene, &view, page.unit);
-    page.frame(view.area());
-    Ok(page.scene)
+    axes::draw_metres(&mut page.scene, &view, unit);
+    Ok(page.finish()?)
 }
 
 fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {

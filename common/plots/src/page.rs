@@ -3,14 +3,16 @@
 use drawing::{Anchor, Color, DrawingError, Path, Rect, Scene, Stroke, TextStyle};
 use messages::Verdict;
 
+use super::legend::Legend;
 use super::theme;
 
 /// Pictures are this wide unless somebody asks for another width.
 pub(super) const COMMON_WIDTH: u32 = 1200;
 /// All lengths are meant for a picture this wide.
 const WIDTH: f64 = COMMON_WIDTH as f64;
-/// They grow with the width, but by less, so that a small picture is legible.
-const GROWTH: f64 = 0.7;
+/// A smaller picture is meant for less paper, on which text must stay legible: its lengths
+/// shrink by less. A larger one is the same with more pixels.
+const SHRINKING: f64 = 0.3;
 
 /// The lines above a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,30 +25,11 @@ pub(super) struct Heading {
     pub(super) says: String,
 }
 
-/// What an entry of the legend looks like.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Sample {
-    /// A dot.
-    Dot(Color),
-    /// A square.
-    Square(Color),
-    /// A robot.
-    Robot(Color),
-    /// The mark of the truth.
-    Truth,
-    /// A line.
-    Line(Stroke),
-    /// An ellipse.
-    Ellipse(Color),
-}
-
-/// An entry of the legend.
-pub(super) type Entry = (Sample, String);
-
-/// A picture with all but its body.
+/// A picture in the making. What is drawn is named in the legend, which is written last.
 #[derive(Debug)]
 pub(super) struct Page {
     pub(super) scene: Scene,
+    pub(super) legend: Legend,
     /// What is left for the picture itself.
     pub(super) body: Rect,
     /// The picture's pixels for each that a length was meant for.
@@ -55,7 +38,12 @@ pub(super) struct Page {
 
 /// How lengths grow in a picture of this width.
 pub(super) fn unit(width: u32) -> f64 {
-    (f64::from(width) / WIDTH).powf(GROWTH)
+    let ratio = f64::from(width) / WIDTH;
+    if ratio < 1.0 {
+        ratio.powf(SHRINKING)
+    } else {
+        ratio
+    }
 }
 
 /// How wide the body of a picture is, in pixels.
@@ -64,12 +52,15 @@ pub(super) fn body_width(width: u32) -> f64 {
 }
 
 const MARGIN: f64 = 16.0;
-const HEADING: f64 = 68.0;
-const LEGEND_ROW: f64 = 30.0;
-/// From entry to entry of the legend.
-const ENTRY_GAP: f64 = 26.0;
-/// The room that a sample takes, before the words.
-const SAMPLE: f64 = 30.0;
+/// The base line of the title, and of the first line below it.
+const TITLE_BASE: f64 = 32.0;
+const SAYS_BASE: f64 = 61.0;
+/// From line to line of the sentence.
+const LINE: f64 = 25.0;
+/// From the last base line to the body.
+const BELOW_SAYS: f64 = 16.0;
+/// The least of a line's size that is still shrunk to fit; what is longer is broken.
+const LEAST_SIZE: f64 = 0.85;
 
 impl Page {
     /// A picture of this many pixels along x, whose body takes this many along y.
@@ -77,57 +68,59 @@ impl Page {
         width: u32,
         body_height: f64,
         heading: &Heading,
-        legend: &[Entry],
     ) -> Result<Self, DrawingError> {
         let unit = unit(width);
-        let rows = arranged(legend, body_width(width), unit);
-        let legend_height = LEGEND_ROW * unit * rows.len() as f64;
-        let body = Rect::new(
-            MARGIN * unit,
-            HEADING * unit,
-            body_width(width),
-            body_height,
-        );
-        let bottom = body.bottom() + legend_height + MARGIN * unit;
+        let body_width = body_width(width);
+        let before = chip_width(heading.verdict, unit);
+        let lines = broken(&heading.says, (before, body_width), unit);
+        let below = LINE * lines.len().saturating_sub(1) as f64;
+        let top = (SAYS_BASE + below + BELOW_SAYS) * unit;
+        let body = Rect::new(MARGIN * unit, top, body_width, body_height);
         let title = format!("{}: {}", heading.title, heading.says);
+        // Until the legend is known.
+        let height = body.bottom().round() as u32;
         let mut page = Page {
-            scene: Scene::new(width, bottom.round() as u32, title, Color::WHITE)?,
+            scene: Scene::new(width, height, title, Color::WHITE)?,
+            legend: Legend::default(),
             body,
             unit,
         };
-        page.write_heading(heading);
-        for (row, entries) in rows.iter().enumerate() {
-            let y = body.bottom() + LEGEND_ROW * unit * (row as f64 + 0.72);
-            page.write_entries(entries, y);
-        }
+        page.write_heading(heading, &lines);
         Ok(page)
     }
 
-    fn write_heading(&mut self, heading: &Heading) {
+    fn write_heading(&mut self, heading: &Heading, lines: &[String]) {
         let unit = self.unit;
         let left = self.body.x;
-        let title = TextStyle::new(21.0 * unit, theme::INK).bold();
-        let title = fitted(title, &heading.title, self.body.width);
-        self.scene.text(&heading.title, (left, 29.0 * unit), &title);
-        let base = 54.0 * unit;
-        let mut x = left;
+        let style = theme::title(unit);
+        let title = shortened(&heading.title, self.body.width / LEAST_SIZE, unit);
+        let style = theme::fitted(style, &title, self.body.width);
+        self.scene.text(&title, (left, TITLE_BASE * unit), &style);
+        let base = SAYS_BASE * unit;
         if let Some(verdict) = heading.verdict {
-            x += chip(&mut self.scene, verdict, (x, base), 15.0 * unit) + 10.0 * unit;
+            chip(&mut self.scene, verdict, (left, base), theme::TEXT * unit);
         }
-        let says = TextStyle::new(16.0 * unit, theme::INK);
-        let says = fitted(says, &heading.says, self.body.right() - x);
-        self.scene.text(&heading.says, (x, base), &says);
+        let before = chip_width(heading.verdict, unit);
+        for (i, line) in lines.iter().enumerate() {
+            let x = if i == 0 { before } else { 0.0 };
+            let style = theme::fitted(theme::text(unit), line, self.body.width - x);
+            let at = (left + x, base + LINE * unit * i as f64);
+            self.scene.text(line, at, &style);
+        }
     }
 
-    fn write_entries(&mut self, entries: &[(f64, &Entry)], base: f64) {
-        let unit = self.unit;
-        let style = TextStyle::new(14.0 * unit, theme::INK);
-        for &(x, (sample, name)) in entries {
-            let x = self.body.x + x;
-            let at = (x + (SAMPLE / 2.0 - 3.0) * unit, base - 5.0 * unit);
-            let width = draw_sample(&mut self.scene, *sample, at, unit);
-            self.scene.text(name, (x + width, base), &style);
-        }
+    /// The picture, with its legend below.
+    ///
+    /// # Errors
+    /// It is too high.
+    pub(super) fn finish(mut self) -> Result<Scene, DrawingError> {
+        let (unit, body) = (self.unit, self.body);
+        let below = self.legend.height(body.width, unit) + MARGIN * unit;
+        let bottom = body.bottom() + below;
+        self.scene.set_height(bottom.round() as u32)?;
+        let corner = (body.x, body.bottom());
+        self.legend.draw(&mut self.scene, corner, body.width, unit);
+        Ok(self.scene)
     }
 
     /// A frame around a part of the picture.
@@ -137,115 +130,129 @@ impl Page {
     }
 }
 
-/// Entries in rows, each with its distance from the left edge.
-fn arranged(legend: &[Entry], width: f64, unit: f64) -> Vec<Vec<(f64, &Entry)>> {
-    let style = TextStyle::new(14.0 * unit, theme::INK);
-    let mut rows: Vec<Vec<(f64, &Entry)>> = Vec::new();
-    let mut x = f64::INFINITY;
-    for entry in legend {
-        let length = SAMPLE * unit + style.width_of(&entry.1);
-        if x + length > width {
-            rows.push(Vec::new());
-            x = 0.0;
-        }
-        if let Some(row) = rows.last_mut() {
-            row.push((x, entry));
-        }
-        x += length + ENTRY_GAP * unit;
+/// Breaks a sentence into lines of a width, the first of which begins at `before`.
+fn broken(text: &str, (before, width): (f64, f64), unit: f64) -> Vec<String> {
+    let style = theme::text(unit);
+    if style.width_of(text) * LEAST_SIZE <= width - before {
+        return vec![text.to_owned()];
     }
-    rows
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let room = if lines.len() == 1 {
+            width - before
+        } else {
+            width
+        };
+        let Some(line) = lines.last_mut() else { break };
+        let longer = if line.is_empty() {
+            word.to_owned()
+        } else {
+            format!("{line} {word}")
+        };
+        if line.is_empty() || style.width_of(&longer) <= room {
+            *line = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
 }
 
-/// Draws a sample around a point; returns how much room it takes from the left.
-fn draw_sample(scene: &mut Scene, sample: Sample, at: (f64, f64), unit: f64) -> f64 {
-    use super::marks;
-    match sample {
-        Sample::Dot(color) => scene.fill(Path::circle(at, 5.0 * unit), color),
-        Sample::Square(color) => {
-            let side = 13.0 * unit;
-            let rect = Rect::new(at.0 - side / 2.0, at.1 - side / 2.0, side, side);
-            scene.fill(Path::rect(rect), color);
-        }
-        Sample::Robot(color) => marks::robot(scene, (at, 0.0), 7.0 * unit, color),
-        Sample::Truth => {
-            let ring = (at.0 - 3.0 * unit, at.1);
-            marks::truth(scene, (ring, 0.0), 6.5 * unit);
-        }
-        Sample::Line(stroke) => {
-            let half = 9.0 * unit;
-            let line = Path::line((at.0 - half, at.1), (at.0 + half, at.1));
-            scene.stroke(line, stroke);
-        }
-        Sample::Ellipse(color) => {
-            let mut path = Path::new();
-            path.add_ellipse(at, (9.0 * unit, 4.5 * unit), 0.0);
-            scene.stroke(path, Stroke::new(color, 1.6 * unit));
-        }
+/// The end of a title that fits: files differ in the ends of their paths.
+fn shortened(title: &str, width: f64, unit: f64) -> String {
+    let style = theme::title(unit);
+    if style.width_of(title) <= width {
+        return title.to_owned();
     }
-    SAMPLE * unit
+    let ends = |is_begin: fn(char) -> bool| {
+        let begins = title
+            .char_indices()
+            .filter(move |&(_, letter)| is_begin(letter));
+        begins.map(|(at, _)| format!("…{}", title.split_at(at).1))
+    };
+    let mut ends = ends(|letter| letter == '/').chain(ends(|_| true));
+    ends.find(|end| style.width_of(end) <= width)
+        .unwrap_or_default()
 }
 
 /// Writes a verdict on a plate of its colour that starts at a point of the base
 /// line; returns how wide it is.
 pub(super) fn chip(scene: &mut Scene, verdict: Verdict, (x, base): (f64, f64), size: f64) -> f64 {
-    let style = TextStyle::new(size, Color::WHITE).bold();
-    let width = style.width_of(verdict.as_str()) + 1.1 * size;
-    let plate = Rect::new(x, base - 1.08 * size, width, 1.46 * size);
-    scene.fill(Path::rect(plate), theme::of_verdict(verdict));
+    let (color, _) = theme::of_verdict(verdict);
+    let ink = theme::ink_on(color);
+    let style = TextStyle::new(size, ink).bold();
+    let width = style.width_of(verdict.as_str()) + size;
+    let plate = Rect::new(x, base - 1.06 * size, width, 1.4 * size);
+    scene.fill(Path::rect(plate), color);
     let at = (x + width / 2.0, base);
     scene.text(verdict.as_str(), at, &style.anchored(Anchor::Middle));
     width
 }
 
-/// The style, smaller where the text would be wider than `width`.
-pub(super) fn fitted(style: TextStyle, text: &str, width: f64) -> TextStyle {
-    let natural = style.width_of(text);
-    TextStyle {
-        size: style.size * (width / natural.max(1.0)).min(1.0),
-        ..style
-    }
+/// How much of the first line a verdict takes.
+fn chip_width(verdict: Option<Verdict>, unit: f64) -> f64 {
+    let size = theme::TEXT * unit;
+    let style = theme::text(unit).bold();
+    verdict.map_or(0.0, |verdict| style.width_of(verdict.as_str()) + 1.6 * size)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::legend::Sample;
     use super::*;
 
-    #[test]
-    fn a_legend_that_is_too_long_goes_on_in_the_next_row() {
-        let entry = |name: &str| (Sample::Dot(theme::INK), name.to_owned());
-        let legend = [entry("one"), entry("two"), entry("three")];
-        let all = arranged(&legend, 1000.0, 1.0);
-        assert_eq!(all.iter().map(Vec::len).collect::<Vec<_>>(), [3]);
-        let split = arranged(&legend, 150.0, 1.0);
-        assert_eq!(split.iter().map(Vec::len).collect::<Vec<_>>(), [2, 1]);
-        assert_eq!(split[1][0].0, 0.0);
-        assert!(arranged(&[], 150.0, 1.0).is_empty());
+    fn heading(says: &str) -> Heading {
+        Heading {
+            title: "a folder/of some/recordings/that are/far down/recording.mcap · scan 7".into(),
+            verdict: Some(Verdict::Unique),
+            says: says.into(),
+        }
     }
 
     #[test]
-    fn long_text_is_written_smaller() {
-        let style = TextStyle::new(20.0, theme::INK);
-        let text = "a sentence that is longer than the picture";
-        let small = fitted(style, text, 100.0);
-        // Widths are proportional to the size.
-        assert!((small.width_of(text) - 100.0).abs() < 1e-9);
-        assert_eq!(fitted(style, "x", 100.0), style);
+    fn text_that_is_too_long_is_broken_or_loses_its_beginning() {
+        let says = "one place, fit 0.90 · 3.4 cm and 0.06° from the truth · and more of it";
+        let page = Page::new(300, 100.0, &heading(says)).unwrap();
+        let labels = page.scene.labels();
+        assert!(labels[0].text.starts_with("…/") && labels[0].text.ends_with("scan 7"));
+        let lines: Vec<&str> = labels[2..].iter().map(|label| &*label.text).collect();
+        assert!(lines.len() > 1, "{lines:?}");
+        assert_eq!(lines.join(" "), says);
+        let picture = page.scene.area();
+        for (i, label) in labels.iter().enumerate() {
+            assert!(picture.holds(&label.area), "{label:?}");
+            let mut others = labels[i + 1..].iter();
+            assert!(
+                others.all(|other| !other.area.overlaps(&label.area)),
+                "{label:?}"
+            );
+        }
+        let wide = Page::new(1200, 100.0, &heading("short")).unwrap();
+        assert_eq!(wide.scene.labels().len(), 3);
+        assert!(wide.body.y < page.body.y / unit(300), "a line is saved");
+    }
+
+    #[test]
+    fn text_of_a_small_picture_is_larger_in_it() {
+        let share = |width: u32| unit(width) / f64::from(width);
+        assert!(share(600) > 1.5 * share(1200));
+        // A rounding of the division.
+        assert!((share(4000) - share(1200)).abs() < 1e-12);
     }
 
     #[test]
     fn the_body_has_the_size_that_was_asked_for() {
-        let heading = Heading {
-            title: "a map".into(),
-            verdict: Some(Verdict::Unique),
-            says: "one place, fit 0.90".into(),
-        };
-        let legend = [(Sample::Truth, "truth".into())];
-        let page = Page::new(600, 321.0, &heading, &legend).unwrap();
-        assert_eq!(page.body.height, 321.0);
-        assert_eq!(page.body.width, body_width(600));
-        let below = f64::from(page.scene.height()) - page.body.bottom();
-        // A row and the margin, to a whole pixel.
-        let expected = unit(600) * (LEGEND_ROW + MARGIN);
-        assert!((below - expected).abs() <= 0.5, "{below} {expected}");
+        let mut page = Page::new(600, 321.0, &heading("one place, fit 0.90")).unwrap();
+        assert_eq!(
+            (page.body.height, page.body.width),
+            (321.0, body_width(600))
+        );
+        let bottom = page.body.bottom();
+        page.legend.add(Sample::Truth, "truth");
+        let row = page.legend.height(600.0, unit(600));
+        let height = f64::from(page.finish().unwrap().height());
+        // To a whole pixel.
+        let expected = bottom + row + unit(600) * MARGIN;
+        assert!((height - expected).abs() <= 0.5, "{height} {expected}");
     }
 }

@@ -1,15 +1,16 @@
 //! A map with numbered places: where each was found, where it truly was, and the way.
 
-use drawing::{Anchor, Color, Path, Scene, Stroke, TextStyle};
+use drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;
 
-use super::axes;
 use super::extent::Extent;
-use super::page::{self, Entry, Heading, Page, Sample};
-use super::view::View;
-use super::{ground, marks, theme};
+use super::legend::Sample;
+use super::numbers::Numbers;
+use super::page::{self, Heading, Page};
+use super::subject::Ground;
+use super::{axes, marks, theme};
 use crate::PlotError;
 
 /// The body's height as a share of its width.
@@ -31,49 +32,34 @@ pub fn draw(
     let all = Extent::of_map(map);
     let extent = Extent::of(around).with_rim(0.15, 8.0).within(all);
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let height = (page::body_width(width) * ratio).round();
+    let unit = page::unit(width);
+    let height = axes::height_for(ratio, page::body_width(width), unit);
     let heading = Heading {
         title,
         verdict: None,
         says,
     };
-    let unit = page::unit(width);
-    let mut page = Page::new(width, height, &heading, &legend(unit))?;
-    let view = View::fitting(extent, axes::inside(page.body, unit));
-    let ink = ground::occupied(map, rules);
-    ground::draw(&mut page.scene, map, rules, &view, ink)?;
+    let mut page = Page::new(width, height, &heading)?;
+    let view = axes::view_within(extent, page.body, unit);
+    Ground { map, rules }.draw(&mut page, &view)?;
+    let way = Stroke::new(theme::CURVES[5], 2.0 * unit);
+    page.legend.add(Sample::Line(way), "path");
+    page.legend.add(Sample::Robot(theme::BEST), "found");
+    page.legend.add(Sample::Truth, "truth");
     let at = |pose: &Pose| view.at((pose.x, pose.y));
     page.scene.clipped(view.area(), |scene| {
-        scene.stroke(Path::polyline(path.iter().map(at)), way(unit));
+        scene.stroke(Path::polyline(path.iter().map(at)), way);
+        let mut numbers = Numbers::new(view.area());
+        let poses = places.iter().flat_map(|(found, truth)| [found, truth]);
+        poses.for_each(|pose| numbers.keep_free(at(pose), 18.0 * unit));
         for (number, (found, truth)) in (1..).zip(places) {
             marks::truth(scene, marks::placement(&view, *truth), 10.0 * unit);
-            marks::robot(
-                scene,
-                marks::placement(&view, *found),
-                9.0 * unit,
-                theme::BEST,
-            );
-            let style = TextStyle::new(20.0 * unit, theme::INK)
-                .bold()
-                .anchored(Anchor::Middle)
-                .with_halo(Color::WHITE, 5.0 * unit);
-            let (x, y) = at(found);
-            scene.text(&format!("{number}"), (x, y - 18.0 * unit), &style);
+            let placement = marks::placement(&view, *found);
+            marks::robot(scene, placement, 9.0 * unit, theme::BEST);
+            let style = theme::title(unit).with_halo(Color::WHITE, 5.0 * unit);
+            numbers.write(scene, &format!("{number}"), at(found), &style);
         }
     });
     axes::draw_metres(&mut page.scene, &view, unit);
-    Ok(page.scene)
-}
-
-fn way(unit: f64) -> Stroke {
-    Stroke::new(theme::CURVES[5], 2.0 * unit)
-}
-
-fn legend(unit: f64) -> Vec<Entry> {
-    vec![
-        (Sample::Line(way(unit)), "path".to_owned()),
-        (Sample::Robot(theme::BEST), "found".to_owned()),
-        (Sample::Truth, "truth".to_owned()),
-        (Sample::Square(theme::UNKNOWN), "unknown".to_owned()),
-    ]
+    Ok(page.finish()?)
 }

@@ -10,19 +10,17 @@ pub(super) enum Scale {
     Decades(f64, f64),
 }
 
-/// Most numbers beside an axis with an even scale.
-const MAX_TICKS: f64 = 7.0;
-
 /// An even scale ends at a multiple of a round step, of which there are at most this many.
 const STEPS: f64 = 12.0;
 
-/// Up to this many decades 2 and 5 are written, too.
-const FEW_DECADES: f64 = 2.8;
+/// Beyond the last value this share of it is left free.
+const HEADROOM: f64 = 0.03;
 
 impl Scale {
     /// An even scale over all values, from 0 on.
     pub(super) fn from_zero(values: impl Iterator<Item = f64>) -> Self {
         let high = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
+        let high = high * (1.0 + HEADROOM);
         let step = round_step(high.max(f64::MIN_POSITIVE) / STEPS);
         Scale::Even(0.0, (high / step).ceil().max(1.0) * step)
     }
@@ -53,17 +51,27 @@ impl Scale {
         share.clamp(0.0, 1.0)
     }
 
-    /// The values that are written beside the axis, with their text.
-    pub(super) fn ticks(self) -> Vec<(f64, String)> {
+    /// Whether a value lies before the axis' beginning.
+    pub(super) fn is_below(self, value: f64) -> bool {
+        match self {
+            Scale::Even(low, _) => value < low,
+            // Powers of ten are not exact below 1.
+            Scale::Decades(low, _) => value < low * (1.0 - 1e-9),
+        }
+    }
+
+    /// The values that are written beside the axis, with their text: about `most`, and some
+    /// more of decades.
+    pub(super) fn ticks(self, most: u32) -> Vec<(f64, String)> {
         let values: Vec<f64> = match self {
             Scale::Even(low, high) => {
-                let step = round_step((high - low) / MAX_TICKS);
+                let step = round_step((high - low) / f64::from(most));
                 // Ends that are round are met but for their rounding.
                 let first = (low / step - 1e-9).ceil() as i64;
                 let last = (high / step + 1e-9).floor() as i64;
                 (first..=last).map(|i| i as f64 * step).collect()
             }
-            Scale::Decades(low, high) => decades(low, high),
+            Scale::Decades(low, high) => decades(low, high, most),
         };
         values
             .into_iter()
@@ -72,16 +80,28 @@ impl Scale {
     }
 }
 
-fn decades(low: f64, high: f64) -> Vec<f64> {
-    let factors: &[f64] = match (high / low).log10() <= FEW_DECADES {
-        true => &[1.0, 2.0, 5.0],
-        false => &[1.0],
-    };
-    let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
-    let all = powers.flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
+/// 1, 2 and 5 of each decade where these are few, else powers of ten or each second one.
+fn decades(low: f64, high: f64, most: u32) -> Vec<f64> {
     // Powers of ten are not exact below 1.
     let within = low * (1.0 - 1e-9)..=high * (1.0 + 1e-9);
-    all.filter(|value| within.contains(value)).collect()
+    let powers = || low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let choices: [(&[f64], i32); 5] = [
+        (&[1.0, 2.0, 5.0], 1),
+        (&[1.0], 1),
+        (&[1.0], 2),
+        (&[1.0], 3),
+        (&[1.0], 6),
+    ];
+    let mut values = Vec::new();
+    for (factors, every) in choices {
+        let some = powers().filter(|power| power % every == 0);
+        let all = some.flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
+        values = all.filter(|value| within.contains(value)).collect();
+        if values.len() <= most as usize + 3 {
+            break;
+        }
+    }
+    values
 }
 
 /// The least of 1, 2, 5, 10 and so on that is not below a length above 0.
@@ -98,7 +118,7 @@ pub(super) fn number(value: f64) -> String {
     let text = text.trim_end_matches('0').trim_end_matches('.');
     match text {
         "-0" | "" => "0".to_owned(),
-        text => text.to_owned(),
+        text => text.replace('-', "−"),
     }
 }
 
@@ -107,7 +127,7 @@ mod tests {
     use super::*;
 
     fn texts(scale: Scale) -> Vec<String> {
-        scale.ticks().into_iter().map(|(_, text)| text).collect()
+        scale.ticks(7).into_iter().map(|(_, text)| text).collect()
     }
 
     #[test]
@@ -118,7 +138,7 @@ mod tests {
         );
         assert_eq!(
             texts(Scale::Even(-0.3, 0.3)),
-            ["-0.3", "-0.2", "-0.1", "0", "0.1", "0.2", "0.3"]
+            ["−0.3", "−0.2", "−0.1", "0", "0.1", "0.2", "0.3"]
         );
         assert_eq!(
             texts(Scale::Decades(0.5, 20.0)),
@@ -128,6 +148,9 @@ mod tests {
             texts(Scale::Decades(0.01, 100.0)),
             ["0.01", "0.1", "1", "10", "100"]
         );
+        let few = Scale::Decades(0.001, 1000.0).ticks(3);
+        let values: Vec<f64> = few.into_iter().map(|(value, _)| value).collect();
+        assert_eq!(values, [0.01, 1.0, 100.0]);
     }
 
     #[test]
@@ -156,5 +179,6 @@ mod tests {
         assert_eq!(scale.share(10.0), 0.5);
         assert_eq!((scale.share(0.0), scale.share(1e9)), (0.0, 1.0));
         assert_eq!(Scale::Even(2.0, 4.0).share(3.0), 0.5);
+        assert!(!scale.is_below(1.0) && scale.is_below(0.9) && scale.is_below(0.0));
     }
 }

@@ -1,24 +1,21 @@
 //! The picture of one scan: the map with the scan at its places, and where they
 //! are worth comparing, each of them from near.
 
-use drawing::{Color, Rect, Scene, TextStyle};
+use drawing::{Rect, Scene};
 use geometry::Pose;
 use offline::ScanAt;
 
 use super::extent::Extent;
-use super::marks;
 use super::page::{self, Page};
-use super::places;
 use super::subject::{Ground, Subject};
-use super::theme;
-use super::view::View;
+use super::{axes, marks, places, theme};
 use crate::PlotError;
 
 /// Most places that are shown from near.
 const MAX_NEAR: usize = 3;
 /// The body of the picture is as high as the part of the map asks for, within
 /// these shares of its width.
-const HEIGHTS: (f64, f64) = (0.25, 0.75);
+const HEIGHTS: (f64, f64) = (0.25, 1.0);
 /// From here on the places from near stand beside the map.
 const HIGH: f64 = 0.65;
 const HIGHEST_ABOVE_NEAR: f64 = 0.5;
@@ -26,7 +23,10 @@ const HIGHEST_BESIDE_NEAR: f64 = 1.35;
 /// The map's share of the width there.
 const BESIDE_NEAR: f64 = 0.6;
 /// The height of a place from near, as a share of its width.
-const NEAR_HEIGHT: f64 = 0.72;
+const NEAR_HEIGHT: f64 = 0.8;
+/// The line above a place from near, and the least height of both.
+const CAPTION: f64 = 26.0;
+const LEAST_NEAR: f64 = 250.0;
 /// From near, this many of the beams are seen from end to end.
 const NEAR_SHARE: f64 = 0.85;
 const GAP: f64 = 10.0;
@@ -63,25 +63,21 @@ pub(super) fn draw(
     let near = worth_comparing(subject);
     let (unit, width) = (page::unit(size.width), page::body_width(size.width));
     let ratio = extent.height() / extent.width();
-    let layout = Layout::new(ratio, near.len(), width, GAP * unit);
-    let heading = subject.heading(bag);
-    let mut page = Page::new(
-        size.width,
-        layout.height,
-        &heading,
-        &places::legend(subject),
-    )?;
+    let layout = Layout::new(ratio, near.len(), width, unit);
+    let mut page = Page::new(size.width, layout.height, &subject.heading(bag))?;
     let corner = (page.body.x, page.body.y);
-    let view = View::fitting(extent, moved(layout.map, corner));
-    ground.draw(&mut page.scene, &view)?;
-    places::draw(&mut page.scene, &view, subject, unit);
-    marks::scale_bar(&mut page.scene, &view, unit);
-    page.frame(view.area());
+    let view = axes::view_within(extent, moved(layout.map, corner), unit);
+    ground.draw(&mut page, &view)?;
+    places::draw((&mut page.scene, &mut page.legend), &view, subject, unit);
+    axes::draw_metres(&mut page.scene, &view, unit);
     let reach = reach_m(subject);
     for (near, area) in near.iter().zip(&layout.near) {
         draw_near(&mut page, ground, (near, reach), moved(*area, corner))?;
     }
-    Ok(page.scene)
+    if near.is_empty() {
+        places::count(&mut page.legend, subject);
+    }
+    Ok(page.finish()?)
 }
 
 /// Where everything lies in the body of the picture.
@@ -95,22 +91,23 @@ struct Layout {
 impl Layout {
     /// For a part of the map that is `ratio` times as high as it is wide. The
     /// places from near stand in a row below it, or beside it where it is high.
-    fn new(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
+    fn new(ratio: f64, near: usize, width: f64, unit: f64) -> Self {
         if near == 0 {
-            return Layout::below(ratio.clamp(HEIGHTS.0, HEIGHTS.1), 0, width, gap);
+            return Layout::below(ratio.clamp(HEIGHTS.0, HEIGHTS.1), 0, width, unit);
         }
         if ratio < HIGH {
             let ratio = ratio.clamp(HEIGHTS.0, HIGHEST_ABOVE_NEAR);
-            return Layout::below(ratio, near, width, gap);
+            return Layout::below(ratio, near, width, unit);
         }
-        Layout::beside(ratio.min(HIGHEST_BESIDE_NEAR), near, width, gap)
+        Layout::beside(ratio.min(HIGHEST_BESIDE_NEAR), near, width, unit)
     }
 
-    fn below(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
-        let map = Rect::new(0.0, 0.0, width, (width * ratio).round());
+    fn below(ratio: f64, near: usize, width: f64, unit: f64) -> Self {
+        let gap = GAP * unit;
+        let map = Rect::new(0.0, 0.0, width, axes::height_for(ratio, width, unit));
         let columns = near.max(1) as f64;
         let column = (width - gap * (columns - 1.0)) / columns;
-        let row = (column * NEAR_HEIGHT).min(0.36 * width);
+        let row = (column * NEAR_HEIGHT).min(0.4 * width) + CAPTION * unit;
         let at = |i: usize| Rect::new(i as f64 * (column + gap), map.height + gap, column, row);
         Layout {
             height: map.height + if near > 0 { gap + row } else { 0.0 },
@@ -119,9 +116,12 @@ impl Layout {
         }
     }
 
-    fn beside(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
+    fn beside(ratio: f64, near: usize, width: f64, unit: f64) -> Self {
+        let gap = GAP * unit;
         let map_width = (width - gap) * BESIDE_NEAR;
-        let map = Rect::new(0.0, 0.0, map_width, (map_width * ratio).round());
+        let map_height = axes::height_for(ratio, map_width, unit);
+        let least = near as f64 * LEAST_NEAR * unit;
+        let map = Rect::new(0.0, 0.0, map_width, map_height.max(least));
         let rows = near as f64;
         let row = (map.height - gap * (rows - 1.0)) / rows;
         let left = map_width + gap;
@@ -184,11 +184,16 @@ fn draw_near(
     area: Rect,
 ) -> Result<(), PlotError> {
     let unit = page.unit;
-    let view = View::fitting(Extent::around(near.pose, reach), area);
-    ground.draw(&mut page.scene, &view)?;
-    let area = view.area();
-    page.scene.clipped(area, |scene| {
-        places::by_class(scene, &view, (near.pose, near.scan), unit);
+    let style = theme::fitted(theme::text(unit).bold(), &near.name, area.width);
+    let at = (area.x, area.y + 0.75 * CAPTION * unit);
+    page.scene.text(&near.name, at, &style);
+    let top = area.y + CAPTION * unit;
+    let rest = Rect::new(area.x, top, area.width, area.bottom() - top);
+    let view = axes::view_within(Extent::around(near.pose, reach), rest, unit);
+    ground.draw(page, &view)?;
+    let Page { scene, legend, .. } = page;
+    scene.clipped(view.area(), |scene| {
+        places::by_class((scene, legend), &view, (near.pose, near.scan), unit);
         let placement = marks::placement(&view, near.pose);
         let size = places::ROBOT * unit;
         match near.rank {
@@ -197,13 +202,7 @@ fn draw_near(
             Some(_) => marks::robot(scene, placement, size, theme::OTHER),
         }
     });
-    marks::scale_bar(&mut page.scene, &view, unit);
-    let style = TextStyle::new(16.0 * unit, theme::INK)
-        .bold()
-        .with_halo(Color::WHITE, 5.0 * unit);
-    let at = (area.x + 10.0 * unit, area.y + 23.0 * unit);
-    page.scene.text(&near.name, at, &style);
-    page.frame(area);
+    axes::draw_metres(scene, &view, unit);
     Ok(())
 }
 
@@ -213,25 +212,27 @@ mod tests {
 
     #[test]
     fn places_from_near_stand_below_a_wide_map_and_beside_a_high_one() {
-        let wide = Layout::new(0.4, 3, 1000.0, 10.0);
-        assert_eq!(wide.map, Rect::new(0.0, 0.0, 1000.0, 400.0));
-        assert!(wide.near.iter().all(|area| area.y == 410.0));
-        let high = Layout::new(1.0, 2, 1000.0, 10.0);
-        assert_eq!(high.map, Rect::new(0.0, 0.0, 594.0, 594.0));
+        let wide = Layout::new(0.4, 3, 1000.0, 1.0);
+        assert_eq!(wide.map.width, 1000.0);
+        let top = wide.map.bottom() + GAP;
+        assert!(wide.near.iter().all(|area| area.y == top));
+        let high = Layout::new(1.0, 2, 1000.0, 1.0);
+        assert_eq!(high.map.width, 594.0);
         assert!(high.near.iter().all(|area| area.x == 604.0));
-        for layout in [wide, high, Layout::new(9.0, 3, 800.0, 4.0)] {
+        for layout in [wide, high, Layout::new(9.0, 3, 1000.0, 0.4)] {
             let lowest = layout.near.iter().map(Rect::bottom).fold(0.0, f64::max);
             let right = layout.near.iter().map(Rect::right).fold(0.0, f64::max);
             // Sums of a few parts of the width.
             assert!((lowest - layout.height).abs() < 1e-9, "{layout:?}");
-            assert!(right > 799.999 && right < 1000.001, "{layout:?}");
+            assert!(right > 999.999 && right < 1000.001, "{layout:?}");
         }
     }
 
     #[test]
     fn a_single_place_has_the_whole_picture() {
-        let alone = Layout::new(9.0, 0, 1000.0, 10.0);
-        assert_eq!(alone.map, Rect::new(0.0, 0.0, 1000.0, 750.0));
-        assert_eq!((alone.height, alone.near.len()), (750.0, 0));
+        let alone = Layout::new(9.0, 0, 1000.0, 1.0);
+        assert_eq!(alone.map, Rect::new(0.0, 0.0, 1000.0, alone.height));
+        assert_eq!(alone.height, axes::height_for(1.0, 1000.0, 1.0));
+        assert!(alone.near.is_empty());
     }
 }

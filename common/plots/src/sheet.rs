@@ -1,14 +1,11 @@
 //! A contact sheet: scans of a whole recording at their places, side by side.
 
-use drawing::{Anchor, Color, Path, Rect, Scene, TextStyle};
+use drawing::{Anchor, Path, Rect, Scene, TextStyle};
 
-use super::marks;
-use super::page::{self, Heading, Page, Sample};
-use super::places;
+use super::page::{self, Heading, Page};
 use super::scan::Size;
 use super::subject::{Ground, Subject};
-use super::theme;
-use super::view::View;
+use super::{axes, places, theme};
 use crate::PlotError;
 
 /// A panel of the sheet: a scan, or why there is none.
@@ -22,7 +19,12 @@ pub(super) enum Panel {
 /// The height of a panel as a share of its width, at least and at most.
 const HEIGHTS: (f64, f64) = (0.4, 0.75);
 const GAP: f64 = 10.0;
-const CAPTION: f64 = 26.0;
+const CAPTION: f64 = 28.0;
+/// A panel is at least this wide.
+const LEAST_WIDTH: f64 = 250.0;
+/// Text of captions, and by how much marks are smaller than in a picture of one scan.
+const SMALL: f64 = 15.0;
+const SMALLER: f64 = 0.85;
 
 /// Draws at least one panel.
 ///
@@ -35,18 +37,14 @@ pub(super) fn draw(
     size: Size,
 ) -> Result<Scene, PlotError> {
     let unit = page::unit(size.width);
-    let columns = columns_for(panels.len());
+    let most = page::body_width(size.width) / (LEAST_WIDTH * unit);
+    let columns = columns_for(panels.len(), most as usize);
     let rows = panels.len().div_ceil(columns);
     let gap = GAP * unit;
     let width = (page::body_width(size.width) - gap * (columns - 1) as f64) / columns as f64;
-    let height = width * shape(ground, panels, size) + CAPTION * unit;
+    let height = axes::height_for(shape(ground, panels, size), width, unit) + CAPTION * unit;
     let body_height = (rows as f64 * (height + gap)).round();
-    let mut page = Page::new(
-        size.width,
-        body_height,
-        &heading(panels, bag),
-        &legend(panels),
-    )?;
+    let mut page = Page::new(size.width, body_height, &heading(panels, bag))?;
     for (i, panel) in panels.iter().enumerate() {
         let x = page.body.x + (i % columns) as f64 * (width + gap);
         let y = page.body.y + (i / columns) as f64 * (height + gap);
@@ -57,7 +55,7 @@ pub(super) fn draw(
             Rect::new(x, y, width, height),
         )?;
     }
-    Ok(page.scene)
+    Ok(page.finish()?)
 }
 
 /// The height of all panels as a share of their width: half of them are cut to
@@ -76,9 +74,10 @@ fn shape(ground: &Ground<'_>, panels: &[Panel], size: Size) -> f64 {
     middle.unwrap_or_default().clamp(HEIGHTS.0, HEIGHTS.1)
 }
 
-/// As many columns as make the sheet a little wider than high.
-fn columns_for(panels: usize) -> usize {
-    ((1.2 * panels as f64).sqrt().ceil() as usize).clamp(1, panels.max(1))
+/// As many columns as make the sheet a little wider than high, if they are legible.
+fn columns_for(panels: usize, most: usize) -> usize {
+    let wide = (1.2 * panels as f64).sqrt().ceil() as usize;
+    wide.min(most).clamp(1, panels.max(1))
 }
 
 fn draw_panel(
@@ -93,20 +92,21 @@ fn draw_panel(
     match panel {
         Panel::Scan(subject) => {
             write_caption(&mut page.scene, subject, (area, caption), unit);
-            let view = View::fitting(subject.extent(ground, size.whole), picture);
-            ground.draw(&mut page.scene, &view)?;
-            places::draw(&mut page.scene, &view, subject, 0.75 * unit);
-            marks::scale_bar(&mut page.scene, &view, 0.85 * unit);
-            page.frame(view.area());
+            let extent = subject.extent(ground, size.whole);
+            let view = axes::view_within(extent, picture, unit);
+            ground.draw(page, &view)?;
+            let names = (&mut page.scene, &mut page.legend);
+            places::draw(names, &view, subject, SMALLER * unit);
+            axes::draw_metres(&mut page.scene, &view, unit);
         }
         Panel::Refused(number, reason) => {
-            let style = TextStyle::new(14.0 * unit, theme::INK);
-            let base = area.y + 18.0 * unit;
+            let style = theme::text(unit);
+            let base = area.y + 0.7 * caption;
             page.scene
                 .text(&number.to_string(), (area.x, base), &style.bold());
             page.scene.fill(Path::rect(picture), theme::UNKNOWN);
             let text = format!("refused: {reason}");
-            let style = page::fitted(style, &text, 0.94 * picture.width);
+            let style = theme::fitted(style, &text, 0.94 * picture.width);
             let style = style.anchored(Anchor::Middle);
             page.scene.text(&text, picture.center(), &style);
             page.frame(picture);
@@ -117,12 +117,12 @@ fn draw_panel(
 
 /// Number, verdict, and how far off.
 fn write_caption(scene: &mut Scene, subject: &Subject, (area, height): (Rect, f64), unit: f64) {
-    let base = area.y + height - 8.0 * unit;
-    let style = TextStyle::new(14.0 * unit, theme::INK);
+    let base = area.y + 0.7 * height;
+    let style = TextStyle::new(SMALL * unit, theme::INK);
     let number = subject.number.to_string();
     scene.text(&number, (area.x, base), &style.bold());
     let mut x = area.x + style.bold().width_of(&number) + 8.0 * unit;
-    x += page::chip(scene, subject.places.verdict, (x, base), 12.0 * unit) + 7.0 * unit;
+    x += page::chip(scene, subject.places.verdict, (x, base), SMALL * unit) + 7.0 * unit;
     let mut words = Vec::new();
     if let Some(best) = subject.shown.first() {
         words.push(format!("{:.2}", best.place.score));
@@ -138,7 +138,7 @@ fn write_caption(scene: &mut Scene, subject: &Subject, (area, height): (Rect, f6
         None => theme::INK,
     };
     let text = words.join(", ");
-    let style = page::fitted(TextStyle { color, ..style }, &text, area.right() - x);
+    let style = theme::fitted(TextStyle { color, ..style }, &text, area.right() - x);
     scene.text(&text, (x, base), &style);
 }
 
@@ -164,25 +164,6 @@ fn heading(panels: &[Panel], bag: &str) -> Heading {
     }
 }
 
-fn legend(panels: &[Panel]) -> Vec<page::Entry> {
-    let mut entries = vec![(Sample::Robot(theme::BEST), "best place".to_owned())];
-    for class in theme::CLASSES {
-        let (color, name) = theme::of_class(class);
-        entries.push((Sample::Dot(color), name.to_owned()));
-    }
-    entries.push((Sample::Robot(theme::OTHER), "other places".to_owned()));
-    let has_truth = |panel: &Panel| matches!(panel, Panel::Scan(s) if s.truth.is_some());
-    if panels.iter().any(has_truth) {
-        entries.push((Sample::Truth, "truth".to_owned()));
-        let missed = theme::TRUTH.towards(Color::WHITE, 0.5);
-        entries.push((
-            Sample::Dot(missed),
-            "the scan there, where missed".to_owned(),
-        ));
-    }
-    entries
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,7 +171,9 @@ mod tests {
     #[test]
     fn panels_fill_rows_that_are_a_little_wider_than_high() {
         for (panels, columns) in [(1, 1), (2, 2), (3, 2), (4, 3), (12, 4), (64, 9)] {
-            assert_eq!(columns_for(panels), columns, "{panels}");
+            assert_eq!(columns_for(panels, 9), columns, "{panels}");
         }
+        assert_eq!(columns_for(12, 2), 2);
+        assert_eq!(columns_for(12, 0), 1);
     }
 }

@@ -1,7 +1,7 @@
 //! What a picture is about: a scan, where it could have been taken, and where
 //! it was.
 
-use drawing::{DrawingError, Scene};
+use drawing::DrawingError;
 use engine::EngineError;
 use engine::grid::CellRules;
 use engine::peaks::{Place, Places};
@@ -12,7 +12,7 @@ use statistics::SUCCESS;
 
 use super::extent::Extent;
 use super::ground;
-use super::page::Heading;
+use super::page::{Heading, Page};
 use super::view::View;
 
 /// The map as it is drawn.
@@ -24,16 +24,25 @@ pub(super) struct Ground<'a> {
 
 impl Ground<'_> {
     /// Fills a view with the map.
-    pub(super) fn draw(&self, scene: &mut Scene, view: &View) -> Result<(), DrawingError> {
+    pub(super) fn draw(&self, page: &mut Page, view: &View) -> Result<(), DrawingError> {
         let ink = ground::occupied(self.map, self.rules);
-        ground::draw(scene, self.map, self.rules, view, ink)
+        let names = (&mut page.scene, &mut page.legend);
+        ground::draw(names, (self.map, self.rules), view, ink)
     }
 
-    /// The whole map, with a rim.
-    pub(super) fn extent(&self) -> Extent {
-        Extent::of_map(self.map).with_rim(0.02, 0.0)
+    /// All that is known of the map, with a margin.
+    pub(super) fn known(&self) -> Extent {
+        Extent::of_known(self.map, self.rules).with_rim(MARGIN, 0.0)
+    }
+
+    /// The whole map, with a margin.
+    pub(super) fn whole(&self) -> Extent {
+        Extent::of_map(self.map).with_rim(MARGIN, 0.0)
     }
 }
+
+/// Around what is shown, as a share of its longer side.
+const MARGIN: f64 = 0.02;
 
 /// A scan at one of its places.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,11 +175,14 @@ impl Subject {
         if let Some(truth) = self.missed_truth() {
             extent.include(reached(truth.pose, &truth.scan));
         }
-        let all = ground.extent();
-        match whole || self.shown.is_empty() && self.truth.is_none() {
-            true => all,
-            false => extent.with_rim(0.04, 6.0).within(all),
+        extent = extent.with_rim(0.04, 6.0).within(ground.whole());
+        if self.shown.is_empty() && self.truth.is_none() {
+            return ground.known();
         }
+        if whole {
+            extent.include_all(ground.known());
+        }
+        extent
     }
 
     /// The lines above a picture of it.

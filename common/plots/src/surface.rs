@@ -3,28 +3,33 @@
 
 use std::f64::consts::PI;
 
-use drawing::{Anchor, Color, Path, Rect, Scene, Stroke, TextStyle};
+use drawing::{Color, Path, Rect, Scene, Stroke};
 use offline::{frame_of, sides_of};
 
-use super::axes;
-use super::extent::Extent;
+use super::axes::{self, Axis};
 use super::field::{self, Votes, WALL};
 use super::ground::Sampler;
-use super::page::{self, Page, Sample};
-use super::scale::Scale;
-use super::theme;
+use super::legend::Sample;
+use super::page::{self, Page};
 use super::view::View;
+use super::{marks, theme};
 use crate::PlotError;
+
+mod space;
+
+use space::Space;
 
 /// Patches along the longer side: finer ones cannot be distinguished.
 const PATCHES: f64 = 150.0;
 /// The height of the highest peak, as a share of the longer side.
 const PEAK: f64 = 0.32;
-/// Where nothing votes, and what lies in the shade.
-const FLOOR: Color = Color::rgb(0xEC_EFF4);
-const SHADOW: Color = Color::rgb(0x6B_2A3A);
+/// How much darker a patch is that is turned from the light, and lighter one that is turned
+/// to it: little, as colours stand for votes.
+const SHADE: (f64, f64) = (0.22, 0.15);
 /// The height of both pictures as a share of the width.
-const HEIGHTS: (f64, f64) = (0.47, 0.40);
+const HEIGHTS: (f64, f64) = (0.50, 0.42);
+/// Around a picture from one side: left, above, right and below.
+const ROOM: [f64; 4] = [80.0, 46.0, 100.0, 62.0];
 
 /// From where the surface is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,10 +185,10 @@ impl Relief {
         let side = (b.0 - a.0).max(f64::MIN_POSITIVE);
         let (slope_x, slope_y) = ((b.2 - a.2) / side, (d.2 - a.2) / side);
         let light = (0.5 * slope_x - 0.35 * slope_y).clamp(-1.0, 1.0);
-        let color = FLOOR.towards(field::heat(highest), 8.0 * highest);
+        let color = theme::heat(highest);
         let lit = match light >= 0.0 {
-            true => color.towards(Color::WHITE, 0.4 * light),
-            false => color.towards(SHADOW, -0.3 * light),
+            true => color.towards(Color::WHITE, SHADE.1 * light),
+            false => color.towards(theme::INK, -SHADE.0 * light),
         };
         let walls = self.walls.get(index).copied().unwrap_or_default();
         lit.towards(WALL, walls * (1.0 - 4.0 * highest))
@@ -198,165 +203,50 @@ pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
     let relief = Relief::of(votes);
     let width = page::body_width(votes.width);
     let height = (width * (HEIGHTS.0 + HEIGHTS.1)).round();
-    let arrow = arrow_stroke(page::unit(votes.width));
-    let legend = [
-        (Sample::Square(WALL), "obstacle".to_owned()),
-        (Sample::Line(arrow), "most votes".to_owned()),
-    ];
-    let mut page = Page::new(votes.width, height, &votes.heading, &legend)?;
+    let mut page = Page::new(votes.width, height, &votes.heading)?;
     let unit = page.unit;
-    let (body, bar) = axes::beside_bar(page.body, unit);
+    if relief.walls.iter().any(|&share| share > 0.0) {
+        page.legend.add(Sample::Area(WALL), "obstacle");
+    }
+    let (body, bar) = axes::beside_bar(page.body, &votes.scale(), unit);
     let first = Rect::new(body.x, body.y, body.width, width * HEIGHTS.0);
     let second = Rect::new(body.x, first.bottom(), body.width, width * HEIGHTS.1);
     for (camera, area) in CAMERAS.iter().zip([first, second]) {
-        draw_from(&mut page, &relief, camera, area);
+        draw_from(&mut page, (&relief, votes.scale()), camera, area);
     }
-    axes::draw_bar(&mut page.scene, bar, votes.scale(), field::heat, unit);
-    Ok(page.scene)
+    axes::draw_bar(&mut page.scene, bar, votes.scale(), theme::heat, unit);
+    Ok(page.finish()?)
 }
 
-fn draw_from(page: &mut Page, relief: &Relief, camera: &Camera, area: Rect) {
+fn draw_from(page: &mut Page, (relief, up): (&Relief, Axis<'_>), camera: &Camera, area: Rect) {
     let unit = page.unit;
     let patches = relief.patches(camera);
-    // The arrow stands above the summit, and the numbers of the axes below the edges.
+    // The arrow stands above the summit, and numbers and names of the axes around.
+    let [left, above, right, below] = ROOM.map(|side| side * unit);
     let room = Rect::new(
-        area.x + 56.0 * unit,
-        area.y + 46.0 * unit,
-        area.width - 112.0 * unit,
-        area.height - 96.0 * unit,
+        area.x + left,
+        area.y + above,
+        (area.width - left - right).max(1.0),
+        (area.height - above - below).max(1.0),
     );
-    let placing = Placing::of(&patches, room);
+    let space = Space::of(relief, camera, room);
+    space.draw_floor(&mut page.scene, relief, unit);
     for (corners, color) in patches {
-        let path = Path::polygon(corners.map(|corner| placing.at(corner)));
+        let path = Path::polygon(corners.map(|corner| space.placed(corner)));
         // The rim closes the gaps between patches.
         page.scene.stroke(path.clone(), Stroke::new(color, 0.5));
         page.scene.fill(path, color);
     }
-    draw_edges(&mut page.scene, relief, (camera, &placing), unit);
+    let style = theme::text(unit).bold();
+    let at = (area.x, area.y + theme::TEXT * unit);
+    page.scene.text(camera.name, at, &style);
+    space.draw_axes(&mut page.scene, relief, up, unit);
     if let Some(summit) = relief.summit() {
-        arrow(&mut page.scene, placing.at(camera.look(summit).at), unit);
-    }
-    let style = TextStyle::new(16.0 * unit, theme::QUIET).bold();
-    let at = (area.x, area.y + 20.0 * unit);
-    page.scene
-        .text(camera.name, at, &style.anchored(Anchor::Start));
-}
-
-/// The two edges of the floor that are nearest to the camera, with the metres of the map
-/// along them.
-fn draw_edges(
-    scene: &mut Scene,
-    relief: &Relief,
-    (camera, placing): (&Camera, &Placing),
-    unit: f64,
-) {
-    let (half_x, half_y) = relief.halves();
-    let nearness = |x: f64, y: f64| camera.look((x, y, 0.0)).nearness;
-    let front = if nearness(0.0, -half_y) > nearness(0.0, half_y) {
-        -half_y
-    } else {
-        half_y
-    };
-    let side = if nearness(-half_x, 0.0) > nearness(half_x, 0.0) {
-        -half_x
-    } else {
-        half_x
-    };
-    let scale_x = Scale::Even(
-        relief.from.0,
-        relief.from.0 + 2.0 * half_x * relief.longer_m,
-    );
-    let scale_y = Scale::Even(
-        relief.from.1,
-        relief.from.1 + 2.0 * half_y * relief.longer_m,
-    );
-    let along_x = |share: f64| ((2.0 * share - 1.0) * half_x, front);
-    let along_y = |share: f64| (side, (2.0 * share - 1.0) * half_y);
-    let at = |(x, y): (f64, f64)| placing.at(camera.look((x, y, 0.0)).at);
-    let middle = at((0.0, 0.0));
-    let edge = Edge { middle, unit };
-    edge.draw(scene, (scale_x, "x, m"), &|share| at(along_x(share)));
-    edge.draw(scene, (scale_y, "y, m"), &|share| at(along_y(share)));
-}
-
-/// An edge of the floor with its numbers outside.
-#[derive(Debug, Clone, Copy)]
-struct Edge {
-    /// Of the floor, in the picture.
-    middle: (f64, f64),
-    unit: f64,
-}
-
-impl Edge {
-    /// `at` takes shares of the edge to points of the picture.
-    fn draw(self, scene: &mut Scene, (scale, name): (Scale, &str), at: &dyn Fn(f64) -> (f64, f64)) {
-        let unit = self.unit;
-        let mut lines = Path::line(at(0.0), at(1.0));
-        let style = TextStyle::new(13.0 * unit, theme::INK).anchored(Anchor::Middle);
-        let (out_x, out_y) = self.outwards(at(0.0), at(1.0));
-        let write = |scene: &mut Scene, text: &str, (x, y): (f64, f64), away: f64| {
-            let beside = (x + away * out_x, y + away * out_y + 4.5 * unit);
-            scene.text(text, beside, &style);
-        };
-        for (value, text) in scale.ticks() {
-            let (x, y) = at(scale.share(value));
-            lines.add_line((x, y), (x + 6.0 * unit * out_x, y + 6.0 * unit * out_y));
-            write(scene, &text, (x, y), 20.0 * unit);
-        }
-        scene.stroke(lines, Stroke::new(theme::INK, unit.max(1.0)));
-        write(scene, name, at(0.5), 46.0 * unit);
-    }
-
-    /// The direction across the edge that leads away from the floor.
-    fn outwards(self, from: (f64, f64), to: (f64, f64)) -> (f64, f64) {
-        let (along_x, along_y) = (to.0 - from.0, to.1 - from.1);
-        let length = along_x.hypot(along_y).max(f64::MIN_POSITIVE);
-        let (x, y) = (-along_y / length, along_x / length);
-        let is_inwards = (from.0 - self.middle.0) * x + (from.1 - self.middle.1) * y < 0.0;
-        if is_inwards { (-x, -y) } else { (x, y) }
-    }
-}
-
-fn arrow_stroke(unit: f64) -> Stroke {
-    Stroke::new(theme::BEST, 2.6 * unit)
-}
-
-/// An arrow that points at a summit from above.
-fn arrow(scene: &mut Scene, (x, y): (f64, f64), unit: f64) {
-    let (tip, tail) = (y - 5.0 * unit, y - 42.0 * unit);
-    let mut path = Path::line((x, tail), (x, tip));
-    path.add_polyline([
-        (x - 6.0 * unit, tip - 9.0 * unit),
-        (x, tip),
-        (x + 6.0 * unit, tip - 9.0 * unit),
-    ]);
-    scene.stroke(path.clone(), Stroke::new(Color::WHITE, 6.0 * unit));
-    scene.stroke(path, arrow_stroke(unit));
-}
-
-/// Takes what a camera sees to a part of the picture.
-struct Placing {
-    scale: f64,
-    middle: (f64, f64),
-    center: (f64, f64),
-}
-
-impl Placing {
-    fn of(patches: &[([(f64, f64); 4], Color)], area: Rect) -> Self {
-        let seen = Extent::of(patches.iter().flat_map(|(corners, _)| *corners));
-        let scale = (area.width / seen.width()).min(area.height / seen.height());
-        Placing {
-            scale,
-            middle: seen.center(),
-            center: area.center(),
-        }
-    }
-
-    fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        (
-            self.center.0 + self.scale * (x - self.middle.0),
-            self.center.1 + self.scale * (y - self.middle.1),
-        )
+        let (x, y) = space.at(summit);
+        let stroke = Stroke::new(theme::BEST, 2.6 * unit);
+        let tip = (x, y - 4.0 * unit);
+        marks::arrow_down(&mut page.scene, tip, 34.0 * unit, stroke);
+        page.legend.add(Sample::Arrow(stroke), "most votes");
     }
 }
 

@@ -239,7 +239,7 @@ pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> Result<Sce
             worlds = extent.worlds,
         ),
         x: "p/n: boundary cells over free cells, %".into(),
-        y: "time, ratio".into(),
+        y: "ratio of times".into(),
         by_decades: true,
         curves,
     })

@@ -1,3 +1,4 @@
+use super::super::layout;
 use super::*;
 
 /// Flat but for one corner.
@@ -44,4 +45,48 @@ fn the_summit_is_the_highest_corner_and_patches_come_from_far_to_near() {
     let first = patches.first().map(|(corners, _)| corners[0].1);
     let last = patches.last().map(|(corners, _)| corners[0].1);
     assert!(first < last, "{first:?} {last:?}");
+}
+
+#[test]
+fn three_axes_are_named_and_their_numbers_stand_beside_each_other() {
+    let scale = Axis {
+        scale: super::super::scale::Scale::Even(0.0, 1584.0),
+        name: "votes",
+    };
+    for camera in &CAMERAS {
+        let mut page = Page::new(1200, 560.0, &heading()).unwrap();
+        let area = page.body;
+        draw_from(&mut page, (&relief(), scale), camera, area);
+        let names = page.legend.names().join(", ");
+        assert_eq!(names, "most votes");
+        let scene = page.finish().unwrap();
+        layout::check(&scene);
+        let texts: Vec<&str> = scene.labels().iter().map(|label| &*label.text).collect();
+        for name in ["x, m", "y, m", "votes", "500", "1500", "2", "4"] {
+            assert!(texts.contains(&name), "{name}, {}: {texts:?}", camera.name);
+        }
+    }
+}
+
+#[test]
+fn the_axis_of_the_height_ends_as_high_as_the_summit() {
+    let camera = &CAMERAS[1];
+    let relief = relief();
+    let room = Rect::new(0.0, 0.0, 800.0, 400.0);
+    let space = Space::of(&relief, camera, room);
+    let high = |point: (f64, f64, f64)| {
+        let (x, y, _) = point;
+        space.at((x, y, 0.0)).1 - space.at(point).1
+    };
+    let summit = high(relief.summit().unwrap());
+    // Corners are seen in parallel: the same height is as long everywhere.
+    assert!((high((0.5, 0.5, PEAK)) - summit).abs() < 1e-9 && summit > 50.0);
+}
+
+fn heading() -> page::Heading {
+    page::Heading {
+        title: "votes".into(),
+        verdict: None,
+        says: String::new(),
+    }
 }

@@ -1,0 +1,23 @@
+//! What holds for the text of every picture; for tests.
+
+use drawing::Scene;
+
+/// Fails if a label lies over another or reaches beyond the picture, or if text is too
+/// small to read.
+pub(super) fn check(scene: &Scene) {
+    let labels = scene.labels();
+    for (i, label) in labels.iter().enumerate() {
+        assert!(
+            scene.area().holds(&label.area),
+            "beyond the picture: {label:?}"
+        );
+        let side = label.area.width.min(label.area.height);
+        assert!(label.text.is_empty() || side > 3.0, "too small: {label:?}");
+        for other in &labels[i + 1..] {
+            assert!(
+                !label.area.overlaps(&other.area),
+                "{label:?} over {other:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Shapes of marks: each kind has its own, so that none is told from another by its
+//! colour alone.
+
+use drawing::Path;
+
+/// The shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    Circle,
+    Square,
+    /// Points up.
+    Triangle,
+    Diamond,
+    /// Lies, as the letter x.
+    Cross,
+    /// Points down.
+    Down,
+    /// Stands.
+    Plus,
+}
+
+impl Shape {
+    /// All shapes, in the order in which the curves of a chart have them.
+    pub(super) const ALL: [Shape; 7] = [
+        Shape::Circle,
+        Shape::Square,
+        Shape::Triangle,
+        Shape::Diamond,
+        Shape::Cross,
+        Shape::Down,
+        Shape::Plus,
+    ];
+
+    /// Adds the shape around a point to a path; all of a size cover about the same area
+    /// as a circle with that radius.
+    pub(super) fn add_to(self, path: &mut Path, (x, y): (f64, f64), size: f64) {
+        let mut polygon = |corners: &[(f64, f64)]| {
+            path.add_polygon(corners.iter().map(|(u, v)| (x + size * u, y + size * v)));
+        };
+        match self {
+            Shape::Circle => path.add_circle((x, y), size),
+            Shape::Square => polygon(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+            Shape::Triangle => polygon(&[(0.0, -1.4), (1.3, 0.9), (-1.3, 0.9)]),
+            Shape::Down => polygon(&[(0.0, 1.4), (-1.3, -0.9), (1.3, -0.9)]),
+            Shape::Diamond => polygon(&[(0.0, -1.4), (1.4, 0.0), (0.0, 1.4), (-1.4, 0.0)]),
+            Shape::Plus => polygon(&PLUS),
+            Shape::Cross => {
+                let turned = PLUS.map(|(u, v)| (0.71 * (u - v), 0.71 * (u + v)));
+                polygon(&turned);
+            }
+        }
+    }
+
+    /// The shape around a point.
+    pub(super) fn at(self, at: (f64, f64), size: f64) -> Path {
+        let mut path = Path::new();
+        self.add_to(&mut path, at, size);
+        path
+    }
+}
+
+/// A cross with arms of a length of 1.3, 0.72 wide.
+const PLUS: [(f64, f64); 12] = [
+    (-0.36, -1.3),
+    (0.36, -1.3),
+    (0.36, -0.36),
+    (1.3, -0.36),
+    (1.3, 0.36),
+    (0.36, 0.36),
+    (0.36, 1.3),
+    (-0.36, 1.3),
+    (-0.36, 0.36),
+    (-1.3, 0.36),
+    (-1.3, -0.36),
+    (-0.36, -0.36),
+];
+
+#[cfg(test)]
+mod tests {
+    use drawing::{Color, Scene, to_png};
+
+    use super::*;
+
+    #[test]
+    fn shapes_differ_and_cover_about_the_same_area() {
+        let pictures = Shape::ALL.map(|shape| {
+            let mut scene = Scene::new(60, 60, "", Color::WHITE).unwrap();
+            scene.fill(shape.at((30.0, 30.0), 15.0), Color::rgb(0));
+            let png = to_png(&scene).unwrap();
+            image::load_from_memory(&png).unwrap().to_luma8()
+        });
+        for (i, picture) in pictures.iter().enumerate() {
+            let dark = picture.pixels().filter(|pixel| pixel.0[0] < 128).count();
+            // A circle of 15 pixels covers 707; arms are thinner, corners wider.
+            assert!((450..900).contains(&dark), "{:?} {dark}", Shape::ALL[i]);
+            let others = pictures.iter().filter(|other| *other == picture).count();
+            assert_eq!(others, 1, "{:?}", Shape::ALL[i]);
+        }
+    }
+}
