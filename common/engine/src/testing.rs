@@ -20,7 +20,16 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// Side of a cell in tests, metres.
 pub(crate) const RESOLUTION_M: f64 = 0.1;
 
-/// Grids of 1 to 40 cells a side, from empty to cluttered, with unknown cells
+/// Cells along a side of test grids, at most: fewer where Miri interprets every step.
+const SIDE: usize = if cfg!(miri) { 9 } else { 40 };
+
+/// Beams of test scans are fewer than these.
+const BEAMS: usize = if cfg!(miri) { 5 } else { 24 };
+
+/// Cells along the longer side of long grids. A byte can not count the steps along it.
+const LONG: Range<usize> = if cfg!(miri) { 260..270 } else { 400..900 };
+
+/// Grids of 1 to [`SIDE`] cells a side, from empty to cluttered, with unknown cells
 /// that block or do not, often in one large piece.
 pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
     let cells = |count: usize| {
@@ -33,8 +42,8 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
             vec(cell, count)
         })
     };
-    let ends = || (0usize..40, 0usize..60);
-    (1usize..=40, 1usize..=40, any::<bool>(), ends(), ends()).prop_flat_map(
+    let ends = || (0..SIDE, 0..SIDE + SIDE / 2);
+    (1..=SIDE, 1..=SIDE, any::<bool>(), ends(), ends()).prop_flat_map(
         move |(width, height, unknown_blocks, (left, right), (bottom, top))| {
             cells(width * height).prop_map(move |mut occupancy| {
                 for y in bottom..top.min(height) {
@@ -60,7 +69,7 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
 /// of steps.
 pub(crate) fn any_long_grid() -> impl Strategy<Value = Grid> {
     let cell = prop_oneof![1 => Just(100u8), 300 => Just(0u8)];
-    (400usize..900, 1usize..4, any::<bool>()).prop_flat_map(move |(length, breadth, upright)| {
+    (LONG, 1usize..4, any::<bool>()).prop_flat_map(move |(length, breadth, upright)| {
         let (width, height) = if upright {
             (breadth, length)
         } else {
@@ -185,9 +194,9 @@ pub(crate) fn any_limited_grid(eights: u32) -> impl Strategy<Value = (Grid, Limi
     })
 }
 
-/// Scans of 1 to 24 beams with any taper, narrow or wide.
+/// Scans of fewer than [`BEAMS`] beams with any taper, narrow or wide.
 pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
-    any_scan_of(1..24)
+    any_scan_of(1..BEAMS)
 }
 
 /// The same with 80 to 120 beams.

@@ -34,3 +34,53 @@ pub(crate) fn run<S: Send, E: Send>(
         joined.fold(own, Result::and)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_share_is_run_once_with_its_number() {
+        for threads in 1..4 {
+            let mut shares = vec![0; threads];
+            let end = run(&mut shares, &|| false, |number, share, _| {
+                *share += number + 1;
+                Ok::<(), ()>(())
+            });
+            assert_eq!(end, Ok(()));
+            assert_eq!(shares, (1..=threads).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn the_first_failure_is_told_and_that_of_the_first_share_stops_the_others() {
+        let failing = |failed: &'static [usize]| {
+            run(&mut [(); 3], &|| false, move |number, (), _| {
+                if failed.contains(&number) {
+                    Err(number)
+                } else {
+                    Ok(())
+                }
+            })
+        };
+        assert_eq!(failing(&[1, 2]), Err(1));
+        assert_eq!(failing(&[2]), Err(2));
+        // The others go on until they are asked to stop.
+        let end = run(&mut [(); 3], &|| true, |number, (), stop| {
+            while !stop() {
+                std::thread::yield_now();
+            }
+            Err::<(), _>(number)
+        });
+        assert_eq!(end, Err(0));
+    }
+
+    #[test]
+    #[should_panic(expected = "the third")]
+    fn a_panic_of_another_share_goes_on_here() {
+        let _ = run(&mut [(); 3], &|| false, |number, (), _| {
+            assert_ne!(number, 2, "the third");
+            Ok::<(), ()>(())
+        });
+    }
+}

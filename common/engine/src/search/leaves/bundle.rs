@@ -151,3 +151,105 @@ pub(in crate::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, hits: &mut [
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+    use crate::search::index::obstacles::Obstacles;
+    use crate::simd::{Kernel, Set, Simd};
+    use crate::testing::{any_grid, space_of};
+
+    /// Following the rays of a bundle as far as the map goes.
+    struct Following<'a>(&'a Bundle, &'a Rays<'a>, [(u16, u16); 2]);
+
+    impl Kernel for Following<'_> {
+        type Result = [u16; RAYS];
+
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) -> Self::Result {
+            self.0.follow::<S::Rays>(set, self.1, self.2)
+        }
+    }
+
+    /// The last position of each ray within the block, `None` where it does not meet it.
+    fn last_inside(bundle: &Bundle) -> [Option<u16>; RAYS] {
+        let Across { column, minor } = bundle.across();
+        let mut last = [None; RAYS];
+        for (&column, &minor) in column.iter().zip(minor) {
+            let ray = &mut last[usize::from(bundle.first[usize::from(column)] + minor)];
+            *ray = (*ray).max(Some(column));
+        }
+        last
+    }
+
+    proptest! {
+        #[test]
+        fn each_cell_of_a_block_lies_on_a_ray_of_its_bundle(
+            headings in 1u32..50, left in 0usize..30, bottom in 0usize..30,
+        ) {
+            let grid = Grid::new(36, 36, &[0; 36 * 36], Default::default()).unwrap();
+            let (space, obstacles) = (space_of(&grid, 8 * headings), Obstacles::new(&grid));
+            for direction in space.directions.all() {
+                let bundle = Bundle::new(direction, (left, bottom));
+                let rays = obstacles.rays(direction, bundle.start);
+                let Across { column, minor } = bundle.across();
+                for i in 0..CELLS {
+                    let ray = usize::from(bundle.first[usize::from(column[i])] + minor[i]);
+                    let cell = rays.cell(ray, i64::from(column[i]));
+                    prop_assert_eq!(cell, ((left + i % SIDE) as i64, (bottom + i / SIDE) as i64));
+                }
+                // No ray is followed that meets no cell.
+                let met = last_inside(&bundle).iter().flatten().count();
+                prop_assert_eq!(met, bundle.rays as usize);
+                prop_assert!(last_inside(&bundle)[..met].iter().all(Option::is_some));
+            }
+        }
+
+        #[test]
+        fn rays_end_where_stepping_along_each_of_them_ends(
+            grid in any_grid(), headings in 1u32..10, place in any::<[prop::sample::Index; 2]>(),
+            gap in (1u16..20, 0u16..20),
+        ) {
+            let (space, obstacles) = (space_of(&grid, 8 * headings), Obstacles::new(&grid));
+            let [left, bottom] = [(place[0], grid.width()), (place[1], grid.height())]
+                .map(|(place, side)| SIDE * place.index(side.div_ceil(SIDE)));
+            for direction in space.directions.all() {
+                let bundle = Bundle::new(direction, (left, bottom));
+                let rays = obstacles.rays(direction, bundle.start);
+                let end_of = |ray: usize, last: u16| {
+                    (last + 1..100).find_map(|position| {
+                        let (x, y) = rays.cell(ray, i64::from(position));
+                        match grid.get(x, y) {
+                            Some(Cell::Open) => None,
+                            cell => Some(cell.map_or(NO_RANGE, |_| position)),
+                        }
+                    })
+                };
+                let inside = last_inside(&bundle);
+                let ends = (0..RAYS).map(|ray| inside[ray].and_then(|last| end_of(ray, last)));
+                let ends: Vec<_> = ends.map(|end| end.unwrap_or(NO_RANGE)).collect();
+                // Blocks reach beyond the map, and nobody asks for rays from there.
+                let is_on_map = |ray: usize| inside[ray].is_some_and(|last| {
+                    let (x, y) = rays.cell(ray, i64::from(last));
+                    grid.get(x, y).is_some()
+                });
+                let everywhere = [(1, 100), (0, 0)];
+                // Two spans with a gap in which no ray ends.
+                let (from, to) = (gap.0, gap.0 + gap.1);
+                let is_empty = ends.iter().all(|&end| !(from + SIDE as u16 - 1..to + SIDE as u16).contains(&end));
+                let spans = if is_empty { [(1, from), (to, 100)] } else { everywhere };
+                for set in InstructionSet::available() {
+                    for spans in [everywhere, spans] {
+                        let found = Simd::new(set).run(Following(&bundle, &rays, spans));
+                        for ray in (0..RAYS).filter(|&ray| is_on_map(ray)) {
+                            prop_assert_eq!(found[ray], ends[ray], "{} {:?} {:?}", set, direction, spans);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

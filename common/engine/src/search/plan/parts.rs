@@ -97,3 +97,111 @@ pub(in crate::search) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) 
     own.collector.finish(own.poses_evaluated, found);
     found.cut_at(own.left);
 }
+
+/// Searches of two threads in every order that `loom` can tell apart.
+#[cfg(all(test, loom))]
+mod orders {
+    use std::collections::BTreeMap;
+    use std::sync::{Mutex, OnceLock};
+
+    use loom::thread::Builder;
+
+    use super::*;
+    use crate::grid::{CellRules, Grid};
+    use crate::instruction_set::InstructionSet;
+    use crate::program::ScanProgram;
+    use crate::scan::Scan;
+    use crate::search::index::SearchIndex;
+    use crate::search::task::lead::Lead;
+    use crate::simd::Simd;
+    use crate::testing::{plain_votes, space_of};
+    use crate::votes::CollectConfig;
+
+    /// Words of a thread's stack.
+    const STACK: usize = 1 << 17;
+
+    fn leak<T>(value: T) -> &'static T {
+        Box::leak(Box::new(value))
+    }
+
+    /// Two rooms, one in the first quad of blocks and one in the second: each thread has one.
+    /// The second is so wide that a pose there is near two walls at most.
+    fn rooms() -> Grid {
+        let (width, height) = (48, 16);
+        let rooms = [(4..7, 4..7), (36..42, 4..10)];
+        let is_free = |x: usize, y: usize| {
+            rooms
+                .iter()
+                .any(|(xs, ys)| xs.contains(&x) && ys.contains(&y))
+        };
+        let cell = |i: usize| {
+            if is_free(i % width, i / width) {
+                0
+            } else {
+                100
+            }
+        };
+        let occupancy: Vec<u8> = (0..width * height).map(cell).collect();
+        Grid::new(width, height, &occupancy, CellRules::default()).unwrap()
+    }
+
+    /// Whichever thread finds its poses first, and whatever it knows of the other's: the poses
+    /// at or above the floor are those of the reference. In some orders, a thread skips what it
+    /// counts in others.
+    #[test]
+    fn the_poses_that_are_found_are_the_same_in_any_order() {
+        let grid = leak(rooms());
+        let space = leak(space_of(grid, 8));
+        let scan = Scan {
+            angle_min: 0.0,
+            angle_increment: 1.5,
+            range_min_m: 0.0,
+            range_max_m: 9.0,
+            ranges: &[0.2; 4],
+        };
+        let program = ScanProgram::new(&scan, 0.0, space, &Default::default()).unwrap();
+        let config = CollectConfig::exact();
+        let plain = plain_votes(grid, &program, space, config);
+        assert!(!plain.votes.is_empty());
+        let index = leak(SearchIndex::new(grid, space));
+        assert!(index.coarse.quads() > 1, "each thread has a part");
+        let (program, task) = (leak(program), leak(OnceLock::new()));
+        let counted = leak(Mutex::new(BTreeMap::new()));
+        loom::model(move || {
+            let make = || {
+                let (shared, simd) = (Box::leak(Box::default()), Simd::new(InstructionSet::best()));
+                let how = (config, leak(Lead::default()));
+                Task::new(shared, simd, index, grid, (program, space), how)
+            };
+            let task = leak(task.get_or_init(make).anew(leak(Lead::default())));
+            let search = |part| {
+                move || {
+                    let mut scratch = Scratch::default();
+                    let end = Descent::new(task, &mut scratch, (part, 2)).run(&|| false);
+                    assert_eq!(end, End::Done);
+                    scratch
+                }
+            };
+            // Its own stack is large enough for a search, as that of the model is not.
+            let start = |part| {
+                Builder::new()
+                    .stack_size(STACK)
+                    .spawn(search(part))
+                    .unwrap()
+            };
+            let mut scratches = [start(0), start(1)].map(|thread| thread.join().unwrap());
+            let mut found = VoteSet::default();
+            finish(&mut scratches, &mut found);
+            let mut counted = counted.lock().unwrap();
+            *counted.entry(found.poses_evaluated).or_insert(0) += 1;
+            found.poses_evaluated = 0;
+            assert_eq!(found, plain);
+        });
+        let counted = counted.lock().unwrap();
+        println!("orders, by the poses that were counted: {counted:?}");
+        assert!(
+            counted.len() > 1,
+            "no thread spared another work: {counted:?}"
+        );
+    }
+}

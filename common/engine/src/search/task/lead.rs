@@ -1,6 +1,10 @@
 //! The best pose so far, of all maps that are searched together.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+#[cfg(loom)]
+use loom::sync::atomic::AtomicU32;
+#[cfg(not(loom))]
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering;
 
 use crate::votes::VoteShare;
 
@@ -68,5 +72,38 @@ mod tests {
             poses.iter().rev().for_each(|&(votes, of)| backward.raise(VoteShare::new(votes, of)));
             prop_assert_eq!(backward.on(possible), on);
         }
+    }
+}
+
+/// Threads in every order that `loom` can tell apart, with what they may read at `Relaxed`.
+#[cfg(all(test, loom))]
+mod orders {
+    use loom::thread;
+
+    use super::*;
+
+    #[test]
+    fn the_greatest_share_leads_in_any_order_and_none_is_lost() {
+        loom::model(|| {
+            let lead: &'static Lead = Box::leak(Box::default());
+            let raise = |votes: [u16; 2]| {
+                move || {
+                    let mut before = 0;
+                    for votes in votes {
+                        lead.raise(VoteShare::new(votes, 100));
+                        let now = lead.on(100);
+                        assert!(now >= votes && now >= before, "it only rises");
+                        before = now;
+                    }
+                }
+            };
+            let others = [
+                thread::spawn(raise([30, 20])),
+                thread::spawn(raise([10, 40])),
+            ];
+            assert!([0, 10, 30, 40].contains(&lead.on(100)));
+            others.into_iter().for_each(|other| other.join().unwrap());
+            assert_eq!(lead.on(100), 40);
+        });
     }
 }

@@ -114,6 +114,16 @@ impl<'a> Task<'a> {
         }
     }
 
+    /// The same task, of which nothing was found so far, and which is not given up.
+    #[cfg(all(test, loom))]
+    pub(in crate::search) fn anew(&self, lead: &'a Lead) -> Self {
+        Task {
+            lead,
+            brute_force: Cost(f64::INFINITY),
+            ..*self
+        }
+    }
+
     /// The votes of the best pose so far; where that is one of another map, the least number
     /// that is as good here.
     pub(in crate::search) fn best(&self) -> u16 {
