@@ -214,6 +214,9 @@ impl Inputs {
                 .field(sample.header(), sample.items());
             to.transcript().taken(0, outcome)?;
         }
+        if self.poses.subscriber.has_publishers() {
+            to.transcript().entries.expect_tracker();
+        }
         while let Some(sample) = self.hypotheses.subscriber.receive()? {
             let header = sample.header();
             let outcome = to.transcript().entries.hypotheses(header, sample.items());

@@ -76,6 +76,12 @@ impl<T: Topic> Subscriber<T> {
         Peers::of(ids)
     }
 
+    /// Whether somebody sends on the topic.
+    #[must_use]
+    pub fn has_publishers(&self) -> bool {
+        self.samples.dynamic_config().number_of_publishers() > 0
+    }
+
     /// Takes everything that has come and keeps the newest: for topics with one
     /// publisher whose samples replace each other, as the latched ones do.
     ///

@@ -103,6 +103,12 @@ impl Outgoing {
         self.broadcast(header.stamp, map_frame, report)
     }
 
+    /// There is a tracker: answers to single scans are not sent as the robot's pose, before
+    /// the tracker's first one either.
+    pub(crate) fn expect_tracker(&mut self) {
+        self.is_tracked = true;
+    }
+
     /// Sends the robot the tracker's pose at a scan.
     pub(crate) fn tracked(
         &mut self,
@@ -111,7 +117,7 @@ impl Outgoing {
         seeding: &mut Seeding,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        self.is_tracked = true;
+        self.expect_tracker();
         if header.from_scan != 1 {
             return Ok(());
         }

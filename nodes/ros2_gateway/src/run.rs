@@ -113,6 +113,9 @@ impl Gateway {
         self.serve(report)?;
         let robots = self.incoming.map_frame();
         let map_frame = self.map_frame.as_deref().or(robots).unwrap_or(MAP_FRAME);
+        if poses.has_publishers() {
+            self.outgoing.expect_tracker();
+        }
         while let Some(sample) = hypotheses.receive()? {
             report.received();
             self.outgoing.answer(

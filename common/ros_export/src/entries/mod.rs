@@ -168,13 +168,18 @@ impl Entries {
         self.message(topics::PARTICLES, at.ns, &array)
     }
 
+    /// There is a tracker: answers to single scans are no poses, before its first one either.
+    pub fn expect_tracker(&mut self) {
+        self.is_tracked = true;
+    }
+
     /// Takes where the tracker has the robot at a scan; what odometry carries on between
     /// scans is left out, for the odometry is there itself.
     ///
     /// # Errors
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn tracked(&mut self, header: &PoseHeader, words: &[u8]) -> Result<(), TranscriptError> {
-        self.is_tracked = true;
+        self.expect_tracker();
         if header.from_scan != 1 {
             return Ok(());
         }

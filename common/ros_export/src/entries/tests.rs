@@ -161,4 +161,10 @@ fn hypotheses_stand_in_several_forms_and_no_hypothesis_has_no_pose() {
         .unwrap();
     let one = [&empty[..], &[("/pose", 1000), ("/tf", 1000)]].concat();
     assert_eq!(made(&mut entries), one);
+    // The tracker says which of them is the pose, once it says something.
+    entries.expect_tracker();
+    entries
+        .hypotheses(&header, &[Hypothesis::zeroed()])
+        .unwrap();
+    assert_eq!(made(&mut entries), empty);
 }
