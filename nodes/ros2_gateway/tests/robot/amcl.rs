@@ -4,7 +4,8 @@ use std::path::Path;
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::nav2::{ask, of_scan, parameters, state, until_now};
+use super::client::{ask, of_scan, parameters, state, until_now};
+use super::tracked::{poses_of, send_pose, tracked};
 use super::*;
 
 /// A stamp that is no scan's: milliseconds of the robot's clock.

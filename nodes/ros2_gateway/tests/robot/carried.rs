@@ -1,7 +1,7 @@
 //! A robot in whose AMCL's place we are, that somebody carries away.
 
+use super::client::{of_scan, parameters, planar, state, until_now};
 use super::filter::engine_and_tracker;
-use super::nav2::{of_scan, parameters, planar, state, until_now};
 use super::*;
 
 /// Where the laser sits on the recorded robot.

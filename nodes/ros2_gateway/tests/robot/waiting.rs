@@ -1,6 +1,6 @@
 //! What the gateway waits for, as the page shows it.
 
-use super::nav2::parameters;
+use super::client::parameters;
 use super::*;
 
 #[test]

@@ -1,0 +1,91 @@
+//! What a client of nav2_amcl does: parameters, services, poses by their scans.
+
+use std::path::PathBuf;
+
+use super::*;
+
+/// As `nav2_bringup` has it, but for a tolerance that shows.
+const PARAMETERS: &str = "\
+amcl:
+  ros__parameters:
+    alpha1: 0.2
+    base_frame_id: base_link
+    global_frame_id: map
+    laser_max_range: 100.0
+    max_particles: 2000
+    odom_frame_id: odom
+    robot_model_type: nav2_amcl::DifferentialMotionModel
+    tf_broadcast: true
+    transform_tolerance: 0.5
+    scan_topic: scan
+";
+
+/// A file of parameters of that name, with more of them, each as `name: value`.
+pub(super) fn parameters(name: &str, more: &[&str]) -> PathBuf {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let more: Vec<String> = more.iter().map(|line| format!("    {line}\n")).collect();
+    std::fs::write(&file, format!("{PARAMETERS}{}", more.concat())).unwrap();
+    file
+}
+
+/// What a service answers.
+pub(super) fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
+    robot.order("ask", json!({ "service": service, "request": request }));
+    let said = robot.wait_for("answer");
+    assert_eq!(said["service"], service);
+    assert_eq!(said["same"], true, "the bytes differ: {said}");
+    said["response"].clone()
+}
+
+/// Whether the lifecycle manager gets the transition of that number, and the state then.
+pub(super) fn change(robot: &mut Robot, id: u8) -> (bool, String) {
+    let done = ask(
+        robot,
+        "amcl/change_state",
+        &json!({ "transition": { "id": id } }),
+    );
+    (done["success"].as_bool().unwrap(), state(robot))
+}
+
+pub(super) fn state(robot: &mut Robot) -> String {
+    let state = ask(robot, "amcl/get_state", &json!({}));
+    state["current_state"]["label"].as_str().unwrap().to_owned()
+}
+
+/// All that was said up to now.
+pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
+    robot.order("mark", json!({}));
+    let mut all = Vec::new();
+    loop {
+        let said = robot.receive();
+        if said["event"] == "mark" {
+            return all;
+        }
+        all.push(said);
+    }
+}
+
+pub(super) fn planar(value: &Value) -> Pose {
+    let of = |index: usize| value[index].as_f64().unwrap();
+    Pose::new(of(0), of(1), of(2))
+}
+
+/// What was said on a topic of the scan with this stamp, nanoseconds.
+pub(super) fn of_scan(robot: &mut Robot, topic: &str, stamp: i64) -> Value {
+    loop {
+        let said = robot.wait_for(topic);
+        let of = match &said["stamp"] {
+            Value::Number(number) => number.as_i64(),
+            _ => {
+                let of = |part: &str| said["header"]["stamp"][part].as_i64();
+                of("sec")
+                    .zip(of("nanosec"))
+                    .map(|(s, ns)| s * 1_000_000_000 + ns)
+            }
+        };
+        assert_eq!(said["same"], true, "the bytes differ: {said}");
+        if of == Some(stamp) {
+            return said;
+        }
+    }
+}

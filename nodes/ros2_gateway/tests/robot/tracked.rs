@@ -1,0 +1,82 @@
+//! A graph with a tracker.
+
+use super::*;
+
+/// What a tracker says that is sure of the robot's place.
+pub(super) fn tracked(stamp: Stamp) -> PoseHeader {
+    PoseHeader {
+        stamp,
+        map_id: 0xff,
+        since_ns: 5_000_000_000,
+        probability: 0.75,
+        places: 1,
+        state: TrackState::Unique as u32,
+        from_scan: 1,
+        pose_known: 1,
+        mount_known: 1,
+        odom_known: 1,
+        odom_frame: FrameName::new("odom"),
+        map_from_base: pose2(3.0, 1.0, 0.25),
+        map_from_laser: pose2(3.5, 1.0, 0.25),
+        map_from_odom: pose2(-2.0, 0.5, 0.25),
+        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
+        ..PoseHeader::zeroed()
+    }
+}
+
+pub(super) fn poses_of(graph: &Graph) -> Publisher<topic::Tracked> {
+    graph.publisher_for(PoseHeader::WORDS_CAPACITY).unwrap()
+}
+
+pub(super) fn send_pose(publisher: &Publisher<topic::Tracked>, header: &PoseHeader) {
+    let words = b"one place";
+    let mut loan = publisher.loan(words.len()).unwrap();
+    *loan.header_mut() = *header;
+    loan.items_mut().copy_from_slice(words);
+    loan.send().unwrap();
+}
+
+#[test]
+fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
+    let options = ["--broadcast-tf", "--odom-frame", "odom"];
+    let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
+        return;
+    };
+    let answers = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    let poses = poses_of(&joined.graph);
+    for order in ["arrive", "transforms", "filter"] {
+        joined.robot.order(order, json!({}));
+    }
+    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
+    joined.robot.order("scan", json!({ "index": 0 }));
+    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
+
+    let (answer, items) = hypotheses(0, Verdict::Unique);
+    send_pose(&poses, &tracked(answer.stamp));
+    let seed = joined.robot.wait_for("initialpose");
+    assert_eq!(seed["same"], true, "the bytes differ");
+    assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
+    let tf = joined.robot.wait_for("tf");
+    assert_eq!(tf["child"], "odom");
+    // The verdict is a topic as soon as there is a tracker.
+    joined
+        .robot
+        .order("join", json!({ "name": "fleet", "topic": "localization" }));
+    let said = joined.robot.wait_for("localization");
+    assert_eq!((&said["same"], &said["state"]), (&json!(true), &json!(1)));
+    assert_eq!(said["reason"], "one place");
+
+    // The single answer says elsewhere, and is shown; no initial pose is sent there.
+    let mut header = answer;
+    header.stamp.counter += 1;
+    header.stamp.measured_ns += 1;
+    send(&answers, &(header, items));
+    loop {
+        let said = joined.robot.receive();
+        assert_ne!(said["event"], "initialpose", "{said}");
+        if said["event"] == "hypotheses" {
+            break;
+        }
+    }
+    joined.stop();
+}
