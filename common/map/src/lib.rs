@@ -31,4 +31,4 @@ pub use keys::UnknownKey;
 pub use load::{image_of, load, load_noting, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
 pub use save::save;
-pub use set::{MAX_MAPS, MapFile, set_of, set_of_files};
+pub use set::{MAX_MAPS, MapFile, select, set_of, set_of_files};

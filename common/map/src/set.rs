@@ -87,6 +87,36 @@ pub fn set_of_files(files: &[PathBuf]) -> Result<Vec<MapFile>, MapError> {
     Ok(maps)
 }
 
+/// Those of these maps that are asked for, each by its name or by its floor's, in the order of
+/// the set; all of them where none is.
+///
+/// # Errors
+/// A name is neither a map's nor a floor's; says which there are.
+pub fn select(maps: Vec<MapFile>, on: &[String]) -> Result<Vec<MapFile>, MapError> {
+    let is_called =
+        |map: &MapFile, name: &String| map.name == *name || map.floor.as_ref() == Some(name);
+    for name in on {
+        if !maps.iter().any(|map| is_called(map, name)) {
+            let reason = format!(
+                "{name:?} is neither a map nor a floor: allowed are {}",
+                all_names(&maps)
+            );
+            return Err(refused(Path::new("--on"), reason));
+        }
+    }
+    let is_asked = |map: &MapFile| on.is_empty() || on.iter().any(|name| is_called(map, name));
+    Ok(maps.into_iter().filter(is_asked).collect())
+}
+
+/// The maps, each with its floor where it has one.
+fn all_names(maps: &[MapFile]) -> String {
+    let names = maps.iter().map(|MapFile { name, floor, .. }| match floor {
+        Some(floor) => format!("{name} (floor {floor})"),
+        None => name.clone(),
+    });
+    names.collect::<Vec<String>>().join(", ")
+}
+
 fn named(yaml: &Path) -> MapFile {
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into());
     let folder = || {
@@ -238,6 +268,44 @@ mod tests {
                 (&*maps[1].yaml, &maps[1].floor),
                 (Path::new("/d.yaml"), &None)
             );
+        }
+    }
+
+    #[test]
+    fn maps_are_selected_by_their_names_and_by_their_floors() {
+        let map = |(name, floor): (&str, Option<&str>)| MapFile {
+            name: name.to_owned(),
+            yaml: PathBuf::from("x.yaml"),
+            floor: floor.map(str::to_owned),
+        };
+        let floors = [
+            ("east", Some("1")),
+            ("west", Some("1")),
+            ("roof", Some("2")),
+        ];
+        let maps: Vec<MapFile> = floors
+            .into_iter()
+            .chain([("yard", None)])
+            .map(map)
+            .collect();
+        let check = |on: &[&str], expected: &[&str]| {
+            let on: Vec<String> = on.iter().map(|&name| name.to_owned()).collect();
+            assert_eq!(
+                names(&select(maps.clone(), &on).unwrap()),
+                expected,
+                "{on:?}"
+            );
+        };
+        check(&[], &["east", "west", "roof", "yard"]);
+        check(&["yard", "west"], &["west", "yard"]);
+        check(&["1"], &["east", "west"]);
+        check(&["2", "east", "2", "roof"], &["east", "roof"]);
+        for wrong in ["3", "", "Yard"] {
+            let on = ["1".to_owned(), wrong.to_owned()];
+            let error = select(maps.clone(), &on).unwrap_err().to_string();
+            assert!(error.contains(&format!("{wrong:?} is neither")), "{error}");
+            let there = "east (floor 1), west (floor 1), roof (floor 2), yard";
+            assert!(error.contains(there), "{error}");
         }
     }
 

@@ -113,25 +113,26 @@ impl Options {
     }
 
     /// The maps that are named, if there are several: by `--map`, or those of a set, which is
-    /// a folder or a file that lists them.
+    /// a folder or a file that lists them. Where names of maps or floors are given, only those.
     ///
     /// # Errors
-    /// One of them cannot be read, or the set is none.
+    /// One of them cannot be read, the set is none, or has no such map and no such floor.
     pub fn load_set(
         &self,
         set: Option<&Path>,
+        on: &[String],
         recordings: &[PathBuf],
     ) -> Result<Vec<NamedMap>, OfflineError> {
         let files = match set {
             Some(set) => map::set_of(set)?,
-            None if self.map.len() > 1 => map::set_of_files(&self.map)?,
+            None if self.map.len() > 1 || !on.is_empty() => map::set_of_files(&self.map)?,
             None => return Ok(Vec::new()),
         };
         let load = |map::MapFile { name, yaml, floor }: map::MapFile| {
             let grid = self.load(&yaml, recordings)?;
             Ok(NamedMap { name, floor, grid })
         };
-        files.into_iter().map(load).collect()
+        map::select(files, on)?.into_iter().map(load).collect()
     }
 
     fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {

@@ -29,6 +29,11 @@ pub struct Config {
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     pub maps: Option<PathBuf>,
 
+    /// Hold only these maps of several, by the names of maps or of floors; shards are parts
+    /// of what remains, so all are given the same names
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
+    pub on: Vec<String>,
+
     /// The part of the set that this server holds: 2/4 is every fourth map from the second
     /// on. It is asked at backcast/locate/NAME.2-of-4, all of them by `ask_shards`
     #[arg(long, value_name = "NUMBER/OF")]
@@ -84,9 +89,9 @@ impl Config {
     /// The maps, by name.
     ///
     /// # Errors
-    /// If the set cannot be read, or two maps have one name.
+    /// If the set cannot be read, two maps have one name, or `--on` names what is not there.
     pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
-        match (&self.maps, &*self.map) {
+        let all = match (&self.maps, &*self.map) {
             (Some(set), _) => map::set_of(set),
             // One map needs no name.
             (None, [yaml]) => Ok(vec![MapFile {
@@ -95,7 +100,8 @@ impl Config {
                 floor: None,
             }]),
             (None, files) => map::set_of_files(files),
-        }
+        };
+        map::select(all?, &self.on)
     }
 
     /// The name under which it is asked: that of the shard, where it holds one.
@@ -152,6 +158,23 @@ mod tests {
         assert_eq!((config.name().as_str(), config.workers()), ("office", 3));
         assert_eq!(config.deadline, Duration::from_millis(500));
         assert_eq!(config.localizer, LocalizerConfig::default());
+    }
+
+    #[test]
+    fn only_the_maps_that_are_named_are_held() {
+        let held = |on: &str| {
+            parse(&format!("--map b/y.yaml --map c/z.yaml --on {on}"))
+                .unwrap()
+                .files()
+        };
+        let names: Vec<String> = held("z,y")
+            .unwrap()
+            .into_iter()
+            .map(|map| map.name)
+            .collect();
+        assert_eq!(names, ["y", "z"]);
+        let error = held("x").unwrap_err().to_string();
+        assert!(error.contains("y, z"), "{error}");
     }
 
     #[test]

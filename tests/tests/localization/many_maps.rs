@@ -121,21 +121,28 @@ fn eight_buildings_that_are_searched_together_keep_what_is_right() {
     assert!(kept * 10 >= certain * 9, "{kept} of {certain}");
 }
 
+/// The YAML file of a map that is shipped.
+fn yaml(name: &str) -> PathBuf {
+    tests::root().join("recordings").join(name).join("map.yaml")
+}
+
+/// A folder whose list names two maps, one of them with a floor.
+fn hall_and_yard() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "maps:\n  - {{name: hall, map: {}, floor: 2}}\n  - {{name: yard, map: {}}}\n",
+        yaml("malaga_corridor").display(),
+        yaml("malaga_courtyard").display()
+    );
+    std::fs::write(folder.path().join("maps.yaml"), text).unwrap();
+    folder
+}
+
 #[test]
 fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = hall_and_yard();
     let list = folder.path().join("maps.yaml");
     let recordings = tests::root().join("recordings");
-    let of = |name: &str| recordings.join(name).join("map.yaml").display().to_string();
-    std::fs::write(
-        &list,
-        format!(
-            "maps:\n  - {{name: hall, map: {}, floor: 2}}\n  - {{name: yard, map: {}}}\n",
-            of("malaga_corridor"),
-            of("malaga_courtyard")
-        ),
-    )
-    .unwrap();
     let scans = recordings.join("malaga_corridor/recording.mcap");
     for set in [folder.path(), &list] {
         let mut command = executables::backcast();
@@ -151,6 +158,36 @@ fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
         assert_eq!(found["verdict"], "Unique");
     }
     // On one map there is no name.
-    let found = locate(&scans, &[Path::new(&of("malaga_corridor"))], 20);
+    let found = locate(&scans, &[&yaml("malaga_corridor")], 20);
     assert_eq!(found[0]["map"], Value::Null);
+}
+
+#[test]
+fn only_the_maps_that_are_named_are_searched() {
+    let folder = hall_and_yard();
+    let scans = tests::root().join("recordings/malaga_corridor/recording.mcap");
+    let on = |names: &str| {
+        let mut command = executables::backcast();
+        command.args(["locate", "--json", "--every", "20", "--on", names, "--maps"]);
+        command.arg(folder.path()).arg(&scans).output().unwrap()
+    };
+    for (names, map) in [
+        ("hall", "hall"),
+        ("2", "hall"),
+        ("yard", "yard"),
+        ("yard,2", "hall"),
+    ] {
+        let outcome = on(names);
+        let lines = String::from_utf8(outcome.stdout).unwrap();
+        let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+        assert_eq!(found["map"], map, "{names}");
+        let is_unique = found["verdict"] == "Unique";
+        // On the yard's map alone it is nowhere.
+        assert_eq!(is_unique, map == "hall", "{names}");
+    }
+    let outcome = on("hall,attic");
+    assert_eq!(outcome.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    let expected = "\"attic\" is neither a map nor a floor: allowed are hall (floor 2), yard";
+    assert!(said.contains(expected), "{said}");
 }

@@ -35,6 +35,10 @@ pub struct Config {
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     maps: Option<PathBuf>,
 
+    /// Search only these maps of several, by the names of maps or of floors
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
+    on: Vec<String>,
+
     #[command(flatten)]
     particles: ParticlesOptions,
 
@@ -51,7 +55,8 @@ pub struct Config {
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check_settings()?;
     let files = [&config.recordings[..], &config.bag].concat();
-    let maps = config.options.load_set(config.maps.as_deref(), &files)?;
+    let set = config.maps.as_deref();
+    let maps = config.options.load_set(set, &config.on, &files)?;
     let map = match maps.is_empty() {
         true => config.options.load_map(&files)?,
         false => None,
