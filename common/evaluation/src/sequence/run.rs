@@ -101,8 +101,9 @@ impl<'a> Run<'a> {
         };
         self.start_at(first, truth);
         let mut is_right = false;
-        for index in first + 1..=last {
-            is_right = self.take(index, moments[index].moved)?.is_right();
+        let since = moments.iter().enumerate().take(last + 1).skip(first + 1);
+        for (index, moment) in since {
+            is_right = self.take(index, moment.moved)?.is_right();
         }
         Ok(is_right)
     }
