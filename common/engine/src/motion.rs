@@ -25,7 +25,8 @@ const FASTEST_M_S: f64 = 10.0;
 const OFF_M: f64 = 0.5;
 
 /// Odometry that was restarted counts from where the robot is. A sample that lies so near
-/// to that, metres and radians, and so far from the sample before, is its first.
+/// to that, metres and radians, and so far from the sample before and from where its twist
+/// leads, is its first.
 const START: (f64, f64) = (0.05, 0.05);
 const FROM_BEFORE: (f64, f64) = (0.2, 0.1);
 
@@ -64,7 +65,7 @@ impl Motion {
             return;
         }
         if let Some(&newest) = self.samples.back() {
-            if begins_anew(newest, (stamp_ns, odom_from_child)) {
+            if self.begins_anew(newest, (stamp_ns, odom_from_child)) {
                 self.samples.clear();
                 self.starts += 1;
             } else if stamp_ns <= newest.0 {
@@ -75,6 +76,19 @@ impl Motion {
             self.samples.pop_front();
         }
         self.samples.push_back((stamp_ns, odom_from_child));
+    }
+
+    /// Whether a sample cannot go on from the newest one.
+    fn begins_anew(&self, (newest_ns, newest): (i64, Pose), (stamp_ns, now): (i64, Pose)) -> bool {
+        let later_ns = stamp_ns.saturating_sub(newest_ns);
+        if later_ns <= 0 {
+            return later_ns < -BEGUN_ANEW_NS;
+        }
+        let goes_on = |from: Pose| now.is_within(from, FROM_BEFORE.0, FROM_BEFORE.1);
+        let at_start = now.is_within(Pose::IDENTITY, START.0, START.1)
+            && !goes_on(newest)
+            && !self.until(stamp_ns).is_some_and(goes_on);
+        at_start || now.distance_to(newest) > OFF_M + FASTEST_M_S * later_ns as f64 / 1e9
     }
 
     /// How often the odometry has begun anew: its poses since then say nothing of those
@@ -159,15 +173,6 @@ impl Motion {
     }
 }
 
-/// Whether a sample cannot go on from the one before.
-fn begins_anew((before_ns, before): (i64, Pose), (stamp_ns, now): (i64, Pose)) -> bool {
-    let later_ns = stamp_ns.saturating_sub(before_ns);
-    let at_start = now.is_within(Pose::IDENTITY, START.0, START.1)
-        && !now.is_within(before, FROM_BEFORE.0, FROM_BEFORE.1);
-    let too_fast = || now.distance_to(before) > OFF_M + FASTEST_M_S * later_ns as f64 / 1e9;
-    later_ns < -BEGUN_ANEW_NS || later_ns > 0 && (at_start || too_fast())
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
@@ -247,6 +252,15 @@ mod tests {
             );
         }
         assert_eq!(through.starts(), 0);
+        // Turns on the spot where it began, 90 degrees a second, at ten samples a second.
+        let mut turning = Motion::keeping(8);
+        for tenth in 0..8 {
+            turning.add(
+                tenth * TENTH,
+                Pose::new(0.0, 0.0, 0.157 * (tenth as f64 - 4.0)),
+            );
+        }
+        assert_eq!(turning.starts(), 0);
         // Scans before the restart are not covered, and nothing lies between.
         let mut anew = motion(&[(10, far), (12, far)]);
         anew.add(13 * TENTH, Pose::IDENTITY);

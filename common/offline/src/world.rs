@@ -36,7 +36,7 @@ pub struct World {
 pub struct KnownMap {
     /// As the graph's messages have it.
     pub id: u64,
-    /// What it is called, where several are searched; else empty.
+    /// What it is called in its set; else empty.
     pub name: String,
     /// The floor, where the set of maps says so.
     pub floor: Option<String>,

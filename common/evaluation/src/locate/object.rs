@@ -144,8 +144,7 @@ impl Object {
         self.votes = Some(votes(outcome));
         self.beams = beams(&places.classes);
         let laser_from_base = base_from_laser.map(Pose::inverse);
-        let is_set = maps.len() > 1;
-        let name = |map: &KnownMap| is_set.then(|| map.name.clone());
+        let name = |map: &KnownMap| Some(map.name.clone()).filter(|name| !name.is_empty());
         if !places.places.is_empty() {
             (self.map, self.floor) = (name(map), map.floor.clone());
         }

@@ -35,7 +35,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
     }
     match &reply.answer {
         // What the verdict says stands at the end of the line, and which map before it.
-        Ok(answer) if answer.maps.len() > 1 && !places.places.is_empty() => {
+        Ok(answer) if !answer.map.name.is_empty() && !places.places.is_empty() => {
             format!("{}  on {}", line.text(), answer.map.name)
         }
         _ => line.text(),
