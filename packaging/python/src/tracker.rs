@@ -285,7 +285,7 @@ impl Tracker {
                 stamp_ns: header.stamp.measured_ns,
                 report: tracker.report(),
                 base_from_laser: scan.base_from_laser,
-                odom_from_laser: now,
+                odom_from_laser: now.map(|now| now.odom_from_target),
                 searched,
             }),
         }
