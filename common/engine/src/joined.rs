@@ -63,6 +63,13 @@ pub struct ByOdometry {
 }
 
 impl ByOdometry {
+    /// How the target frame moved from one time to another; `None` where either is not known,
+    /// or the odometry began anew in between.
+    #[must_use]
+    pub fn between(before: Option<Self>, now: Option<Self>) -> Option<Pose> {
+        now?.moved_since(&before?)
+    }
+
     /// How the target frame moved since another time; `None` where the odometry began
     /// anew in between.
     #[must_use]

@@ -1,4 +1,4 @@
-//! Shapes of marks: each kind has its own, so that none is told from another by its
+//! Shapes of marks: each kind has its own, so that none differs from another by its
 //! colour alone.
 
 use drawing::Path;

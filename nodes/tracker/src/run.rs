@@ -213,10 +213,7 @@ impl Node {
         }
         let is_set = self.begin_at_initial();
         let now = self.joiner.by_odometry();
-        let moved = self
-            .before
-            .zip(now)
-            .and_then(|(before, now)| now.moved_since(&before));
+        let moved = ByOdometry::between(self.before, now);
         self.before = now;
         // A pose that is believed is that of this scan.
         let moved = if is_set { Some(Pose::IDENTITY) } else { moved };

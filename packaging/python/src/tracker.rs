@@ -250,9 +250,7 @@ impl Tracker {
             tracker.expect(laser, covariance.carried(base, laser), EXPECTED_LEAD);
         }
         let now = joiner.by_odometry();
-        let moved = before
-            .zip(now)
-            .and_then(|(before, now)| now.moved_since(&before));
+        let moved = ByOdometry::between(*before, now);
         *before = now;
         let seen = Seen {
             distance_field: locator.distance_field(),

@@ -17,7 +17,7 @@ pub(super) struct DrivenPath {
     pub path_m: f64,
     /// Radians turned along it, to either side.
     pub turned: f64,
-    /// The longest time of a step that is not known, seconds, if there is one; the robot is
+    /// Where a step is not known: for how long odometry was interrupted, seconds. The robot is
     /// then taken to have stood.
     pub unknown_s: Option<f64>,
 }
@@ -37,7 +37,7 @@ const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 impl DrivenPath {
-    /// Goes on by a step, if that is known, which took so many seconds.
+    /// Goes on by a step, if that is known; odometry was interrupted for so many seconds.
     pub(super) fn add(&mut self, step: Option<Pose>, seconds: f64) {
         let Some(step) = step else {
             self.unknown_s = Some(self.unknown_s.unwrap_or(0.0).max(seconds));

@@ -33,20 +33,9 @@ pub(super) struct ScanMatcher {
     gone: Pose,
     /// How the robot moved to the last scan: it continues as it went.
     step: Pose,
-    /// Whether the next scan is that of the start.
-    starts: bool,
 }
 
 impl ScanMatcher {
-    /// Matches to a scan from now on, which is given to [`ScanMatcher::moved`] next.
-    pub(super) fn start_at(seen: &Seen<'_>) -> Self {
-        ScanMatcher {
-            reference: around(seen).ok(),
-            starts: true,
-            ..ScanMatcher::default()
-        }
-    }
-
     /// How the target frame moved since the scan before: as odometry says, or where that
     /// says nothing, as the two match; `None` where they do not, or there was none.
     pub(super) fn moved(
@@ -55,11 +44,8 @@ impl ScanMatcher {
         by_odometry: Option<Pose>,
         config: &TrackingConfig,
     ) -> Option<Pose> {
-        let starts = std::mem::take(&mut self.starts);
         if by_odometry.is_some() {
-            if !starts {
-                self.reference = None;
-            }
+            self.reference = None;
             return by_odometry;
         }
         self.step(seen, config)

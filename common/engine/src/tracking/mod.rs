@@ -85,8 +85,8 @@ pub struct Tracker {
     is_key: bool,
     is_blank: bool,
     needs_search: bool,
-    /// Of the last scan.
-    stamp_ns: Option<i64>,
+    /// Whether odometry said how the robot moved to the last scan.
+    has_odometry: bool,
     /// Where the robot should be at the next scan, and by how much that leads.
     expected: Option<(Pose, Covariance, f64)>,
 }
@@ -108,7 +108,7 @@ impl Tracker {
             is_key: false,
             is_blank: false,
             needs_search: false,
-            stamp_ns: None,
+            has_odometry: false,
             expected: None,
         }
     }
@@ -125,12 +125,9 @@ impl Tracker {
 
     /// Starts from a pose that is believed, with its covariance.
     pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: Covariance) {
-        *self = Tracker {
-            matcher: ScanMatcher::start_at(seen),
-            ..Tracker::new(self.config)
-        };
+        *self = Tracker::new(self.config);
         let id = self.places.start_at(seen, (pose, covariance.0));
-        self.belief.start_at(id);
+        self.belief.believe(id);
     }
 
     /// Takes the next scan and how the target frame moved since the one before, if
@@ -144,16 +141,21 @@ impl Tracker {
 
     fn take_up(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         self.is_blank = seen.ends.beams() < MIN_BEAMS;
+        let by_odometry = moved;
         let moved = match self.is_blank {
-            true => moved,
-            false => self.matcher.moved(seen, moved, &self.config),
+            true => by_odometry,
+            false => self.matcher.moved(seen, by_odometry, &self.config),
         };
-        self.belief.go_on(stamp_ns, moved);
+        let later_s = self.belief.go_on(stamp_ns, moved);
+        // To a first scan, or that of a start, odometry has nothing to say.
+        let has_odometry = by_odometry.is_some() && later_s.is_some();
+        let had_odometry = std::mem::replace(&mut self.has_odometry, has_odometry);
+        let is_interrupted = had_odometry && by_odometry.is_none();
+        let seconds = later_s.filter(|_| is_interrupted).unwrap_or(0.0);
+        if is_interrupted {
+            self.belief.interrupt();
+        }
         self.asks_ahead = false;
-        let seconds = self.stamp_ns.map_or(0.0, |before| {
-            stamp_ns.saturating_sub(before).max(0) as f64 / 1e9
-        });
-        self.stamp_ns = Some(stamp_ns);
         for path in [&mut self.since_key, &mut self.since_scan] {
             path.add(moved, seconds);
         }
@@ -179,8 +181,8 @@ impl Tracker {
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
-        let is_cut_off = moved.is_none();
-        self.is_key = self.is_far() || (is_suspicious && !was_doubtful) || is_due || is_cut_off;
+        let is_new = (is_suspicious && !was_doubtful) || is_interrupted;
+        self.is_key = self.is_far() || is_new || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
             () if is_suspicious || !self.belief.is_checked() => {

@@ -11,7 +11,8 @@ use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
-/// one, found or kept: nothing ties what was seen before to where the robot is now.
+/// one: nothing ties what was seen before to where the robot is now. One that is kept needs
+/// them where odometry was interrupted.
 pub(super) const MIN_KEYS: u32 = 3;
 
 /// Places so near each other are not distinguished by the verdict.
@@ -75,6 +76,8 @@ pub(super) struct Belief {
     bad_keys: u32,
     /// Key scans since it was not known how the robot moved.
     connected_keys: u32,
+    /// Whether odometry was interrupted, and not enough key scans have agreed since.
+    interrupted: bool,
     slipped: Option<f64>,
     lost_by: TrackReason,
     state: TrackState,
@@ -96,6 +99,7 @@ impl Belief {
             lead: 0.0,
             bad_keys: 0,
             connected_keys: 0,
+            interrupted: false,
             slipped: None,
             lost_by: TrackReason::PoorFit,
             state: TrackState::Searching,
@@ -117,27 +121,26 @@ impl Belief {
         self.lead = FARTHEST_BEHIND;
     }
 
-    /// The same, and no scan has to confirm it.
-    pub(super) fn start_at(&mut self, id: u32) {
-        self.believe(id);
-        self.connected_keys = MIN_KEYS;
-    }
-
     pub(super) fn slip(&mut self, id: u32, by: f64) {
         self.believe(id);
         self.slipped = Some(by);
     }
 
-    pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) {
+    /// Goes on to the next scan, to which the robot moved so; how many seconds after the one
+    /// before it was measured, if there was one.
+    pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> Option<f64> {
         self.slipped = None;
-        if self.since_ns == 0 {
+        let is_first = self.since_ns == 0;
+        if is_first {
             self.since_ns = stamp_ns;
         }
+        let later_ns = stamp_ns.saturating_sub(self.stamp_ns).max(0);
         self.stamp_ns = stamp_ns;
         if moved.is_none() {
             self.connected_keys = 0;
         }
         self.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
+        (!is_first).then_some(later_ns as f64 / 1e9)
     }
 
     /// Whether the last scan speaks against a place.
@@ -151,10 +154,15 @@ impl Belief {
         self.place.is_some() && self.fits_badly
     }
 
+    /// Odometry does not say how the robot moved to this scan, as it did before.
+    pub(super) fn interrupt(&mut self) {
+        self.interrupted = true;
+    }
+
     /// Whether a place is believed that nothing but how scans fit has to confirm: a search
-    /// that was needed had an answer, and it is known how the robot moved.
+    /// that was needed had an answer, and odometry was not interrupted.
     pub(super) fn is_checked(&self) -> bool {
-        self.place.is_some() && !self.unchecked && self.connected_keys >= MIN_KEYS
+        self.place.is_some() && !self.unchecked && !self.interrupted
     }
 
     /// Sees whether a search that was needed has an answer, or another one has.
@@ -229,6 +237,7 @@ impl Belief {
 
     fn judge(&mut self, places: &Places) {
         self.connected_keys += 1;
+        self.interrupted &= self.connected_keys < MIN_KEYS;
         let Some(best) = places.all().first() else {
             (self.place, self.lead) = (None, 0.0);
             return;

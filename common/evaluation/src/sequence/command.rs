@@ -33,8 +33,7 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kidnaps: u32,
 
-    /// How many times nothing is heard of the robot for 0.5 to 4 s and odometry then begins
-    /// anew, 0..=1000
+    /// How many times no data come for 0.5 to 4 s and odometry then begins anew, 0..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub outages: u32,
 
@@ -142,7 +141,7 @@ fn one(
     }
     for (from, to, off_m) in &outages.wrong {
         progress.say(&format!(
-            "{name}: not heard between scans {from} and {to}, Unique and {off_m:.1} m off after that"
+            "{name}: no data between scans {from} and {to}, Unique and {off_m:.1} m off after that"
         ));
     }
     let searching_ms = moments.iter().map(|moment| moment.search_ms);

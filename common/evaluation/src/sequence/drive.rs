@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use engine::fit::Ends;
+use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
@@ -98,11 +99,7 @@ fn of_laser() -> Target {
 fn connect(moments: &mut [Moment], options: &SequenceOptions) {
     for i in 1..moments.len() {
         let (before, now) = (&moments[i - 1], &moments[i]);
-        let by_odometry = before
-            .view
-            .by_odometry
-            .zip(now.view.by_odometry)
-            .and_then(|(before, now)| now.moved_since(&before));
+        let by_odometry = ByOdometry::between(before.view.by_odometry, now.view.by_odometry);
         let truly = before.truth.zip(now.truth).map(|(a, b)| {
             let target = |laser| now.view.target.from_laser(laser);
             target(a).inverse().then(target(b))

@@ -28,7 +28,7 @@ pub(super) struct Figures {
     pub(super) kidnaps_noticed_within_2: Option<f64>,
     pub(super) kidnaps_right_after_5_m: Option<f64>,
     pub(super) kidnaps_wrong: u64,
-    /// Times that nothing was heard of the robot for a while, and odometry began anew.
+    /// Times that no data came for a while, and odometry began anew.
     pub(super) outages: u64,
     pub(super) outages_right_after_5_m: Option<f64>,
     pub(super) outages_wrong: u64,
@@ -159,7 +159,7 @@ impl Figures {
             "{}\n  starts {:>4}   after     1     2     5    10    20 m\n    right, %       {}\n    not yet, %     {}\n    wrong at any time  {}\n  \
              followed: losses {}, RMS {} m {}°, farthest {} m; in the ellipse {} %; Unique {} %; false alarms {} an hour\n  \
              put elsewhere {} times: noticed within 2 scans {} %, right after 5 m {} %, wrong {}\n  \
-             not heard for 0.5 to 4 s {} times: right after 5 m {} %, wrong {}\n  \
+             no data for 0.5 to 4 s {} times: right after 5 m {} %, wrong {}\n  \
              from the first scan, {poses} poses, RMSE / median / max: APE {} m; RPE {} m, {}°\n  \
              CPU a scan, median / p90: tracking {} / {} ms, searching {} / {} ms; searched {} % of the scans after a start\n",
             self.bag,

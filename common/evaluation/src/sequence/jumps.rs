@@ -6,16 +6,12 @@ use geometry::Pose;
 use offline::World;
 
 use super::drive::Moment;
-use super::run::Run;
+use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
+use super::run::Said;
 use crate::EvaluationError;
 
 /// The robot is put at least so far away, metres.
 const MIN_M: f64 = 3.0;
-
-/// It is followed for this many metres before, and for this many after.
-const BEFORE_M: f64 = 5.0;
-const AFTER_M: f64 = 10.0;
-const RIGHT_AFTER_M: f64 = 5.0;
 
 /// How robots fared that were put elsewhere.
 #[derive(Debug, Default)]
@@ -62,32 +58,19 @@ pub(super) fn evaluate(
 ) -> Result<Jumps, EvaluationError> {
     let mut all = Jumps::default();
     for &(from, to) in chosen {
-        let mut run = Run::new(world, moments, config);
-        if !run.follow_to(from, BEFORE_M)? {
+        let jump = Interruption {
+            from,
+            to,
+            moved: Some(Pose::IDENTITY),
+        };
+        let Some(Aftermath { said, is_right }) = jump.evaluate(world, moments, config)? else {
             continue;
-        }
+        };
+        let (first, rest) = said.split_at(said.len().min(2));
         all.jumps += 1;
-        let (mut is_noticed, mut is_wrong, mut is_right) = (false, false, false);
-        for index in to..moments.len() {
-            let gone = moments[index].gone_m - moments[to].gone_m;
-            if gone > AFTER_M {
-                break;
-            }
-            let moved = if index == to {
-                Some(Pose::IDENTITY)
-            } else {
-                moments[index].moved
-            };
-            let said = run.take(index, moved)?;
-            is_noticed |= index < to + 2 && !said.is_wrong();
-            is_wrong |= index >= to + 2 && said.is_wrong();
-            if gone <= RIGHT_AFTER_M && said.off.is_some() {
-                is_right = said.is_right();
-            }
-        }
-        all.noticed += u64::from(is_noticed);
+        all.noticed += u64::from(first.iter().any(|said| !said.is_wrong()));
         all.right += u64::from(is_right);
-        if is_wrong {
+        if rest.iter().any(Said::is_wrong) {
             all.wrong.push((from, to));
         }
     }

@@ -1,6 +1,6 @@
 //! `backcast evaluate --sequence`: how the tracker does on a drive whose true poses are
 //! known. It starts at many scans of the drive, follows the whole of it, is put elsewhere,
-//! and is not heard for a while; see docs/tracking.md.
+//! and sends no data for a while; see docs/tracking.md.
 
 mod command;
 mod course;
@@ -8,6 +8,7 @@ mod drive;
 mod errors;
 mod figures;
 mod follow;
+mod interruption;
 mod jumps;
 mod outages;
 mod run;

@@ -1,22 +1,17 @@
-//! Outages: a robot that is followed drives on while nothing of it is heard, and counts its
-//! odometry from there.
+//! Outages: a robot that is followed drives on while no data come, and counts its odometry
+//! from there.
 
 use engine::tracking::FollowConfig;
 use offline::World;
 
 use super::drive::Moment;
-use super::run::Run;
+use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
 use crate::EvaluationError;
 
-/// How long nothing is heard, in turn, seconds: a restarted driver, a network that fails.
+/// How long no data come, in turn, seconds: a restarted driver, a network that fails.
 const SECONDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// The robot is followed for this many metres before, and for this many after.
-const BEFORE_M: f64 = 5.0;
-const AFTER_M: f64 = 10.0;
-const RIGHT_AFTER_M: f64 = 5.0;
-
-/// How robots fared that were not heard for a while.
+/// How robots fared of which no data came for a while.
 #[derive(Debug, Default)]
 pub(super) struct Outages {
     pub(super) outages: u64,
@@ -52,29 +47,20 @@ pub(super) fn evaluate(
 ) -> Result<Outages, EvaluationError> {
     let mut all = Outages::default();
     for &(from, to) in chosen {
-        let mut run = Run::new(world, moments, config);
-        if !run.follow_to(from, BEFORE_M)? {
+        let outage = Interruption {
+            from,
+            to,
+            moved: None,
+        };
+        let Some(Aftermath { said, is_right }) = outage.evaluate(world, moments, config)? else {
             continue;
-        }
+        };
         all.outages += 1;
-        let (mut wrong_m, mut is_right) = (0.0f64, false);
-        for index in to..moments.len() {
-            let gone = moments[index].gone_m - moments[to].gone_m;
-            if gone > AFTER_M {
-                break;
-            }
-            let moved = moments[index].moved.filter(|_| index > to);
-            let said = run.take(index, moved)?;
-            if said.is_wrong() {
-                wrong_m = wrong_m.max(said.off.map_or(0.0, |(m, _)| m));
-            }
-            if gone <= RIGHT_AFTER_M && said.off.is_some() {
-                is_right = said.is_right();
-            }
-        }
         all.right += u64::from(is_right);
-        if wrong_m > 0.0 {
-            all.wrong.push((from, to, wrong_m));
+        let wrong = said.iter().filter(|said| said.is_wrong());
+        let wrong_m = wrong.filter_map(|said| Some(said.off?.0));
+        if let Some(most) = wrong_m.reduce(f64::max) {
+            all.wrong.push((from, to, most));
         }
     }
     Ok(all)
