@@ -42,6 +42,9 @@ pub enum EngineError {
          at most a turn", .0.x, .0.y, .0.yaw
     )]
     Origin(Pose),
+    /// A rule by which cells are read is out of range.
+    #[error(transparent)]
+    Rule(#[from] messages::InvalidRule),
     /// There is no obstacle to project from.
     #[error("the map has no occupied cell: there is nothing that a laser could see")]
     NoOccupiedCell,

@@ -7,9 +7,9 @@ mod cell_set;
 mod frame;
 mod pooling;
 
-use messages::UNKNOWN;
-
 use crate::EngineError;
+pub use messages::CellRules;
+
 pub(crate) use cell_set::{CellSet, WORD};
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
@@ -32,46 +32,6 @@ pub const MAX_RESOLUTION_M: f64 = 10.0;
 
 /// Farthest origin of a grid along each axis of the map, metres.
 pub const MAX_ORIGIN_M: f64 = 1e8;
-
-/// Rules by which the occupancy of a cell, 0..=100 or unknown, is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
-pub struct CellRules {
-    /// Occupancy from which a cell is occupied, per cent, 1..=100; the default
-    /// is that of map savers.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = 65, value_parser = clap::value_parser!(u8).range(1..=100)))]
-    pub occupied_from: u8,
-    /// Occupancy up to which a cell is free, per cent, 0..=99; what lies
-    /// between counts as unknown.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = 25, value_parser = clap::value_parser!(u8).range(0..=99)))]
-    pub free_to: u8,
-    /// Unknown cells block rays and cannot hold the robot. Real maps are half
-    /// known, so by default they do not block, and those near free cells can.
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub unknown_blocks: bool,
-}
-
-impl Default for CellRules {
-    fn default() -> Self {
-        CellRules {
-            occupied_from: 65,
-            free_to: 25,
-            unknown_blocks: false,
-        }
-    }
-}
-
-impl CellRules {
-    /// Whether a cell is an obstacle.
-    #[must_use]
-    pub fn is_occupied(self, occupancy: u8) -> bool {
-        occupancy >= self.occupied_from && occupancy != UNKNOWN
-    }
-
-    fn is_free(self, occupancy: u8) -> bool {
-        occupancy <= self.free_to && !self.is_occupied(occupancy)
-    }
-}
 
 /// What a ray meets in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::NoUninit)]
@@ -245,6 +205,8 @@ pub(crate) fn check_resolution(metres: f64) -> Result<(), EngineError> {
 /// Small worlds for tests: one line a row, highest y first, as one draws a map.
 #[cfg(test)]
 pub(crate) mod drawn {
+    use messages::UNKNOWN;
+
     use super::*;
 
     /// `#` occupied, `.` free, `?` unknown.
@@ -274,6 +236,8 @@ pub(crate) mod drawn {
 
 #[cfg(test)]
 mod tests {
+    use messages::UNKNOWN;
+
     use super::*;
 
     #[test]

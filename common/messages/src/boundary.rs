@@ -8,14 +8,11 @@ use crate::Stamp;
 use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `boundary`; the items are the boundary cells by (y, x).
-///
-/// It carries the rules by which cells were classed, so that whoever uses the
-/// boundary classes the map in the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("BoundaryHeader/v1")
+    type_name("BoundaryHeader/v2")
 )]
 #[repr(C)]
 pub struct BoundaryHeader {
@@ -29,12 +26,6 @@ pub struct BoundaryHeader {
     pub boundary_cells: u64,
     /// Occupied cells.
     pub occupied_cells: u64,
-    /// Occupancy from which a cell is occupied, 1..=100.
-    pub occupied_from: u32,
-    /// Occupancy up to which a cell is free, 0..=99.
-    pub free_to: u32,
-    /// 1 where unknown cells block rays, else 0.
-    pub unknown_blocks: u64,
 }
 
 /// A boundary cell: column and row.
@@ -55,9 +46,8 @@ pub struct BoundaryCell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(BoundaryHeader, size 72, align 8, {
+    crate::pin_layout!(BoundaryHeader, size 56, align 8, {
         stamp: 0, map_id: 24, free_cells: 32, boundary_cells: 40, occupied_cells: 48,
-        occupied_from: 56, free_to: 60, unknown_blocks: 64,
     });
 
     mod cell {

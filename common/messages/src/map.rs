@@ -9,15 +9,25 @@ use twox_hash::XxHash3_64;
 
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
-use crate::{Pose2, Stamp};
+use crate::{MapName, Pose2, Stamp};
 
 /// The occupancy of a cell about which nothing is known.
 pub const UNKNOWN: u8 = 255;
 
+/// Occupancy from which a cell is occupied unless a map says otherwise, per cent: that of
+/// map savers.
+pub const OCCUPIED_FROM: u8 = 65;
+
+/// Occupancy up to which a cell is free unless a map says otherwise, per cent.
+pub const FREE_TO: u8 = 25;
+
 /// Header of topic `map`; the items are `width · height` cells, row by row from
 /// the lowest y: 0 free to 100 occupied, [`UNKNOWN`] unknown.
+///
+/// It carries the rules by which cells are classed, so that all who use the map class them in
+/// the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
-#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapHeader/v1"))]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapHeader/v2"))]
 #[repr(C)]
 pub struct MapHeader {
     /// When the map was read; the counter counts the maps served.
@@ -33,6 +43,26 @@ pub struct MapHeader {
     /// The lower left corner of cell (0, 0) in the map frame, and the turn of
     /// the grid's axes.
     pub map_from_grid: Pose2,
+    /// Occupancy from which a cell is occupied, per cent, 1..=100.
+    pub occupied_from: u32,
+    /// Occupancy up to which a cell is free, per cent, 0..=99; what lies between counts as
+    /// unknown.
+    pub free_to: u32,
+    /// 1 where unknown cells block rays, else 0.
+    pub unknown_blocks: u64,
+    /// What the map is called; may be empty.
+    pub name: MapName,
+}
+
+impl Default for MapHeader {
+    /// A map without cells and name, by the usual rules.
+    fn default() -> Self {
+        MapHeader {
+            occupied_from: OCCUPIED_FROM.into(),
+            free_to: FREE_TO.into(),
+            ..MapHeader::zeroed()
+        }
+    }
 }
 
 /// The id of a map: a hash of geometry and cells (XXH3, 64 bits), the same on every machine.
@@ -128,7 +158,8 @@ mod tests {
         );
     }
 
-    crate::pin_layout!(MapHeader, size 72, align 8, {
+    crate::pin_layout!(MapHeader, size 152, align 8, {
         stamp: 0, map_id: 24, width: 32, height: 36, resolution_m: 40, map_from_grid: 48,
+        occupied_from: 72, free_to: 76, unknown_blocks: 80, name: 88,
     });
 }

@@ -77,6 +77,11 @@ text! {
 }
 
 text! {
+    /// UTF-8 text of at most 64 bytes, filled up with zeros: a map of a set.
+    MapName, "MapName/v1", 64
+}
+
+text! {
     /// UTF-8 text of at most 256 bytes, filled up with zeros: a frame. Simulators
     /// name frames by the path of the sensor (`vehicle/lidar_link/gpu_lidar`).
     FrameName, "FrameName/v1", 256

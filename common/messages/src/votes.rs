@@ -14,7 +14,7 @@ use crate::{Pose2, Stamp};
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("VotesHeader/v4")
+    type_name("VotesHeader/v5")
 )]
 #[repr(C)]
 pub struct VotesHeader {
@@ -58,10 +58,6 @@ pub struct VotesHeader {
     pub base_from_laser: Pose2,
     /// 1 where the mount was given, else 0.
     pub mount_known: u64,
-    /// Occupancy from which a cell was taken as occupied, per cent.
-    pub occupied_from: u32,
-    /// Occupancy up to which a cell was taken as free, per cent.
-    pub free_to: u32,
     /// Most beams of a scan that vote; longer scans are thinned by arc.
     pub max_beams: u32,
     /// Cells of the map along the side of a cell that was searched: of this many
@@ -125,13 +121,13 @@ pub struct Vote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(VotesHeader, size 176, align 8, {
+    crate::pin_layout!(VotesHeader, size 168, align 8, {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
-        occupied_from: 144, free_to: 148, max_beams: 152, pooling: 156, beam_arc_m: 160, has_readings: 168,
-        lasers_used: 172,
+        max_beams: 144, pooling: 148, beam_arc_m: 152, has_readings: 160,
+        lasers_used: 164,
     });
 
     mod vote {

@@ -292,7 +292,7 @@ mod tests {
         let header = MapHeader {
             width: u32::MAX,
             height: u32::MAX,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         let expected =
             "topic map: cells is 3, but must be 18446744065119617025, as the header says";
@@ -300,7 +300,7 @@ mod tests {
         let mut header = MapHeader {
             width: 3,
             height: 1,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         let expected = format!(
             "topic map: map_id is 0000000000000000, but must be {:016x}, that of the cells",

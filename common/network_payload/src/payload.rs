@@ -183,7 +183,7 @@ mod tests {
             width,
             height,
             resolution_m: 0.05,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         }
     }
 

@@ -2,7 +2,7 @@
 
 use engine::grid::CellRules;
 use geometry::Pose;
-use map::{OccupancyGrid, UNKNOWN};
+use map::OccupancyGrid;
 
 /// A rectangle along the map's axes, metres. Empty until a point is included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,9 +38,7 @@ impl Extent {
         let (width, resolution) = (map.width as usize, map.resolution_m);
         let mut extent = Extent::EMPTY;
         for (y, row) in map.cells.chunks(width.max(1)).enumerate() {
-            let is_known = |&cell: &u8| {
-                cell != UNKNOWN && (cell <= rules.free_to || cell >= rules.occupied_from)
-            };
+            let is_known = |&cell: &u8| rules.is_free(cell) || rules.is_occupied(cell);
             let first = row.iter().position(is_known);
             let last = row.iter().rposition(is_known);
             let (Some(first), Some(last)) = (first, last) else {
@@ -124,6 +122,8 @@ impl Extent {
 
 #[cfg(test)]
 mod tests {
+    use map::UNKNOWN;
+
     use super::*;
 
     #[test]

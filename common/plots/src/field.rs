@@ -179,5 +179,5 @@ pub(super) const WALL: Color = Color::rgb(0x7C_8896);
 
 pub(super) fn is_wall(map: &OccupancyGrid, rules: CellRules, index: usize) -> bool {
     let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
-    value >= rules.occupied_from && value != UNKNOWN
+    rules.is_occupied(value)
 }

@@ -5,7 +5,7 @@
 
 use drawing::{Color, DrawingError, Image, Rect, Scene};
 use engine::grid::{CellRules, GridFrame};
-use map::{OccupancyGrid, UNKNOWN};
+use map::OccupancyGrid;
 use offline::{frame_of, sides_of};
 
 use super::legend::{Legend, Sample};
@@ -107,7 +107,7 @@ pub(super) fn draw(
                         inks.push(ink);
                     }
                 }
-                Some((None, value)) if value <= rules.free_to && value != UNKNOWN => {
+                Some((None, value)) if rules.is_free(value) => {
                     pixel.free += 1.0;
                 }
                 Some((None, _)) => pixel.unknown += 1.0,
@@ -137,7 +137,7 @@ pub(super) fn draw(
 pub(super) fn occupied(map: &OccupancyGrid, rules: CellRules) -> impl Fn(usize) -> Option<Ink> {
     move |index| {
         let value = *map.cells.get(index)?;
-        let is_occupied = value >= rules.occupied_from && value != UNKNOWN;
+        let is_occupied = rules.is_occupied(value);
         is_occupied.then_some((theme::OCCUPIED, "obstacle"))
     }
 }
@@ -177,6 +177,8 @@ mod tests {
     use geometry::Pose;
 
     use super::super::extent::Extent;
+    use map::UNKNOWN;
+
     use super::*;
 
     /// Three by two cells of half a metre, turned by a quarter: the grid's x

@@ -3,7 +3,7 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
-use engine::grid::{CellRules, Grid};
+use engine::grid::Grid;
 use engine::localizer::{Localizer, Outcome, Workspace};
 use engine::observation::Observation;
 use engine::search::BlockBounds;
@@ -46,7 +46,6 @@ pub fn answered<'w>(
 ) -> Answer<'w> {
     let terms = Terms {
         map_id: map.map_id,
-        rules: map.rules,
         beams: map.localizer.config().votes.beams,
         pooling: map.localizer.pooling() as u32,
     };
@@ -77,7 +76,6 @@ pub fn image<'w>(
 /// Which map was searched, and how it and the scan were read.
 struct Terms {
     map_id: u64,
-    rules: CellRules,
     beams: BeamConfig,
     pooling: u32,
 }
@@ -88,7 +86,7 @@ fn votes_header(
     outcome: &Outcome,
     engine_ns: u64,
 ) -> VotesHeader {
-    let (found, beams, rules) = (&outcome.found, &terms.beams, &terms.rules);
+    let (found, beams) = (&outcome.found, &terms.beams);
     let code = if found.best > 0 {
         SearchOutcome::Found
     } else {
@@ -112,8 +110,6 @@ fn votes_header(
         heading_known: outcome.known_heading.is_some().into(),
         known_heading: outcome.known_heading.unwrap_or(0.0),
         bearing_rounding: outcome.bearing_rounding,
-        occupied_from: rules.occupied_from.into(),
-        free_to: rules.free_to.into(),
         max_beams: beams.max_beams,
         pooling: terms.pooling,
         beam_arc_m: beams.beam_arc_m,
@@ -183,6 +179,7 @@ fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
 
 #[cfg(test)]
 mod tests {
+    use engine::grid::CellRules;
     use engine::votes::VoteSet;
     use messages::{Pose2, Stamp};
 
@@ -213,11 +210,6 @@ mod tests {
 
     const TERMS: Terms = Terms {
         map_id: 77,
-        rules: CellRules {
-            occupied_from: 60,
-            free_to: 20,
-            unknown_blocks: false,
-        },
         beams: BeamConfig {
             max_beams: 90,
             beam_arc_m: 0.5,
@@ -275,8 +267,6 @@ mod tests {
             bearing_rounding: 0.001,
             base_from_laser: MOUNT,
             mount_known: 1,
-            occupied_from: 60,
-            free_to: 20,
             max_beams: 90,
             pooling: 2,
             beam_arc_m: 0.5,

@@ -21,19 +21,12 @@ pub enum AccumulatorError {
     /// The map is not the one that its id says.
     #[error(transparent)]
     MapId(#[from] messages::WrongMapId),
+    /// The map has an impossible rule for its cells.
+    #[error(transparent)]
+    Rule(#[from] messages::InvalidRule),
     /// The scan's heading is not known.
     #[error(transparent)]
     Heading(#[from] HeadingError),
-    /// The boundary does not say how to read the map.
-    #[error("{field} of the boundary is {found}: allowed are {allowed}")]
-    Rule {
-        /// The rule.
-        field: &'static str,
-        /// As the boundary has it.
-        found: u64,
-        /// What it may be.
-        allowed: &'static str,
-    },
     /// The boundary has another size than it says.
     #[error("the boundary came with {found} cells instead of {expected}")]
     BoundarySize {

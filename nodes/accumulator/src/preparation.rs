@@ -9,6 +9,7 @@ use engine::localizer::{Localizer, LocalizerConfig, Preparation, Prior};
 use engine::space::Space;
 use index_cache::{IndexCache, Kept, Prepared};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
+use twox_hash::XxHash3_64;
 
 use crate::AccumulatorError;
 
@@ -19,6 +20,8 @@ pub struct Key {
     pub map_id: u64,
     /// By which its cells are read.
     pub rules: CellRules,
+    /// Hash of the boundary's cells.
+    boundary: u64,
 }
 
 impl Key {
@@ -26,11 +29,17 @@ impl Key {
     /// map, whose own one is still to come.
     ///
     /// # Errors
-    /// If the boundary's rules are out of range.
-    pub fn of(map: &MapHeader, boundary: &BoundaryHeader) -> Result<Option<Key>, AccumulatorError> {
-        let rules = rules_of(boundary)?;
-        let map_id = map.map_id;
-        Ok((map_id == boundary.map_id).then_some(Key { map_id, rules }))
+    /// If the map's rules are out of range.
+    pub fn of(
+        map: &MapHeader,
+        (boundary, cells): (&BoundaryHeader, &[BoundaryCell]),
+    ) -> Result<Option<Key>, AccumulatorError> {
+        let key = Key {
+            map_id: map.map_id,
+            rules: CellRules::of(map)?,
+            boundary: XxHash3_64::oneshot(bytemuck::cast_slice(cells)),
+        };
+        Ok((map.map_id == boundary.map_id).then_some(key))
     }
 }
 
@@ -39,8 +48,6 @@ impl Key {
 pub struct PreparedMap {
     /// The map.
     pub map_id: u64,
-    /// How its cells were read.
-    pub rules: CellRules,
     /// Made from it.
     pub localizer: Localizer,
     /// That of the map as it is: its cells may be finer than those that are searched.
@@ -60,7 +67,7 @@ impl Job {
     /// Takes a copy along: samples stay on the thread that received them.
     ///
     /// # Errors
-    /// If the boundary has another size than it says, or impossible rules.
+    /// If the boundary has another size than it says, or the map impossible rules.
     pub fn new(
         map: &MapHeader,
         occupancy: &[u8],
@@ -74,7 +81,7 @@ impl Job {
         Ok(Job {
             map: *map,
             occupancy: occupancy.to_vec(),
-            rules: rules_of(header)?,
+            rules: CellRules::of(map)?,
             boundary: boundary.to_vec(),
         })
     }
@@ -100,7 +107,6 @@ impl Job {
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
             map_id: self.map.map_id,
-            rules: self.rules,
             localizer,
             space,
         };
@@ -124,36 +130,6 @@ impl Job {
             None => Ok(()),
         }
     }
-}
-
-fn rules_of(boundary: &BoundaryHeader) -> Result<CellRules, AccumulatorError> {
-    let percent = |field, found: u32, allowed, range: std::ops::RangeInclusive<u8>| {
-        u8::try_from(found)
-            .ok()
-            .filter(|percent| range.contains(percent))
-            .ok_or(AccumulatorError::Rule {
-                field,
-                found: found.into(),
-                allowed,
-            })
-    };
-    let unknown_blocks = match boundary.unknown_blocks {
-        0 => false,
-        1 => true,
-        found => {
-            return Err(AccumulatorError::Rule {
-                field: "unknown_blocks",
-                found,
-                allowed: "0 and 1",
-            });
-        }
-    };
-    let occupied_from = boundary.occupied_from;
-    Ok(CellRules {
-        occupied_from: percent("occupied_from", occupied_from, "1 to 100", 1..=100)?,
-        free_to: percent("free_to", boundary.free_to, "0 to 99", 0..=99)?,
-        unknown_blocks,
-    })
 }
 
 #[cfg(test)]
@@ -185,13 +161,11 @@ mod tests {
             width: 6,
             height: 4,
             resolution_m: 0.1,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         let header = BoundaryHeader {
             map_id: 77,
             boundary_cells: cells.len() as u64,
-            occupied_from: 65,
-            free_to: 25,
             ..Zeroable::zeroed()
         };
         Pair {
@@ -242,50 +216,26 @@ mod tests {
         assert!(kept.is_read && kept.unsaved.is_none());
         assert_eq!((map.map_id, map.localizer.searchable_cells()), (77, 8));
         // Of two rules that class all cells alike one index will do.
-        pair.header.occupied_from = 66;
+        pair.map.occupied_from = 66;
         assert!(prepare(&pair).1.is_read);
         pair.occupancy[7] = 50;
         assert!(!prepare(&pair).1.is_read, "a cell is unknown now");
     }
 
     #[test]
-    fn a_pair_is_of_one_map_and_by_the_rules_of_the_boundary() {
+    fn a_pair_is_of_one_map_by_its_rules_and_with_its_boundary() {
         let mut pair = room();
-        pair.header.unknown_blocks = 1;
-        let rules = CellRules {
-            unknown_blocks: true,
-            ..CellRules::default()
-        };
-        let key = Key::of(&pair.map, &pair.header).unwrap();
-        assert_eq!(key, Some(Key { map_id: 77, rules }));
+        let key = |pair: &Pair| Key::of(&pair.map, (&pair.header, &pair.cells)).unwrap();
+        let first = key(&pair).unwrap();
+        assert_eq!((first.map_id, first.rules), (77, CellRules::default()));
+        assert_eq!(key(&pair), Some(first));
+        pair.map.unknown_blocks = 1;
+        assert_ne!(key(&pair), Some(first));
+        pair.map.unknown_blocks = 0;
+        pair.cells.truncate(15);
+        assert_ne!(key(&pair), Some(first));
         pair.header.map_id = 78;
-        assert_eq!(Key::of(&pair.map, &pair.header).unwrap(), None);
-    }
-
-    #[test]
-    fn rules_that_foreign_bytes_may_hold_are_checked() {
-        let check = |change: fn(&mut BoundaryHeader), expected: &str| {
-            let mut pair = room();
-            change(&mut pair.header);
-            let error = Key::of(&pair.map, &pair.header).unwrap_err().to_string();
-            assert!(error.starts_with(expected), "{error}");
-        };
-        check(
-            |header| header.occupied_from = 0,
-            "occupied_from of the boundary is 0",
-        );
-        check(
-            |header| header.occupied_from = 321,
-            "occupied_from of the boundary is 321",
-        );
-        check(
-            |header| header.free_to = 100,
-            "free_to of the boundary is 100",
-        );
-        check(
-            |header| header.unknown_blocks = 2,
-            "unknown_blocks of the boundary is 2",
-        );
+        assert_eq!(key(&pair), None);
     }
 
     #[test]
@@ -298,6 +248,9 @@ mod tests {
         for yaw in [f64::NAN, 7.0] {
             refused("an origin at", |pair| pair.map.map_from_grid.yaw = yaw);
         }
+        refused("occupied_from of the map is 0", |pair| {
+            pair.map.occupied_from = 0;
+        });
         refused("instead of 30", |pair| pair.map.height = 5);
         refused("1 to 32767", |pair| pair.map.width = u32::MAX);
         refused("nowhere that the robot could be", |pair| {

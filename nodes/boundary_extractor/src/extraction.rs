@@ -1,4 +1,4 @@
-//! The node's one function: from a map and the rules to the boundary.
+//! The node's one function: from a map to its boundary.
 
 use engine::EngineError;
 use engine::boundary;
@@ -10,7 +10,7 @@ use crate::BoundaryError;
 /// The message of topic `boundary`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Extraction {
-    /// What was counted, in which map, and by which rules.
+    /// What was counted, and in which map.
     pub header: BoundaryHeader,
     /// By (y, x).
     pub cells: Vec<BoundaryCell>,
@@ -22,14 +22,11 @@ pub struct Extraction {
 /// If the grid's sides, resolution or origin are out of range, the number of
 /// cells is not what the sides say, or the map has no free cell, no occupied
 /// one, or none of these where a ray could reach it.
-pub fn extract(
-    map: &MapHeader,
-    occupancy: &[u8],
-    rules: CellRules,
-) -> Result<Extraction, BoundaryError> {
+pub fn extract(map: &MapHeader, occupancy: &[u8]) -> Result<Extraction, BoundaryError> {
     // The boundary needs no frame, but whoever uses it does: a map that nobody can
     // use is to be refused before anybody prepares for it.
     GridFrame::of(map)?;
+    let rules = CellRules::of(map).map_err(EngineError::from)?;
     let (width, height) = (map.width as usize, map.height as usize);
     let grid = Grid::new(width, height, occupancy, rules)?;
     if grid.occupied_cells() == 0 {
@@ -49,9 +46,6 @@ pub fn extract(
         free_cells: grid.free_cells() as u64,
         boundary_cells: cells.len() as u64,
         occupied_cells: grid.occupied_cells() as u64,
-        occupied_from: rules.occupied_from.into(),
-        free_to: rules.free_to.into(),
-        unknown_blocks: rules.unknown_blocks.into(),
     };
     Ok(Extraction { header, cells })
 }
@@ -78,6 +72,7 @@ mod tests {
                 y: 2.0,
                 yaw: 0.1,
             },
+            ..MapHeader::default()
         }
     }
 
@@ -90,18 +85,17 @@ mod tests {
 
     #[track_caller]
     fn refused(map: &MapHeader, cells: &[u8], expected: &str) {
-        let error = extract(map, cells, CellRules::default()).unwrap_err();
+        let error = extract(map, cells).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
 
     #[test]
-    fn the_boundary_comes_with_its_map_counts_and_rules() {
-        let rules = CellRules {
-            unknown_blocks: true,
-            ..CellRules::default()
+    fn the_boundary_comes_with_its_map_and_counts() {
+        let map = MapHeader {
+            unknown_blocks: 1,
+            ..map(4, 3)
         };
-        let map = map(4, 3);
-        let Extraction { header, cells } = extract(&map, &CELLS, rules).unwrap();
+        let Extraction { header, cells } = extract(&map, &CELLS).unwrap();
         let expected = [0, 1, 2].map(|y| BoundaryCell { x: 1, y });
         assert_eq!(cells, expected);
         assert_eq!((header.stamp, header.map_id), (map.stamp, 77));
@@ -111,8 +105,6 @@ mod tests {
             header.occupied_cells,
         );
         assert_eq!(counts, (3, 3, 6));
-        let rules = (header.occupied_from, header.free_to, header.unknown_blocks);
-        assert_eq!(rules, (65, 25, 1));
     }
 
     #[test]
@@ -146,12 +138,11 @@ mod tests {
 
     #[test]
     fn obstacles_that_no_ray_reaches_are_no_map() {
-        let rules = CellRules {
-            unknown_blocks: true,
-            ..CellRules::default()
+        let map = MapHeader {
+            unknown_blocks: 1,
+            ..map(4, 1)
         };
-        let walled_off = [100, UNKNOWN, UNKNOWN, 0];
-        let error = extract(&map(4, 1), &walled_off, rules).unwrap_err();
+        let error = extract(&map, &[100, UNKNOWN, UNKNOWN, 0]).unwrap_err();
         assert!(
             matches!(error, BoundaryError::NoBoundaryCell { occupied: 1 }),
             "{error}"

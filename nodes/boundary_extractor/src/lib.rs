@@ -1,10 +1,8 @@
 //! Node `boundary_extractor`: the obstacle cells that a laser can hit, from
 //! `map` to `boundary`.
 //!
-//! `extraction` is the node without a graph; `run` receives and sends. The
-//! boundary goes out with the rules by which cells were classed, so that they
-//! are set here alone. A map that cannot be used is refused, and the boundary
-//! of the one before stays in service.
+//! `extraction` is the node without a graph; `run` receives and sends. A map that
+//! cannot be used is refused, and the boundary of the one before stays in service.
 
 mod config;
 mod error;

@@ -6,8 +6,6 @@ use boundary_extractor::Config;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    let config = Config::parse();
-    transport::node::main("boundary_extractor", |graph| {
-        boundary_extractor::run(graph, &config)
-    })
+    let Config {} = Config::parse();
+    transport::node::main("boundary_extractor", boundary_extractor::run)
 }

@@ -5,8 +5,8 @@ use std::time::Duration;
 use messages::{NodeState, topic};
 use transport::{Flow, Graph, Health, Publisher, Sample, TransportError, with_causes};
 
+use crate::BoundaryError;
 use crate::extraction::{Extraction, extract};
-use crate::{BoundaryError, Config};
 
 /// How long a late joiner waits for the boundary at most.
 const TICK: Duration = Duration::from_millis(100);
@@ -15,7 +15,7 @@ const TICK: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// If the graph fails; a map that is refused is reported in `health`.
-pub fn run(graph: &Graph, config: &Config) -> Result<(), BoundaryError> {
+pub fn run(graph: &Graph) -> Result<(), BoundaryError> {
     let maps = graph.subscriber::<topic::Map>()?;
     let boundaries = graph.publisher::<topic::Boundary>()?;
     let mut health = graph.health()?;
@@ -25,7 +25,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BoundaryError> {
             health.state(NodeState::Busy)?;
             let (header, cells) = (map.header(), map.items());
             let checked = header.check_id(cells).map_err(BoundaryError::from);
-            match checked.and_then(|()| extract(header, cells, config.rules)) {
+            match checked.and_then(|()| extract(header, cells)) {
                 Ok(extraction) => serve(&extraction, &boundaries, &mut health)?,
                 Err(error) => refuse(&map, &error, &mut health)?,
             }

@@ -13,8 +13,8 @@ use transport::{Graph, Publisher};
 /// A room with a pillar; `#` occupied, `.` free.
 const ROOM: [&str; 5] = ["########", "#......#", "#..#...#", "#......#", "########"];
 
-fn start(graph: &Graph, arguments: &[&str]) -> NodeProcess {
-    NodeProcess::start(env!("CARGO_BIN_EXE_boundary_extractor"), graph, arguments)
+fn start(graph: &Graph) -> NodeProcess {
+    NodeProcess::start(env!("CARGO_BIN_EXE_boundary_extractor"), graph, &[""; 0])
 }
 
 fn occupancy(rows: &[&str]) -> Vec<u8> {
@@ -40,6 +40,7 @@ fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
             y: 0.0,
             yaw: 0.0,
         },
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&cells);
     *loan.header_mut() = header;
@@ -60,7 +61,7 @@ fn each_map_is_answered_with_its_boundary() {
     let graph = isolated.join("test");
     let boundaries = graph.subscriber::<topic::Boundary>().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
-    let node = start(&graph, &["--occupied-from", "70"]);
+    let node = start(&graph);
     let (waiting, _) = wait_for_health(&graph, &health, |_| true);
     assert_eq!(
         NodeState::from_code(waiting.state),
@@ -76,7 +77,6 @@ fn each_map_is_answered_with_its_boundary() {
         });
         assert_eq!((header.map_id, header.stamp.counter), (map_id, counter));
         assert_eq!(header.boundary_cells, cells.len() as u64);
-        assert_eq!(header.occupied_from, 70);
         assert_eq!(cells, expected(rows));
     }
     let ready = |state: u32| state == NodeState::Ready as u32;
@@ -94,7 +94,7 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let maps = graph.publisher::<topic::Map>().unwrap();
     let room = publish(&maps, 5, &ROOM);
-    let node = start(&graph, &[]);
+    let node = start(&graph);
     // The map was there before the node: it comes to a late joiner.
     wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Ready as u32

@@ -10,7 +10,6 @@
 
 use std::time::Instant;
 
-use bytemuck::Zeroable;
 use messages::{MapHeader, ScanHeader, Stamp, topic};
 use tests::machine::{ENGINE, LASER, Machine};
 use tests::network::Namespace;
@@ -129,7 +128,7 @@ fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
             width,
             height,
             resolution_m: 0.05,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         map.map_id = map.id_of(&cells);
         let start = Instant::now();

@@ -208,7 +208,7 @@ impl FarRobot {
             width: 3,
             height: 2,
             resolution_m: 0.05,
-            ..MapHeader::zeroed()
+            ..MapHeader::default()
         };
         header.map_id = header.id_of(&cells);
         let payload = Self::payload::<topic::Map>(0, &header, &cells);

@@ -22,6 +22,10 @@ pub struct Config {
     #[arg(long, value_name = "FILE", conflicts_with = "recorded")]
     pub played: Option<PathBuf>,
 
+    /// How cells of the map are read, by all nodes.
+    #[command(flatten)]
+    pub cells: messages::CellRules,
+
     /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
-use messages::{MapHeader, NodeState, Stamp, topic};
+use messages::{CellRules, MapHeader, NodeState, Stamp, topic};
 use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
@@ -27,6 +27,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     let mut server = Server {
         publisher: graph.publisher()?,
         health: graph.health()?,
+        cells: config.cells,
         served: 0,
         map_id: 0,
     };
@@ -133,6 +134,7 @@ fn compare(config: &Config, served: &OccupancyGrid) {
 struct Server {
     publisher: Publisher<topic::Map>,
     health: Health,
+    cells: CellRules,
     served: u64,
     map_id: u64,
 }
@@ -179,7 +181,7 @@ impl Server {
     fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
         let map_id = grid.id();
         let mut loan = self.publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = MapHeader {
+        *loan.header_mut() = self.cells.header(MapHeader {
             stamp: Stamp {
                 measured_ns: realtime_ns(),
                 entered_ns: transport::monotonic_ns(),
@@ -190,7 +192,8 @@ impl Server {
             height: grid.height,
             resolution_m: grid.resolution_m,
             map_from_grid: grid.map_from_grid.into(),
-        };
+            ..MapHeader::default()
+        });
         loan.items_mut().copy_from_slice(&grid.cells);
         loan.send()?;
         self.map_id = map_id;

@@ -54,7 +54,7 @@ pub struct Answer<'a> {
 pub fn answer<'w>(
     header: &VotesHeader,
     votes: &[Vote],
-    (maps, scans): (&mut Maps, &Scans),
+    (maps, scans): (&Maps, &Scans),
     config: &PeakConfig,
     workspace: &'w mut Workspace,
 ) -> Result<Answer<'w>, PeakError> {
@@ -208,7 +208,7 @@ mod tests {
                 y: 0.0,
                 yaw: FRAC_PI_2,
             },
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
@@ -234,8 +234,6 @@ mod tests {
                 yaw: 0.0,
             },
             mount_known: 1,
-            occupied_from: 65,
-            free_to: 25,
             max_beams: 180,
             pooling: 1,
             beam_arc_m: 0.2,
@@ -264,7 +262,7 @@ mod tests {
             score: Score::Votes,
             ..PeakConfig::default()
         };
-        let known = (&mut maps(), &Scans::default());
+        let known = (&maps(), &Scans::default());
         answer(header, &VOTES, known, &by_votes, workspace).unwrap()
     }
 
@@ -328,7 +326,7 @@ mod tests {
         let mut scans = Scans::default();
         let config = PeakConfig::default();
         let mut workspace = Workspace::default();
-        let known = (&mut maps(), &scans);
+        let known = (&maps(), &scans);
         let unknown = answer(&header(), &VOTES, known, &config, &mut workspace);
         assert!(matches!(unknown, Err(PeakError::UnknownScan)));
         let scan = ScanHeader {
@@ -338,7 +336,7 @@ mod tests {
             ..Zeroable::zeroed()
         };
         scans.receive(&scan, &[1.0, 2.0]);
-        let known = (&mut maps(), &scans);
+        let known = (&maps(), &scans);
         let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
         // The map is empty, so that nothing fits.
         assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
@@ -355,7 +353,7 @@ mod tests {
                 best: 0,
                 ..header()
             };
-            let known = (&mut maps(), &Scans::default());
+            let known = (&maps(), &Scans::default());
             let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
             let said = answer(&empty, &[], known, &config, &mut workspace).unwrap();
             assert_eq!(said, nothing(&empty));

@@ -5,10 +5,8 @@
 //! nonsense.
 
 use std::cmp::Reverse;
-use std::ops::RangeInclusive;
 
 use engine::beams::BeamConfig;
-use engine::grid::CellRules;
 use engine::peaks::PeakInput;
 use geometry::Pose;
 use messages::{SearchOutcome, Vote, VotesHeader};
@@ -39,7 +37,7 @@ pub struct Checked<'a> {
 pub fn check<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
-    maps: &'a mut Maps,
+    maps: &'a Maps,
 ) -> Result<Option<Checked<'a>>, PeakError> {
     let outcome = header.outcome;
     match SearchOutcome::from_code(outcome) {
@@ -49,7 +47,7 @@ pub fn check<'a>(
         }
         Some(SearchOutcome::Found) => {}
     }
-    let map = maps.get(header.map_id, rules(header)?)?;
+    let map = maps.get(header.map_id)?;
     check_header(header, votes)?;
     let pooling = pooling(header)?;
     check_poses(
@@ -86,26 +84,6 @@ pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
         return Err(PeakError::Mount { found });
     }
     Ok(Some(mount))
-}
-
-/// How the map's cells were read. Whether unknown ones block is nothing to the
-/// fit.
-fn rules(header: &VotesHeader) -> Result<CellRules, PeakError> {
-    let percent = |field, found: u32, allowed, range: RangeInclusive<u8>| {
-        let percent = u8::try_from(found).ok();
-        let percent = percent.filter(|percent| range.contains(percent));
-        let found = found.into();
-        percent.ok_or(PeakError::Setting {
-            field,
-            found,
-            allowed,
-        })
-    };
-    Ok(CellRules {
-        occupied_from: percent("occupied_from", header.occupied_from, "1 to 100", 1..=100)?,
-        free_to: percent("free_to", header.free_to, "0 to 99", 0..=99)?,
-        unknown_blocks: false,
-    })
 }
 
 /// How the scan was thinned.
@@ -212,7 +190,7 @@ mod tests {
             width: 30,
             height: 20,
             resolution_m: 0.1,
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         };
         maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
@@ -246,8 +224,6 @@ mod tests {
             best: 100,
             highest_possible: 200,
             known_heading: 0.5,
-            occupied_from: 65,
-            free_to: 25,
             max_beams: 180,
             pooling: 1,
             beam_arc_m: 0.2,
@@ -258,13 +234,12 @@ mod tests {
     #[test]
     fn sound_votes_are_passed_on_without_a_copy() {
         let votes = votes();
-        let (mut maps, rules) = (maps(), CellRules::default());
-        let checked = check(&header(), &votes, &mut maps).unwrap().unwrap();
+        let maps = maps();
+        let checked = check(&header(), &votes, &maps).unwrap().unwrap();
         assert_eq!(
             (checked.map.map_id, checked.beams),
             (7, BeamConfig::default())
         );
-        assert_eq!(super::rules(&header()).unwrap(), rules);
         let input = checked.input;
         assert!(std::ptr::eq(input.votes, &votes[..]));
         assert_eq!((input.certified_floor, input.highest_possible), (85, 200));
@@ -274,7 +249,7 @@ mod tests {
             heading_known: 1,
             ..header()
         };
-        let checked = check(&known, &votes, &mut maps).unwrap().unwrap();
+        let checked = check(&known, &votes, &maps).unwrap().unwrap();
         assert_eq!(checked.input.known_heading, Some(0.5));
     }
 
@@ -285,7 +260,7 @@ mod tests {
                 outcome: outcome as u32,
                 ..Zeroable::zeroed()
             };
-            assert!(check(&empty, &[], &mut maps()).unwrap().is_none());
+            assert!(check(&empty, &[], &maps()).unwrap().is_none());
         }
     }
 
@@ -294,7 +269,7 @@ mod tests {
         let refuse = |change: fn(&mut VotesHeader, &mut Vec<Vote>), expected: &str| {
             let (mut header, mut votes) = (header(), votes());
             change(&mut header, &mut votes);
-            let error = check(&header, &votes, &mut maps()).unwrap_err();
+            let error = check(&header, &votes, &maps()).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
         };
         refuse(|header, _| header.outcome = 4, "outcome is 4");
@@ -311,8 +286,6 @@ mod tests {
             },
             "known_heading is NaN",
         );
-        refuse(|header, _| header.occupied_from = 0, "occupied_from is 0");
-        refuse(|header, _| header.free_to = 100, "free_to is 100");
         refuse(
             |header, _| header.max_beams = 1 << 17,
             "max_beams is 131072",

@@ -23,8 +23,6 @@ pub struct Map {
     pub frame: GridFrame,
     /// Distances to obstacles, by the rules for its cells.
     pub distance_field: DistanceField,
-    rules: CellRules,
-    occupancy: Vec<u8>,
 }
 
 /// The newest map and the one before.
@@ -32,12 +30,10 @@ pub struct Map {
 pub struct Maps {
     /// The newest first.
     known: Vec<Map>,
-    /// By which the last votes read their map.
-    rules: CellRules,
 }
 
 impl Map {
-    fn new(header: &MapHeader, occupancy: Vec<u8>, rules: CellRules) -> Result<Self, EngineError> {
+    fn new(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
         let frame = GridFrame::of(header)?;
         let sides = (header.width as usize, header.height as usize);
         Ok(Map {
@@ -45,19 +41,8 @@ impl Map {
             width: header.width,
             height: header.height,
             frame,
-            distance_field: DistanceField::new(frame, sides, &occupancy, rules)?,
-            rules,
-            occupancy,
+            distance_field: DistanceField::new(frame, sides, occupancy, CellRules::of(header)?)?,
         })
-    }
-
-    fn read_by(&mut self, rules: CellRules) -> Result<(), EngineError> {
-        if self.rules != rules {
-            let sides = (self.width as usize, self.height as usize);
-            self.distance_field = DistanceField::new(self.frame, sides, &self.occupancy, rules)?;
-            self.rules = rules;
-        }
-        Ok(())
     }
 }
 
@@ -68,29 +53,23 @@ impl Maps {
     /// If the grid's sides, resolution or origin are out of range, or the
     /// number of cells is not what the sides say.
     pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
-        let map = Map::new(header, occupancy.to_vec(), self.rules)?;
+        let map = Map::new(header, occupancy)?;
         self.known.retain(|known| known.map_id != header.map_id);
         self.known.truncate(1);
         self.known.insert(0, map);
         Ok(())
     }
 
-    /// A map with its cells read by some rules.
+    /// One of them.
     ///
     /// # Errors
     /// If it is neither of the last two.
-    pub fn get(&mut self, map_id: u64, rules: CellRules) -> Result<&Map, PeakError> {
-        let mut ids = self.known.iter().map(|map| map.map_id);
-        let Some(at) = ids.position(|id| id == map_id) else {
-            return Err(PeakError::UnknownMap {
-                found: map_id,
-                known: self.names(),
-            });
-        };
-        self.rules = rules;
-        let map = &mut self.known[at];
-        map.read_by(rules)?;
-        Ok(map)
+    pub fn get(&self, map_id: u64) -> Result<&Map, PeakError> {
+        let found = self.known.iter().find(|map| map.map_id == map_id);
+        found.ok_or_else(|| PeakError::UnknownMap {
+            found: map_id,
+            known: self.names(),
+        })
     }
 
     fn names(&self) -> String {
@@ -105,18 +84,12 @@ impl Maps {
 
 #[cfg(test)]
 mod tests {
-    use bytemuck::Zeroable;
     use geometry::Pose;
     use messages::Pose2;
 
     use super::*;
 
     const CELLS: [u8; 30 * 20] = [0; 30 * 20];
-    const RULES: CellRules = CellRules {
-        occupied_from: 65,
-        free_to: 25,
-        unknown_blocks: false,
-    };
 
     fn map(map_id: u64) -> MapHeader {
         MapHeader {
@@ -129,7 +102,7 @@ mod tests {
                 y: 2.0,
                 yaw: 0.5,
             },
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         }
     }
 
@@ -139,11 +112,11 @@ mod tests {
         for map_id in [1, 2, 3] {
             maps.receive(&map(map_id), &CELLS).unwrap();
         }
-        let found = maps.get(2, RULES).unwrap();
+        let found = maps.get(2).unwrap();
         assert_eq!((found.map_id, found.width, found.height), (2, 30, 20));
         assert_eq!(found.frame.map_from_grid, Pose::new(-1.0, 2.0, 0.5));
-        assert_eq!(maps.get(3, RULES).unwrap().map_id, 3);
-        let error = maps.get(1, RULES).unwrap_err().to_string();
+        assert_eq!(maps.get(3).unwrap().map_id, 3);
+        let error = maps.get(1).unwrap_err().to_string();
         assert!(error.contains("map 0000000000000001"), "{error}");
         let known = "before: 0000000000000003, 0000000000000002";
         assert!(error.ends_with(known), "{error}");
@@ -155,18 +128,13 @@ mod tests {
         for map_id in [1, 2, 2] {
             maps.receive(&map(map_id), &CELLS).unwrap();
         }
-        assert!(maps.get(1, RULES).is_ok() && maps.get(2, RULES).is_ok());
+        assert!(maps.get(1).is_ok() && maps.get(2).is_ok());
     }
 
     #[test]
     fn a_map_that_is_not_sound_changes_nothing() {
         let mut maps = Maps::default();
-        assert!(
-            maps.get(1, RULES)
-                .unwrap_err()
-                .to_string()
-                .ends_with("none")
-        );
+        assert!(maps.get(1).unwrap_err().to_string().ends_with("none"));
         maps.receive(&map(1), &CELLS).unwrap();
         let mut refuse = |change: fn(&mut MapHeader), expected: &str| {
             let mut broken = map(2);
@@ -174,6 +142,7 @@ mod tests {
             let error = maps.receive(&broken, &CELLS).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         };
+        refuse(|map| map.free_to = 100, "free_to of the map is 100");
         refuse(|map| map.width = 0, "0 x 20 cells");
         refuse(|map| map.height = 32_768, "30 x 32768 cells");
         refuse(|map| map.height = 21, "600 occupancies instead of 630");
@@ -181,6 +150,6 @@ mod tests {
         refuse(|map| map.resolution_m = f64::NAN, "0.001..=10 m");
         refuse(|map| map.map_from_grid.x = f64::INFINITY, "an origin at");
         refuse(|map| map.map_from_grid.yaw = f64::NAN, "an origin at");
-        assert!(maps.get(1, RULES).is_ok() && maps.get(2, RULES).is_err());
+        assert!(maps.get(1).is_ok() && maps.get(2).is_err());
     }
 }

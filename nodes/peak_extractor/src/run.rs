@@ -125,7 +125,7 @@ impl Node {
             self.health.count_dropped(self.gaps.lost_before(counter));
             return Ok(());
         }
-        let known = (&mut self.maps, &self.scans);
+        let known = (&self.maps, &self.scans);
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
         let answered = answer(

@@ -186,7 +186,7 @@ fn map_header(resolution_m: f64) -> MapHeader {
         height: 9,
         resolution_m,
         map_from_grid: FRAME.map_from_grid.into(),
-        ..Zeroable::zeroed()
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&cells());
     header
@@ -208,8 +208,6 @@ fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
         highest_possible: outcome.highest_possible,
         base_from_laser: MOUNT,
         mount_known: 1,
-        occupied_from: 65,
-        free_to: 25,
         max_beams: 180,
         pooling: 1,
         beam_arc_m: 0.2,

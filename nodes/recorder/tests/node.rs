@@ -81,7 +81,7 @@ impl World {
             width: 2,
             height: 1,
             resolution_m: 0.05,
-            ..MapHeader::zeroed()
+            ..MapHeader::default()
         };
         header.map_id = header.id_of(&[0, 100]);
         *loan.header_mut() = header;

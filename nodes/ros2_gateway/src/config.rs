@@ -82,6 +82,10 @@ pub struct Config {
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = ahead)]
     pub tf_ahead: f64,
 
+    /// How cells of the robot's map are read, by all nodes.
+    #[command(flatten)]
+    pub cells: messages::CellRules,
+
     /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,

@@ -1,7 +1,7 @@
 //! The graph's side of what comes from the robot.
 
 use map::MemoryLimit;
-use messages::{MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
+use messages::{CellRules, MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
 use ros::{LaserScan, OccupancyGridMsg, measurements};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use zenoh_session::Report;
@@ -62,6 +62,7 @@ pub(crate) struct Outlet {
     maps: Option<Publisher<topic::Map>>,
     /// What the graph may take for a map.
     memory_limit: MemoryLimit,
+    cells: CellRules,
     lasers: Vec<Laser>,
     odometry_sent: u64,
     maps_sent: u64,
@@ -84,6 +85,7 @@ impl Outlet {
                 .map(|()| graph.publisher())
                 .transpose()?,
             memory_limit: config.memory.limit(),
+            cells: config.cells,
             maps: brings(Brought::Map)
                 .map(|()| graph.publisher())
                 .transpose()?,
@@ -197,14 +199,15 @@ impl Outlet {
             ..Stamp::default()
         };
         let mut loan = publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = MapHeader {
+        *loan.header_mut() = self.cells.header(MapHeader {
             stamp: entering(stamp, self.maps_sent),
             map_id,
             width: grid.width,
             height: grid.height,
             resolution_m: grid.resolution_m,
             map_from_grid: grid.map_from_grid.into(),
-        };
+            ..MapHeader::default()
+        });
         loan.items_mut().copy_from_slice(&grid.cells);
         loan.send()?;
         self.map_id = Some(map_id);

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Parser;
 use engine::beams::BeamConfig;
 use engine::fit::FitConfig;
-use engine::grid::CellRules;
 use engine::joined::JoinConfig;
 use engine::tracking::FollowConfig;
 use geometry::Pose;
@@ -37,10 +36,6 @@ pub struct Config {
     /// Which lasers are joined, and how their motion is known.
     #[command(flatten)]
     pub join: JoinConfig,
-
-    /// How cells of the map are read.
-    #[command(flatten)]
-    pub cells: CellRules,
 
     /// Which beams are judged.
     #[command(flatten)]

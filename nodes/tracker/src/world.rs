@@ -26,12 +26,8 @@ impl World {
     /// # Errors
     /// If the grid's sides, resolution or origin are out of range, or the number of
     /// cells is not what the sides say.
-    pub(crate) fn new(
-        header: &MapHeader,
-        occupancy: &[u8],
-        rules: CellRules,
-    ) -> Result<Self, EngineError> {
-        let frame = GridFrame::of(header)?;
+    pub(crate) fn new(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
+        let (frame, rules) = (GridFrame::of(header)?, CellRules::of(header)?);
         let (width, height) = (header.width as usize, header.height as usize);
         Ok(World {
             map_id: header.map_id,

@@ -78,8 +78,6 @@ impl Map {
 mod tests {
     use std::io::Read;
 
-    use bytemuck::Zeroable;
-
     use super::*;
 
     fn header(width: u32, height: u32, resolution_m: f64, cells: &[u8]) -> MapHeader {
@@ -87,7 +85,7 @@ mod tests {
             width,
             height,
             resolution_m,
-            ..MapHeader::zeroed()
+            ..MapHeader::default()
         };
         header.map_id = header.id_of(cells);
         header

@@ -75,7 +75,6 @@ impl GridFrame {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use bytemuck::Zeroable;
     use messages::Pose2;
 
     use super::*;
@@ -90,7 +89,7 @@ mod tests {
                 y: 2.0,
                 yaw: 0.5,
             },
-            ..Zeroable::zeroed()
+            ..MapHeader::default()
         }
     }
 

@@ -11,7 +11,7 @@ const TRACKER: &str = "tracker";
 const SEARCH: &str = "--search";
 
 /// Options that a tracker shares with other nodes, and with which.
-const SHARED: [(&str, &[&str]); 3] = [
+const SHARED: [(&str, &[&str]); 2] = [
     (
         ACCUMULATOR,
         &[
@@ -23,7 +23,6 @@ const SHARED: [(&str, &[&str]); 3] = [
             "--beam-arc-m",
         ],
     ),
-    ("boundary_extractor", &["--occupied-from", "--free-to"]),
     (
         "peak_extractor",
         &[
@@ -35,7 +34,6 @@ const SHARED: [(&str, &[&str]); 3] = [
         ],
     ),
 ];
-const UNKNOWN_BLOCKS: &str = "--unknown-blocks";
 
 /// Whether anybody sends where the robot is, from scan to scan.
 pub fn has_tracker(dataflow: &Dataflow) -> bool {
@@ -56,11 +54,6 @@ pub fn settle(dataflow: &mut Dataflow) {
                 }
             }
         }
-    }
-    let blocks = |node: &Node| node.args.iter().any(|arg| arg == UNKNOWN_BLOCKS);
-    let reads = |node: &&Node| node.executable() == "boundary_extractor";
-    if dataflow.nodes.iter().filter(reads).any(blocks) {
-        trackers(dataflow).for_each(|tracker| set(tracker, UNKNOWN_BLOCKS, None));
     }
     if plays_at_max(dataflow) {
         return;
@@ -96,7 +89,7 @@ mod tests {
         let text = format!(
             "nodes:
   - {{id: r, path: bin/replayer, args: {player}, outputs: [scan]}}
-  - {{id: b, path: bin/boundary_extractor, args: --occupied-from 50 --unknown-blocks}}
+  - {{id: p, path: bin/peak_extractor, args: --fit-sigma-m 0.2}}
   - {{id: a, path: bin/accumulator, args: --max-beams=90, inputs: {{scan: r/scan, attention: t/attention}}, outputs: [votes]}}
   - {{id: t, path: bin/tracker, args: --rate 10 --max-beams 60, inputs: {{scan: r/scan}}, outputs: [attention]}}
 "
@@ -113,14 +106,7 @@ mod tests {
     #[test]
     fn a_tracker_takes_over_the_settings_of_others() {
         let args = settled("--rate=1");
-        let expected = [
-            "--rate",
-            "10",
-            "--max-beams",
-            "60",
-            "--occupied-from=50",
-            "--unknown-blocks",
-        ];
+        let expected = ["--rate", "10", "--max-beams", "60", "--fit-sigma-m=0.2"];
         assert_eq!(args[3], expected);
     }
 

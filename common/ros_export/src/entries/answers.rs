@@ -1,11 +1,18 @@
 //! Votes, hypotheses, beams and the tracker's pose, without loss, in messages of our own.
 
 use geometry::Pose;
-use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, PoseHeader, Vote, VotesHeader};
+use messages::{
+    Beam, BeamsHeader, HypothesesHeader, Hypothesis, MapHeader, PoseHeader, Vote, VotesHeader,
+};
 use ros::Header;
 use ros::backcast_msgs as own;
 
-pub(super) fn votes(header: Header, votes: &VotesHeader, items: &[Vote]) -> own::Votes {
+/// The votes of a scan; how cells were read is that of the map, where it is known.
+pub(super) fn votes(
+    header: Header,
+    (votes, items): (&VotesHeader, &[Vote]),
+    map: Option<&MapHeader>,
+) -> own::Votes {
     let vote = |vote: &Vote| own::Vote {
         x: vote.x,
         y: vote.y,
@@ -34,8 +41,8 @@ pub(super) fn votes(header: Header, votes: &VotesHeader, items: &[Vote]) -> own:
         known_heading: votes.known_heading,
         bearing_rounding: votes.bearing_rounding,
         base_from_laser: Pose::from(votes.base_from_laser).into(),
-        occupied_from: votes.occupied_from,
-        free_to: votes.free_to,
+        occupied_from: map.map_or(0, |map| map.occupied_from),
+        free_to: map.map_or(0, |map| map.free_to),
         max_beams: votes.max_beams,
         pooling: votes.pooling,
         beam_arc_m: votes.beam_arc_m,

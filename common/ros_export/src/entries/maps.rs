@@ -91,7 +91,7 @@ mod tests {
             height: 2,
             resolution_m: 0.05,
             map_id: 0x1f,
-            ..MapHeader::zeroed()
+            ..MapHeader::default()
         }
     }
 

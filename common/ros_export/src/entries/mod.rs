@@ -121,7 +121,9 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn votes(&mut self, votes: &VotesHeader, items: &[Vote]) -> Result<(), TranscriptError> {
         let at = self.measured(votes.stamp, topic::Votes::NAME)?;
-        let message = answers::votes(self.in_map(at.stamp), votes, items);
+        let map = self.map.as_ref();
+        let map = map.filter(|map| map.map_id == votes.map_id);
+        let message = answers::votes(self.in_map(at.stamp), (votes, items), map);
         self.message(topics::OWN_VOTES, at.ns, &message)
     }
 

@@ -31,7 +31,7 @@ fn map(cells: &[u8]) -> MapHeader {
         width: 2,
         height: 1,
         resolution_m: 0.05,
-        ..MapHeader::zeroed()
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(cells);
     header

@@ -138,7 +138,7 @@ impl Supply {
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
         if let (Some(map), Some(boundary)) = (&self.map, &self.boundary) {
-            match Key::of(map.header(), boundary.header()) {
+            match Key::of(map.header(), (boundary.header(), boundary.items())) {
                 Ok(key) => self.wanted = key.map(|key| (key, self.requests)),
                 Err(error) => refuse(map.header().map_id, &error, health)?,
             }

@@ -269,7 +269,6 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let mut loan = world.boundaries.loan(1).unwrap();
     loan.header_mut().map_id = id(&CHANGED);
     loan.header_mut().boundary_cells = 1;
-    loan.header_mut().occupied_from = 65;
     loan.items_mut()[0] = BoundaryCell { x: 999, y: 0 };
     loan.send().unwrap();
     let degraded = |report: &HealthHeader| report.refused == 2;

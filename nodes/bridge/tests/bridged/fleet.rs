@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use bytemuck::Zeroable;
 use messages::{MapHeader, topic};
 use tempfile::TempDir;
 use transport::Graph;
@@ -244,7 +243,7 @@ fn a_late_joiner_gets_the_map_through_the_router() {
         width: 3,
         height: 2,
         resolution_m: 0.05,
-        ..Zeroable::zeroed()
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&[0; 6]);
     let mut loan = maps.loan(6).unwrap();

@@ -86,6 +86,7 @@ fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
             y: 2.0,
             yaw: 0.5,
         },
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&cells);
     (header, cells)

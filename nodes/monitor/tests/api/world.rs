@@ -23,7 +23,7 @@ fn map_header() -> MapHeader {
         width: 3,
         height: 2,
         resolution_m: 0.05,
-        ..MapHeader::zeroed()
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&CELLS);
     header

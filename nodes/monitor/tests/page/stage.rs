@@ -142,7 +142,7 @@ impl Source {
             width,
             height,
             resolution_m: 0.1,
-            ..MapHeader::zeroed()
+            ..MapHeader::default()
         };
         header.map_id = header.id_of(&cells);
         let map = graph.publisher::<topic::Map>().unwrap();

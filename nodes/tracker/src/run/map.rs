@@ -23,7 +23,7 @@ impl Node {
         }
         self.health.state(NodeState::Busy)?;
         let checked = header.check_id(occupancy).map_err(TrackerError::from);
-        match checked.and_then(|()| Ok(World::new(header, occupancy, self.config.cells)?)) {
+        match checked.and_then(|()| Ok(World::new(header, occupancy)?)) {
             Ok(world) => {
                 self.start_on(&world);
                 self.world = Some(world);

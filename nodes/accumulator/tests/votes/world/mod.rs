@@ -61,7 +61,7 @@ pub(crate) fn map_header(rows: &[&str]) -> MapHeader {
         height: rows.len() as u32,
         resolution_m: FRAME.resolution_m,
         map_from_grid: FRAME.map_from_grid.into(),
-        ..Zeroable::zeroed()
+        ..MapHeader::default()
     };
     header.map_id = header.id_of(&occupancy(rows));
     header
@@ -154,8 +154,6 @@ impl World {
             free_cells: grid.free_cells() as u64,
             boundary_cells: cells.len() as u64,
             occupied_cells: grid.occupied_cells() as u64,
-            occupied_from: 65,
-            free_to: 25,
             ..Zeroable::zeroed()
         };
         loan.items_mut().copy_from_slice(&cells);
