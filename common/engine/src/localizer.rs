@@ -71,7 +71,8 @@ impl Workspace {
     }
 
     /// What the last scan said.
-    pub(crate) fn outcome(&self) -> &Outcome {
+    #[must_use]
+    pub fn outcome(&self) -> &Outcome {
         &self.outcome
     }
 }
@@ -100,7 +101,8 @@ pub struct Outcome {
 
 impl Outcome {
     /// What the best pose that was collected has of what is possible.
-    pub(crate) fn best_share(&self) -> VoteShare {
+    #[must_use]
+    pub fn best_share(&self) -> VoteShare {
         VoteShare::new(self.found.best, self.highest_possible as u16)
     }
 }

@@ -136,7 +136,7 @@ impl Workspace {
 
     /// The beams of the last scan, where places are judged by them.
     pub(crate) fn ends(&self, score: Score) -> Option<&Ends> {
-        (score == Score::Fit).then(|| self.peaks.ends())
+        self.peaks.judged_ends(score)
     }
 }
 

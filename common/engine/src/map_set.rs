@@ -16,7 +16,7 @@ use crate::fit::Ends;
 use crate::localizer::{Localizer, Outcome};
 use crate::locator::{self, Locator};
 use crate::observation::Observation;
-use crate::peaks::{Found, Merged, PeakConfig, Places, Score, merge};
+use crate::peaks::{Found, Merged, Places, merge};
 
 /// Maps that are ready to be asked, by any number of threads.
 #[derive(Debug, Clone)]
@@ -89,15 +89,7 @@ impl MapSet {
             return Ok(None);
         }
         let config = self.locators[0].peaks();
-        // What is left out of the places of a map may be among those of all.
-        let max_hypotheses = match config.score {
-            Score::Fit => u32::MAX,
-            Score::Votes => config.max_hypotheses,
-        };
-        let all = PeakConfig {
-            max_hypotheses,
-            ..*config
-        };
+        let all = config.of_each_map();
         let mut found = Vec::with_capacity(maps.len());
         for (map, (locator, workspace)) in (0..).zip(self.locators.iter().zip(maps.iter_mut())) {
             found.push(locator.judge(workspace, scan, &all, |outcome, judged| {
@@ -127,7 +119,7 @@ mod tests {
     use crate::grid::{Cell, CellRules, Grid, GridFrame};
     use crate::localizer::{LocalizerConfig, Prior};
     use crate::locator::{LocatorConfig, OccupancyView};
-    use crate::peaks::Place;
+    use crate::peaks::{PeakConfig, Place, Score};
     use crate::program::VoteConfig;
     use crate::scan::Scan;
     use crate::testing::{any_grid, any_scan};

@@ -15,7 +15,7 @@ use progress::say;
 use recording::{Kind, Recording};
 
 use crate::InitError;
-use crate::descriptor::{Source, descriptor_of};
+use crate::descriptor::{Served, Source, descriptor_of};
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -53,6 +53,11 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
+    /// Several maps in its place, as the floors of a building: a folder, or a file that names
+    /// them; all are searched
+    #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
+    maps: Option<PathBuf>,
+
     /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
     /// counter-clockwise
     #[arg(long, value_name = "X,Y,YAW_DEG", allow_hyphen_values = true)]
@@ -81,8 +86,12 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
         let file = config.out.clone();
         return Err(InitError::Exists { file });
     }
-    let map = config.map.as_deref().map(used_map).transpose()?;
-    let text = descriptor_of(&source, map.as_deref());
+    let map = match (&config.map, &config.maps) {
+        (Some(file), _) => Some(Served::Map(used_map(file)?)),
+        (None, Some(set)) => Some(Served::Set(used_set(set)?)),
+        (None, None) => None,
+    };
+    let text = descriptor_of(&source, map.as_ref());
     let failed = |source| InitError::Write {
         file: config.out.clone(),
         source,
@@ -114,7 +123,8 @@ fn write(file: &Path, text: &str) -> io::Result<()> {
 fn source(config: &Config) -> Result<Source, InitError> {
     let mount = config.mount.as_deref().map(mount).transpose()?;
     let is_robot = config.ros2.is_some();
-    if config.map.is_none() && !is_robot {
+    let has_map = config.map.is_some() || config.maps.is_some();
+    if !has_map && !is_robot {
         let needed = "--map is missing: the map of the building, a YAML file beside its image";
         return Err(InitError::Usage(needed.to_owned()));
     }
@@ -132,7 +142,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
         return Ok(Source::Ros2 {
             router: router.clone(),
             mount,
-            brings_map: config.map.is_none(),
+            brings_map: !has_map,
         });
     }
     if mount.is_some() {
@@ -181,6 +191,13 @@ fn used_map(file: &Path) -> Result<String, InitError> {
     }
     map::load(file)?;
     absolute(file)
+}
+
+fn used_set(path: &Path) -> Result<String, InitError> {
+    for map in map::set_of(path)?.maps {
+        map::load(map.yaml)?;
+    }
+    absolute(path)
 }
 
 fn absolute(file: &Path) -> Result<String, InitError> {

@@ -142,26 +142,81 @@ impl Source {
     }
 }
 
-/// The whole descriptor; `map` is the file that is served, where a file is.
-pub(crate) fn descriptor_of(source: &Source, map: Option<&str>) -> String {
+/// What is served where the robot does not bring its map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Served {
+    /// The map of a file.
+    Map(String),
+    /// The maps of a folder, or of a file that names them.
+    Set(String),
+}
+
+impl Served {
+    fn yaml(&self) -> String {
+        let (comment, option, file, ports) = match self {
+            Served::Map(file) => (
+                "Serves the map, and serves it again when the file changes.",
+                "--map",
+                file,
+                "    outputs: [map]",
+            ),
+            Served::Set(file) => (
+                "Serves all maps, and as `map` the one on which the robot is.",
+                "--maps",
+                file,
+                "    inputs:\n      pose: tracker/pose\n    outputs: [map, maps]",
+            ),
+        };
+        format!(
+            "
+  # {comment}
+  - id: map_server
+    path: map_server
+    args: {args}
+{ports}
+{RESTARTS}",
+            args = quoted(&format!("{option} {}", word(file)))
+        )
+    }
+}
+
+/// The whole descriptor; `map` is what is served, where a file is.
+pub(crate) fn descriptor_of(source: &Source, map: Option<&Served>) -> String {
     let from = source.node();
     let odometry = match source.has_odometry() {
         true => format!("\n      odometry: {from}/odometry"),
         false => String::new(),
     };
-    let map_server = map.map_or_else(String::new, |file| {
-        format!(
-            "
-  # Serves the map, and serves it again when the file changes.
-  - id: map_server
-    path: map_server
-    args: {args}
-    outputs: [map]
-{RESTARTS}",
-            args = quoted(&format!("--map {}", word(file)))
-        )
-    });
+    let map_server = map.map_or_else(String::new, Served::yaml);
     let map_from = source.map_node();
+    // Of several maps, those who search find the boundaries themselves.
+    let (maps, boundaries, boundary, by_map) = match map {
+        Some(Served::Set(_)) => (
+            "maps: map_server/maps".to_owned(),
+            String::new(),
+            "",
+            [
+                "votes_by_map, ",
+                "\n      votes_by_map: accumulator/votes_by_map",
+            ],
+        ),
+        _ => (
+            format!("map: {map_from}/map"),
+            format!(
+                "
+  # Finds the obstacle cells that a laser can hit.
+  - id: boundary_extractor
+    path: boundary_extractor
+    inputs:
+      map: {map_from}/map
+    outputs: [boundary]
+{RESTARTS}"
+            ),
+            "\n      boundary: boundary_extractor/boundary",
+            ["", ""],
+        ),
+    };
+    let [votes_out, votes_in] = by_map;
     format!(
         "# A graph of Backcast: {title}. Written by `backcast init`.
 #
@@ -169,33 +224,25 @@ pub(crate) fn descriptor_of(source: &Source, map: Option<&str>) -> String {
 # command `backcast`, in its installation and on the PATH. `backcast check` says what is
 # wrong with a changed file, `backcast run` starts it, `backcast status` looks at it.
 nodes:
-{source}{map_server}
-  # Finds the obstacle cells that a laser can hit.
-  - id: boundary_extractor
-    path: boundary_extractor
-    inputs:
-      map: {map_from}/map
-    outputs: [boundary]
-{RESTARTS}
+{source}{map_server}{boundaries}
   # Searches the whole map for each scan that the tracker asks about. `--threads N` uses
   # several processors, `--region` and `--headings-within` limit where it searches.
   - id: accumulator
     path: accumulator
     inputs:
       scan: {from}/scan
-      map: {map_from}/map
-      boundary: boundary_extractor/boundary{odometry}
+      {maps}{boundary}{odometry}
       attention: tracker/attention
-    outputs: [votes, readings, field]
+    outputs: [votes, {votes_out}readings, field]
 {RESTARTS}
   # Refines what was found and judges it: one place, several, or none that fits.
   - id: peak_extractor
     path: peak_extractor
     inputs:
-      votes: accumulator/votes
+      votes: accumulator/votes{votes_in}
       readings: accumulator/readings
       scan: {from}/scan
-      map: {map_from}/map
+      {maps}
     outputs: [hypotheses, beams]
 {RESTARTS}
   # Keeps the pose from scan to scan, and says how sure it is.
@@ -203,7 +250,7 @@ nodes:
     path: tracker
     inputs:
       scan: {from}/scan{odometry}
-      map: {map_from}/map
+      {maps}
       hypotheses: peak_extractor/hypotheses
     outputs: [pose, attention]
 {RESTARTS}
@@ -280,8 +327,13 @@ mod tests {
     #[test]
     fn what_is_written_is_a_sound_descriptor_with_the_arguments_as_given() {
         let folder = tempfile::tempdir().unwrap();
-        for source in sources() {
-            let map = (source.map_node() == "map_server").then_some("/maps/my house.yaml");
+        let file = || "/maps/my house.yaml".to_owned();
+        let served = [Served::Map(file()), Served::Set(file())];
+        let sources = sources().into_iter();
+        for (source, map) in
+            sources.flat_map(|source| served.each_ref().map(|map| (source.clone(), map)))
+        {
+            let map = (source.map_node() == "map_server").then_some(map);
             let text = descriptor_of(&source, map);
             let file = folder.path().join("graph.yaml");
             std::fs::write(&file, &text).unwrap();
@@ -293,8 +345,10 @@ mod tests {
                 let node = descriptor.dataflow.nodes.iter().find(|n| n.id == id);
                 node.unwrap().args.clone()
             };
-            if map.is_some() {
-                assert_eq!(args("map_server"), ["--map", "/maps/my house.yaml"]);
+            match map {
+                Some(Served::Map(file)) => assert_eq!(args("map_server"), ["--map", file]),
+                Some(Served::Set(file)) => assert_eq!(args("map_server"), ["--maps", file]),
+                None => {}
             }
             let fed_by = args(source.node());
             match &source {

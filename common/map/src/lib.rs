@@ -2,8 +2,8 @@
 //!
 //! [`load`] reads what `map_server` reads: a YAML description beside a PGM,
 //! PNG or BMP image, in trinary, scale or raw mode; [`save`] writes such a pair.
-//! [`set_of`] lists the maps of a building; [`OccupancyGrid::from_parts`] takes a grid from anywhere else. Every grid
-//! that the crate hands out is within the limits that it states. It knows no
+//! [`set_of`] lists the maps of a building; [`OccupancyGrid::from_parts`] takes a grid from
+//! anywhere else. Every grid that the crate hands out is within the limits that it states. It knows no
 //! topic and no engine, and repairs nothing: a map that is not sound is refused
 //! with file, place and what is allowed.
 
@@ -31,4 +31,4 @@ pub use keys::UnknownKey;
 pub use load::{image_of, load, load_noting, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
 pub use save::save;
-pub use set::{MAX_MAPS, MapFile, select, set_of, set_of_files};
+pub use set::{MAX_MAPS, MapFile, MapSet, Transition, set_of, set_of_files};

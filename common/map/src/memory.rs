@@ -55,6 +55,15 @@ impl MemoryLimit {
     /// For tools that hold a map and no index of it.
     pub const NONE: MemoryLimit = MemoryLimit(u64::MAX);
 
+    /// What is left beside a map that it holds.
+    #[must_use]
+    pub fn without(self, grid: &OccupancyGrid) -> Self {
+        let sides = (grid.width, grid.height);
+        let searched = searched_cells(sides, grid.resolution_m, &grid.cells);
+        let of_map = needed(sides, searched) - BYTES_OF_ALL;
+        MemoryLimit(self.0.saturating_sub(of_map))
+    }
+
     /// Whether the graph can hold a map with these sides in which hardly a cell is free:
     /// what is known before the cells are.
     ///
@@ -83,16 +92,12 @@ impl MemoryLimit {
         resolution_m: f64,
         cells: &[u8],
     ) -> Result<(), MapError> {
-        let reach = (REACH_M / resolution_m / BLOCK as f64).ceil() as usize;
-        let blocks = near_free(width.max(1) as usize, cells, reach);
-        let searched = blocks.saturating_mul(BLOCK * BLOCK).min(cells.len());
-        self.check_searched((width, height), searched as u64)
+        let sides = (width, height);
+        self.check_searched(sides, searched_cells(sides, resolution_m, cells))
     }
 
     fn check_searched(self, (width, height): (u32, u32), searched: u64) -> Result<(), MapError> {
-        let cells = u64::from(width) * u64::from(height);
-        let of_all = BYTES_OF_ALL + cells.saturating_mul(BYTES_A_CELL);
-        let needed = of_all.saturating_add(searched.saturating_mul(BYTES_A_SEARCHED_CELL));
+        let needed = needed((width, height), searched);
         if needed <= self.0 {
             return Ok(());
         }
@@ -103,6 +108,20 @@ impl MemoryLimit {
             limit_mb: self.0 >> 20,
         })
     }
+}
+
+/// Bytes that a map takes of which so many cells are searched.
+fn needed((width, height): (u32, u32), searched: u64) -> u64 {
+    let cells = u64::from(width) * u64::from(height);
+    let of_all = BYTES_OF_ALL + cells.saturating_mul(BYTES_A_CELL);
+    of_all.saturating_add(searched.saturating_mul(BYTES_A_SEARCHED_CELL))
+}
+
+/// Cells of the blocks in which poses are searched.
+fn searched_cells((width, _): (u32, u32), resolution_m: f64, cells: &[u8]) -> u64 {
+    let reach = (REACH_M / resolution_m / BLOCK as f64).ceil() as usize;
+    let blocks = near_free(width.max(1) as usize, cells, reach);
+    blocks.saturating_mul(BLOCK * BLOCK).min(cells.len()) as u64
 }
 
 /// How many blocks hold a free cell, or lie at most `reach` blocks from one that does, in

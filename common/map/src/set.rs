@@ -9,14 +9,22 @@
 //!     floor: 0              # free text; may be left out
 //!   - name: first
 //!     map: first/map.yaml
+//! transitions:              # where a robot goes from one map to another; may be left out
+//!   - name: lift
+//!     size: [1.6, 2.0]      # a rectangle: its sides along its own x and y, metres
+//!     at:                   # its centre on each map, metres, and its x axis, degrees
+//!       ground: [12.0, 3.5, 0]
+//!       first: [11.8, 3.6, 90]
 //! ```
 //!
 //! The order counts: of equally good poses, that on the map which is named first is the
 //! better one.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use geometry::Pose;
 use serde::Deserialize;
 use serde_saphyr::{MessageFormatter, UserMessageFormatter};
 
@@ -31,6 +39,32 @@ pub const MAX_MAPS: usize = 1000;
 
 /// Most bytes of a file that names maps.
 const MAX_LIST_BYTES: u64 = 1 << 20;
+
+/// The longest side of a transition, metres.
+const MAX_TRANSITION_M: f64 = 100.0;
+
+/// The maps of a building or a campus.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapSet {
+    /// In the order by which ties are decided.
+    pub maps: Vec<MapFile>,
+    /// Where a robot may go from one of them to another.
+    pub transitions: Vec<Transition>,
+}
+
+/// A rectangle that two maps have, as a lift, stairs, or a door between two buildings. A robot
+/// that is somewhere in it on one map is at the same place of it on the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transition {
+    /// What it is called.
+    pub name: String,
+    /// The numbers of the two maps in their set, from 0.
+    pub maps: [usize; 2],
+    /// The rectangle's centre and its x axis on each of them.
+    pub map_from_region: [Pose; 2],
+    /// Its sides along its x and y, metres.
+    pub size_m: [f64; 2],
+}
 
 /// A map of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,6 +81,16 @@ pub struct MapFile {
 #[serde(deny_unknown_fields)]
 struct List {
     maps: Vec<Entry>,
+    #[serde(default)]
+    transitions: Vec<TransitionEntry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TransitionEntry {
+    name: Scalar,
+    size: [Scalar; 2],
+    at: BTreeMap<String, [Scalar; 3]>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -65,15 +109,15 @@ struct Entry {
 /// # Errors
 /// Says what cannot be read, or what is wrong and what is allowed. The maps themselves are
 /// not opened.
-pub fn set_of(path: impl AsRef<Path>) -> Result<Vec<MapFile>, MapError> {
+pub fn set_of(path: impl AsRef<Path>) -> Result<MapSet, MapError> {
     let path = path.as_ref();
-    let maps = match path.is_dir() {
+    let set = match path.is_dir() {
         true if path.join(LIST).is_file() => listed(&path.join(LIST))?,
-        true => in_folder(path)?,
+        true => MapSet::without_transitions(in_folder(path)?),
         false => listed(path)?,
     };
-    check(path, &maps)?;
-    Ok(maps)
+    check(path, &set.maps)?;
+    Ok(set)
 }
 
 /// Maps that are given one by one, as a set: each is called by its file, or by its folder
@@ -81,31 +125,60 @@ pub fn set_of(path: impl AsRef<Path>) -> Result<Vec<MapFile>, MapError> {
 ///
 /// # Errors
 /// There is none, more than [`MAX_MAPS`], or two have one name.
-pub fn set_of_files(files: &[PathBuf]) -> Result<Vec<MapFile>, MapError> {
+pub fn set_of_files(files: &[PathBuf]) -> Result<MapSet, MapError> {
     let maps: Vec<MapFile> = files.iter().map(|yaml| named(yaml)).collect();
     check(Path::new("--map"), &maps)?;
-    Ok(maps)
+    Ok(MapSet::without_transitions(maps))
 }
 
-/// Those of these maps that are asked for, each by its name or by its floor's, in the order of
-/// the set; all of them where none is.
-///
-/// # Errors
-/// A name is neither a map's nor a floor's; says which there are.
-pub fn select(maps: Vec<MapFile>, on: &[String]) -> Result<Vec<MapFile>, MapError> {
+impl MapSet {
+    fn without_transitions(maps: Vec<MapFile>) -> Self {
+        MapSet {
+            maps,
+            transitions: Vec::new(),
+        }
+    }
+
+    /// Those of the maps that are asked for, each by its name or by its floor's, in the order
+    /// of the set, and the transitions between them; all of them where none is.
+    ///
+    /// # Errors
+    /// A name is neither a map's nor a floor's; says which there are.
+    pub fn select(self, on: &[String]) -> Result<Self, MapError> {
+        let MapSet { maps, transitions } = self;
+        let is_kept = selected(&maps, on)?;
+        let number = |map: usize| is_kept[..map].iter().filter(|kept| **kept).count();
+        let between = transitions.into_iter();
+        let between = between.filter(|transition| transition.maps.iter().all(|&map| is_kept[map]));
+        let transitions = between.map(|transition| Transition {
+            maps: transition.maps.map(number),
+            ..transition
+        });
+        let numbered = maps.into_iter().zip(&is_kept);
+        Ok(MapSet {
+            transitions: transitions.collect(),
+            maps: numbered
+                .filter_map(|(map, kept)| kept.then_some(map))
+                .collect(),
+        })
+    }
+}
+
+/// Which of the maps are asked for.
+fn selected(maps: &[MapFile], on: &[String]) -> Result<Vec<bool>, MapError> {
     let is_called =
         |map: &MapFile, name: &String| map.name == *name || map.floor.as_ref() == Some(name);
     for name in on {
         if !maps.iter().any(|map| is_called(map, name)) {
             let reason = format!(
                 "{name:?} is neither a map nor a floor: allowed are {}",
-                all_names(&maps)
+                all_names(maps)
             );
             return Err(refused(Path::new("--on"), reason));
         }
     }
     let is_asked = |map: &MapFile| on.is_empty() || on.iter().any(|name| is_called(map, name));
-    Ok(maps.into_iter().filter(is_asked).collect())
+    Ok(maps.iter().map(is_asked).collect())
 }
 
 /// The maps, each with its floor where it has one.
@@ -134,7 +207,7 @@ fn named(yaml: &Path) -> MapFile {
     }
 }
 
-fn listed(path: &Path) -> Result<Vec<MapFile>, MapError> {
+fn listed(path: &Path) -> Result<MapSet, MapError> {
     let failed = |source| MapError::Description {
         path: path.to_owned(),
         source,
@@ -156,7 +229,57 @@ fn listed(path: &Path) -> Result<Vec<MapFile>, MapError> {
         yaml: folder.join(entry.map.text()),
         floor: entry.floor.map(|floor| floor.text().to_owned()),
     });
-    Ok(maps.collect())
+    let maps: Vec<MapFile> = maps.collect();
+    let between = list.transitions.iter();
+    let between = between.map(|entry| {
+        entry.transitions(&maps).map_err(|reason| {
+            let name = entry.name.text();
+            refused(path, format!("transition {name:?}: {reason}"))
+        })
+    });
+    let transitions = between.collect::<Result<Vec<_>, _>>()?.concat();
+    Ok(MapSet { maps, transitions })
+}
+
+impl TransitionEntry {
+    /// One for each two of its maps.
+    fn transitions(&self, maps: &[MapFile]) -> Result<Vec<Transition>, String> {
+        let number = |scalar: &Scalar| scalar.number().filter(|number| number.is_finite());
+        let side = |scalar: &Scalar| number(scalar).filter(|m| *m > 0.0 && *m <= MAX_TRANSITION_M);
+        let [Some(along_x), Some(along_y)] = self.size.each_ref().map(side) else {
+            return Err(format!(
+                "its size is {:?} x {:?}: allowed are two sides above 0 and up to \
+                 {MAX_TRANSITION_M} m",
+                self.size[0].text(),
+                self.size[1].text()
+            ));
+        };
+        let mut sides = Vec::new();
+        for (name, pose) in &self.at {
+            let Some(map) = maps.iter().position(|map| map.name == *name) else {
+                let all = all_names(maps);
+                return Err(format!("there is no map {name:?}: allowed are {all}"));
+            };
+            let [Some(x), Some(y), Some(degrees)] = pose.each_ref().map(number) else {
+                return Err(format!(
+                    "its place on {name:?} is not x and y in metres and an angle in degrees"
+                ));
+            };
+            sides.push((map, Pose::new(x, y, degrees.to_radians())));
+        }
+        if sides.len() < 2 {
+            return Err("it is on one map: needed are two at least".to_owned());
+        }
+        let pairs = sides.iter().enumerate();
+        let pairs = pairs.flat_map(|(i, a)| sides[i + 1..].iter().map(move |b| (a, b)));
+        let transition = |(a, b): (&(usize, Pose), &(usize, Pose))| Transition {
+            name: self.name.text().to_owned(),
+            maps: [a.0, b.0],
+            map_from_region: [a.1, b.1],
+            size_m: [along_x, along_y],
+        };
+        Ok(pairs.map(transition).collect())
+    }
 }
 
 fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
@@ -249,7 +372,7 @@ mod tests {
             ("d/x", ""),
         ];
         let folder = folder(&files);
-        let maps = set_of(folder.path()).unwrap();
+        let maps = set_of(folder.path()).unwrap().maps;
         assert_eq!(names(&maps), ["a", "b"]);
         assert_eq!(maps[0].yaml, folder.path().join("a/map.yaml"));
     }
@@ -260,7 +383,7 @@ mod tests {
             "maps:\n  - {name: up, map: u.yaml, floor: 1}\n  - name: down\n    map: /d.yaml\n";
         let folder = folder(&[("maps.yaml", list), ("x.yaml", "")]);
         for path in [folder.path().to_owned(), folder.path().join("maps.yaml")] {
-            let maps = set_of(path).unwrap();
+            let maps = set_of(path).unwrap().maps;
             assert_eq!(names(&maps), ["up", "down"]);
             assert_eq!(maps[0].yaml, folder.path().join("u.yaml"));
             assert_eq!(maps[0].floor.as_deref(), Some("1"));
@@ -290,11 +413,8 @@ mod tests {
             .collect();
         let check = |on: &[&str], expected: &[&str]| {
             let on: Vec<String> = on.iter().map(|&name| name.to_owned()).collect();
-            assert_eq!(
-                names(&select(maps.clone(), &on).unwrap()),
-                expected,
-                "{on:?}"
-            );
+            let set = MapSet::without_transitions(maps.clone());
+            assert_eq!(names(&set.select(&on).unwrap().maps), expected, "{on:?}");
         };
         check(&[], &["east", "west", "roof", "yard"]);
         check(&["yard", "west"], &["west", "yard"]);
@@ -302,11 +422,68 @@ mod tests {
         check(&["2", "east", "2", "roof"], &["east", "roof"]);
         for wrong in ["3", "", "Yard"] {
             let on = ["1".to_owned(), wrong.to_owned()];
-            let error = select(maps.clone(), &on).unwrap_err().to_string();
+            let set = MapSet::without_transitions(maps.clone());
+            let error = set.select(&on).unwrap_err().to_string();
             assert!(error.contains(&format!("{wrong:?} is neither")), "{error}");
             let there = "east (floor 1), west (floor 1), roof (floor 2), yard";
             assert!(error.contains(there), "{error}");
         }
+    }
+
+    const FLOORS: &str = "maps:
+  - {name: cellar, map: c.yaml}
+  - {name: ground, map: g.yaml}
+  - {name: first, map: f.yaml}
+";
+
+    #[test]
+    fn transitions_are_between_each_two_of_their_maps() {
+        let lift = "transitions:
+  - name: lift
+    size: [1.6, 2]
+    at: {ground: [12, 3.5, 0], cellar: [1, 2, -90], first: [-1.5, '3', 90]}
+";
+        let folder = folder(&[("maps.yaml", &format!("{FLOORS}{lift}"))]);
+        let set = set_of(folder.path()).unwrap();
+        let maps: Vec<[usize; 2]> = set.transitions.iter().map(|t| t.maps).collect();
+        assert_eq!(maps, [[0, 2], [0, 1], [2, 1]]);
+        let [_, down, up] = &set.transitions[..] else {
+            panic!("three pairs of three maps");
+        };
+        assert_eq!((&*up.name, up.size_m), ("lift", [1.6, 2.0]));
+        let quarter = std::f64::consts::FRAC_PI_2;
+        assert_eq!(down.map_from_region[0], Pose::new(1.0, 2.0, -quarter));
+        assert_eq!(up.map_from_region[0], Pose::new(-1.5, 3.0, quarter));
+        // Of some maps, those between them, by their new numbers.
+        let on = ["ground".to_owned(), "first".to_owned()];
+        let some = set.select(&on).unwrap();
+        assert_eq!(names(&some.maps), ["ground", "first"]);
+        let maps: Vec<[usize; 2]> = some.transitions.iter().map(|t| t.maps).collect();
+        assert_eq!(maps, [[1, 0]]);
+    }
+
+    #[test]
+    fn what_is_no_transition_is_refused_with_what_is_allowed() {
+        let check = |lift: &str, expected: &str| {
+            let list = format!("{FLOORS}transitions:\n  - {{name: lift, {lift}}}\n");
+            let folder = folder(&[("maps.yaml", &list)]);
+            let error = set_of(folder.path()).unwrap_err().to_string();
+            assert!(error.contains(expected), "{lift}: {error}");
+        };
+        let two = "at: {ground: [1, 2, 3], first: [1, 2, 3]}";
+        check(&format!("size: [0, 2], {two}"), "above 0 and up to 100 m");
+        check(&format!("size: [1, 101], {two}"), "\"1\" x \"101\"");
+        check(&format!("size: [1, 2, 3], {two}"), "3");
+        check(&format!("size: [1, 2], sice: 3, {two}"), "sice");
+        check("size: [1, 2], at: {ground: [1, 2, 3]}", "needed are two");
+        check(
+            "size: [1, 2], at: {ground: [1, 2, 3], roof: [1, 2, 3]}",
+            "transition \"lift\": there is no map \"roof\": allowed are cellar, ground, first",
+        );
+        check(
+            "size: [1, 2], at: {ground: [1, 2, x], first: [1, 2, 3]}",
+            "its place on \"ground\" is not x and y",
+        );
     }
 
     #[test]

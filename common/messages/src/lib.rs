@@ -17,6 +17,7 @@ mod hypotheses;
 mod initial_pose;
 mod log;
 mod map;
+mod maps;
 mod name;
 mod odometry;
 mod particles;
@@ -43,6 +44,7 @@ pub use hypotheses::{HypothesesHeader, Hypothesis, Verdict};
 pub use initial_pose::{InitialPose, InitialPoseKind};
 pub use log::{LogHeader, LogLevel};
 pub use map::{FREE_TO, MapHeader, OCCUPIED_FROM, UNKNOWN, WrongMapId, map_id};
+pub use maps::{InvalidMapSet, MapSet, MapsHeader, Transition};
 pub use name::{FrameName, MapName, Name};
 pub use odometry::Odometry;
 pub use particles::{Particle, ParticlesHeader};
@@ -55,7 +57,7 @@ pub use scan::ScanHeader;
 pub use stamp::Stamp;
 pub use topic::{Message, Topic};
 pub use tracked_pose::{PoseHeader, TrackReason, TrackState};
-pub use votes::{SearchOutcome, Vote, VotesHeader};
+pub use votes::{SearchOutcome, Vote, VotesByMapHeader, VotesHeader};
 
 /// Pins a message's size, alignment and the offset of every field.
 #[cfg(test)]

@@ -5,8 +5,8 @@ use bytemuck::Pod;
 use crate::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
     GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader, MapHeader,
-    Odometry, Particle, ParticlesHeader, PoseHeader, Reading, ReadingsHeader, RegionHeader,
-    SaveHeader, ScanHeader, Vote, VotesHeader,
+    MapsHeader, Odometry, Particle, ParticlesHeader, PoseHeader, Reading, ReadingsHeader,
+    RegionHeader, SaveHeader, ScanHeader, Vote, VotesByMapHeader, VotesHeader,
 };
 
 #[cfg(feature = "iceoryx2")]
@@ -80,6 +80,10 @@ topics! {
     Map = "map", MapHeader, [u8] { latched: true, depth: 1 };
     /// The occupied cells that a ray can meet first.
     Boundary = "boundary", BoundaryHeader, [BoundaryCell] { latched: true, depth: 1 };
+    /// All maps of a set, which are searched together.
+    Maps = "maps", MapsHeader, [u8] { latched: true, depth: 1 };
+    /// Which of the votes of a scan are on which map, where several are searched.
+    VotesByMap = "votes_by_map", VotesByMapHeader, [VotesHeader];
     /// The poses at or above the floor, most votes first.
     Votes = "votes", VotesHeader, [Vote];
     /// What the second stage judges of a scan that was joined or moved.

@@ -9,7 +9,7 @@ use crate::{Pose2, Stamp};
 
 /// Header of topic `votes`; the items are poses by falling intensity, equal ones
 /// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
-/// below.
+/// below. Where several maps were searched, they are those of each in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -70,6 +70,24 @@ pub struct VotesHeader {
     pub has_readings: u32,
     /// Lasers of which the scan was joined.
     pub lasers_used: u32,
+    /// Maps that were searched together; their votes follow each other, in the order of topic
+    /// `votes_by_map`, which has what this header says of the leading map for each of them. 0
+    /// where one map was searched alone.
+    pub maps: u64,
+}
+
+/// Header of topic `votes_by_map`: which of the votes of a scan are on which map. The items
+/// are the headers that the votes of each map would have alone; `total` is how many they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("VotesByMapHeader/v1")
+)]
+#[repr(C)]
+pub struct VotesByMapHeader {
+    /// Of the scan.
+    pub stamp: Stamp,
 }
 
 impl VotesHeader {
@@ -121,14 +139,19 @@ pub struct Vote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(VotesHeader, size 168, align 8, {
+    crate::pin_layout!(VotesHeader, size 176, align 8, {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
         max_beams: 144, pooling: 148, beam_arc_m: 152, has_readings: 160,
-        lasers_used: 164,
+        lasers_used: 164, maps: 168,
     });
+
+    mod by_map {
+        use super::*;
+        crate::pin_layout!(VotesByMapHeader, size 24, align 8, { stamp: 0 });
+    }
 
     mod vote {
         use super::*;

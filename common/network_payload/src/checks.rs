@@ -8,9 +8,10 @@
 use messages::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
     FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose,
-    InitialPoseKind, LogHeader, LogLevel, MapHeader, NodeState, Odometry, Particle,
-    ParticlesHeader, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader,
-    ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesHeader, topic,
+    InitialPoseKind, LogHeader, LogLevel, MapHeader, MapSet, MapsHeader, NodeState, Odometry,
+    Particle, ParticlesHeader, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader,
+    SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesByMapHeader,
+    VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -50,12 +51,30 @@ pub(crate) fn boundary(header: &BoundaryHeader, cells: &[BoundaryCell]) -> Check
     refuse.unless_count("cells", cells.len(), header.boundary_cells)
 }
 
-pub(crate) fn votes(header: &VotesHeader, votes: &[Vote]) -> Checked {
-    let refuse = Refuse::on::<topic::Votes>();
+pub(crate) fn maps(header: &MapsHeader, items: &[u8]) -> Checked {
+    let refuse = Refuse::on::<topic::Maps>();
+    match MapSet::read(header, items) {
+        Ok(_) => Ok(()),
+        Err(error) => refuse.refuse("items", &error, "a set of maps".into()),
+    }
+}
+
+pub(crate) fn votes_by_map(_: &VotesByMapHeader, maps: &[VotesHeader]) -> Checked {
+    let refuse = Refuse::on::<topic::VotesByMap>();
+    maps.iter()
+        .try_for_each(|header| votes_header(refuse, header))
+}
+
+fn votes_header(refuse: Refuse, header: &VotesHeader) -> Checked {
     refuse.unless_finite("known_heading", header.known_heading)?;
     refuse.unless_finite("bearing_rounding", header.bearing_rounding)?;
     refuse.unless_finite("beam_arc_m", header.beam_arc_m)?;
-    refuse.unless_pose("base_from_laser", header.base_from_laser)?;
+    refuse.unless_pose("base_from_laser", header.base_from_laser)
+}
+
+pub(crate) fn votes(header: &VotesHeader, votes: &[Vote]) -> Checked {
+    let refuse = Refuse::on::<topic::Votes>();
+    votes_header(refuse, header)?;
     refuse.unless_count("votes", votes.len(), header.total)
 }
 
@@ -191,6 +210,7 @@ fn area(width: u32, height: u32) -> u64 {
 }
 
 /// Refuses on behalf of one topic.
+#[derive(Clone, Copy)]
 struct Refuse {
     topic: &'static str,
 }

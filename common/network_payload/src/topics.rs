@@ -91,9 +91,11 @@ macro_rules! wire {
 wire! {
     Scan = "Scan/v2", MIB, scan, [stamp.entered_ns];
     OdometryTopic = "Odometry/v2", 4 * KIB, odometry, [stamp.entered_ns];
-    Map = "Map/v1", 64 * MIB, map, [stamp.entered_ns], compressed, kept;
-    Boundary = "Boundary/v1", 32 * MIB, boundary, [stamp.entered_ns], compressed, kept;
-    Votes = "Votes/v4", 16 * MIB, votes, [stamp.entered_ns];
+    Map = "Map/v2", 64 * MIB, map, [stamp.entered_ns], compressed, kept;
+    Boundary = "Boundary/v2", 32 * MIB, boundary, [stamp.entered_ns], compressed, kept;
+    Maps = "Maps/v1", 64 * MIB, maps, [stamp.entered_ns], compressed, kept;
+    VotesByMap = "VotesByMap/v1", MIB, votes_by_map, [stamp.entered_ns];
+    Votes = "Votes/v5", 16 * MIB, votes, [stamp.entered_ns];
     Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
     Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
     Hypotheses = "Hypotheses/v3", MIB, hypotheses, [stamp.entered_ns, sent_ns];

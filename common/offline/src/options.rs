@@ -132,7 +132,7 @@ impl Options {
             let grid = self.load(&yaml, recordings)?;
             Ok(NamedMap { name, floor, grid })
         };
-        map::select(files, on)?.into_iter().map(load).collect()
+        files.select(on)?.maps.into_iter().map(load).collect()
     }
 
     fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {

@@ -69,6 +69,8 @@ round_trips! {
     odometry_arrives: topic::OdometryTopic,
     map_arrives: topic::Map,
     boundary_arrives: topic::Boundary,
+    sets_of_maps_arrive: topic::Maps,
+    votes_by_map_arrive: topic::VotesByMap,
     votes_arrive: topic::Votes,
     readings_arrive: topic::Readings,
     field_arrives: topic::Field,

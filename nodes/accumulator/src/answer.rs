@@ -18,22 +18,40 @@ pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 /// Header and items of `field`.
 pub type Image<'a> = (FieldHeader, &'a [u16]);
 
-/// Asks the engine; `None` if `stop` said so before it was done. The localizer
-/// must be prepared for a known heading if and only if there is one.
+/// Asks the engine, each map in a workspace of its own; the number of the map that leads, or
+/// `None` if `stop` said so before it was done. The maps must be prepared for a known heading
+/// if and only if there is one.
 ///
 /// # Errors
 /// If the engine refuses the scan or the heading.
-pub fn ask<'w>(
-    localizer: &Localizer,
-    workspace: &'w mut Workspace,
+///
+/// # Panics
+/// If there is no map.
+pub fn ask(
+    maps: &[PreparedMap],
+    workspaces: &mut Vec<Workspace>,
     scan: Observation<'_>,
     heading: Option<f64>,
     stop: &dyn Fn() -> bool,
-) -> Result<Option<&'w Outcome>, EngineError> {
-    match heading {
-        None => localizer.search_in(workspace, scan, stop),
-        Some(heading) => localizer.search_at_in(workspace, scan, heading, stop),
+) -> Result<Option<usize>, EngineError> {
+    workspaces.resize_with(maps.len(), Workspace::default);
+    if let ([map], [workspace]) = (maps, &mut workspaces[..]) {
+        let found = match heading {
+            None => map.localizer.search_in(workspace, scan, stop)?,
+            Some(heading) => map.localizer.search_at_in(workspace, scan, heading, stop)?,
+        };
+        return Ok(found.map(|_| 0));
     }
+    let localizers = maps.iter().map(|map| &map.localizer);
+    let searched = localizers.zip(workspaces.iter_mut()).collect();
+    if Localizer::search_together(searched, scan, heading, stop)?.is_none() {
+        return Ok(None);
+    }
+    let shares = workspaces.iter().map(|w| w.outcome().best_share());
+    let numbered = shares.enumerate();
+    // Of equal ones the first leads.
+    let leading = numbered.reduce(|a, b| if b.1.compare(a.1).is_gt() { b } else { a });
+    Ok(leading.map(|(number, _)| number))
 }
 
 /// What to send about a scan to which the engine replied within `engine_ns`.
@@ -248,6 +266,7 @@ mod tests {
     fn an_answer_carries_all_that_the_engine_said() {
         let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
         let expected = VotesHeader {
+            maps: 0,
             stamp: header().stamp,
             map_id: 77,
             total: 1,

@@ -21,6 +21,9 @@ pub enum AccumulatorError {
     /// The map is not the one that its id says.
     #[error(transparent)]
     MapId(#[from] messages::WrongMapId),
+    /// The set of maps is none.
+    #[error(transparent)]
+    MapSet(#[from] messages::InvalidMapSet),
     /// The map has an impossible rule for its cells.
     #[error(transparent)]
     Rule(#[from] messages::InvalidRule),

@@ -1,4 +1,4 @@
-//! From a map and its boundary to a localizer.
+//! From a map and its boundary, or each map of a set, to a localizer.
 //!
 //! Both come from other processes, so nothing in them is believed before it has
 //! been checked. That a boundary is complete cannot be seen without extracting
@@ -20,8 +20,8 @@ pub struct Key {
     pub map_id: u64,
     /// By which its cells are read.
     pub rules: CellRules,
-    /// Hash of the boundary's cells.
-    boundary: u64,
+    /// Hash of the boundary's cells; none of a map of a set.
+    boundary: Option<u64>,
 }
 
 impl Key {
@@ -37,9 +37,21 @@ impl Key {
         let key = Key {
             map_id: map.map_id,
             rules: CellRules::of(map)?,
-            boundary: XxHash3_64::oneshot(bytemuck::cast_slice(cells)),
+            boundary: Some(XxHash3_64::oneshot(bytemuck::cast_slice(cells))),
         };
         Ok((map.map_id == boundary.map_id).then_some(key))
+    }
+
+    /// The key of a map of a set.
+    ///
+    /// # Errors
+    /// If the map's rules are out of range.
+    pub fn in_set(map: &MapHeader) -> Result<Key, AccumulatorError> {
+        Ok(Key {
+            map_id: map.map_id,
+            rules: CellRules::of(map)?,
+            boundary: None,
+        })
     }
 }
 
@@ -54,16 +66,29 @@ pub struct PreparedMap {
     pub space: Space,
 }
 
-/// A map with its boundary, on the way to a localizer.
+/// A map, with its boundary unless it is one of a set, on the way to a localizer.
 #[derive(Debug, Clone)]
 pub struct Job {
     map: MapHeader,
     occupancy: Vec<u8>,
     rules: CellRules,
-    boundary: Vec<BoundaryCell>,
+    boundary: Option<Vec<BoundaryCell>>,
 }
 
 impl Job {
+    /// Takes a map of a set, whose boundary is extracted here: topic `boundary` has one map's.
+    ///
+    /// # Errors
+    /// If the map has impossible rules.
+    pub fn in_set(map: &MapHeader, occupancy: &[u8]) -> Result<Self, AccumulatorError> {
+        Ok(Job {
+            map: *map,
+            occupancy: occupancy.to_vec(),
+            rules: CellRules::of(map)?,
+            boundary: None,
+        })
+    }
+
     /// Takes a copy along: samples stay on the thread that received them.
     ///
     /// # Errors
@@ -82,8 +107,14 @@ impl Job {
             map: *map,
             occupancy: occupancy.to_vec(),
             rules: CellRules::of(map)?,
-            boundary: boundary.to_vec(),
+            boundary: Some(boundary.to_vec()),
         })
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn map_id(&self) -> u64 {
+        self.map.map_id
     }
 
     /// Makes the localizer, which takes from milliseconds to seconds, unless what takes
@@ -102,8 +133,13 @@ impl Job {
         let space = Space::new(config.headings, frame.resolution_m, width, height)?;
         let (cells, rules) = (&self.occupancy, self.rules);
         let preparation = Preparation::of_map(frame, (width, height), cells, rules, config, prior)?;
-        self.check_boundary()?;
-        let preparation = preparation.with_boundary(self.boundary);
+        let preparation = match self.boundary {
+            None => preparation,
+            Some(boundary) => {
+                check_boundary(&self.map, (&self.occupancy, self.rules), &boundary)?;
+                preparation.with_boundary(boundary)
+            }
+        };
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
             map_id: self.map.map_id,
@@ -112,23 +148,27 @@ impl Job {
         };
         Ok((map, kept))
     }
+}
 
-    /// The engine takes each cell for an obstacle of its grid, and each but once.
-    fn check_boundary(&self) -> Result<(), AccumulatorError> {
-        let (width, height) = (self.map.width, self.map.height);
-        let is_occupied = |cell: BoundaryCell| {
-            let (x, y) = (u32::from(cell.x), u32::from(cell.y));
-            let occupancy = self.occupancy.get(y as usize * width as usize + x as usize);
-            x < width && y < height && occupancy.is_some_and(|&cell| self.rules.is_occupied(cell))
-        };
-        if let Some(&cell) = self.boundary.iter().find(|&&cell| !is_occupied(cell)) {
-            return Err(AccumulatorError::BoundaryCell { cell });
-        }
-        let mut neighbours = self.boundary.iter().zip(self.boundary.iter().skip(1));
-        match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
-            Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
-            None => Ok(()),
-        }
+/// The engine takes each cell for an obstacle of its grid, and each but once.
+fn check_boundary(
+    map: &MapHeader,
+    (occupancy, rules): (&[u8], CellRules),
+    boundary: &[BoundaryCell],
+) -> Result<(), AccumulatorError> {
+    let (width, height) = (map.width, map.height);
+    let is_occupied = |cell: BoundaryCell| {
+        let (x, y) = (u32::from(cell.x), u32::from(cell.y));
+        let occupancy = occupancy.get(y as usize * width as usize + x as usize);
+        x < width && y < height && occupancy.is_some_and(|&cell| rules.is_occupied(cell))
+    };
+    if let Some(&cell) = boundary.iter().find(|&&cell| !is_occupied(cell)) {
+        return Err(AccumulatorError::BoundaryCell { cell });
+    }
+    let mut neighbours = boundary.iter().zip(boundary.iter().skip(1));
+    match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
+        Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
+        None => Ok(()),
     }
 }
 

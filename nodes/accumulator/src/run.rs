@@ -14,7 +14,7 @@ use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
 use engine::joined::{JoinConfig, Joiner, Kept, Role, Seen};
 use engine::localizer::Workspace;
-use messages::{ScanHeader, Vote, VotesHeader};
+use messages::{ScanHeader, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
@@ -57,9 +57,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         kept: (config.search == Searched::Asked).then(KeptScans::default),
         recalled: None,
         supply: Supply::new(config),
-        map: None,
+        maps: Vec::new(),
         sonar: config.sonar.window().map(Sonar::new),
-        workspace: Workspace::default(),
+        workspaces: Vec::new(),
         readings: Readings::default(),
         gaps: BTreeMap::new(),
         last_notes: String::new(),
@@ -91,11 +91,12 @@ struct Node {
     /// What the scan saw that is searched, where it is one of those.
     recalled: Option<Kept>,
     supply: Supply,
-    map: Option<PreparedMap>,
+    /// That are searched; none where there is no map yet.
+    maps: Vec<PreparedMap>,
     /// What scans are read through, where they are those of sonars.
     sonar: Option<Sonar>,
-    /// For all maps, one after the other.
-    workspace: Workspace,
+    /// One for each map.
+    workspaces: Vec<Workspace>,
     readings: Readings,
     /// By laser.
     gaps: BTreeMap<String, GapCounter>,
@@ -110,8 +111,9 @@ impl Node {
     /// Looks at the maps between any two scans, for a search may take long.
     fn step(&mut self, inputs: &Inputs) -> Result<Flow, AccumulatorError> {
         while !self.stopped() {
-            let prepared = self.supply.poll(inputs, &mut self.health)?;
-            self.map = prepared.or(self.map.take());
+            if let Some(prepared) = self.supply.poll(inputs, &mut self.health)? {
+                self.maps = prepared;
+            }
             self.health.tick()?;
             while self.pending.is_none() && self.take_scan(inputs)? {}
             // What was sent before the scan has arrived by now.
@@ -130,7 +132,7 @@ impl Node {
             match (&mut self.kept, brought) {
                 (Some(kept), Ok(lasers)) => {
                     kept.keep(&scan, lasers, &self.joiner.seen());
-                    let map_id = self.map.as_ref().map_or(0, |map| map.map_id);
+                    let map_id = self.maps.first().map_or(0, |map| map.map_id);
                     let votes = answer::kept(&scan, map_id, self.headings);
                     self.outputs.votes(&votes, &[])?;
                 }
@@ -198,20 +200,22 @@ impl Node {
         brought: Result<u32, AccumulatorError>,
     ) -> Result<(), TransportError> {
         // What is sent lies in the workspace.
-        let mut workspace = std::mem::take(&mut self.workspace);
+        let mut workspaces = std::mem::take(&mut self.workspaces);
         let mut readings = std::mem::take(&mut self.readings);
         let found =
-            brought.and_then(|lasers| self.search((&mut workspace, &mut readings), scan, lasers));
+            brought.and_then(|lasers| self.search((&mut workspaces, &mut readings), scan, lasers));
         self.readings = readings;
         let done = match found {
-            Ok(Some((votes, poses))) => self
-                .send_votes(&votes, poses)
-                .and_then(|()| self.send_field(&mut workspace, &votes)),
+            Ok(Some((leading, by_map))) => {
+                let votes = by_map[leading].0;
+                self.send_votes(&votes, &by_map)
+                    .and_then(|()| self.send_field((leading, &mut workspaces[leading]), &votes))
+            }
             // Stopped half-way: nobody waits for the answer any more.
             Ok(None) => Ok(()),
             Err(error) => self.refuse(scan, &error),
         };
-        self.workspace = workspace;
+        self.workspaces = workspaces;
         done
     }
 
@@ -246,31 +250,39 @@ impl Node {
 
     fn search<'w>(
         &self,
-        (workspace, readings): (&'w mut Workspace, &mut Readings),
+        (workspaces, readings): (&'w mut Vec<Workspace>, &mut Readings),
         scan: &ScanHeader,
         lasers: u32,
-    ) -> Result<Option<Answer<'w>>, AccumulatorError> {
-        let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
+    ) -> Result<Option<(usize, Vec<Answer<'w>>)>, AccumulatorError> {
+        if self.maps.is_empty() {
+            return Err(AccumulatorError::NoMap);
+        }
         let heading = self.source.heading_of(scan, &self.history)?;
         let heading = heading.map(|heading| self.joiner.target_heading(heading));
         let seen = self.seen();
         let observation = seen.observation();
         let start = Instant::now();
         let stop = || self.stopped();
-        let outcome = answer::ask(&map.localizer, workspace, observation, heading, &stop)?;
+        let leading = answer::ask(&self.maps, workspaces, observation, heading, &stop)?;
         let engine_ns = start.elapsed().as_nanos() as u64;
-        let Some(outcome) = outcome else {
+        let Some(leading) = leading else {
             return Ok(None);
         };
-        let (mut votes, poses) = answer::answered(scan, map, outcome, engine_ns);
-        votes.lasers_used = lasers;
-        if matches!(seen, Seen::Carried(_)) {
-            votes.has_readings = 1;
+        let has_readings = matches!(seen, Seen::Carried(_));
+        let workspaces = &*workspaces;
+        let by_map = self.maps.iter().zip(workspaces).map(|(map, workspace)| {
+            let (mut votes, poses) = answer::answered(scan, map, workspace.outcome(), engine_ns);
+            votes.lasers_used = lasers;
+            votes.has_readings = has_readings.into();
+            (votes, poses)
+        });
+        if has_readings {
+            let map = &self.maps[leading];
             let beams = &map.localizer.config().votes.beams;
             readings.find(observation, &map.space, beams)?;
             self.outputs.readings(scan.stamp, &readings.found)?;
         }
-        Ok(Some((votes, poses)))
+        Ok(Some((leading, by_map.collect())))
     }
 
     /// What is to vote.
@@ -286,8 +298,15 @@ impl Node {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn send_votes(&mut self, votes: &VotesHeader, poses: &[Vote]) -> Result<(), TransportError> {
-        self.outputs.votes(votes, poses)?;
+    fn send_votes(
+        &mut self,
+        leading: &VotesHeader,
+        by_map: &[Answer<'_>],
+    ) -> Result<(), TransportError> {
+        match by_map {
+            [(votes, poses)] => self.outputs.votes(votes, poses)?,
+            _ => self.outputs.votes_of_maps(leading, by_map)?,
+        }
         self.health.count_sent(1);
         self.last_refusal.clear();
         Ok(())
@@ -296,11 +315,11 @@ impl Node {
     /// Sends the image of the scan that was answered last, if one is due.
     fn send_field(
         &mut self,
-        workspace: &mut Workspace,
+        searched: (usize, &mut Workspace),
         votes: &VotesHeader,
     ) -> Result<(), TransportError> {
         if self.outputs.is_field_due()
-            && let Some((header, intensities)) = self.image(workspace, votes)
+            && let Some((header, intensities)) = self.image(searched, votes)
         {
             self.outputs.field(&header, intensities)?;
             self.health.count_sent(1);
@@ -309,9 +328,13 @@ impl Node {
     }
 
     /// The image of a scan that was answered, so that nothing can be wrong with
-    /// it any more.
-    fn image<'w>(&self, workspace: &'w mut Workspace, votes: &VotesHeader) -> Option<Image<'w>> {
-        let localizer = &self.map.as_ref()?.localizer;
+    /// it any more, on the map of a number.
+    fn image<'w>(
+        &self,
+        (map, workspace): (usize, &'w mut Workspace),
+        votes: &VotesHeader,
+    ) -> Option<Image<'w>> {
+        let localizer = &self.maps.get(map)?.localizer;
         answer::image(votes, localizer, workspace, self.seen().observation()).ok()
     }
 
@@ -321,7 +344,7 @@ impl Node {
         scan: &ScanHeader,
         error: &AccumulatorError,
     ) -> Result<(), TransportError> {
-        let map_id = self.map.as_ref().map_or(0, |map| map.map_id);
+        let map_id = self.maps.first().map_or(0, |map| map.map_id);
         let votes = answer::refused(scan, map_id, self.headings);
         self.outputs.votes(&votes, &[])?;
         self.health.count_sent(1);

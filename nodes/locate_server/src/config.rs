@@ -9,7 +9,7 @@ use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
-use map::{MapError, MapFile};
+use map::{MapError, MapFile, MapSet};
 
 use crate::shard::Shard;
 
@@ -94,14 +94,17 @@ impl Config {
         let all = match (&self.maps, &*self.map) {
             (Some(set), _) => map::set_of(set),
             // One map needs no name.
-            (None, [yaml]) => Ok(vec![MapFile {
-                name: self.name(),
-                yaml: yaml.clone(),
-                floor: None,
-            }]),
+            (None, [yaml]) => Ok(MapSet {
+                maps: vec![MapFile {
+                    name: self.name(),
+                    yaml: yaml.clone(),
+                    floor: None,
+                }],
+                transitions: Vec::new(),
+            }),
             (None, files) => map::set_of_files(files),
         };
-        map::select(all?, &self.on)
+        Ok(all?.select(&self.on)?.maps)
     }
 
     /// The name under which it is asked: that of the shard, where it holds one.

@@ -70,7 +70,8 @@ impl Files {
     }
 }
 
-fn fingerprint(path: &Path) -> Option<Fingerprint> {
+/// The state of a file or a folder, if it is there.
+pub(crate) fn fingerprint(path: &Path) -> Option<Fingerprint> {
     let metadata = fs::metadata(path).ok()?;
     Some(Fingerprint {
         device: metadata.dev(),

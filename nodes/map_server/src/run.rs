@@ -1,213 +1,54 @@
-//! Looks at the files, loads and sends.
+//! Looks at the files, loads and sends: one map, or the maps of a set.
 
-use std::error::Error;
-use std::path::Path;
+mod one;
+mod several;
+
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
-use messages::{CellRules, MapHeader, NodeState, Stamp, topic};
-use recording::Recording;
-use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
+use messages::{CellRules, MapHeader, MapName, Stamp};
+use transport::Graph;
 
-use crate::files::Files;
-use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
 
 /// Between two looks at the files: also how long a change has to rest, and how
 /// long somebody who joins late waits for the map.
 const TICK: Duration = Duration::from_millis(250);
 
-/// Serves the map until the stop flag is set.
+/// Serves the map, or the maps, until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or the map at the start is broken; one that is not there yet is
-/// waited for. Later a broken map is reported in `health` and the one before stays.
+/// If the graph fails, or a map at the start is broken; one that is served alone and is not
+/// there yet is waited for. Later a broken map is reported in `health` and the one before stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
-    let mut files = Files::new(&config.map);
-    let mut server = Server {
-        publisher: graph.publisher()?,
-        health: graph.health()?,
-        cells: config.cells,
-        served: 0,
-        map_id: 0,
-    };
-    // Looked at before loading: what changes in between is noticed.
-    let mut watch = Watch::new(files.look());
-    server.health.state(NodeState::Busy)?;
-    let recorded = recorded(config)?;
-    // What is in a recording does not change.
-    let is_watched = recorded.is_none();
-    match recorded.map_or_else(|| load(config), Ok) {
-        Ok(grid) => {
-            server.serve(&grid)?;
-            compare(config, &grid);
-        }
-        Err(error) if error.is_missing() => server.wait_for(&error)?,
-        Err(source) => {
-            return Err(MapServerError::Map {
-                path: config.map.clone(),
-                source: Box::new(source),
-            });
-        }
+    match (&config.maps, &config.map) {
+        (Some(set), _) => several::run(graph, config, set),
+        (None, Some(map)) => one::run(graph, config, map),
+        (None, None) => unreachable!("the command line asks for one of them"),
     }
-    graph.run(&[], TICK, |_| {
-        if is_watched && watch.look(files.look()) == Look::Settled {
-            server.health.state(NodeState::Busy)?;
-            let outcome = load(config);
-            if watch.judged(files.look()) {
-                server.judge(outcome, config)?;
-            }
-        }
-        server.health.tick()?;
-        Ok(Flow::Continue)
+}
+
+/// What goes before the cells of a map.
+fn header(grid: &OccupancyGrid, stamp: Stamp, rules: CellRules, name: &str) -> MapHeader {
+    rules.header(MapHeader {
+        stamp,
+        map_id: grid.id(),
+        width: grid.width,
+        height: grid.height,
+        resolution_m: grid.resolution_m,
+        map_from_grid: grid.map_from_grid.into(),
+        name: MapName::new(name),
+        ..MapHeader::default()
     })
 }
 
-/// Reads the map, if the graph can hold it; keys of its description that mean nothing are logged.
-fn load(config: &Config) -> Result<OccupancyGrid, map::MapError> {
-    map::load_within(config.memory.limit(), &config.map, |key| {
-        tracing::warn!("{key}");
-    })
-}
-
-/// The last map of the recording that is named, where it holds one.
-fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
-    let Some(path) = &config.recorded else {
-        return Ok(None);
-    };
-    let grid = map_in(path, config).map_err(|source| MapServerError::Recorded {
-        path: path.clone(),
-        source,
-    })?;
-    match &grid {
-        Some(_) => {
-            tracing::info!(recording = %path.display(), "the map is that of the recording");
-        }
-        None => tracing::info!(recording = %path.display(), map = %config.map.display(),
-            "the recording holds no map"),
-    }
-    Ok(grid)
-}
-
-/// The last map of a recording, where it holds one; the graph can hold it.
-fn map_in(
-    path: &Path,
-    config: &Config,
-) -> Result<Option<OccupancyGrid>, Box<dyn Error + Send + Sync>> {
-    let recording = Recording::open(path)?;
-    let Some(last) = recording.maps()?.last() else {
-        return Ok(None);
-    };
-    let (_, map) = last?;
-    let limit = config.memory.limit();
-    limit.check((map.info.width, map.info.height))?;
-    let grid = map.to_grid()?;
-    limit.check_grid(&grid)?;
-    Ok(Some(grid))
-}
-
-/// Says so where what is played was recorded on another map than this one.
-fn compare(config: &Config, served: &OccupancyGrid) {
-    let Some(path) = &config.played else {
-        return;
-    };
-    // What is wrong with the recording, its player says.
-    let Ok(Some(own)) = map_in(path, config) else {
-        return;
-    };
-    if own.id() == served.id() {
-        return;
-    }
-    let size = |grid: &OccupancyGrid| {
-        let OccupancyGrid { width, height, .. } = grid;
-        format!("{width} x {height} cells of {} m", grid.resolution_m)
-    };
-    tracing::warn!(
-        "{} was recorded on another map ({}) than {} ({}): where they differ, scans do not fit",
-        path.display(),
-        size(&own),
-        config.map.display(),
-        size(served)
-    );
-}
-
-struct Server {
-    publisher: Publisher<topic::Map>,
-    health: Health,
-    cells: CellRules,
-    served: u64,
-    map_id: u64,
-}
-
-impl Server {
-    fn judge(
-        &mut self,
-        outcome: Result<OccupancyGrid, map::MapError>,
-        config: &Config,
-    ) -> Result<(), TransportError> {
-        match outcome {
-            Ok(grid) if grid.id() == self.map_id => {
-                tracing::info!("the map files were rewritten with the same map");
-                self.health.state(NodeState::Ready)
-            }
-            Ok(grid) => match self.serve(&grid) {
-                Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, config),
-                outcome => outcome,
-            },
-            Err(error) if self.served == 0 && error.is_missing() => self.wait_for(&error),
-            Err(error) => self.refuse(&error, config),
-        }
-    }
-
-    fn wait_for(&mut self, error: &dyn Error) -> Result<(), TransportError> {
-        let problem = format!("waiting for the map: {}", with_causes(error));
-        tracing::warn!("{problem}");
-        self.health.error(&problem)?;
-        self.health.state(NodeState::Waiting)
-    }
-
-    fn refuse(&mut self, error: &dyn Error, config: &Config) -> Result<(), TransportError> {
-        let (path, error) = (config.map.display(), with_causes(error));
-        let kept = match self.served {
-            0 => "and no map is served",
-            _ => "the previous map stays",
-        };
-        tracing::warn!("the changed map {path} is rejected, {kept}: {error}");
-        self.health.count_refused(1);
-        self.health.error(&format!("map {path} refused: {error}"))?;
-        self.health.state(NodeState::Degraded)
-    }
-
-    fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
-        let map_id = grid.id();
-        let mut loan = self.publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = self.cells.header(MapHeader {
-            stamp: Stamp {
-                measured_ns: realtime_ns(),
-                entered_ns: transport::monotonic_ns(),
-                counter: self.served,
-            },
-            map_id,
-            width: grid.width,
-            height: grid.height,
-            resolution_m: grid.resolution_m,
-            map_from_grid: grid.map_from_grid.into(),
-            ..MapHeader::default()
-        });
-        loan.items_mut().copy_from_slice(&grid.cells);
-        loan.send()?;
-        self.map_id = map_id;
-        self.served += 1;
-        self.health.count_sent(1);
-        let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
-        let map_id = format!("{map_id:016x}");
-        tracing::info!(width, height, resolution_m, map_id, "serving the map");
-        self.health.state(NodeState::Ready)
-    }
-}
-
-fn realtime_ns() -> i64 {
+/// The stamp of what is read now and served as the next.
+fn now(served: u64) -> Stamp {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
-    // A clock before 1970 is as wrong as one in 1970.
-    since_1970.map_or(0, |time| time.as_nanos() as i64)
+    Stamp {
+        // A clock before 1970 is as wrong as one in 1970.
+        measured_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
+        entered_ns: transport::monotonic_ns(),
+        counter: served,
+    }
 }

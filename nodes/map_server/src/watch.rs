@@ -4,8 +4,6 @@
 //! written changes from look to look, so only what stands still for one whole
 //! look is worth loading; what was judged once is left alone until it changes.
 
-use crate::files::Seen;
-
 /// What a look showed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
@@ -19,25 +17,25 @@ pub(crate) enum Look {
 
 /// Remembers what was judged last and what was seen last.
 #[derive(Debug)]
-pub(crate) struct Watch {
-    judged: Seen,
-    last: Seen,
+pub(crate) struct Watch<S> {
+    judged: S,
+    last: S,
 }
 
-impl Watch {
+impl<S: PartialEq + Clone> Watch<S> {
     /// Starts with files that were loaded as `seen`.
-    pub(crate) fn new(seen: Seen) -> Self {
+    pub(crate) fn new(seen: S) -> Self {
         Watch {
-            judged: seen,
+            judged: seen.clone(),
             last: seen,
         }
     }
 
     /// Compares a look with the ones before.
-    pub(crate) fn look(&mut self, seen: Seen) -> Look {
+    pub(crate) fn look(&mut self, seen: S) -> Look {
         let settled = self.last == seen;
         self.last = seen;
-        match (seen == self.judged, settled) {
+        match (self.last == self.judged, settled) {
             (true, _) => Look::Same,
             (false, true) => Look::Settled,
             (false, false) => Look::Changing,
@@ -47,10 +45,10 @@ impl Watch {
     /// The files as last seen were loaded or refused; `after` is what they look
     /// like now. If they changed meanwhile the outcome is worth nothing, and
     /// false is returned.
-    pub(crate) fn judged(&mut self, after: Seen) -> bool {
+    pub(crate) fn judged(&mut self, after: S) -> bool {
         let stood_still = after == self.last;
         if stood_still {
-            self.judged = after;
+            self.judged = after.clone();
         }
         self.last = after;
         stood_still
@@ -60,7 +58,7 @@ impl Watch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::Fingerprint;
+    use crate::files::{Fingerprint, Seen};
 
     /// A pair of files of these sizes; 0 is not there.
     fn seen(yaml: u64, image: u64) -> Seen {

@@ -4,23 +4,33 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
 use engine::grid::GridFrame;
-use engine::peaks::{self, Judged, PeakConfig, Place, Places, Target};
+use engine::peaks::{self, Found, Judged, Merged, PeakConfig, Place, Places, Target, merge};
 use engine::space::Space;
+use engine::votes::VoteShare;
 use geometry::Pose;
 use messages::{
     Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader,
 };
 
 use crate::PeakError;
-use crate::check::{Checked, check, mount};
+use crate::check::{Checked, check, check_on_map, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
 
-/// What answering takes, kept from scan to scan. It may serve any map.
+/// What answering takes, kept from scan to scan. It may serve any maps.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    peaks: peaks::Workspace,
+    /// One for each map.
+    maps: Vec<OnMap>,
+    map_ids: Vec<u64>,
+    merged: Merged,
     beams: Vec<Beam>,
+}
+
+/// What answering on one map takes.
+#[derive(Debug, Default)]
+struct OnMap {
+    peaks: peaks::Workspace,
     space: Option<(Extent, Space)>,
 }
 
@@ -35,13 +45,15 @@ pub struct Answer<'a> {
     pub header: HypothesesHeader,
     /// Best first.
     pub places: &'a [Place],
+    /// Of the maps, by the numbers that places have.
+    pub map_ids: &'a [u64],
     /// Header of `beams`.
     pub beams_header: BeamsHeader,
     /// Items of `beams`; none where the votes alone decide.
     pub beams: &'a [Beam],
     /// Whose poses the places are.
     pub target: Target,
-    /// Where the map's cells lie; none where there is no answer.
+    /// Where the cells of the best place's map lie; none where there is no answer.
     pub frame: Option<GridFrame>,
 }
 
@@ -58,48 +70,141 @@ pub fn answer<'w>(
     config: &PeakConfig,
     workspace: &'w mut Workspace,
 ) -> Result<Answer<'w>, PeakError> {
-    let Some(Checked { input, map, beams }) = check(header, votes, maps)? else {
+    if header.maps > 0 {
+        return on_several(header, votes, (maps, scans), config, workspace);
+    }
+    let Some(checked) = check(header, votes, maps)? else {
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
-    let frame = map.frame;
-    let target = Target::of(base_from_laser, header.lasers_used > 0);
+    workspace.maps.resize_with(1, OnMap::default);
+    workspace.map_ids.clear();
+    workspace.map_ids.push(header.map_id);
     let Workspace {
-        peaks,
-        beams: beams_seen,
-        space,
+        maps,
+        map_ids,
+        beams,
+        ..
     } = workspace;
-    let take = |ends: &mut Ends| -> Result<(), PeakError> {
-        let resolution_m = map.frame.resolution_m;
-        if header.has_readings == 1 {
-            return Ok(ends.take(scans.readings(header.stamp)?, resolution_m)?);
-        }
-        let scan = scans.get(header.stamp)?;
-        let sides = (map.width as usize, map.height as usize);
-        let extent = (header.headings, resolution_m, sides.0, sides.1);
-        Ok(ends.find(&scan, kept_or_made(space, extent)?, &beams)?)
-    };
-    let Judged { places, ends, .. } = peaks.judge(&input, &map.distance_field, config, take)?;
-    beams_seen.clear();
+    let Judged { places, ends, .. } = maps[0].judge(header, &checked, scans, config)?;
+    beams.clear();
     if let Some(ends) = ends {
-        beams_seen.extend(judged(ends, places));
+        beams.extend(judged(ends, places));
     }
-    Ok(Answer {
+    let frame = checked.map.frame;
+    Ok(said(
+        header,
+        places,
+        (map_ids, beams),
+        (base_from_laser, frame),
+    ))
+}
+
+/// The same of votes on several maps that were searched together, as the engine's `MapSet` does
+/// it in one process.
+fn on_several<'w>(
+    header: &VotesHeader,
+    votes: &[Vote],
+    (maps, scans): (&Maps, &Scans),
+    config: &PeakConfig,
+    workspace: &'w mut Workspace,
+) -> Result<Answer<'w>, PeakError> {
+    let by_map = scans.by_map(header.stamp)?;
+    let parts: u64 = by_map.iter().map(|on_map| on_map.total).sum();
+    if by_map.is_empty() || parts != votes.len() as u64 {
+        return Err(PeakError::Parts {
+            maps: by_map.len(),
+            parts,
+            total: votes.len(),
+        });
+    }
+    let base_from_laser = mount(header)?;
+    let Workspace {
+        maps: on_maps,
+        map_ids,
+        merged,
+        beams,
+    } = workspace;
+    on_maps.resize_with(by_map.len(), OnMap::default);
+    map_ids.clear();
+    map_ids.extend(by_map.iter().map(|on_map| on_map.map_id));
+    let share =
+        |votes: &VotesHeader| VoteShare::new(votes.best as u16, votes.highest_possible as u16);
+    let (lead, each) = (share(header), config.of_each_map());
+    let mut found = Vec::with_capacity(by_map.len());
+    let mut rest = votes;
+    for (number, (on_map, workspace)) in (0..).zip(by_map.iter().zip(on_maps.iter_mut())) {
+        let (here, after) = rest.split_at(on_map.total as usize);
+        rest = after;
+        let checked = check_on_map(on_map, here, maps, lead)?;
+        let judged = workspace.judge(header, &checked, scans, &each)?;
+        let lead = (number, share(on_map));
+        found.push(Found::with(lead, on_map.certified_floor, &judged));
+    }
+    *merged = merge(&found, config);
+    let best = &on_maps[merged.best_of];
+    merged.places.classes.clone_from(best.peaks.classes());
+    let best_map = &by_map[merged.best_of];
+    let frame = maps.get(best_map.map_id)?.frame;
+    beams.clear();
+    if let Some(ends) = best.peaks.judged_ends(config.score) {
+        beams.extend(judged(ends, &merged.places));
+    }
+    let votes = VotesHeader {
+        maps: header.maps,
+        engine_ns: header.engine_ns,
+        ..*best_map
+    };
+    let of = (&map_ids[..], &beams[..]);
+    Ok(said(&votes, &merged.places, of, (base_from_laser, frame)))
+}
+
+fn said<'w>(
+    header: &VotesHeader,
+    places: &'w Places,
+    (map_ids, beams): (&'w [u64], &'w [Beam]),
+    (base_from_laser, frame): (Option<Pose>, GridFrame),
+) -> Answer<'w> {
+    let best = places.places.first();
+    Answer {
         header: described(header, places, base_from_laser.is_some()),
         beams_header: BeamsHeader {
             stamp: header.stamp,
             map_id: header.map_id,
-            map_from_laser: places
-                .places
-                .first()
+            map_from_laser: best
                 .map_or(Pose::IDENTITY, |best| best.map_from_laser)
                 .into(),
         },
-        beams: beams_seen,
+        beams,
         places: &places.places,
-        target,
+        map_ids,
+        target: Target::of(base_from_laser, header.lasers_used > 0),
         frame: Some(frame),
-    })
+    }
+}
+
+impl OnMap {
+    /// Reads the places on one map.
+    fn judge(
+        &mut self,
+        header: &VotesHeader,
+        Checked { input, map, beams }: &Checked<'_>,
+        scans: &Scans,
+        config: &PeakConfig,
+    ) -> Result<Judged<'_>, PeakError> {
+        let space = &mut self.space;
+        let take = |ends: &mut Ends| -> Result<(), PeakError> {
+            let resolution_m = map.frame.resolution_m;
+            if header.has_readings == 1 {
+                return Ok(ends.take(scans.readings(header.stamp)?, resolution_m)?);
+            }
+            let scan = scans.get(header.stamp)?;
+            let sides = (map.width as usize, map.height as usize);
+            let extent = (header.headings, resolution_m, sides.0, sides.1);
+            Ok(ends.find(&scan, kept_or_made(space, extent)?, beams)?)
+        };
+        self.peaks.judge(input, &map.distance_field, config, take)
+    }
 }
 
 /// The space of the scan before, where it is that of this scan, too.
@@ -126,6 +231,7 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
     Answer {
         header,
         places: &[],
+        map_ids: &[],
         beams_header: BeamsHeader {
             stamp: votes.stamp,
             map_id: votes.map_id,
@@ -140,10 +246,9 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
 impl Answer<'_> {
     /// The message's items, to be filled in place.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
-        let (map_id, target) = (self.header.map_id, self.target);
-        self.places
-            .iter()
-            .map(move |place| place.hypothesis(map_id, target))
+        let (map_ids, target) = (self.map_ids, self.target);
+        let places = self.places.iter();
+        places.map(move |place| place.hypothesis(map_ids[place.map as usize], target))
     }
 }
 

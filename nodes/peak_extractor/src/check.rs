@@ -8,6 +8,7 @@ use std::cmp::Reverse;
 
 use engine::beams::BeamConfig;
 use engine::peaks::PeakInput;
+use engine::votes::VoteShare;
 use geometry::Pose;
 use messages::{SearchOutcome, Vote, VotesHeader};
 
@@ -47,6 +48,24 @@ pub fn check<'a>(
         }
         Some(SearchOutcome::Found) => {}
     }
+    if header.best == 0 {
+        return Err(contradicts(header, votes));
+    }
+    let lead = VoteShare::new(header.best as u16, header.highest_possible as u16);
+    check_on_map(header, votes, maps, lead).map(Some)
+}
+
+/// The votes on one map, which may be one of several that were searched together: the best
+/// pose of all has a share like this.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_on_map<'a>(
+    header: &VotesHeader,
+    votes: &'a [Vote],
+    maps: &'a Maps,
+    lead: VoteShare,
+) -> Result<Checked<'a>, PeakError> {
     let map = maps.get(header.map_id)?;
     check_header(header, votes)?;
     let pooling = pooling(header)?;
@@ -61,13 +80,13 @@ pub fn check<'a>(
         certified_floor: header.certified_floor,
         cut: header.truncated == VotesHeader::CUT,
         highest_possible: header.highest_possible,
-        lead: votes.first().map_or(0, |vote| vote.intensity.into()),
+        lead: lead.on(header.highest_possible as u16).into(),
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),
         frame: map.frame.pooled(pooling as usize),
     };
     let beams = beams(header)?;
-    Ok(Some(Checked { input, map, beams }))
+    Ok(Checked { input, map, beams })
 }
 
 /// Where the laser sits on the robot, if the header knows.
@@ -128,16 +147,21 @@ fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
         return Err(PeakError::KnownHeading { found: heading });
     }
     let (best, highest_possible) = (header.best, header.highest_possible);
-    let first = votes.first().map(|vote| vote.intensity);
-    let is_first = first.map(u32::from) == Some(best);
-    if !is_first || best == 0 || best > highest_possible {
-        return Err(PeakError::Best {
-            best,
-            highest_possible,
-            first,
-        });
+    let is_first = votes.first().map(|vote| vote.intensity.into()) == Some(best);
+    // Where another map leads, votes can all lie below the floor that counts.
+    let is_sound = (is_first || best == 0) && best <= highest_possible;
+    match is_sound && highest_possible <= u16::MAX.into() {
+        true => Ok(()),
+        false => Err(contradicts(header, votes)),
     }
-    Ok(())
+}
+
+fn contradicts(header: &VotesHeader, votes: &[Vote]) -> PeakError {
+    PeakError::Best {
+        best: header.best,
+        highest_possible: header.highest_possible,
+        first: votes.first().map(|vote| vote.intensity),
+    }
 }
 
 fn check_poses(

@@ -21,6 +21,19 @@ pub enum PeakError {
     /// The scan of the votes never came, or came too long ago.
     #[error("their scan is not known: it was not received, or too long ago")]
     UnknownScan,
+    /// Of votes on several maps it is not known which are on which.
+    #[error("which of them are on which map is not known: it was not received, or too long ago")]
+    UnknownParts,
+    /// The votes on each map are not all.
+    #[error("{maps} maps have {parts} votes together, and {total} came")]
+    Parts {
+        /// How many maps there are.
+        maps: usize,
+        /// How many votes they have.
+        parts: u64,
+        /// How many votes there are.
+        total: usize,
+    },
     /// How a map's cells or a scan's beams were read cannot be.
     #[error("{field} is {found}: allowed are {allowed}")]
     Setting {
@@ -34,6 +47,9 @@ pub enum PeakError {
     /// The engine refused the map or the scan.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The set of maps is none.
+    #[error(transparent)]
+    MapSet(#[from] messages::InvalidMapSet),
     /// The map is not the one that its id says.
     #[error(transparent)]
     MapId(#[from] messages::WrongMapId),

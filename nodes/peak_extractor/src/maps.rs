@@ -1,4 +1,4 @@
-//! The last two maps, ready for the fit of scans.
+//! The last two maps, or sets of maps, ready for the fit of scans.
 //!
 //! Votes are cells of the map that was searched, and those on their way when
 //! the map changes are of the one before.
@@ -6,7 +6,7 @@
 use engine::EngineError;
 use engine::fit::DistanceField;
 use engine::grid::{CellRules, GridFrame};
-use messages::MapHeader;
+use messages::{MapHeader, MapSet};
 
 use crate::PeakError;
 
@@ -25,11 +25,11 @@ pub struct Map {
     pub distance_field: DistanceField,
 }
 
-/// The newest map and the one before.
+/// What is searched, and what was before: a map each, or a set of maps.
 #[derive(Debug, Clone, Default)]
 pub struct Maps {
     /// The newest first.
-    known: Vec<Map>,
+    known: Vec<Vec<Map>>,
 }
 
 impl Map {
@@ -47,25 +47,40 @@ impl Map {
 }
 
 impl Maps {
-    /// Takes a map; one that is refused changes nothing.
+    /// Takes a map that is searched alone; one that is refused changes nothing.
     ///
     /// # Errors
-    /// If the grid's sides, resolution or origin are out of range, or the
+    /// If the grid's sides, resolution, origin or rules are out of range, or the
     /// number of cells is not what the sides say.
     pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
-        let map = Map::new(header, occupancy)?;
-        self.known.retain(|known| known.map_id != header.map_id);
-        self.known.truncate(1);
-        self.known.insert(0, map);
+        self.replace(vec![Map::new(header, occupancy)?]);
         Ok(())
+    }
+
+    /// Takes maps that are searched together; if one is refused, nothing changes.
+    ///
+    /// # Errors
+    /// As of one map.
+    pub fn receive_set(&mut self, set: &MapSet<'_>) -> Result<(), EngineError> {
+        let maps = set.maps.iter();
+        let maps = maps.map(|(header, occupancy)| Map::new(header, occupancy));
+        self.replace(maps.collect::<Result<_, _>>()?);
+        Ok(())
+    }
+
+    fn replace(&mut self, maps: Vec<Map>) {
+        let ids = |maps: &[Map]| maps.iter().map(|map| map.map_id).collect::<Vec<_>>();
+        self.known.retain(|known| ids(known) != ids(&maps));
+        self.known.truncate(1);
+        self.known.insert(0, maps);
     }
 
     /// One of them.
     ///
     /// # Errors
-    /// If it is neither of the last two.
+    /// If it is not known.
     pub fn get(&self, map_id: u64) -> Result<&Map, PeakError> {
-        let found = self.known.iter().find(|map| map.map_id == map_id);
+        let found = self.known.iter().flatten().find(|map| map.map_id == map_id);
         found.ok_or_else(|| PeakError::UnknownMap {
             found: map_id,
             known: self.names(),
@@ -73,7 +88,7 @@ impl Maps {
     }
 
     fn names(&self) -> String {
-        let known = self.known.iter();
+        let known = self.known.iter().flatten();
         let names: Vec<String> = known.map(|map| format!("{:016x}", map.map_id)).collect();
         if names.is_empty() {
             return "none".into();

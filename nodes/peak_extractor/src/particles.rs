@@ -36,7 +36,10 @@ pub fn draw(
     let Some(frame) = answer.frame.filter(|_| !answer.places.is_empty()) else {
         return Ok((header, Vec::new()));
     };
-    let candidates = answer.places.iter().map(Candidate::from);
+    // On the map of the best place.
+    let map = answer.places[0].map;
+    let on_map = answer.places.iter().filter(|place| place.map == map);
+    let candidates = on_map.map(Candidate::from);
     let poses = particles::draw(frame, candidates, count as usize, seed)?;
     let particle = |map_from_target| Particle {
         map_from_base: answer.target.base(map_from_target).into(),

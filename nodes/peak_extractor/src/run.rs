@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use engine::beams::BeamConfig;
-use messages::{NodeState, SearchOutcome, topic};
+use messages::{MapSet, NodeState, SearchOutcome, topic};
 use transport::{
     Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
     with_causes,
@@ -27,7 +27,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
     let scans = graph.subscriber::<topic::Scan>()?;
     let readings = graph.subscriber::<topic::Readings>()?;
+    let by_map = graph.subscriber::<topic::VotesByMap>()?;
     let maps = graph.subscriber::<topic::Map>()?;
+    let sets = graph.subscriber::<topic::Maps>()?;
     let mut node = Node {
         config: config.clone(),
         maps: Maps::default(),
@@ -45,10 +47,14 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         },
         health: graph.health()?,
     };
-    graph.run(&[&votes, &scans, &readings, &maps], TICK, |_| {
-        node.step(&votes, (&scans, &readings), &maps)?;
-        Ok(Flow::Continue)
-    })
+    graph.run(
+        &[&votes, &scans, &readings, &by_map, &maps, &sets],
+        TICK,
+        |_| {
+            node.step(&votes, (&scans, &readings, &by_map), (&maps, &sets))?;
+            Ok(Flow::Continue)
+        },
+    )
 }
 
 struct Node {
@@ -71,8 +77,12 @@ impl Node {
     fn step(
         &mut self,
         votes: &Subscriber<topic::Votes>,
-        (scans, readings): (&Subscriber<topic::Scan>, &Subscriber<topic::Readings>),
-        maps: &Subscriber<topic::Map>,
+        (scans, readings, by_map): (
+            &Subscriber<topic::Scan>,
+            &Subscriber<topic::Readings>,
+            &Subscriber<topic::VotesByMap>,
+        ),
+        (maps, sets): (&Subscriber<topic::Map>, &Subscriber<topic::Maps>),
     ) -> Result<(), TransportError> {
         loop {
             let sample = votes.receive()?;
@@ -86,7 +96,17 @@ impl Node {
                 let stamp = sample.header().stamp;
                 self.scans.take_readings(stamp, sample.items());
             }
-            if let Some(map) = maps.newest()? {
+            while let Some(sample) = by_map.receive()? {
+                let stamp = sample.header().stamp;
+                self.scans.take_by_map(stamp, sample.items());
+            }
+            if let Some(set) = sets.newest()? {
+                self.on_set(&set)?;
+            }
+            // Of a set it is the map that is shown.
+            if let Some(map) = maps.newest()?
+                && !sets.has_publishers()
+            {
                 self.on_map(&map)?;
             }
             self.health.tick()?;
@@ -102,10 +122,22 @@ impl Node {
         self.health.state(NodeState::Busy)?;
         let (header, cells) = (map.header(), map.items());
         let checked = header.check_id(cells).map_err(PeakError::from);
-        match checked.and_then(|()| Ok(self.maps.receive(header, cells)?)) {
+        let taken = checked.and_then(|()| Ok(self.maps.receive(header, cells)?));
+        self.taken(header.map_id, taken)
+    }
+
+    fn on_set(&mut self, set: &Sample<topic::Maps>) -> Result<(), TransportError> {
+        self.health.count_received(1);
+        self.health.state(NodeState::Busy)?;
+        let read = MapSet::read(set.header(), set.items()).map_err(PeakError::from);
+        let taken = read.and_then(|read| Ok(self.maps.receive_set(&read)?));
+        self.taken(set.header().set_id, taken)
+    }
+
+    fn taken(&mut self, map_id: u64, taken: Result<(), PeakError>) -> Result<(), TransportError> {
+        match taken {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
-                let map_id = map.header().map_id;
                 let problem = format!("map {map_id:016x} rejected: {}", with_causes(&error));
                 tracing::warn!("{problem}");
                 self.health.count_refused(1);

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use engine::scan::Scan;
-use messages::{Reading, ScanHeader, Stamp};
+use messages::{Reading, ScanHeader, Stamp, VotesHeader};
 
 use crate::PeakError;
 
@@ -17,6 +17,8 @@ pub struct Scans {
     kept: VecDeque<(ScanHeader, Vec<f32>)>,
     /// Beams of scans that were joined or moved; the newest last.
     readings: VecDeque<(Stamp, Vec<Reading>)>,
+    /// Which of their votes are on which map; the newest last.
+    by_map: VecDeque<(Stamp, Vec<VotesHeader>)>,
 }
 
 impl Scans {
@@ -52,6 +54,26 @@ impl Scans {
         found
             .map(|(_, readings)| &readings[..])
             .ok_or(PeakError::UnknownScan)
+    }
+
+    /// Takes what there is to say of the votes on each map.
+    pub fn take_by_map(&mut self, stamp: Stamp, maps: &[VotesHeader]) {
+        if self.by_map.len() == KEPT {
+            self.by_map.pop_front();
+        }
+        self.by_map.push_back((stamp, maps.to_vec()));
+    }
+
+    /// What there is to say of the votes on each map of the scan with a stamp.
+    ///
+    /// # Errors
+    /// If it did not come, or too long ago.
+    pub fn by_map(&self, stamp: Stamp) -> Result<&[VotesHeader], PeakError> {
+        let mut newest_first = self.by_map.iter().rev();
+        let found = newest_first.find(|(of, _)| of.is_of(stamp));
+        found
+            .map(|(_, maps)| &maps[..])
+            .ok_or(PeakError::UnknownParts)
     }
 
     /// The scan with a stamp.

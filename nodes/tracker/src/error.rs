@@ -12,6 +12,9 @@ pub enum TrackerError {
     /// The map is not the one that its id says.
     #[error(transparent)]
     MapId(#[from] messages::WrongMapId),
+    /// The set of maps is none.
+    #[error(transparent)]
+    MapSet(#[from] messages::InvalidMapSet),
     /// The file of the last pose cannot be used.
     #[error("the last pose in {file} cannot be used: {reason}")]
     Memory {

@@ -10,7 +10,6 @@ mod turn;
 use std::time::{Duration, Instant};
 
 use engine::EngineError;
-use engine::fit::Ends;
 use engine::joined::{ByOdometry, Joiner, Role};
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::Pose;
@@ -20,10 +19,11 @@ use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 use crate::memory::{Memory, Remembered};
 use crate::message::{Tracked, nothing};
 use crate::queue::{Answers, Scans};
-use crate::world::World;
+use crate::world::Worlds;
 use crate::{Config, TrackerError};
 use initial::Initial;
 use inputs::Inputs;
+use map::Served;
 use outputs::Outputs;
 use search::Searchers;
 use turn::{ODOMETRY_WAIT, Since, Turn};
@@ -50,13 +50,13 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     let mut node = Node {
         config: config.clone(),
         joiner: Joiner::new(config.join.clone()),
-        world: None,
-        tracker: Follower::new(&config.follow),
+        worlds: Worlds::default(),
+        served: None,
+        tracker: Follower::new(&config.follow, &[]),
         scans: Scans::default(),
         answers: Answers::default(),
         turn: Turn::Idle,
         looks: 0,
-        ends: Ends::default(),
         asked: None,
         searchers: Searchers::default(),
         is_silent: false,
@@ -84,7 +84,9 @@ struct Node {
     config: Config,
     /// The newest scans, and how the robot moved.
     joiner: Joiner,
-    world: Option<World>,
+    /// The maps, and the scan whose turn it is on each of them.
+    worlds: Worlds,
+    served: Option<Served>,
     tracker: Follower,
     scans: Scans,
     answers: Answers,
@@ -92,8 +94,6 @@ struct Node {
     turn: Turn,
     /// How often the node has looked for what came.
     looks: u32,
-    /// Of that scan.
-    ends: Ends,
     /// The scan whose search counts later.
     asked: Option<Stamp>,
     /// Who could answer when a search was asked for last.
@@ -139,9 +139,16 @@ impl Node {
             let dropped = self.scans.push(scan.header(), scan.items());
             self.health.count_dropped(dropped);
         }
+        if let Some(set) = inputs.sets.newest()? {
+            self.health.count_received(1);
+            self.take_set(set.header(), set.items())?;
+        }
         if let Some(map) = inputs.maps.newest()? {
             self.health.count_received(1);
-            self.take_map(map.header(), map.items())?;
+            // Of a set it is the map that is shown.
+            if !inputs.sets.has_publishers() {
+                self.take_map(map.header(), map.items())?;
+            }
         }
         while let Some(found) = inputs.hypotheses.receive()? {
             self.health.count_received(1);
@@ -200,13 +207,10 @@ impl Node {
     fn begin(&mut self, inputs: &Inputs, scan: &ScanHeader) -> Result<(), TrackerError> {
         let start = Instant::now();
         self.turn = Turn::Idle;
-        let Some(world) = &self.world else {
+        if self.worlds.is_empty() {
             return self.send_nothing(scan, TrackReason::NoMap);
-        };
-        let mut ends = std::mem::take(&mut self.ends);
-        let found = find_ends(&mut self.joiner, &mut ends, world, &self.config);
-        self.ends = ends;
-        if let Err(error) = found {
+        }
+        if let Err(error) = self.find_ends() {
             let (counter, reason) = (scan.stamp.counter, with_causes(&error));
             self.refuse(&format!("scan {counter} rejected: {reason}"))?;
             return self.send_nothing(scan, TrackReason::NoScan);
@@ -217,10 +221,7 @@ impl Node {
         self.before = now;
         // A pose that is believed is that of this scan.
         let moved = if is_set { Some(Pose::IDENTITY) } else { moved };
-        let Some(world) = &self.world else {
-            return Ok(());
-        };
-        let seen = world.seen(&self.ends, &self.config.fit);
+        let seen = self.worlds.seen(&self.config.fit);
         let need = self.tracker.begin(&seen, scan.stamp.measured_ns, moved);
         let of = match need {
             Need::Nothing => None,
@@ -246,6 +247,14 @@ impl Node {
         }
     }
 
+    /// Brings the newest scans to one time, and finds where their beams end.
+    fn find_ends(&mut self) -> Result<(), EngineError> {
+        self.joiner.bring()?;
+        let seen = self.joiner.seen();
+        self.worlds
+            .find_ends(seen.observation(), &self.config.beams)
+    }
+
     /// Is done with a scan, with what the search found for one.
     fn finish(
         &mut self,
@@ -256,24 +265,26 @@ impl Node {
     ) -> Result<(), TrackerError> {
         self.turn = Turn::Idle;
         let target = self.target();
-        let Some(world) = &self.world else {
+        let worlds = &self.worlds;
+        if worlds.is_empty() {
             return self.send_nothing(scan, TrackReason::NoMap);
-        };
-        let map_id = world.map_id;
-        let seen = world.seen(&self.ends, &self.config.fit);
+        }
+        let seen = worlds.seen(&self.config.fit);
         let answer = of.and_then(|of| self.answers.of(of));
-        let of_map = answer.into_iter().flatten().filter(|h| h.map_id == map_id);
-        Candidate::fill(&mut self.candidates, of_map, target);
+        let known = answer.into_iter().flatten();
+        let known = known.filter_map(|found| Some((worlds.number(found.map_id)?, found)));
+        Candidate::fill(&mut self.candidates, known, target);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {
             self.asked = Some(scan.stamp);
             self.ask(inputs, scan.stamp)?;
         }
+        let report = self.tracker.report();
         let last = Tracked {
             stamp: scan.stamp,
-            map_id,
-            report: self.tracker.report(),
+            map_id: self.worlds.map_id(report.map),
+            report,
             target,
             mount_known: scan.mount_known == 1,
             by_odometry: self.before.map(|at| (at, self.joiner.odom_frame())),
@@ -311,7 +322,7 @@ impl Node {
     }
 
     fn send_nothing(&mut self, scan: &ScanHeader, reason: TrackReason) -> Result<(), TrackerError> {
-        let map_id = self.world.as_ref().map_or(0, |world| world.map_id);
+        let map_id = self.worlds.map_id(self.current_map());
         Ok(self.send(nothing(scan.stamp, map_id, reason), "")?)
     }
 
@@ -357,16 +368,4 @@ impl Node {
         }
         Ok(())
     }
-}
-
-/// Brings the newest scans to one time, and finds where their beams end.
-fn find_ends(
-    joiner: &mut Joiner,
-    ends: &mut Ends,
-    world: &World,
-    config: &Config,
-) -> Result<(), EngineError> {
-    joiner.bring()?;
-    let seen = joiner.seen();
-    ends.find(seen.observation(), &world.space, &config.beams)
 }

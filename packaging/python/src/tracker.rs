@@ -247,7 +247,7 @@ impl Tracker {
         let target = Target::of(scan.base_from_laser, false);
         if let Some((base, covariance)) = expected.take() {
             let laser = target.from_base(base);
-            tracker.expect(laser, covariance.carried(base, laser), EXPECTED_LEAD);
+            tracker.expect((0, laser), covariance.carried(base, laser), EXPECTED_LEAD);
         }
         let now = joiner.by_odometry();
         let moved = ByOdometry::between(*before, now);
@@ -257,7 +257,7 @@ impl Tracker {
             ends: &ends,
             fit: &locator.peaks().fit,
         };
-        let found = match tracker.begin(&seen, header.stamp.measured_ns, moved) {
+        let found = match tracker.begin(&[seen], header.stamp.measured_ns, moved) {
             Need::Nothing => None,
             Need::ThisScan => {
                 *asked = None;
@@ -273,7 +273,7 @@ impl Tracker {
             Err(interrupt) => (None, Some(interrupt)),
         };
         // A scan that was begun is done with, also where its search was interrupted.
-        tracker.finish(&seen, found.as_deref());
+        tracker.finish(&[seen], found.as_deref());
         if tracker.asks_ahead() {
             *asked = Some(Kept::of(&brought));
         }
@@ -297,7 +297,7 @@ impl Tracker {
             places.map(|place| place.hypothesis(0, of_laser)).collect()
         })?;
         let mut candidates = Vec::new();
-        Candidate::fill(&mut candidates, hypotheses.iter(), of_laser);
+        Candidate::fill(&mut candidates, hypotheses.iter().map(|found| (0, found)), of_laser);
         Ok(candidates)
     }
 }

@@ -19,7 +19,7 @@ impl Localizer {
     ///
     /// # Panics
     /// If there is no map, or a localizer was prepared for the other kind of question.
-    pub(crate) fn search_together(
+    pub fn search_together(
         mut maps: Vec<(&Localizer, &mut Workspace)>,
         scan: Observation<'_>,
         heading: Option<f64>,

@@ -127,6 +127,21 @@ impl PeakConfig {
     }
 }
 
+impl PeakConfig {
+    /// The settings for each map of several that are searched together: what is left out of
+    /// the places of one map may be among those of all.
+    #[must_use]
+    pub fn of_each_map(&self) -> Self {
+        PeakConfig {
+            max_hypotheses: match self.score {
+                Score::Fit => u32::MAX,
+                Score::Votes => self.max_hypotheses,
+            },
+            ..*self
+        }
+    }
+}
+
 impl Default for PeakConfig {
     fn default() -> Self {
         PeakConfig {

@@ -27,16 +27,23 @@ impl Found {
     /// What was found on the map of this number.
     #[must_use]
     pub fn on(map: u32, outcome: &Outcome, judged: &Judged<'_>) -> Self {
-        let possible = outcome.highest_possible.max(1);
+        let certified_floor = outcome.found.certified_floor;
+        Found::with((map, outcome.best_share()), certified_floor.into(), judged)
+    }
+
+    /// The same where no more is known of the search than the share of its best pose, and down
+    /// to how many votes it is certified.
+    #[must_use]
+    pub fn with((map, lead): (u32, VoteShare), certified_floor: u32, judged: &Judged<'_>) -> Self {
         let places = judged.places.places.iter();
-        let unseen = outcome.found.certified_floor.saturating_sub(1);
+        let unseen = certified_floor.saturating_sub(1);
         Found {
             places: places.map(|place| Place { map, ..*place }).collect(),
             margin: judged.margin,
             inlier_share: judged.places.inlier_share,
             leading_map: map,
-            lead: outcome.best_share(),
-            unseen: f64::from(unseen) / f64::from(possible),
+            lead,
+            unseen: f64::from(unseen) / f64::from(lead.possible),
         }
     }
 

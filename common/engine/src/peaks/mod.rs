@@ -304,14 +304,16 @@ pub struct Judged<'w> {
 }
 
 impl Workspace {
-    /// What became of each beam at the best place.
-    pub(crate) fn classes(&self) -> &Vec<BeamClass> {
+    /// What became of each beam of the last scan at its best place.
+    #[must_use]
+    pub fn classes(&self) -> &Vec<BeamClass> {
         &self.places.classes
     }
 
-    /// The beams of the last scan that was compared with a map.
-    pub(crate) fn ends(&self) -> &Ends {
-        &self.ends
+    /// The beams of the last scan, where places are judged by them.
+    #[must_use]
+    pub fn judged_ends(&self, score: Score) -> Option<&Ends> {
+        (score == Score::Fit).then_some(&self.ends)
     }
 
     /// Reads the places as the settings want it: from the votes alone, or from how well the

@@ -1,6 +1,7 @@
 //! How the robot is tracked: by places or by particles.
 
 use geometry::{Covariance, Pose};
+use messages::Transition;
 
 use super::{Candidate, Need, ParticleTracker, Report, Seen, Tracker, TrackingConfig};
 use crate::particles::ParticlesConfig;
@@ -31,11 +32,14 @@ pub struct FollowConfig {
 }
 
 impl Follower {
-    /// Nothing is known yet.
+    /// Nothing is known yet. Between several maps, places go where there are transitions;
+    /// particles stay on the map on which they started.
     #[must_use]
-    pub fn new(config: &FollowConfig) -> Self {
+    pub fn new(config: &FollowConfig, transitions: &[Transition]) -> Self {
         match config.particles {
-            false => Follower::Places(Box::new(Tracker::new(config.tracking))),
+            false => Follower::Places(Box::new(
+                Tracker::new(config.tracking).with_transitions(transitions.to_vec()),
+            )),
             true => Follower::Particles(Box::new(ParticleTracker::new(
                 config.tracking,
                 config.of_particles,
@@ -44,24 +48,24 @@ impl Follower {
     }
 
     /// See [`Tracker::expect`].
-    pub fn expect(&mut self, pose: Pose, covariance: Covariance, lead: f64) {
+    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
         match self {
-            Follower::Places(tracker) => tracker.expect(pose, covariance, lead),
-            Follower::Particles(tracker) => tracker.expect(pose, covariance),
+            Follower::Places(tracker) => tracker.expect(at, covariance, lead),
+            Follower::Particles(tracker) => tracker.expect(at, covariance),
         }
     }
 
     /// Starts from a pose that is believed, with its covariance; particles start there
     /// at the next scan, see [`Tracker::start_at`].
-    pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: Covariance) {
+    pub fn start_at(&mut self, seen: &[Seen<'_>], at: (u32, Pose), covariance: Covariance) {
         match self {
-            Follower::Places(tracker) => tracker.start_at(seen, pose, covariance),
-            Follower::Particles(tracker) => tracker.expect(pose, covariance),
+            Follower::Places(tracker) => tracker.start_at(seen, at, covariance),
+            Follower::Particles(tracker) => tracker.expect(at, covariance),
         }
     }
 
     /// See [`Tracker::begin`].
-    pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+    pub fn begin(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
         match self {
             Follower::Places(tracker) => tracker.begin(seen, stamp_ns, moved),
             Follower::Particles(tracker) => tracker.begin(seen, stamp_ns, moved),
@@ -69,7 +73,7 @@ impl Follower {
     }
 
     /// See [`Tracker::finish`].
-    pub fn finish(&mut self, seen: &Seen<'_>, found: Option<&[Candidate]>) {
+    pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         match self {
             Follower::Places(tracker) => tracker.finish(seen, found),
             Follower::Particles(tracker) => tracker.finish(seen, found),

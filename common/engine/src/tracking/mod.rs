@@ -16,6 +16,9 @@
 //! one place is the only one when several key scans agree on it. It decides by stamps
 //! and the order of calls alone, so that the same calls give the same poses.
 //!
+//! Several maps are tracked on together: a place is on one of them, and the robot goes from one
+//! to another where a transition is, or where a search finds it there.
+//!
 //! docs/tracking.md explains the method and what each setting is for. The recursive
 //! weighing of hypotheses is that of multi-hypothesis localization (Jensfelt and
 //! Kristensen, "Active global localization for a mobile robot using multiple
@@ -31,6 +34,7 @@ mod place;
 mod places;
 mod report;
 mod seen;
+mod transition;
 mod verdict;
 
 pub use config::TrackingConfig;
@@ -43,7 +47,9 @@ pub use seen::Seen;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
+use messages::Transition;
 use places::Places;
+use transition::other_side;
 use verdict::Belief;
 
 /// What is needed of a search before a scan is done with.
@@ -70,6 +76,8 @@ pub const MIN_BEAMS: usize = 10;
 #[derive(Debug, Clone)]
 pub struct Tracker {
     config: TrackingConfig,
+    /// Between the maps.
+    transitions: Vec<Transition>,
     places: Places,
     belief: Belief,
     /// Where odometry is missing.
@@ -84,11 +92,13 @@ pub struct Tracker {
     keys_since_search: u32,
     is_key: bool,
     is_blank: bool,
+    /// Whether the place that is believed lies in a transition.
+    is_in_transition: bool,
     needs_search: bool,
     /// Whether odometry said how the robot moved to the last scan.
     has_odometry: bool,
     /// Where the robot should be at the next scan, and by how much that leads.
-    expected: Option<(Pose, Covariance, f64)>,
+    expected: Option<((u32, Pose), Covariance, f64)>,
 }
 
 impl Tracker {
@@ -97,6 +107,7 @@ impl Tracker {
     pub fn new(config: TrackingConfig) -> Self {
         Tracker {
             config,
+            transitions: Vec::new(),
             places: Places::new(config),
             belief: Belief::new(config),
             matcher: ScanMatcher::default(),
@@ -107,44 +118,64 @@ impl Tracker {
             keys_since_search: 0,
             is_key: false,
             is_blank: false,
+            is_in_transition: false,
             needs_search: false,
             has_odometry: false,
             expected: None,
         }
     }
 
-    /// Forgets all but where the robot should be at the next scan: that place is tried
-    /// first and leads by this much, natural logarithm of odds, over what a search finds.
-    /// It is not believed before scans confirm it.
-    pub fn expect(&mut self, pose: Pose, covariance: Covariance, lead: f64) {
-        *self = Tracker {
-            expected: Some((pose, covariance, lead)),
-            ..Tracker::new(self.config)
-        };
+    /// The same on several maps, between which the robot may go where these transitions are.
+    #[must_use]
+    pub fn with_transitions(mut self, transitions: Vec<Transition>) -> Self {
+        self.transitions = transitions;
+        self
     }
 
-    /// Starts from a pose that is believed, with its covariance.
-    pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: Covariance) {
-        *self = Tracker::new(self.config);
-        let id = self.places.start_at(seen, (pose, covariance.0));
+    /// Forgets all but the settings and the transitions.
+    fn start_over(&mut self) {
+        let transitions = std::mem::take(&mut self.transitions);
+        *self = Tracker::new(self.config).with_transitions(transitions);
+    }
+
+    /// Forgets all but where the robot should be at the next scan, on the map of a number:
+    /// that place is tried first and leads by this much, natural logarithm of odds, over what
+    /// a search finds. It is not believed before scans confirm it.
+    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
+        self.start_over();
+        self.expected = Some((at, covariance, lead));
+    }
+
+    /// Starts from a pose that is believed, on the map of a number, with its covariance.
+    pub fn start_at(
+        &mut self,
+        seen: &[Seen<'_>],
+        (map, pose): (u32, Pose),
+        covariance: Covariance,
+    ) {
+        self.start_over();
+        let id = self.places.start_at(seen, (map, (pose, covariance.0)));
         self.belief.believe(id);
     }
 
-    /// Takes the next scan and how the target frame moved since the one before, if
-    /// odometry measures; otherwise scans are matched. The scan is done with at
-    /// [`Tracker::finish`].
-    pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+    /// Takes the next scan, as it is seen on each of the maps, by their numbers, and how the
+    /// target frame moved since the one before, if odometry measures; otherwise scans are
+    /// matched. The scan is done with at [`Tracker::finish`].
+    ///
+    /// # Panics
+    /// If there is no map.
+    pub fn begin(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
         let need = self.take_up(seen, stamp_ns, moved);
         self.needs_search = need == Need::ThisScan;
         need
     }
 
-    fn take_up(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
-        self.is_blank = seen.ends.beams() < MIN_BEAMS;
+    fn take_up(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
+        self.is_blank = seen[0].ends.beams() < MIN_BEAMS;
         let by_odometry = moved;
         let moved = match self.is_blank {
             true => by_odometry,
-            false => self.matcher.moved(seen, by_odometry, &self.config),
+            false => self.matcher.moved(&seen[0], by_odometry, &self.config),
         };
         let later_s = self.belief.go_on(stamp_ns, moved);
         // To a first scan, or that of a start, odometry has nothing to say.
@@ -168,8 +199,8 @@ impl Tracker {
         if self.is_blank {
             return Need::Nothing;
         }
-        if let Some((pose, covariance, lead)) = self.expected.take() {
-            self.places.expect(seen, (pose, covariance.0), lead);
+        if let Some(((map, pose), covariance, lead)) = self.expected.take() {
+            self.places.expect(seen, (map, (pose, covariance.0)), lead);
             self.since_key = DrivenPath::default();
             self.is_key = true;
             return Need::ThisScan;
@@ -181,7 +212,7 @@ impl Tracker {
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
-        let is_new = (is_suspicious && !was_doubtful) || is_interrupted;
+        let is_new = (is_suspicious && !was_doubtful) || is_interrupted || self.has_entered();
         self.is_key = self.is_far() || is_new || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
@@ -194,6 +225,18 @@ impl Tracker {
         }
     }
 
+    /// Whether the place that is believed has come to lie in a transition with this scan. The
+    /// robot may stop there, and be on the other map before it drives on.
+    fn has_entered(&mut self) -> bool {
+        let believed = self.belief.place().and_then(|id| self.places.get(id));
+        let is_in = believed.is_some_and(|place| {
+            let at = (place.map, place.pose);
+            let mut transitions = self.transitions.iter();
+            transitions.any(|transition| other_side(transition, at, place.covariance).is_some())
+        });
+        !std::mem::replace(&mut self.is_in_transition, is_in) && is_in
+    }
+
     /// Whether the robot is far enough from the last key scan.
     fn is_far(&self) -> bool {
         self.places.is_empty() || self.since_key.is_far(&self.config)
@@ -202,7 +245,7 @@ impl Tracker {
     /// Is done with the scan, with what the search found that was needed; `None` where none
     /// was, or where it had no answer: then no place is the only one before a later search
     /// has one, for the robot may be where nobody looked.
-    pub fn finish(&mut self, seen: &Seen<'_>, found: Option<&[Candidate]>) {
+    pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
             return;
         }
@@ -218,6 +261,7 @@ impl Tracker {
                 self.keys_since_search = 0;
             }
             self.belief.search_ended(self.needs_search, found.is_some());
+            let seen = (seen, &self.transitions[..]);
             self.places.weigh(seen, &path, &mut self.belief);
             self.keys_since_search += 1;
         }

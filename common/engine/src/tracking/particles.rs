@@ -42,7 +42,9 @@ pub struct ParticleTracker {
     found: Option<(Pose, Covariance)>,
     stamp_ns: i64,
     report: Report,
-    expected: Option<(Pose, Covariance)>,
+    expected: Option<((u32, Pose), Covariance)>,
+    /// Number of the map on which the particles are.
+    map: u32,
 }
 
 impl ParticleTracker {
@@ -63,30 +65,32 @@ impl ParticleTracker {
             stamp_ns: 0,
             report: Report::of_nothing(),
             expected: None,
+            map: 0,
         }
     }
 
     /// See [`Tracker::expect`](super::Tracker::expect): particles start there.
-    pub fn expect(&mut self, pose: Pose, covariance: Covariance) {
+    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
         *self = ParticleTracker {
-            expected: Some((pose, covariance)),
+            expected: Some((at, covariance)),
             ..ParticleTracker::new(self.config, self.particles)
         };
     }
 
     /// See [`Tracker::begin`](super::Tracker::begin).
-    pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+    pub fn begin(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
         self.stamp_ns = stamp_ns;
-        self.is_blank = seen.ends.beams() < MIN_BEAMS;
+        self.is_blank = seen[0].ends.beams() < MIN_BEAMS;
         if self.is_blank {
             self.since_key.add(moved, 0.0);
             return Need::Nothing;
         }
-        let moved = self.matcher.moved(seen, moved, &self.config);
+        let moved = self.matcher.moved(&seen[0], moved, &self.config);
         self.since_key.add(moved, 0.0);
         self.report.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
-        if let Some((pose, covariance)) = self.expected.take() {
-            self.start(seen, [seed(pose, covariance)]);
+        if let Some(((map, pose), covariance)) = self.expected.take() {
+            self.map = map;
+            self.start(&seen[map as usize], [seed(pose, covariance)]);
         }
         self.is_key = self.filter.is_none() || self.since_key.is_far(&self.config);
         match self.filter {
@@ -96,15 +100,20 @@ impl ParticleTracker {
     }
 
     /// See [`Tracker::finish`](super::Tracker::finish).
-    pub fn finish(&mut self, seen: &Seen<'_>, found: Option<&[Candidate]>) {
+    pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
             return;
         }
         if self.filter.is_none()
             && let Some(found) = found
         {
-            self.start(seen, found.iter().map(|c| seed(c.pose, c.covariance)));
+            // On one map, that of the best.
+            self.map = found.first().map_or(0, |best| best.map);
+            let on_map = found.iter().filter(|c| c.map == self.map);
+            let seeds: Vec<_> = on_map.map(|c| seed(c.pose, c.covariance)).collect();
+            self.start(&seen[self.map as usize], seeds);
         }
+        let seen = &seen[self.map as usize];
         if self.is_key {
             self.weigh(seen);
         }
@@ -180,7 +189,10 @@ impl ParticleTracker {
     /// Where the robot is, and how sure that is.
     #[must_use]
     pub fn report(&self) -> Report {
-        self.report
+        Report {
+            map: self.map,
+            ..self.report
+        }
     }
 }
 

@@ -13,6 +13,8 @@ use crate::peaks::Target;
 /// A place that a search found for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
+    /// Number of the map, among those that are searched together.
+    pub map: u32,
     /// Of the target frame.
     pub pose: Pose,
     /// Of that pose.
@@ -28,10 +30,11 @@ pub struct Candidate {
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
-    fn of(hypothesis: &Hypothesis, target: Target) -> Self {
+    fn of(map: u32, hypothesis: &Hypothesis, target: Target) -> Self {
         let laser = hypothesis.map_from_laser.into();
         let pose = target.from_laser(laser);
         Candidate {
+            map,
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
             score: hypothesis.score.into(),
@@ -39,16 +42,16 @@ impl Candidate {
         }
     }
 
-    /// Fills in those of the places that a search found, as messages say them, for which
-    /// the votes speak most: of many places, some fit a scan well by chance, and with
+    /// Fills in those of the places that a search found, as messages say them, each with the
+    /// number of its map, for which the votes speak most: of many places, some fit a scan well by chance, and with
     /// each there is one more to distinguish from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
-        found: impl Iterator<Item = &'a Hypothesis>,
+        found: impl Iterator<Item = (u32, &'a Hypothesis)>,
         target: Target,
     ) {
         candidates.clear();
-        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, target)));
+        candidates.extend(found.map(|(map, hypothesis)| Candidate::of(map, hypothesis, target)));
         candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
         candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);
@@ -86,6 +89,10 @@ fn tightened(covariance: Matrix3<f64>) -> Matrix3<f64> {
 pub(super) struct Place {
     /// Which it is; two that meet become one.
     pub id: u32,
+    /// Number of the map that it is on.
+    pub map: u32,
+    /// Whether the robot may have come there by a transition from another map.
+    pub crossed: bool,
     pub pose: Pose,
     pub covariance: Matrix3<f64>,
     /// How much speaks for it, natural logarithm of odds; that of the best is
@@ -108,9 +115,11 @@ pub(super) struct Place {
 pub(super) const MEAN_OVER: u32 = 8;
 
 impl Place {
-    pub(super) fn born(id: u32, found: &Fitted, log_weight: f64) -> Self {
+    pub(super) fn born(id: u32, (map, found): (u32, &Fitted), log_weight: f64) -> Self {
         Place {
             id,
+            map,
+            crossed: false,
             pose: found.pose,
             covariance: found.covariance,
             log_weight,
@@ -121,6 +130,11 @@ impl Place {
             predicted: (found.pose, found.covariance),
             off: 0.0,
         }
+    }
+
+    /// Whether a pose of a map is so near, metres and radians.
+    pub(super) fn is_within(&self, (map, pose): (u32, Pose), metres: f64, radians: f64) -> bool {
+        self.map == map && self.pose.is_within(pose, metres, radians)
     }
 
     pub(super) fn set(&mut self, fitted: &Fitted) {

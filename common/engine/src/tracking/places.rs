@@ -1,12 +1,14 @@
 //! The places that are kept, and how a key scan weighs them.
 
 use geometry::Pose;
+use messages::Transition;
 use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
 use super::place::{Candidate, Place};
 use super::seen::{Fitted, Seen, information, squared_deviations};
+use super::transition::other_side;
 use super::verdict::Belief;
 use crate::peaks::lead;
 
@@ -77,7 +79,8 @@ struct Best {
 pub(super) struct Places {
     config: TrackingConfig,
     kept: Vec<Place>,
-    candidates: Vec<Fitted>,
+    /// With the numbers of their maps.
+    candidates: Vec<(u32, Fitted)>,
     /// Which of them are at places that are kept.
     is_known: Vec<bool>,
     next_id: u32,
@@ -118,15 +121,19 @@ impl Places {
         self.kept.iter().find(|place| place.id == id)
     }
 
-    /// Keeps one place, at which a scan was taken.
-    pub(super) fn start_at(&mut self, seen: &Seen<'_>, predicted: (Pose, Matrix3<f64>)) -> u32 {
-        let fitted = seen.settle(predicted);
+    /// Keeps one place, on the map of a number, at which a scan was taken.
+    pub(super) fn start_at(
+        &mut self,
+        seen: &[Seen<'_>],
+        (map, predicted): (u32, (Pose, Matrix3<f64>)),
+    ) -> u32 {
+        let fitted = seen[map as usize].settle(predicted);
         let id = self.new_id();
         // Old enough to lead.
         let age = 2;
         self.kept = vec![Place {
             age,
-            ..Place::born(id, &fitted, 0.0)
+            ..Place::born(id, (map, &fitted), 0.0)
         }];
         self.key_scans = age;
         id
@@ -134,12 +141,18 @@ impl Places {
 
     /// Keeps a place at which the robot is expected, ahead by `lead` of all that the
     /// first search finds.
-    pub(super) fn expect(&mut self, seen: &Seen<'_>, predicted: (Pose, Matrix3<f64>), lead: f64) {
+    pub(super) fn expect(
+        &mut self,
+        seen: &[Seen<'_>],
+        (map, predicted): (u32, (Pose, Matrix3<f64>)),
+        lead: f64,
+    ) {
+        let seen = &seen[map as usize];
         let fitted = seen.settle_turned(predicted, seen.settle(predicted));
         let id = self.new_id();
         self.kept.push(Place {
             predicted,
-            ..Place::born(id, &fitted, 0.0)
+            ..Place::born(id, (map, &fitted), 0.0)
         });
         self.first_lag = lead;
     }
@@ -150,7 +163,7 @@ impl Places {
     }
 
     /// Moves one place by a way, and fits the scan there.
-    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, path: &DrivenPath) {
+    pub(super) fn follow(&mut self, id: u32, seen: &[Seen<'_>], path: &DrivenPath) {
         let TrackingConfig {
             odometry_error,
             restart_fall,
@@ -159,6 +172,7 @@ impl Places {
         let Some(place) = self.kept.iter_mut().find(|place| place.id == id) else {
             return;
         };
+        let seen = &seen[place.map as usize];
         let predicted = path.predict((place.pose, place.covariance), odometry_error);
         let mut fitted = seen.settle(predicted);
         if fitted.score < place.mean - restart_fall {
@@ -171,37 +185,46 @@ impl Places {
     /// Takes what a search found for the scan.
     pub(super) fn take(&mut self, found: &[Candidate]) {
         self.candidates.clear();
-        self.candidates.extend(found.iter().map(Candidate::fitted));
+        let found = found.iter().map(|found| (found.map, found.fitted()));
+        self.candidates.extend(found);
     }
 
     /// Takes what a search found for an earlier scan, from where the robot has gone a
     /// way since.
-    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, path: &DrivenPath, found: &[Candidate]) {
+    pub(super) fn take_ahead(&mut self, seen: &[Seen<'_>], path: &DrivenPath, found: &[Candidate]) {
         let noise = self.config.odometry_error;
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|candidate| {
             let Fitted {
                 pose, covariance, ..
             } = candidate.fitted();
-            seen.settle(path.predict((pose, covariance), noise))
+            let seen = &seen[candidate.map as usize];
+            let settled = seen.settle(path.predict((pose, covariance), noise));
+            (candidate.map, settled)
         }));
     }
 
     /// Weighs all places by a key scan, and those that were taken with them; those
     /// that are not believed have gone `way` since the last one.
-    pub(super) fn weigh(&mut self, seen: &Seen<'_>, path: &DrivenPath, belief: &mut Belief) {
+    pub(super) fn weigh(
+        &mut self,
+        (seen, transitions): (&[Seen<'_>], &[Transition]),
+        path: &DrivenPath,
+        belief: &mut Belief,
+    ) {
         let noise = self.config.odometry_error;
         for place in &mut self.kept {
             if belief.place() != Some(place.id) {
                 place.predicted = path.predict((place.pose, place.covariance), noise);
-                place.set(&seen.settle(place.predicted));
+                place.set(&seen[place.map as usize].settle(place.predicted));
             }
         }
         self.snap();
-        let score = self.best_score();
+        let (map, score) = self.best_score();
+        let seen_on = &seen[map as usize];
         let best = Best {
             score,
-            left_out: seen.distance_field.left_out(score, seen.fit),
+            left_out: seen_on.distance_field.left_out(score, seen_on.fit),
         };
         let fits_badly = belief
             .place()
@@ -213,6 +236,7 @@ impl Places {
         if fits_badly {
             self.follow_slip(best, born, belief);
         }
+        self.add_across((seen, transitions), best, belief);
         self.candidates.clear();
         self.key_scans += 1;
         self.tidy(belief);
@@ -225,7 +249,8 @@ impl Places {
             let (pose, covariance) = place.predicted;
             let known = information(&(covariance + Matrix3::from_diagonal(&more)));
             let mut best: Option<(f64, f64, &Fitted)> = None;
-            for candidate in &self.candidates {
+            let on_map = self.candidates.iter().filter(|(map, _)| *map == place.map);
+            for (_, candidate) in on_map {
                 let off = squared_deviations(candidate.pose, pose, &known);
                 let worth = candidate.score - SNAP_BY_DEVIATION * off;
                 if off < GATE && best.is_none_or(|(most, _, _)| worth > most) {
@@ -241,16 +266,21 @@ impl Places {
         let places = &self.kept;
         self.is_known.clear();
         self.is_known
-            .extend(self.candidates.iter().map(|candidate| {
-                let at = |place: &Place| place.pose.is_within(candidate.pose, SAME_M, SAME_RADIANS);
-                places.iter().any(at)
+            .extend(self.candidates.iter().map(|&(map, candidate)| {
+                let at = (map, candidate.pose);
+                places
+                    .iter()
+                    .any(|place| place.is_within(at, SAME_M, SAME_RADIANS))
             }));
     }
 
-    fn best_score(&self) -> f64 {
-        let places = self.kept.iter().map(|place| place.last);
-        let candidates = self.candidates.iter().map(|candidate| candidate.score);
-        places.chain(candidates).fold(0.0, f64::max)
+    /// The highest score of any place, and the map that it is on.
+    fn best_score(&self) -> (u32, f64) {
+        let places = self.kept.iter().map(|place| (place.map, place.last));
+        let candidates = self.candidates.iter();
+        let candidates = candidates.map(|(map, candidate)| (*map, candidate.score));
+        let higher = |a: (u32, f64), b: (u32, f64)| if b.1 > a.1 { b } else { a };
+        places.chain(candidates).fold((0, 0.0), higher)
     }
 
     /// What a key scan says against a place with a score. What the map may leave out
@@ -283,27 +313,29 @@ impl Places {
         let tracked = belief
             .place()
             .and_then(|id| self.get(id))
-            .map(|p| p.predicted.0);
+            .map(|p| (p.map, p.predicted.0));
         let is_first = self.key_scans == 0;
         let near_m = NEAR_M + SPEED_M_S * unknown_s.unwrap_or(0.0);
         for i in 0..self.candidates.len() {
             if self.is_known[i] {
                 continue;
             }
-            let found = self.candidates[i];
+            let (map, found) = self.candidates[i];
             let far = match tracked {
                 _ if is_first => self.first_lag,
                 Some(_) if !fits_badly => self.config.newborn_lag_unique,
                 _ => self.config.newborn_lag,
             };
-            let is_near = tracked.is_some_and(|pose| pose.distance_to(found.pose) <= near_m);
+            let is_near = tracked.is_some_and(|(tracked_on, pose)| {
+                tracked_on == map && pose.distance_to(found.pose) <= near_m
+            });
             let lag = match is_near {
                 true => far.min(self.config.newborn_lag_near),
                 false => far,
             };
             let log_weight = -self.against(best, found.score) - lag;
             let id = self.new_id();
-            self.kept.push(Place::born(id, &found, log_weight));
+            self.kept.push(Place::born(id, (map, &found), log_weight));
         }
     }
 
@@ -322,7 +354,8 @@ impl Places {
         let is_slip = |place: &&mut Place| {
             let pose = tracked.predicted.0;
             let turned = pose.angle_to(place.pose) / SLIP_RADIANS;
-            place.last >= least && pose.distance_to(place.pose) / NEAR_M + turned <= 1.0
+            let is_near = pose.distance_to(place.pose) / NEAR_M + turned <= 1.0;
+            place.map == tracked.map && place.last >= least && is_near
         };
         let beside = self.kept[born..].iter_mut().filter(is_slip);
         if let Some(place) = beside.reduce(|a, b| if b.last > a.last { b } else { a }) {
@@ -330,6 +363,50 @@ impl Places {
             place.age = tracked.age;
             place.mean = 0.9 * tracked.mean + 0.1 * place.last;
             belief.slip(place.id, tracked.predicted.0.angle_to(place.pose));
+        }
+    }
+
+    /// Where the place that is believed, or else leads, lies in a transition, the robot may be
+    /// on its other side just as well: what scans said before says nothing of that, and what
+    /// this one says counts alone.
+    fn add_across(
+        &mut self,
+        (seen, transitions): (&[Seen<'_>], &[Transition]),
+        best: Best,
+        belief: &Belief,
+    ) {
+        let leading = self
+            .kept
+            .iter()
+            .reduce(|a, b| match b.log_weight > a.log_weight {
+                true => b,
+                false => a,
+            });
+        let believed = belief.place().and_then(|id| self.get(id));
+        let Some(here) = believed.or(leading).copied() else {
+            return;
+        };
+        let sides = transitions.iter().filter_map(|transition| {
+            other_side(transition, (here.map, here.pose), here.covariance)
+        });
+        for (map, predicted) in sides {
+            let fitted = seen[map as usize].settle(predicted);
+            let log_weight = here.log_weight - self.against(best, fitted.score);
+            let at = (map, fitted.pose);
+            let mut kept = self.kept.iter_mut();
+            match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
+                Some(place) => {
+                    place.crossed = true;
+                    place.log_weight = place.log_weight.max(log_weight);
+                }
+                None => {
+                    let id = self.new_id();
+                    self.kept.push(Place {
+                        crossed: true,
+                        ..Place::born(id, (map, &fitted), log_weight)
+                    });
+                }
+            }
         }
     }
 
@@ -357,7 +434,7 @@ impl Places {
             }
             let met = self.kept[..count]
                 .iter()
-                .find(|other| other.pose.is_within(place.pose, MERGED_M, MERGED_RADIANS));
+                .find(|other| other.is_within((place.map, place.pose), MERGED_M, MERGED_RADIANS));
             if let Some(other) = met {
                 if belief.place() == Some(place.id) {
                     belief.believe(other.id);

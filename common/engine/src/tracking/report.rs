@@ -11,6 +11,8 @@ pub struct Report {
     pub state: TrackState,
     /// Why.
     pub reason: TrackReason,
+    /// Number of the map that the pose is on, among those that are searched together.
+    pub map: u32,
     /// Of the target frame, in the map: the place that is believed, else the
     /// one that leads.
     pub pose: Option<Pose>,
@@ -24,7 +26,9 @@ pub struct Report {
     pub lead: f64,
     /// Places that come near the best, itself included.
     pub rivals: u32,
-    /// How far the nearest and the farthest of the others lie from it, metres.
+    /// On how many maps they are.
+    pub maps: u32,
+    /// How far the nearest and the farthest of the others on its map lie from it, metres.
     pub apart_m: (f64, f64),
     /// By how much odometry was wrong, where that is the reason, radians.
     pub jumped: f64,
@@ -43,12 +47,14 @@ impl Report {
         Report {
             state: TrackState::Searching,
             reason: TrackReason::NoScan,
+            map: 0,
             pose: None,
             covariance: Matrix3::zeros(),
             probability: 0.0,
             score: 0.0,
             lead: 0.0,
             rivals: 0,
+            maps: 0,
             apart_m: (0.0, 0.0),
             jumped: 0.0,
             since_ns: 0,
@@ -96,6 +102,7 @@ impl Report {
     fn apart(&self) -> String {
         let (nearest, farthest) = self.apart_m;
         match self.rivals {
+            _ if self.maps > 1 => format!("on {} maps", self.maps),
             _ if farthest <= SAME_SPOT_M => "on one spot".into(),
             0..=2 => format!("{farthest:.0} m apart"),
             _ => format!("{nearest:.0} to {farthest:.0} m apart"),
@@ -104,7 +111,7 @@ impl Report {
 
     fn advice(&self) -> &'static str {
         match self.reason {
-            TrackReason::SeveralPlaces if self.apart_m.1 <= SAME_SPOT_M => {
+            TrackReason::SeveralPlaces if self.maps <= 1 && self.apart_m.1 <= SAME_SPOT_M => {
                 "turn, or drive a few metres"
             }
             TrackReason::SeveralPlaces | TrackReason::TooEarly | TrackReason::AnotherPlace => {
@@ -131,12 +138,14 @@ mod tests {
         Report {
             state,
             reason,
+            map: 0,
             pose: None,
             covariance: Matrix3::zeros(),
             probability: 0.5,
             score: 0.14,
             lead: 1.0,
             rivals: 2,
+            maps: 1,
             apart_m: (25.2, 25.2),
             jumped: 80f64.to_radians(),
             since_ns: 0,
@@ -176,6 +185,19 @@ mod tests {
             let why = report.reason_in_words();
             assert_eq!(Report::split(&report.words()), (&*why, report.advice()));
         }
+    }
+
+    #[test]
+    fn places_on_several_maps_have_no_distance() {
+        let floors = Report {
+            maps: 2,
+            apart_m: (0.0, 0.0),
+            ..report(TrackState::Doubtful, TrackReason::SeveralPlaces)
+        };
+        assert_eq!(
+            floors.words(),
+            "2 places fit, on 2 maps, since 3 m: drive a few metres, or mark a region"
+        );
     }
 
     #[test]

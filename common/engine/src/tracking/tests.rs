@@ -1,4 +1,5 @@
 mod building;
+mod floors;
 
 use std::f64::consts::PI;
 
@@ -47,8 +48,8 @@ fn unanswered(
 ) -> Need {
     let (ends, fit) = (building.ends(truth), FitConfig::default());
     let seen = building.seen(&ends, &fit);
-    let need = tracker.begin(&seen, 1, moved);
-    tracker.finish(&seen, None);
+    let need = tracker.begin(&[seen], 1, moved);
+    tracker.finish(&[seen], None);
     need
 }
 
@@ -186,9 +187,9 @@ fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
         let ends = Ends::new(&scan, &building.space, &BeamConfig::default()).unwrap();
         let fit = FitConfig::default();
         let seen = building.seen(&ends, &fit);
-        let need = tracker.begin(&seen, 1, Some(step));
+        let need = tracker.begin(&[seen], 1, Some(step));
         // A search finds nothing better.
-        tracker.finish(&seen, (need != Need::Nothing).then_some(&[]));
+        tracker.finish(&[seen], (need != Need::Nothing).then_some(&[]));
         tracker.report().state
     };
     (0..20).map(take).collect()
@@ -259,13 +260,13 @@ fn particles_that_a_search_starts_find_the_robot_and_notice_when_it_is_carried_a
         particles: true,
         ..FollowConfig::default()
     };
-    let mut follower = Follower::new(&config);
+    let mut follower = Follower::new(&config, &[]);
     let mut take = |pose: Pose, moved: Option<Pose>| {
         let (ends, fit) = (building.ends(pose), FitConfig::default());
         let seen = building.seen(&ends, &fit);
-        let need = follower.begin(&seen, 1, moved);
+        let need = follower.begin(&[seen], 1, moved);
         let found = (need == Need::ThisScan).then(|| building.found(pose));
-        follower.finish(&seen, found.as_deref());
+        follower.finish(&[seen], found.as_deref());
         follower.report()
     };
     let step = Pose::new(0.3, 0.0, 0.0);
@@ -302,12 +303,12 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
         at = at.then(step);
         let (ends, fit) = (building.ends(at), FitConfig::default());
         let seen = building.seen(&ends, &fit);
-        let need = tracker.begin(&seen, 1, Some(step));
+        let need = tracker.begin(&[seen], 1, Some(step));
         assert_ne!(need, Need::ThisScan);
         let found = (need == Need::EarlierScan)
             .then(|| building.found(at.then(step.inverse()).then(step.inverse())));
         due += u32::from(found.is_some());
-        tracker.finish(&seen, found.as_deref());
+        tracker.finish(&[seen], found.as_deref());
         asked += u32::from(tracker.asks_ahead());
     }
     assert_eq!((asked, due), (3, 3));
@@ -319,12 +320,12 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
 fn an_expected_pose_is_not_believed_before_scans_confirm_it() {
     let building = building(&ALIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());
-    tracker.expect(START, Covariance::from_deviations(0.3, 0.3, 0.2), 10.0);
+    tracker.expect((0, START), Covariance::from_deviations(0.3, 0.3, 0.2), 10.0);
     building.step(&mut tracker, START, None);
     assert_eq!(tracker.report().state, TrackState::Searching);
     let mut wrong = Tracker::new(TrackingConfig::default());
     wrong.expect(
-        Pose::new(3.0, 0.3, 1.0),
+        (0, Pose::new(3.0, 0.3, 1.0)),
         Covariance::from_deviations(0.1, 0.1, 0.1),
         10.0,
     );
@@ -340,8 +341,8 @@ fn a_scan_of_nothing_changes_nothing() {
     let mut tracker = Tracker::new(TrackingConfig::default());
     let (ends, fit) = (Ends::default(), FitConfig::default());
     let seen = building.seen(&ends, &fit);
-    assert_eq!(tracker.begin(&seen, 1, None), Need::Nothing);
-    tracker.finish(&seen, None);
+    assert_eq!(tracker.begin(&[seen], 1, None), Need::Nothing);
+    tracker.finish(&[seen], None);
     assert_eq!(
         (tracker.report().pose, tracker.report().reason),
         (None, TrackReason::NoScan)
@@ -360,8 +361,8 @@ fn tracking_allocates_nothing() {
         let (ends, fit) = (building.ends(at), FitConfig::default());
         let seen = building.seen(&ends, &fit);
         let allocated = allocation_counter::measure(|| {
-            if tracker.begin(&seen, 1, Some(step)) == Need::Nothing {
-                tracker.finish(&seen, None);
+            if tracker.begin(&[seen], 1, Some(step)) == Need::Nothing {
+                tracker.finish(&[seen], None);
             }
         });
         assert_eq!(allocated.count_total, 0);

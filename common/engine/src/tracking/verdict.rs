@@ -192,7 +192,12 @@ impl Belief {
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if self.is_checked() && !self.fits_badly && self.lead >= MIN_LEAD => {
+            Some(_)
+                if self.is_checked()
+                    && !self.fits_badly
+                    && self.lead >= MIN_LEAD
+                    && !self.may_have_crossed(places.all()) =>
+            {
                 TrackState::Unique
             }
             Some(_) => TrackState::Doubtful,
@@ -235,6 +240,16 @@ impl Belief {
         })
     }
 
+    /// Whether the robot may be on another map, to or from which it has come by a transition:
+    /// maps of one building are alike, so that takes as much to exclude as a start does.
+    fn may_have_crossed(&self, places: &[Place]) -> bool {
+        let Some(best) = places.first() else {
+            return false;
+        };
+        self.rivals(places)
+            .any(|place| place.map != best.map && (place.crossed || best.crossed))
+    }
+
     fn judge(&mut self, places: &Places) {
         self.connected_keys += 1;
         self.interrupted &= self.connected_keys < MIN_KEYS;
@@ -246,7 +261,10 @@ impl Belief {
         if let Some(id) = self.place
             && id != best.id
         {
-            let is_near = |place: &Place| place.pose.is_within(best.pose, NEAR_M, f64::INFINITY);
+            let is_near = |place: &Place| {
+                place.is_within((best.map, best.pose), NEAR_M, f64::INFINITY)
+                    || (place.map != best.map && (place.crossed || best.crossed))
+            };
             match places.get(id).is_some_and(is_near) {
                 true => (self.place, self.doubt) = (Some(best.id), None),
                 false => self.lose(TrackReason::AnotherPlace),
@@ -279,6 +297,14 @@ impl Belief {
         }
     }
 
+    /// On how many maps the best places lie.
+    fn maps(&self, places: &[Place]) -> u32 {
+        let mut maps: Vec<u32> = self.rivals(places).map(|place| place.map).collect();
+        maps.sort_unstable();
+        maps.dedup();
+        maps.len() as u32
+    }
+
     fn lose(&mut self, why: TrackReason) {
         self.place = None;
         self.lost_by = why;
@@ -306,26 +332,28 @@ impl Belief {
             Some(_) => place.pose,
             None => place.pose.then(since_key.step),
         });
-        let distances = self.rivals(places.all()).skip(1).filter_map(|other| {
-            let from = places.all().first()?.pose;
-            Some(from.distance_to(other.pose))
-        });
+        let best = places.all().first();
+        let on_map = |other: &&Place| best.is_some_and(|best| best.map == other.map);
+        let distances = self.rivals(places.all()).skip(1).filter(on_map);
+        let distances = distances.filter_map(|other| Some(best?.pose.distance_to(other.pose)));
         let apart_m = distances.fold((f64::INFINITY, 0.0f64), |(near, far), distance| {
             (near.min(distance), far.max(distance))
         });
         Report {
             state: self.state,
             reason: self.reason,
+            map: place.map_or(0, |place| place.map),
             pose,
             covariance: match (believed, place) {
                 (Some(believed), _) if self.state == TrackState::Unique => believed.covariance,
-                (_, Some(place)) => spread(places.all(), place.pose),
+                (_, Some(place)) => spread(places.all(), place),
                 (_, None) => Matrix3::zeros(),
             },
             probability: probability(self.lead),
             score: place.map_or(0.0, |place| place.last),
             lead: self.lead,
             rivals: self.rivals(places.all()).count() as u32,
+            maps: self.maps(places.all()),
             apart_m: match apart_m {
                 (near, far) if near <= far => (near, far),
                 _ => (0.0, 0.0),
@@ -337,13 +365,14 @@ impl Belief {
     }
 }
 
-/// The covariance, about a pose, of a robot that is at one of several places.
-fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
-    let top = places.first().map_or(0.0, |best| best.log_weight);
+/// The covariance, about one of several places on its map, of a robot that is at any of them.
+fn spread(places: &[Place], about: &Place) -> Matrix3<f64> {
+    let on_map = || places.iter().filter(|place| place.map == about.map);
+    let top = on_map().next().map_or(0.0, |best| best.log_weight);
     let weight = |place: &Place| (place.log_weight - top).exp();
-    let all: f64 = places.iter().map(weight).sum();
-    let parts = places.iter().map(|place| {
-        let about = Covariance(place.covariance).about(place.pose, about);
+    let all: f64 = on_map().map(weight).sum();
+    let parts = on_map().map(|place| {
+        let about = Covariance(place.covariance).about(place.pose, about.pose);
         about.0 * (weight(place) / all)
     });
     parts.sum()
@@ -357,9 +386,7 @@ fn probability(lead: f64) -> f64 {
 }
 
 fn is_elsewhere(place: &Place, best: &Place) -> bool {
-    !place
-        .pose
-        .is_within(best.pose, DISTINCT_M, DISTINCT_RADIANS)
+    !place.is_within((best.map, best.pose), DISTINCT_M, DISTINCT_RADIANS)
 }
 
 /// By how much the best place leads over the next that lies elsewhere. A new one is

@@ -74,7 +74,11 @@ pub(super) fn read(
         let Ok(hypotheses) = hypotheses else { continue };
         let view = session.view(&scan)?;
         let mut found = Vec::new();
-        Candidate::fill(&mut found, hypotheses.iter(), view.target);
+        Candidate::fill(
+            &mut found,
+            hypotheses.iter().map(|found| (0, found)),
+            view.target,
+        );
         moments.push(Moment {
             stamp_ns: scan.stamp_ns,
             truth,

@@ -64,7 +64,7 @@ impl<'a> Run<'a> {
         Run {
             world,
             moments,
-            tracker: Follower::new(&config),
+            tracker: Follower::new(&config, &[]),
             asked: None,
             tracking_ms: Vec::new(),
             searches: 0,
@@ -87,7 +87,7 @@ impl<'a> Run<'a> {
         let covariance = Covariance::from_deviations(0.05, 0.05, 1f64.to_radians());
         let pose = moment.view.target.from_laser(truth);
         self.asked = None;
-        self.tracker.start_at(&seen, pose, covariance);
+        self.tracker.start_at(&[seen], (0, pose), covariance);
     }
 
     /// Follows the robot to a moment, from the truth at least so many metres before; whether
@@ -118,13 +118,13 @@ impl<'a> Run<'a> {
         let seen = self.seen(moment);
         let (tracker, asked, moments) = (&mut self.tracker, &mut self.asked, self.moments);
         let (need, cost_ms) = cpu::timed(|| {
-            let need = tracker.begin(&seen, moment.stamp_ns, moved);
+            let need = tracker.begin(&[seen], moment.stamp_ns, moved);
             let found: Option<&[Candidate]> = match need {
                 Need::Nothing => None,
                 Need::ThisScan => Some(&moment.found),
                 Need::EarlierScan => asked.take().map(|asked| &moments[asked].found[..]),
             };
-            tracker.finish(&seen, found);
+            tracker.finish(&[seen], found);
             need
         })?;
         if tracker.asks_ahead() {

@@ -43,6 +43,14 @@ pub(crate) fn apply(
             set(node, PLAYED, Some(&recording));
         }
     }
+    if let Some(maps) = &options.maps {
+        let maps = std::path::absolute(maps).map_err(LauncherError::Folder)?;
+        let node = find(dataflow, &[MAP_SERVER], "--maps", file)?;
+        for option in ["--map", RECORDED_MAP, PLAYED] {
+            unset(node, option, true);
+        }
+        set(node, "--maps", Some(&maps.to_string_lossy()));
+    }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
         set(node, "--rate", Some(&rate.to_string()));
@@ -330,6 +338,12 @@ mod tests {
         };
         let args = applied(&options, dataflow::parse(text, &topics).unwrap()).unwrap();
         assert_eq!(args, [["--map=/maps/b.yaml"]]);
+        let several = Options {
+            maps: Some("/maps".into()),
+            ..Options::default()
+        };
+        let args = applied(&several, dataflow::parse(text, &topics).unwrap()).unwrap();
+        assert_eq!(args, [["--maps=/maps"]]);
         let error = applied(&options, graph("", "")).unwrap_err().to_string();
         assert!(error.contains("--map is for the map_server"), "{error}");
     }

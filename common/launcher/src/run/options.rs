@@ -60,6 +60,10 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
 
+    /// Serve the maps of this folder, or of this file that names them, and search all of them
+    #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
+    pub maps: Option<PathBuf>,
+
     /// Not for a graph, whose map is map_server's: --map says which one
     #[arg(long, value_name = "TOPIC", requires = "replay", hide = true)]
     pub map_topic: Option<String>,

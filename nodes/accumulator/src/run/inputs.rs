@@ -12,6 +12,8 @@ use crate::config::Searched;
 pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) maps: Subscriber<topic::Map>,
+    /// Where several are searched together.
+    pub(super) sets: Subscriber<topic::Maps>,
     pub(super) boundaries: Subscriber<topic::Boundary>,
     /// Wishes where to search.
     pub(super) regions: Subscriber<topic::Region>,
@@ -28,6 +30,7 @@ impl Inputs {
         Ok(Inputs {
             scans: graph.subscriber()?,
             maps: graph.subscriber()?,
+            sets: graph.subscriber()?,
             boundaries: graph.subscriber()?,
             regions: graph.subscriber()?,
             attention: (config.search == Searched::Asked)
@@ -39,9 +42,10 @@ impl Inputs {
     }
 
     pub(super) fn all(&self) -> Vec<&dyn Input> {
-        let always: [&dyn Input; 5] = [
+        let always: [&dyn Input; 6] = [
             &self.scans,
             &self.maps,
+            &self.sets,
             &self.boundaries,
             &self.regions,
             &self.odometry,

@@ -1,7 +1,9 @@
 //! What the node publishes.
 
 use engine::beams::BeamConfig;
-use messages::{FieldHeader, Reading, ReadingsHeader, Stamp, Vote, VotesHeader, topic};
+use messages::{
+    FieldHeader, Reading, ReadingsHeader, Stamp, Vote, VotesByMapHeader, VotesHeader, topic,
+};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
 use crate::Config;
@@ -10,6 +12,7 @@ use crate::pace::Pace;
 /// The node's publishers.
 pub(super) struct Outputs {
     votes: Publisher<topic::Votes>,
+    by_map: Publisher<topic::VotesByMap>,
     readings: Publisher<topic::Readings>,
     field: Publisher<topic::Field>,
     field_pace: Pace,
@@ -19,11 +22,42 @@ impl Outputs {
     pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
         Ok(Outputs {
             votes: graph.publisher_for(config.localizer.collect.max_votes as usize)?,
+            by_map: graph.publisher()?,
             // As many as vote by default; more of them have it grow.
             readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
         })
+    }
+
+    /// Sends what was found on several maps that were searched together, of which one leads.
+    pub(super) fn votes_of_maps(
+        &self,
+        leading: &VotesHeader,
+        by_map: &[(VotesHeader, &[Vote])],
+    ) -> Result<(), TransportError> {
+        let mut loan = self.by_map.loan(by_map.len())?;
+        *loan.header_mut() = VotesByMapHeader {
+            stamp: leading.stamp,
+        };
+        for (item, (header, _)) in loan.items_mut().iter_mut().zip(by_map) {
+            *item = *header;
+        }
+        loan.send()?;
+        let total = by_map.iter().map(|(_, votes)| votes.len()).sum();
+        let mut loan = self.votes.loan(total)?;
+        *loan.header_mut() = VotesHeader {
+            total: total as u64,
+            maps: by_map.len() as u64,
+            ..*leading
+        };
+        let mut rest = loan.items_mut();
+        for (_, votes) in by_map {
+            let (here, after) = rest.split_at_mut(votes.len());
+            here.copy_from_slice(votes);
+            rest = after;
+        }
+        loan.send()
     }
 
     pub(super) fn votes(&self, header: &VotesHeader, votes: &[Vote]) -> Result<(), TransportError> {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use engine::limits::Region;
 use engine::localizer::{LocalizerConfig, Prior};
 use index_cache::{CachePlace, IndexCache, Kept};
-use messages::{Corner, NodeState, topic};
+use messages::{Corner, MapSet, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use super::inputs::Inputs;
@@ -14,8 +14,8 @@ use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
 use crate::{AccumulatorError, Config};
 
-/// What has come, what is wanted of it, and what is being prepared: one
-/// localizer at a time, always for what came last.
+/// What has come, what is wanted of it, and what is being prepared: one map, or all maps of a
+/// set, at a time, always for what came last.
 pub(super) struct Supply {
     config: LocalizerConfig,
     /// Where poses are searched unless somebody requests otherwise.
@@ -27,6 +27,8 @@ pub(super) struct Supply {
     cache: Option<IndexCache>,
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
+    /// Where there is one, it is searched, and the map above is that of it which is shown.
+    set: Option<Sample<topic::Maps>>,
     /// To be prepared, once nothing else is.
     wanted: Option<Order>,
     under_way: Option<UnderWay>,
@@ -35,13 +37,16 @@ pub(super) struct Supply {
 }
 
 /// What to prepare, and the number of the request for a region that it is to heed.
-type Order = (Key, u64);
+type Order = (Vec<Key>, u64);
 
 struct UnderWay {
     order: Order,
     since: Instant,
-    work: Background<Result<(PreparedMap, Kept), AccumulatorError>>,
+    work: Background<Prepared>,
 }
+
+/// All maps that were ordered, or the id of the one that cannot be used.
+type Prepared = Result<Vec<(PreparedMap, Kept)>, (u64, AccumulatorError)>;
 
 impl Supply {
     pub(super) fn new(config: &Config) -> Self {
@@ -58,14 +63,15 @@ impl Supply {
             cache,
             map: None,
             boundary: None,
+            set: None,
             wanted: None,
             under_way: None,
             handed_out: None,
         }
     }
 
-    /// Takes what has come and starts or ends a preparation; returns a new
-    /// localizer as soon as there is one.
+    /// Takes what has come and starts or ends a preparation; returns what is to be searched
+    /// from now on as soon as it is prepared.
     ///
     /// # Errors
     /// If the graph or a preparing thread fails. A map or a boundary that is
@@ -74,9 +80,9 @@ impl Supply {
         &mut self,
         inputs: &Inputs,
         health: &mut Health,
-    ) -> Result<Option<PreparedMap>, AccumulatorError> {
+    ) -> Result<Option<Vec<PreparedMap>>, AccumulatorError> {
         let region_changed = self.on_region(&inputs.regions, health)?;
-        if self.receive(&inputs.maps, &inputs.boundaries, health)? || region_changed {
+        if self.receive(inputs, health)? || region_changed {
             self.consider(health)?;
         }
         let prepared = self.finish(health)?;
@@ -84,15 +90,22 @@ impl Supply {
         Ok(prepared)
     }
 
-    fn receive(
-        &mut self,
-        maps: &Subscriber<topic::Map>,
-        boundaries: &Subscriber<topic::Boundary>,
-        health: &mut Health,
-    ) -> Result<bool, TransportError> {
-        let (map, boundary) = (maps.newest()?, boundaries.newest()?);
-        let came = u64::from(map.is_some()) + u64::from(boundary.is_some());
+    fn receive(&mut self, inputs: &Inputs, health: &mut Health) -> Result<bool, TransportError> {
+        let (map, boundary) = (inputs.maps.newest()?, inputs.boundaries.newest()?);
+        let set = inputs.sets.newest()?;
+        let came = [map.is_some(), boundary.is_some(), set.is_some()];
+        let came = came.into_iter().map(u64::from).sum();
         health.count_received(came);
+        if let Some(set) = set {
+            match MapSet::read(set.header(), set.items()) {
+                Ok(_) => self.set = Some(set),
+                Err(error) => refuse(0, &error.into(), health)?,
+            }
+        }
+        if self.set.is_some() || inputs.sets.has_publishers() {
+            // The map that is shown is one of those, or will be.
+            return Ok(came > 0);
+        }
         match map.as_ref().map(|map| map.header().check_id(map.items())) {
             Some(Err(error)) => {
                 let map_id = error.found;
@@ -137,83 +150,122 @@ impl Supply {
     /// wanted before them.
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
-        if let (Some(map), Some(boundary)) = (&self.map, &self.boundary) {
-            match Key::of(map.header(), (boundary.header(), boundary.items())) {
-                Ok(key) => self.wanted = key.map(|key| (key, self.requests)),
-                Err(error) => refuse(map.header().map_id, &error, health)?,
-            }
+        match self.keys() {
+            Ok(keys) => self.wanted = keys.map(|keys| (keys, self.requests)),
+            Err((map_id, error)) => refuse(map_id, &error, health)?,
         }
         Ok(())
     }
 
-    fn finish(&mut self, health: &mut Health) -> Result<Option<PreparedMap>, AccumulatorError> {
+    fn keys(&self) -> Result<Option<Vec<Key>>, (u64, AccumulatorError)> {
+        if let Some(set) = &self.set {
+            let set = MapSet::read(set.header(), set.items()).map_err(|e| (0, e.into()))?;
+            let keys = set
+                .maps
+                .iter()
+                .map(|(map, _)| Key::in_set(map).map_err(|error| (map.map_id, error)));
+            return keys.collect::<Result<_, _>>().map(Some);
+        }
+        let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
+            return Ok(None);
+        };
+        let key = Key::of(map.header(), (boundary.header(), boundary.items()));
+        let key = key.map_err(|error| (map.header().map_id, error))?;
+        Ok(key.map(|key| vec![key]))
+    }
+
+    /// What to do for what is wanted.
+    fn jobs(&self) -> Result<Vec<Job>, (u64, AccumulatorError)> {
+        if let Some(set) = &self.set {
+            let set = MapSet::read(set.header(), set.items()).map_err(|e| (0, e.into()))?;
+            let jobs = set
+                .maps
+                .iter()
+                .map(|(map, cells)| Job::in_set(map, cells).map_err(|error| (map.map_id, error)));
+            return jobs.collect();
+        }
+        let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
+            return Ok(Vec::new());
+        };
+        let (boundary, cells) = (boundary.header(), boundary.items());
+        let job = Job::new(map.header(), map.items(), boundary, cells);
+        Ok(vec![job.map_err(|error| (map.header().map_id, error))?])
+    }
+
+    fn finish(
+        &mut self,
+        health: &mut Health,
+    ) -> Result<Option<Vec<PreparedMap>>, AccumulatorError> {
         let Some(UnderWay { order, since, work }) = self
             .under_way
             .take_if(|under_way| under_way.work.is_finished())
         else {
             return Ok(None);
         };
-        let map_id = order.0.map_id;
+        let map_id = order.0.first().map_or(0, |key| key.map_id);
         let outcome = work
             .finish()
             .map_err(|reason| AccumulatorError::PreparationDied { map_id, reason })?;
-        let (prepared, kept) = match outcome {
-            Ok(prepared) => prepared,
-            Err(error) => {
+        let all = match outcome {
+            Ok(all) => all,
+            Err((map_id, error)) => {
                 refuse(map_id, &error, health)?;
                 return Ok(None);
             }
         };
-        let grid = prepared.localizer.grid();
-        tracing::info!(
-            map = format_args!("{map_id:016x}"),
-            width = grid.width(),
-            height = grid.height(),
-            seconds = since.elapsed().as_secs_f64(),
-            from_file = kept.is_read,
-            "map prepared"
-        );
-        keep(kept);
+        let mut maps = Vec::with_capacity(all.len());
+        for (prepared, kept) in all {
+            let grid = prepared.localizer.grid();
+            tracing::info!(
+                map = format_args!("{:016x}", prepared.map_id),
+                width = grid.width(),
+                height = grid.height(),
+                seconds = since.elapsed().as_secs_f64(),
+                from_file = kept.is_read,
+                "map prepared"
+            );
+            keep(kept);
+            maps.push(prepared);
+        }
         self.handed_out = Some(order);
         health.state(NodeState::Ready)?;
-        Ok(Some(prepared))
+        Ok(Some(maps))
     }
 
     fn start(&mut self, health: &mut Health) -> Result<(), AccumulatorError> {
-        let (None, Some(map), Some(boundary)) = (&self.under_way, &self.map, &self.boundary) else {
+        if self.under_way.is_some() {
             return Ok(());
-        };
+        }
         let Some(order) = self.wanted.take() else {
             return Ok(());
         };
-        if self.handed_out == Some(order) {
+        if self.handed_out.as_ref() == Some(&order) {
             // Served again, or taken back after another one was refused.
             return Ok(health.state(NodeState::Ready)?);
         }
-        let job = Job::new(
-            map.header(),
-            map.items(),
-            boundary.header(),
-            boundary.items(),
-        );
-        let job = match job {
-            Ok(job) => job,
-            Err(error) => return Ok(refuse(order.0.map_id, &error, health)?),
+        let jobs = match self.jobs() {
+            Ok(jobs) => jobs,
+            Err((map_id, error)) => return Ok(refuse(map_id, &error, health)?),
         };
         if self.handed_out.is_none() {
             // Scans are not answered before; with another map, they are meanwhile.
             health.state(NodeState::Busy)?;
         }
         let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
-        let prepare = move || job.prepare(config, prior, cache.as_ref());
+        let prepare = move || {
+            let prepared = jobs.into_iter().map(|job| {
+                let map_id = job.map_id();
+                let prepared = job.prepare(config.clone(), prior, cache.as_ref());
+                prepared.map_err(|error| (map_id, error))
+            });
+            prepared.collect()
+        };
         let work = Background::start("prepare map", prepare);
+        let map_id = order.0.first().map_or(0, |key| key.map_id);
         self.under_way = Some(UnderWay {
             order,
             since: Instant::now(),
-            work: work.map_err(|source| AccumulatorError::Thread {
-                map_id: order.0.map_id,
-                source,
-            })?,
+            work: work.map_err(|source| AccumulatorError::Thread { map_id, source })?,
         });
         Ok(())
     }

@@ -1,6 +1,5 @@
 //! What is said of where the robot is: when the node starts, and on topic `initial_pose`.
 
-use engine::tracking::Follower;
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, TrackReason};
 
@@ -72,7 +71,7 @@ impl Node {
             self.turn = Turn::Idle;
             self.send_nothing(&scan, TrackReason::NoScan)?;
         }
-        self.tracker = Follower::new(&self.config.follow);
+        self.tracker = self.nothing_known();
         self.asked = None;
         self.initial = None;
         self.remembered = None;
@@ -87,20 +86,17 @@ impl Node {
         let Some(Initial { base, is_believed }) = self.initial.take() else {
             return false;
         };
+        let map = self.current_map();
+        self.asked = None;
+        if !is_believed {
+            self.expect_base((map, base.0), base.1, INITIAL_LEAD);
+            return false;
+        }
         let target = self.target().from_base(base.0);
         let covariance = base.1.carried(base.0, target);
-        self.asked = None;
-        match &self.world {
-            Some(world) if is_believed => {
-                let seen = world.seen(&self.ends, &self.config.fit);
-                self.tracker.start_at(&seen, target, covariance);
-                true
-            }
-            _ => {
-                self.tracker.expect(target, covariance, INITIAL_LEAD);
-                false
-            }
-        }
+        let seen = self.worlds.seen(&self.config.fit);
+        self.tracker.start_at(&seen, (map, target), covariance);
+        true
     }
 }
 

@@ -8,6 +8,8 @@ pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) odometry: Subscriber<topic::OdometryTopic>,
     pub(super) maps: Subscriber<topic::Map>,
+    /// Where several are tracked on together.
+    pub(super) sets: Subscriber<topic::Maps>,
     pub(super) hypotheses: Subscriber<topic::Hypotheses>,
     pub(super) initial_poses: Subscriber<topic::InitialPoseTopic>,
 }
@@ -18,16 +20,18 @@ impl Inputs {
             scans: graph.subscriber()?,
             odometry: graph.subscriber()?,
             maps: graph.subscriber()?,
+            sets: graph.subscriber()?,
             hypotheses: graph.subscriber()?,
             initial_poses: graph.subscriber()?,
         })
     }
 
-    pub(super) fn all(&self) -> [&dyn Input; 5] {
+    pub(super) fn all(&self) -> [&dyn Input; 6] {
         [
             &self.scans,
             &self.odometry,
             &self.maps,
+            &self.sets,
             &self.hypotheses,
             &self.initial_poses,
         ]

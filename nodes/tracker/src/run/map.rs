@@ -1,75 +1,143 @@
-//! The map, and where the robot is expected on it.
+//! The maps, and where the robot is expected on them.
 
 use engine::peaks::Target;
 use engine::tracking::Follower;
 use geometry::{Covariance, Pose};
-use messages::{MapHeader, NodeState, TrackState};
+use messages::{MapHeader, MapSet, MapsHeader, NodeState, TrackState};
 use transport::{TransportError, with_causes};
 
 use super::{Node, REMEMBERED_LEAD};
 use crate::TrackerError;
 use crate::memory::Remembered;
-use crate::world::World;
+use crate::world::Worlds;
 
 impl Node {
+    /// Takes a map that is served alone.
     pub(super) fn take_map(
         &mut self,
         header: &MapHeader,
         occupancy: &[u8],
     ) -> Result<(), TransportError> {
-        let known = self.world.as_ref();
-        if known.is_some_and(|known| known.map_id == header.map_id) {
+        let served = Served::Map(header.map_id);
+        if self.served == Some(served) {
             return self.health.state(NodeState::Ready);
         }
         self.health.state(NodeState::Busy)?;
         let checked = header.check_id(occupancy).map_err(TrackerError::from);
-        match checked.and_then(|()| Ok(World::new(header, occupancy)?)) {
-            Ok(world) => {
-                self.start_on(&world);
-                self.world = Some(world);
+        let worlds = checked.and_then(|()| Ok(Worlds::of_map(header, occupancy)?));
+        self.start_on(served, worlds.map_err(|error| (header.map_id, error)))
+    }
+
+    /// Takes maps that are served together.
+    pub(super) fn take_set(
+        &mut self,
+        header: &MapsHeader,
+        items: &[u8],
+    ) -> Result<(), TransportError> {
+        let served = Served::Set(header.set_id);
+        if self.served == Some(served) {
+            return self.health.state(NodeState::Ready);
+        }
+        self.health.state(NodeState::Busy)?;
+        let set = MapSet::read(header, items).map_err(|error| (0, TrackerError::from(error)));
+        let worlds = set.and_then(|set| {
+            Worlds::of_set(&set).map_err(|(map_id, error)| (map_id, TrackerError::from(error)))
+        });
+        self.start_on(served, worlds)
+    }
+
+    fn start_on(
+        &mut self,
+        served: Served,
+        worlds: Result<Worlds, (u64, TrackerError)>,
+    ) -> Result<(), TransportError> {
+        match worlds {
+            Ok(worlds) => {
+                self.worlds = worlds;
+                self.served = Some(served);
+                self.start_anew();
                 self.health.state(NodeState::Ready)
             }
-            Err(error) => {
-                self.refuse(&format!(
-                    "map {:016x} rejected: {}",
-                    header.map_id,
-                    with_causes(&error)
-                ))?;
+            Err((map_id, error)) => {
+                let reason = with_causes(&error);
+                self.refuse(&format!("map {map_id:016x} rejected: {reason}"))?;
                 self.health.state(NodeState::Degraded)
             }
         }
     }
 
-    /// Forgets what was known on another map, but for where the robot was: most new maps
-    /// are of the same building.
-    fn start_on(&mut self, world: &World) {
-        let on_map = |last: &Remembered| last.map_id == format!("{:016x}", world.map_id);
+    /// Forgets what was known on other maps, but for where the robot was: most new maps are of
+    /// the same building.
+    fn start_anew(&mut self) {
         let believed = self
             .last
             .filter(|last| last.report.state == TrackState::Unique);
-        self.tracker = Follower::new(&self.config.follow);
+        self.tracker = self.nothing_known();
         self.asked = None;
-        if let Some(last) = believed
-            && let Some(pose) = last.report.pose
-        {
+        // A map that is served alone replaces the one before; of a set, it is the same one.
+        let number = |map_id| match self.served {
+            Some(Served::Map(_)) => Some(0),
+            _ => self.worlds.number(map_id),
+        };
+        let believed = believed.and_then(|last| {
             let covariance = Covariance(last.report.covariance);
-            self.tracker.expect(pose, covariance, REMEMBERED_LEAD);
-        } else if let Some(last) = self.remembered.take().filter(on_map)
+            Some(((number(last.map_id)?, last.report.pose?), covariance))
+        });
+        if let Some((at, covariance)) = believed {
+            self.tracker.expect(at, covariance, REMEMBERED_LEAD);
+            return;
+        }
+        let Some(Remembered {
+            map_id,
+            map_from_base,
+            covariance,
+            ..
+        }) = self.remembered.take()
+        else {
+            return;
+        };
+        let map_id = u64::from_str_radix(&map_id, 16).ok();
+        if let Some(number) = map_id.and_then(|map_id| self.worlds.number(map_id))
             && self.initial.is_none()
         {
-            let covariance = Covariance::from_rows(last.covariance);
-            self.expect_base((last.map_from_base, covariance), REMEMBERED_LEAD);
+            let covariance = Covariance::from_rows(covariance);
+            self.expect_base((number, map_from_base), covariance, REMEMBERED_LEAD);
         }
     }
 
-    pub(super) fn expect_base(&mut self, (base, covariance): (Pose, Covariance), lead: f64) {
+    /// A tracker that knows the maps alone.
+    pub(super) fn nothing_known(&self) -> Follower {
+        Follower::new(&self.config.follow, &self.worlds.transitions)
+    }
+
+    /// The number of the map on which the robot was last; that of the first before.
+    pub(super) fn current_map(&self) -> u32 {
+        let last = self.last.and_then(|last| self.worlds.number(last.map_id));
+        last.unwrap_or(0)
+    }
+
+    pub(super) fn expect_base(
+        &mut self,
+        (map, base): (u32, Pose),
+        covariance: Covariance,
+        lead: f64,
+    ) {
         let target = self.target().from_base(base);
-        self.tracker
-            .expect(target, covariance.carried(base, target), lead);
+        let covariance = covariance.carried(base, target);
+        self.tracker.expect((map, target), covariance, lead);
     }
 
     pub(super) fn target(&self) -> Target {
         let mount = self.joiner.base_from_laser();
         Target::of(mount, self.joiner.targets_base())
     }
+}
+
+/// What is tracked on, by its id.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Served {
+    /// One map.
+    Map(u64),
+    /// A set of maps.
+    Set(u64),
 }

@@ -71,16 +71,22 @@ impl Building {
     }
 
     pub(super) fn ends(&self, pose: Pose) -> Ends {
-        let ranges = self.ranges(pose);
-        Ends::new(&self.scan(&ranges), &self.space, &BeamConfig::default()).unwrap()
+        self.ends_of(&self.ranges(pose))
+    }
+
+    fn ends_of(&self, ranges: &[f32]) -> Ends {
+        Ends::new(&self.scan(ranges), &self.space, &BeamConfig::default()).unwrap()
     }
 
     pub(super) fn found(&self, pose: Pose) -> Vec<Candidate> {
-        let ranges = self.ranges(pose);
-        let outcome = self.localizer.search(&self.scan(&ranges), &|| false);
+        self.found_of(&self.ranges(pose))
+    }
+
+    pub(super) fn found_of(&self, ranges: &[f32]) -> Vec<Candidate> {
+        let outcome = self.localizer.search(&self.scan(ranges), &|| false);
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
-        let ends = self.ends(pose);
+        let ends = self.ends_of(ranges);
         let places = by_fit(
             &input,
             (&self.distance_field, &ends),
@@ -90,7 +96,11 @@ impl Building {
         let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
         let mut found = Vec::new();
-        Candidate::fill(&mut found, hypotheses.iter(), target);
+        Candidate::fill(
+            &mut found,
+            hypotheses.iter().map(|found| (0, found)),
+            target,
+        );
         found
     }
 
@@ -106,9 +116,9 @@ impl Building {
     pub(super) fn step(&self, tracker: &mut Tracker, truth: Pose, moved: Option<Pose>) -> Need {
         let (ends, fit) = (self.ends(truth), FitConfig::default());
         let seen = self.seen(&ends, &fit);
-        let need = tracker.begin(&seen, 1, moved);
+        let need = tracker.begin(&[seen], 1, moved);
         let found = (need == Need::ThisScan).then(|| self.found(truth));
-        tracker.finish(&seen, found.as_deref());
+        tracker.finish(&[seen], found.as_deref());
         need
     }
 

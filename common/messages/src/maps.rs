@@ -1,0 +1,293 @@
+//! A set of maps: the floors of a building, or the buildings of a campus.
+
+use std::hash::Hasher;
+
+use bytemuck::{Pod, Zeroable};
+use serde::{Deserialize, Serialize};
+use twox_hash::XxHash3_64;
+
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
+use crate::{MapHeader, Pose2, Stamp, WrongMapId};
+
+/// Header of topic `maps`; the items are bytes: the [`MapHeader`] of each map, the
+/// [`Transition`]s between them, and the cells of each map, as [`MapSet`] reads and writes them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapsHeader/v1"))]
+#[repr(C)]
+pub struct MapsHeader {
+    /// When the maps were read; the counter counts the sets served.
+    pub stamp: Stamp,
+    /// Hash of all maps and transitions.
+    pub set_id: u64,
+    /// How many maps there are.
+    pub maps: u32,
+    /// How many transitions there are.
+    pub transitions: u32,
+}
+
+/// Where a robot may go from one map to another: a lift, stairs, a door between buildings. It
+/// is a rectangle that both maps have.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[repr(C)]
+pub struct Transition {
+    /// The numbers of the two maps in their set, from 0.
+    pub maps: [u32; 2],
+    /// The rectangle's centre and its x axis on each of them: a robot that is somewhere in it on
+    /// one map is at the same place of it on the other.
+    pub map_from_region: [Pose2; 2],
+    /// The rectangle's sides along its x and y, metres.
+    pub size_m: [f64; 2],
+}
+
+/// The maps of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapSet<'a> {
+    /// Each with its cells; in the order by which ties are decided.
+    pub maps: Vec<(MapHeader, &'a [u8])>,
+    /// Between them.
+    pub transitions: Vec<Transition>,
+}
+
+/// A message of topic `maps` that is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InvalidMapSet {
+    /// There are no maps.
+    Empty,
+    /// Maps and transitions do not fill it.
+    Size {
+        /// Bytes that came.
+        found: usize,
+    },
+    /// A map's id is not that of its content.
+    MapId(WrongMapId),
+    /// A transition is between maps that are not there or the same, or no rectangle.
+    Transition {
+        /// Its number.
+        number: usize,
+    },
+}
+
+const HEADER: usize = size_of::<MapHeader>();
+const TRANSITION: usize = size_of::<Transition>();
+
+impl<'a> MapSet<'a> {
+    /// The maps of a message.
+    ///
+    /// # Errors
+    /// If it has another size than its parts, a map is not the one that its id says, or a
+    /// transition is not one.
+    pub fn read(header: &MapsHeader, items: &'a [u8]) -> Result<Self, InvalidMapSet> {
+        let wrong_size = InvalidMapSet::Size { found: items.len() };
+        let (maps, transitions) = (header.maps as usize, header.transitions as usize);
+        let split = |items: &'a [u8], bytes: Option<usize>| {
+            let at = bytes.filter(|bytes| *bytes <= items.len());
+            at.map(|at| items.split_at(at)).ok_or(wrong_size)
+        };
+        let (headers, rest) = split(items, maps.checked_mul(HEADER))?;
+        let (between, mut rest) = split(rest, transitions.checked_mul(TRANSITION))?;
+        let mut set = MapSet {
+            maps: Vec::with_capacity(maps),
+            transitions: Vec::with_capacity(transitions),
+        };
+        for bytes in headers.chunks_exact(HEADER) {
+            let map: MapHeader = bytemuck::pod_read_unaligned(bytes);
+            let area = (map.width as usize).checked_mul(map.height as usize);
+            let (cells, after) = split(rest, area)?;
+            map.check_id(cells).map_err(InvalidMapSet::MapId)?;
+            set.maps.push((map, cells));
+            rest = after;
+        }
+        if !rest.is_empty() {
+            return Err(wrong_size);
+        }
+        if set.maps.is_empty() {
+            return Err(InvalidMapSet::Empty);
+        }
+        for (number, bytes) in between.chunks_exact(TRANSITION).enumerate() {
+            let transition: Transition = bytemuck::pod_read_unaligned(bytes);
+            if !transition.is_between(maps) {
+                return Err(InvalidMapSet::Transition { number });
+            }
+            set.transitions.push(transition);
+        }
+        Ok(set)
+    }
+
+    /// Bytes of the message's items.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let cells: usize = self.maps.iter().map(|(_, cells)| cells.len()).sum();
+        self.maps.len() * HEADER + self.transitions.len() * TRANSITION + cells
+    }
+
+    /// The message's header; fills in the items, which are [`MapSet::bytes`] long.
+    ///
+    /// # Panics
+    /// If they are not.
+    #[must_use]
+    pub fn write(&self, stamp: Stamp, items: &mut [u8]) -> MapsHeader {
+        let headers = self.maps.iter().map(|(map, _)| bytemuck::bytes_of(map));
+        let between = self.transitions.iter().map(bytemuck::bytes_of);
+        let cells = self.maps.iter().map(|(_, cells)| *cells);
+        let mut rest = items;
+        for part in headers.chain(between).chain(cells) {
+            let (here, after) = rest.split_at_mut(part.len());
+            here.copy_from_slice(part);
+            rest = after;
+        }
+        assert!(rest.is_empty(), "as many bytes as the set has");
+        MapsHeader {
+            stamp,
+            set_id: self.id(),
+            maps: self.maps.len() as u32,
+            transitions: self.transitions.len() as u32,
+        }
+    }
+
+    /// A hash of all that counts: when maps were read does not.
+    #[must_use]
+    pub fn id(&self) -> u64 {
+        let mut hasher = XxHash3_64::new();
+        for (map, _) in &self.maps {
+            let map = MapHeader {
+                stamp: Stamp::default(),
+                ..*map
+            };
+            hasher.write(bytemuck::bytes_of(&map));
+        }
+        hasher.write(bytemuck::cast_slice(&self.transitions));
+        hasher.finish()
+    }
+}
+
+impl Transition {
+    /// Whether it is a rectangle on two of so many maps.
+    #[must_use]
+    pub fn is_between(&self, maps: usize) -> bool {
+        let [a, b] = self.maps;
+        let poses = self.map_from_region.iter().flat_map(|p| [p.x, p.y, p.yaw]);
+        a != b
+            && self.maps.iter().all(|&map| (map as usize) < maps)
+            && self.size_m.iter().all(|side| *side > 0.0)
+            && poses.chain(self.size_m).all(f64::is_finite)
+    }
+}
+
+impl std::fmt::Display for InvalidMapSet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            InvalidMapSet::Empty => f.write_str("the set has no maps"),
+            InvalidMapSet::Size { found } => {
+                write!(f, "{found} bytes are not those of its maps and transitions")
+            }
+            InvalidMapSet::MapId(error) => write!(f, "a map of the set: {error}"),
+            InvalidMapSet::Transition { number } => write!(
+                f,
+                "transition {number} is not a rectangle on two different maps of the set"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for InvalidMapSet {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::pin_layout!(MapsHeader, size 40, align 8, {
+        stamp: 0, set_id: 24, maps: 32, transitions: 36,
+    });
+
+    fn map(width: u32, cells: &[u8]) -> (MapHeader, &[u8]) {
+        let mut map = MapHeader {
+            width,
+            height: cells.len() as u32 / width,
+            resolution_m: 0.05,
+            ..MapHeader::default()
+        };
+        map.map_id = map.id_of(cells);
+        (map, cells)
+    }
+
+    fn lift() -> Transition {
+        Transition {
+            maps: [0, 1],
+            size_m: [2.0, 1.5],
+            ..Transition::zeroed()
+        }
+    }
+
+    fn message(set: &MapSet<'_>) -> (MapsHeader, Vec<u8>) {
+        let mut items = vec![0; set.bytes()];
+        let header = set.write(Stamp::default(), &mut items);
+        (header, items)
+    }
+
+    #[test]
+    fn a_set_that_is_written_is_read() {
+        let set = MapSet {
+            maps: vec![map(2, &[0, 100, 255, 0]), map(3, &[0, 0, 100])],
+            transitions: vec![lift()],
+        };
+        let (header, items) = message(&set);
+        assert_eq!((header.maps, header.transitions), (2, 1));
+        assert_eq!(MapSet::read(&header, &items), Ok(set.clone()));
+        let mut later = set.clone();
+        later.maps[0].0.stamp.measured_ns = 5;
+        assert_eq!(later.id(), header.set_id, "when it was read does not count");
+        later.maps.swap(0, 1);
+        assert_ne!(later.id(), header.set_id, "the order counts");
+    }
+
+    #[test]
+    fn what_is_no_set_is_refused() {
+        let set = MapSet {
+            maps: vec![map(2, &[0, 100, 255, 0]), map(3, &[0, 0, 100])],
+            transitions: vec![lift()],
+        };
+        let (header, items) = message(&set);
+        let refused = |header: &MapsHeader, items: &[u8]| MapSet::read(header, items).unwrap_err();
+        for cut in [0, 10, HEADER, items.len() - 1] {
+            let error = refused(&header, &items[..cut]);
+            assert_eq!(error, InvalidMapSet::Size { found: cut });
+        }
+        let longer = [&items[..], &[0]].concat();
+        assert!(matches!(
+            refused(&header, &longer),
+            InvalidMapSet::Size { .. }
+        ));
+        let many = MapsHeader {
+            maps: u32::MAX,
+            transitions: u32::MAX,
+            ..header
+        };
+        assert!(matches!(refused(&many, &items), InvalidMapSet::Size { .. }));
+        let mut changed = items.clone();
+        *changed.last_mut().unwrap() = 7;
+        assert!(matches!(
+            refused(&header, &changed),
+            InvalidMapSet::MapId(_)
+        ));
+        let none = MapsHeader {
+            maps: 0,
+            transitions: 0,
+            ..header
+        };
+        assert_eq!(refused(&none, &[]), InvalidMapSet::Empty);
+        let change = |change: fn(&mut Transition)| {
+            let mut set = set.clone();
+            change(&mut set.transitions[0]);
+            let (header, items) = message(&set);
+            assert_eq!(
+                refused(&header, &items),
+                InvalidMapSet::Transition { number: 0 }
+            );
+        };
+        change(|lift| lift.maps = [1, 1]);
+        change(|lift| lift.maps = [0, 2]);
+        change(|lift| lift.size_m[1] = 0.0);
+        change(|lift| lift.map_from_region[1].yaw = f64::NAN);
+    }
+}

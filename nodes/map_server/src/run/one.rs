@@ -1,0 +1,198 @@
+//! A map that is served alone.
+
+use std::error::Error;
+use std::path::Path;
+
+use map::OccupancyGrid;
+use messages::{CellRules, NodeState, topic};
+use recording::Recording;
+use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
+
+use super::{TICK, header, now};
+use crate::files::Files;
+use crate::watch::{Look, Watch};
+use crate::{Config, MapServerError};
+
+/// Serves the map until the stop flag is set.
+pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), MapServerError> {
+    let mut files = Files::new(path);
+    let mut server = Server {
+        publisher: graph.publisher()?,
+        health: graph.health()?,
+        cells: config.cells,
+        name: name_of(path),
+        served: 0,
+        map_id: 0,
+    };
+    // Looked at before loading: what changes in between is noticed.
+    let mut watch = Watch::new(files.look());
+    server.health.state(NodeState::Busy)?;
+    let recorded = recorded(config)?;
+    // What is in a recording does not change.
+    let is_watched = recorded.is_none();
+    match recorded.map_or_else(|| load(config, path), Ok) {
+        Ok(grid) => {
+            server.serve(&grid)?;
+            compare((config, path), &grid);
+        }
+        Err(error) if error.is_missing() => server.wait_for(&error)?,
+        Err(source) => {
+            return Err(MapServerError::Map {
+                path: path.to_owned(),
+                source: Box::new(source),
+            });
+        }
+    }
+    graph.run(&[], TICK, |_| {
+        if is_watched && watch.look(files.look()) == Look::Settled {
+            server.health.state(NodeState::Busy)?;
+            let outcome = load(config, path);
+            if watch.judged(files.look()) {
+                server.judge(outcome, path)?;
+            }
+        }
+        server.health.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+/// Reads the map, if the graph can hold it; keys of its description that mean nothing are logged.
+fn load(config: &Config, path: &Path) -> Result<OccupancyGrid, map::MapError> {
+    map::load_within(config.memory.limit(), path, |key| {
+        tracing::warn!("{key}");
+    })
+}
+
+/// The last map of the recording that is named, where it holds one.
+fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
+    let Some(path) = &config.recorded else {
+        return Ok(None);
+    };
+    let grid = map_in(path, config).map_err(|source| MapServerError::Recorded {
+        path: path.clone(),
+        source,
+    })?;
+    match &grid {
+        Some(_) => {
+            tracing::info!(recording = %path.display(), "the map is that of the recording");
+        }
+        None => tracing::info!(recording = %path.display(), "the recording holds no map"),
+    }
+    Ok(grid)
+}
+
+/// The last map of a recording, where it holds one; the graph can hold it.
+fn map_in(
+    path: &Path,
+    config: &Config,
+) -> Result<Option<OccupancyGrid>, Box<dyn Error + Send + Sync>> {
+    let recording = Recording::open(path)?;
+    let Some(last) = recording.maps()?.last() else {
+        return Ok(None);
+    };
+    let (_, map) = last?;
+    let limit = config.memory.limit();
+    limit.check((map.info.width, map.info.height))?;
+    let grid = map.to_grid()?;
+    limit.check_grid(&grid)?;
+    Ok(Some(grid))
+}
+
+/// Says so where what is played was recorded on another map than this one.
+fn compare((config, map): (&Config, &Path), served: &OccupancyGrid) {
+    let Some(path) = &config.played else {
+        return;
+    };
+    // What is wrong with the recording, its player says.
+    let Ok(Some(own)) = map_in(path, config) else {
+        return;
+    };
+    if own.id() == served.id() {
+        return;
+    }
+    let size = |grid: &OccupancyGrid| {
+        let OccupancyGrid { width, height, .. } = grid;
+        format!("{width} x {height} cells of {} m", grid.resolution_m)
+    };
+    tracing::warn!(
+        "{} was recorded on another map ({}) than {} ({}): where they differ, scans do not fit",
+        path.display(),
+        size(&own),
+        map.display(),
+        size(served)
+    );
+}
+
+struct Server {
+    publisher: Publisher<topic::Map>,
+    health: Health,
+    cells: CellRules,
+    /// What the map is called.
+    name: String,
+    served: u64,
+    map_id: u64,
+}
+
+impl Server {
+    fn judge(
+        &mut self,
+        outcome: Result<OccupancyGrid, map::MapError>,
+        path: &Path,
+    ) -> Result<(), TransportError> {
+        match outcome {
+            Ok(grid) if grid.id() == self.map_id => {
+                tracing::info!("the map files were rewritten with the same map");
+                self.health.state(NodeState::Ready)
+            }
+            Ok(grid) => match self.serve(&grid) {
+                Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, path),
+                outcome => outcome,
+            },
+            Err(error) if self.served == 0 && error.is_missing() => self.wait_for(&error),
+            Err(error) => self.refuse(&error, path),
+        }
+    }
+
+    fn wait_for(&mut self, error: &dyn Error) -> Result<(), TransportError> {
+        let problem = format!("waiting for the map: {}", with_causes(error));
+        tracing::warn!("{problem}");
+        self.health.error(&problem)?;
+        self.health.state(NodeState::Waiting)
+    }
+
+    fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
+        let (path, error) = (path.display(), with_causes(error));
+        let kept = match self.served {
+            0 => "and no map is served",
+            _ => "the previous map stays",
+        };
+        tracing::warn!("the changed map {path} is rejected, {kept}: {error}");
+        self.health.count_refused(1);
+        self.health.error(&format!("map {path} refused: {error}"))?;
+        self.health.state(NodeState::Degraded)
+    }
+
+    fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
+        let map_id = grid.id();
+        let mut loan = self.publisher.loan(grid.cells.len())?;
+        *loan.header_mut() = header(grid, now(self.served), self.cells, &self.name);
+        loan.items_mut().copy_from_slice(&grid.cells);
+        loan.send()?;
+        self.map_id = map_id;
+        self.served += 1;
+        self.health.count_sent(1);
+        let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
+        let map_id = format!("{map_id:016x}");
+        tracing::info!(width, height, resolution_m, map_id, "serving the map");
+        self.health.state(NodeState::Ready)
+    }
+}
+
+/// A map that is served alone is called as its file is, or as its folder where all are `map`.
+fn name_of(path: &Path) -> String {
+    let stem = |path: &Path| Some(path.file_stem()?.to_string_lossy().into_owned());
+    match stem(path) {
+        Some(name) if name != "map" => name,
+        _ => path.parent().and_then(stem).unwrap_or_default(),
+    }
+}

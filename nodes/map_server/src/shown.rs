@@ -1,0 +1,70 @@
+//! Which map of a set is shown: the one on which the robot is.
+
+use std::time::{Duration, Instant};
+
+/// While the robot is sought, the place that leads may be on one map and on another from scan
+/// to scan: one is shown when it has led for so long.
+const LEADS_FOR: Duration = Duration::from_secs(2);
+
+/// The map that is shown, by its number.
+#[derive(Debug)]
+pub(crate) struct Shown {
+    map: usize,
+    /// The last that a pose named, and since when it does.
+    named: (usize, Instant),
+}
+
+impl Shown {
+    /// The first of the set.
+    pub(crate) fn new(now: Instant) -> Self {
+        Shown {
+            map: 0,
+            named: (0, now),
+        }
+    }
+
+    pub(crate) fn map(&self) -> usize {
+        self.map
+    }
+
+    /// Takes the map of a pose, and whether the robot is there rather than sought; whether
+    /// another map than before is to be shown.
+    pub(crate) fn changes_to(&mut self, (map, is_found): (usize, bool), now: Instant) -> bool {
+        if self.named.0 != map {
+            self.named = (map, now);
+        }
+        let is_due = is_found || now.duration_since(self.named.1) >= LEADS_FOR;
+        let changes = map != self.map && is_due;
+        if changes {
+            self.map = map;
+        }
+        changes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_on_which_the_robot_is_is_shown_at_once() {
+        let now = Instant::now();
+        let mut shown = Shown::new(now);
+        assert!(!shown.changes_to((0, true), now));
+        assert!(shown.changes_to((2, true), now));
+        assert!(!shown.changes_to((2, true), now));
+        assert_eq!(shown.map(), 2);
+    }
+
+    #[test]
+    fn while_it_is_sought_one_has_to_lead_for_a_while() {
+        let start = Instant::now();
+        let at = |seconds| start + Duration::from_secs(seconds);
+        let mut shown = Shown::new(start);
+        assert!(!shown.changes_to((1, false), at(1)));
+        assert!(!shown.changes_to((0, false), at(2)));
+        assert!(!shown.changes_to((1, false), at(3)));
+        assert!(!shown.changes_to((1, false), at(4)));
+        assert!(shown.changes_to((1, false), at(5)));
+    }
+}
