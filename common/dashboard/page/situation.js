@@ -34,17 +34,23 @@ export function situation(store, link = "live", paused = false) {
 }
 
 /** The places of the last search that are worth a look, best first. */
-export function candidates({ answer, pose }) {
-  const places = answer?.hypotheses ?? [];
+export function candidates({ map, answer, pose }) {
+  const places = (answer?.hypotheses ?? []).filter((place) => isOn(map, place));
   const unique = (pose?.state ?? answer?.verdict) === "Unique";
   return unique ? places.filter(({ probability }, i) => i === 0 || probability >= LIKELY) : places;
 }
 
 /** Those that have to be in view while it is not known which it is. */
-export function contenders({ answer }) {
+export function contenders({ map, answer }) {
   const places = answer?.hypotheses ?? [];
-  return places.filter(({ probability }, i) => i <= (answer.alternatives ?? 0) || probability >= LIKELY);
+  const likely = places.filter(({ probability }, i) => i <= (answer.alternatives ?? 0) || probability >= LIKELY);
+  return likely.filter((place) => isOn(map, place));
 }
+
+const NO_MAP = "0".repeat(16);
+
+/** Whether a place is on the map that is shown: of several, one is shown at a time. */
+export const isOn = (map, { map_id }) => !map || map_id === map.id || map_id === NO_MAP;
 
 /** The pose and its ellipse in a frame; the laser's where the base's is not known. */
 export function inFrame(place, frame) {

@@ -48,14 +48,16 @@ function showPose(store, is, frame) {
 }
 
 /** One probability, and one measure of how exact: what holds 95 %. */
-function showTrust({ pose, answer }, is, frame) {
-  const best = pose?.laser ? pose : pose ? null : answer?.hypotheses[0];
+function showTrust(store, is, frame) {
+  const { map, pose, answer } = store;
+  const best = store.best();
   const shown = inFrame(best, frame);
   const exact = is.known && shown?.ellipse ? exactness(shown.ellipse) : null;
   const places = pose?.places ?? (answer?.alternatives ?? 0) + 1;
   const of = is.known || places < 2 ? "" : `, the best of ${places} places`;
   const pairs = [
     ["How sure", best ? `${percent(best.probability)} probable${of}` : ""],
+    ["Map", best ? map?.name : ""],
     ["How exact", exact ? `within ${exact.along} and ${exact.turn} (95 %)` : best ? "not known" : ""],
   ];
   replace($("trust"), JSON.stringify(pairs), () => facts(pairs));

@@ -1,5 +1,7 @@
 // What is known of the robot that is watched. No page, no network.
 
+import { isOn } from "./situation.js";
+
 const TRACK = 3000;
 const LATENCIES = 120;
 const EVENTS = 200;
@@ -123,10 +125,11 @@ export class Store {
     return newest === null ? null : (performance.now() - newest) / 1000;
   }
 
-  /** Where the robot is: what the tracker says or, without one, the last scan. */
+  /** Where the robot is on the map that is shown: what the tracker says or, without one, the
+   * last scan. */
   best() {
-    if (!this.pose) return this.answer?.hypotheses[0] ?? null;
-    return this.pose.laser ? this.pose : null;
+    const place = this.pose ? (this.pose.laser ? this.pose : null) : this.answer?.hypotheses[0];
+    return place && isOn(this.map, place) ? place : null;
   }
 
   #node(node) {

@@ -13,10 +13,11 @@
 
 use crate::EngineError;
 use crate::fit::Ends;
-use crate::localizer::{Localizer, Outcome};
+use crate::localizer::{Localizer, Outcome, Together};
 use crate::locator::{self, Locator};
 use crate::observation::Observation;
 use crate::peaks::{Found, Merged, Places, merge};
+use crate::votes::{CollectConfig, VoteShare};
 
 /// Maps that are ready to be asked, by any number of threads.
 #[derive(Debug, Clone)]
@@ -79,15 +80,33 @@ impl MapSet {
         heading: Option<f64>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Located<'w>>, EngineError> {
+        let together = Together {
+            heading,
+            ..Together::default()
+        };
+        self.locate_beside(workspace, scan, together, stop)
+    }
+
+    /// The same beside a pose on another map that somebody else searches: what has too small a
+    /// share of its votes is left out, as if one search had found both.
+    ///
+    /// # Errors
+    /// See [`MapSet::locate_unless`].
+    ///
+    /// # Panics
+    /// See [`MapSet::locate_unless`].
+    pub fn locate_beside<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        together: Together,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Located<'w>>, EngineError> {
         let scan = scan.into();
-        let Workspace { maps, merged } = workspace;
-        maps.resize_with(self.locators.len(), locator::Workspace::default);
-        let localizers = self.locators.iter().map(Locator::localizer);
-        let searched = localizers.zip(maps.iter_mut().map(locator::Workspace::localizer));
-        let searched = Localizer::search_together(searched.collect(), scan, heading, stop)?;
-        if searched.is_none() {
+        if self.search(workspace, scan, together, stop)?.is_none() {
             return Ok(None);
         }
+        let Workspace { maps, merged } = workspace;
         let config = self.locators[0].peaks();
         let all = config.of_each_map();
         let mut found = Vec::with_capacity(maps.len());
@@ -105,6 +124,53 @@ impl MapSet {
             found: &merged.found,
             ends: best.ends(config.score),
         }))
+    }
+}
+
+impl MapSet {
+    /// The share of a pose that a search of so many steps finds, millions of them: mostly that
+    /// of the best one, where it is on one of the maps; `None` if `stop` said so before the end.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`].
+    ///
+    /// # Panics
+    /// If the locators were prepared for known headings.
+    pub fn glance<'s>(
+        &self,
+        workspace: &mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        millions: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<VoteShare>, EngineError> {
+        let collect = CollectConfig {
+            floor_share: 1.0,
+            candidates: 0,
+            work_limit: Some(millions),
+            ..self.locators[0].localizer().config().collect
+        };
+        let together = Together {
+            collect: Some(collect),
+            ..Together::default()
+        };
+        let searched = self.search(workspace, scan.into(), together, stop)?;
+        let maps = workspace.maps.iter();
+        let shares = maps.map(|map| map.outcome().best_share());
+        Ok(searched.and(shares.max_by(|a, b| a.compare(*b))))
+    }
+
+    fn search(
+        &self,
+        workspace: &mut Workspace,
+        scan: Observation<'_>,
+        together: Together,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<()>, EngineError> {
+        let maps = &mut workspace.maps;
+        maps.resize_with(self.locators.len(), locator::Workspace::default);
+        let localizers = self.locators.iter().map(Locator::localizer);
+        let searched = localizers.zip(maps.iter_mut().map(locator::Workspace::localizer));
+        Localizer::search_together(searched.collect(), scan, together, stop)
     }
 }
 
@@ -213,6 +279,45 @@ mod tests {
                 };
                 prop_assert_eq!(on_it(&merged.found.places), on_it(&all.places));
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn beside_a_pose_elsewhere_a_part_finds_what_counts_beside_it(
+            worlds in vec((any_grid(), 0.07..0.14f64), 2..5), scan in any_scan(), cut in 1usize..4,
+        ) {
+            let locators = worlds.iter().filter_map(|(grid, side)| locator(grid, *side, scan.config(), Score::Fit));
+            let locators: Vec<Locator> = locators.collect();
+            prop_assume!(locators.len() > 1);
+            let cut = cut.min(locators.len() - 1);
+            let mut workspace = Workspace::default();
+            let mut ask = |locators: &[Locator], lead| {
+                let set = MapSet::new(locators.to_vec());
+                let together = Together { lead, ..Together::default() };
+                let found = set.locate_beside(&mut workspace, &scan.scan(), together, &|| false);
+                found.unwrap().unwrap().found.clone()
+            };
+            let all = ask(&locators, VoteShare::default());
+            let mut glances = locators.iter().map(|locator| {
+                let set = MapSet::new(vec![locator.clone()]);
+                let share = set.glance(&mut Workspace::default(), &scan.scan(), 1.0, &|| false);
+                share.unwrap().unwrap()
+            });
+            // A pose that was seen is nowhere better than the best.
+            prop_assert!(glances.all(|share| share.compare(all.lead).is_le()));
+            let first = ask(&locators[..cut], all.lead);
+            let mut second = ask(&locators[cut..], all.lead);
+            let config = *locators[0].peaks();
+            second.leading_map += cut as u32;
+            second.places.iter_mut().for_each(|place| place.map += cut as u32);
+            let merged = merge(&[first, second], &config).found;
+            let on_it = |places: &[Place]| {
+                let on_it = places.iter().filter(|place| place.map == all.leading_map);
+                on_it.map(|place| (place.map_from_laser, place.score)).collect::<Vec<_>>()
+            };
+            prop_assert_eq!((merged.lead, merged.leading_map), (all.lead, all.leading_map));
+            prop_assert_eq!(on_it(&merged.places), on_it(&all.places));
         }
     }
 

@@ -32,7 +32,8 @@ pub const FREE_TO: u8 = 25;
 pub struct MapHeader {
     /// When the map was read; the counter counts the maps served.
     pub stamp: Stamp,
-    /// Hash of the cells and their geometry: equal maps have equal ids.
+    /// Hash of the cells, their geometry and the name: equal maps have equal ids, unless they
+    /// are two of a set.
     pub map_id: u64,
     /// Cells along x.
     pub width: u32,
@@ -50,7 +51,7 @@ pub struct MapHeader {
     pub free_to: u32,
     /// 1 where unknown cells block rays, else 0.
     pub unknown_blocks: u64,
-    /// What the map is called; may be empty.
+    /// What the map is called in its set; empty of one that is served alone.
     pub name: MapName,
 }
 
@@ -111,11 +112,16 @@ impl std::fmt::Display for WrongMapId {
 impl std::error::Error for WrongMapId {}
 
 impl MapHeader {
-    /// The id that a map with this geometry and these cells has.
+    /// The id that a map with this geometry, this name and these cells has.
     #[must_use]
     pub fn id_of(&self, cells: &[u8]) -> u64 {
         let sides = (self.width, self.height);
-        map_id(sides, self.resolution_m, self.map_from_grid, cells)
+        let id = map_id(sides, self.resolution_m, self.map_from_grid, cells);
+        match self.name.as_str() {
+            "" => id,
+            // Floors may look alike, and are not the same.
+            name => XxHash3_64::oneshot_with_seed(id, name.as_bytes()),
+        }
     }
 
     /// Whether the id is that of the content: to be asked by whoever receives a map.
@@ -151,6 +157,11 @@ mod tests {
             error.to_string().contains("is not that of its cells"),
             "{error}"
         );
+        let named = MapHeader {
+            name: MapName::new("ground"),
+            ..map
+        };
+        assert!(named.check_id(&[0, 100, UNKNOWN]).is_err(), "one of a set");
         map.map_from_grid.x = 1.0;
         assert!(
             map.check_id(&[0, 100, UNKNOWN]).is_err(),

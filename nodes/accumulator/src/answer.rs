@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::grid::Grid;
-use engine::localizer::{Localizer, Outcome, Workspace};
+use engine::localizer::{Localizer, Outcome, Together, Workspace};
 use engine::observation::Observation;
 use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
@@ -44,7 +44,11 @@ pub fn ask(
     }
     let localizers = maps.iter().map(|map| &map.localizer);
     let searched = localizers.zip(workspaces.iter_mut()).collect();
-    if Localizer::search_together(searched, scan, heading, stop)?.is_none() {
+    let together = Together {
+        heading,
+        ..Together::default()
+    };
+    if Localizer::search_together(searched, scan, together, stop)?.is_none() {
         return Ok(None);
     }
     let shares = workspaces.iter().map(|w| w.outcome().best_share());

@@ -28,18 +28,18 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     }
 }
 
-/// What goes before the cells of a map.
-fn header(grid: &OccupancyGrid, stamp: Stamp, rules: CellRules, name: &str) -> MapHeader {
-    rules.header(MapHeader {
-        stamp,
-        map_id: grid.id(),
+/// What goes before the cells of a map, which has a name where it is one of a set.
+fn header(grid: &OccupancyGrid, rules: CellRules, name: &str) -> MapHeader {
+    let mut header = rules.header(MapHeader {
         width: grid.width,
         height: grid.height,
         resolution_m: grid.resolution_m,
         map_from_grid: grid.map_from_grid.into(),
         name: MapName::new(name),
         ..MapHeader::default()
-    })
+    });
+    header.map_id = header.id_of(&grid.cells);
+    header
 }
 
 /// The stamp of what is read now and served as the next.

@@ -5,6 +5,8 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+use std::path::PathBuf;
+
 use messages::{HealthHeader, ScanHeader, TrackState, topic};
 use nix::sys::signal::{Signal, kill};
 use tests::executables;
@@ -15,6 +17,8 @@ use transport::{Graph, Publisher, Subscriber};
 /// The graph, with scans that the test sends.
 pub(super) struct Robot {
     pub(super) world: World,
+    /// Maps that are served in place of the recording's own.
+    maps: Option<PathBuf>,
     scans: Publisher<topic::Scan>,
     pub(super) poses: Subscriber<topic::Tracked>,
     requests: Subscriber<topic::Attention>,
@@ -25,9 +29,15 @@ pub(super) struct Robot {
 
 impl Robot {
     pub(super) fn start(isolated: &Isolated) -> Self {
+        Self::start_on(isolated, None)
+    }
+
+    /// The same on several maps, where a file names some.
+    pub(super) fn start_on(isolated: &Isolated, maps: Option<PathBuf>) -> Self {
         let graph = isolated.join("test");
         let mut robot = Robot {
             world: World::of("malaga_corridor"),
+            maps,
             scans: graph.publisher().unwrap(),
             poses: graph.subscriber().unwrap(),
             requests: graph.subscriber().unwrap(),
@@ -35,8 +45,9 @@ impl Robot {
             nodes: Vec::new(),
             graph,
         };
-        for node in ["map_server", "boundary_extractor"] {
-            robot.start_node(node);
+        robot.start_node("map_server");
+        if robot.maps.is_none() {
+            robot.start_node("boundary_extractor");
         }
         for node in ["accumulator", "peak_extractor", "tracker"] {
             robot.start_node(node);
@@ -46,9 +57,12 @@ impl Robot {
     }
 
     fn start_node(&mut self, name: &'static str) {
-        let map = self.world.map();
+        let (option, maps) = match &self.maps {
+            Some(maps) => ("--maps", maps.clone()),
+            None => ("--map", self.world.map()),
+        };
         let arguments: &[&str] = match name {
-            "map_server" => &["--map", map.to_str().unwrap()],
+            "map_server" => &[option, maps.to_str().unwrap()],
             "accumulator" => &["--search", "asked"],
             _ => &[],
         };

@@ -4,6 +4,7 @@
 mod any_sensor;
 mod corridor;
 mod evaluation;
+mod floors;
 mod hard_cases;
 mod lost_searches;
 mod many_maps;

@@ -8,6 +8,7 @@
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, PoseHeader, Stamp, TrackReason, TrackState, topic};
 use recording::Recording;
+use tests::world::World;
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for};
 
@@ -22,10 +23,15 @@ fn pose_of(robot: &Robot, counter: u64) -> PoseHeader {
 }
 
 /// Where the laser was at the recording's scan of this number.
-fn truth(robot: &Robot, counter: u64) -> Pose {
-    let recording = Recording::open(robot.world.recording()).unwrap();
+pub(super) fn truth(robot: &Robot, counter: u64) -> Pose {
+    truth_of(&robot.world, counter)
+}
+
+/// The same in a recording.
+pub(super) fn truth_of(world: &World, counter: u64) -> Pose {
+    let recording = Recording::open(world.recording()).unwrap();
     let truths = recording.ground_truths().unwrap();
-    let scan = &robot.world.scans()[counter as usize];
+    let scan = &world.scans()[counter as usize];
     truths[&scan.header.stamp.as_ns()].pose
 }
 

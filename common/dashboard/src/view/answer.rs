@@ -44,6 +44,8 @@ pub(crate) struct Answer {
 /// One place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Place {
+    /// The map that it is on, as hexadecimal digits.
+    pub(crate) map_id: String,
     /// Of the laser in the map.
     pub(crate) laser: PoseJson,
     /// Of the robot's base, where the laser's mount is known.
@@ -115,6 +117,7 @@ fn place(hypothesis: &Hypothesis, mount_known: bool) -> Place {
     let of_base = covariance(hypothesis).filter(|_| mount_known);
     let of_base = of_base.map(|known| known.carried(laser.into(), base.into()).to_rows());
     Place {
+        map_id: format!("{:016x}", hypothesis.map_id),
         laser: laser.into(),
         base: mount_known.then(|| base.into()),
         score: hypothesis.score,

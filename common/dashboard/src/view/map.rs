@@ -15,6 +15,8 @@ use super::PoseJson;
 pub(crate) struct MapInfo {
     /// Hash of cells and geometry, as hexadecimal digits.
     pub(crate) id: String,
+    /// What it is called in its set; empty of one that is served alone.
+    pub(crate) name: String,
     /// Cells along x.
     pub(crate) width: u32,
     /// Cells along y.
@@ -46,6 +48,7 @@ impl Map {
         is_sound.then(|| Map {
             info: MapInfo {
                 id: format!("{:016x}", header.map_id),
+                name: header.name.to_string(),
                 width: header.width,
                 height: header.height,
                 resolution_m: header.resolution_m,

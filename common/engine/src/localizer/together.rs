@@ -5,7 +5,18 @@ use crate::EngineError;
 use crate::instruction_set::InstructionSet;
 use crate::observation::Observation;
 use crate::search::{SearchIndex, Searched};
-use crate::votes::least_close;
+use crate::votes::{CollectConfig, VoteShare, least_close};
+
+/// What is known and wanted beside the settings of the maps.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Together {
+    /// The heading in the maps' frames, radians, where it is given.
+    pub heading: Option<f64>,
+    /// The share of a pose on a map that somebody else searches; no votes where none is known.
+    pub lead: VoteShare,
+    /// What is collected, where it is not what the first map's settings say.
+    pub collect: Option<CollectConfig>,
+}
 
 impl Localizer {
     /// Searches maps together, each in a workspace of its own, with the settings of the first:
@@ -22,12 +33,12 @@ impl Localizer {
     pub fn search_together(
         mut maps: Vec<(&Localizer, &mut Workspace)>,
         scan: Observation<'_>,
-        heading: Option<f64>,
+        together: Together,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<()>, EngineError> {
-        let found = match heading {
+        let found = match together.heading {
             Some(heading) => at_heading(&mut maps, scan, heading, stop)?,
-            None => at_any_heading(&mut maps, scan, stop)?,
+            None => at_any_heading(&mut maps, scan, together, stop)?,
         };
         if found.is_none() {
             return Ok(None);
@@ -35,11 +46,12 @@ impl Localizer {
         let shares = maps
             .iter()
             .map(|(_, workspace)| workspace.outcome.best_share());
+        let shares = shares.chain([together.lead]);
         let lead = shares.max_by(|a, b| a.compare(*b)).expect("a map");
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
             outcome.lead = lead.on(outcome.highest_possible as u16);
-            if heading.is_some() {
+            if together.heading.is_some() {
                 let floor = map.config.collect.floor(outcome.lead);
                 let least = least_close(outcome.lead);
                 outcome.found.confine((outcome.lead, floor), Some(least));
@@ -52,6 +64,7 @@ impl Localizer {
 fn at_any_heading(
     maps: &mut [(&Localizer, &mut Workspace)],
     scan: Observation<'_>,
+    together: Together,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<()>, EngineError> {
     for (map, workspace) in maps.iter_mut() {
@@ -60,6 +73,7 @@ fn at_any_heading(
     }
     let config = &maps.first().expect("a map").0.config;
     let how = (InstructionSet::best(), usize::from(config.threads));
+    let collect = together.collect.unwrap_or(config.collect);
     let searched = maps.iter_mut().map(|(map, workspace)| {
         let Workspace {
             program,
@@ -76,7 +90,7 @@ fn at_any_heading(
         }
     });
     let mut searched: Vec<_> = searched.collect();
-    let found = SearchIndex::search_together(&mut searched, how, config.collect, stop);
+    let found = SearchIndex::search_together(&mut searched, how, (collect, together.lead), stop);
     for (map, workspace) in maps.iter_mut() {
         let Workspace {
             program, outcome, ..

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use map::OccupancyGrid;
-use messages::{CellRules, NodeState, topic};
+use messages::{CellRules, MapHeader, NodeState, topic};
 use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
@@ -20,7 +20,6 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         publisher: graph.publisher()?,
         health: graph.health()?,
         cells: config.cells,
-        name: name_of(path),
         served: 0,
         map_id: 0,
     };
@@ -127,8 +126,6 @@ struct Server {
     publisher: Publisher<topic::Map>,
     health: Health,
     cells: CellRules,
-    /// What the map is called.
-    name: String,
     served: u64,
     map_id: u64,
 }
@@ -175,7 +172,10 @@ impl Server {
     fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
         let map_id = grid.id();
         let mut loan = self.publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = header(grid, now(self.served), self.cells, &self.name);
+        *loan.header_mut() = MapHeader {
+            stamp: now(self.served),
+            ..header(grid, self.cells, "")
+        };
         loan.items_mut().copy_from_slice(&grid.cells);
         loan.send()?;
         self.map_id = map_id;
@@ -185,14 +185,5 @@ impl Server {
         let map_id = format!("{map_id:016x}");
         tracing::info!(width, height, resolution_m, map_id, "serving the map");
         self.health.state(NodeState::Ready)
-    }
-}
-
-/// A map that is served alone is called as its file is, or as its folder where all are `map`.
-fn name_of(path: &Path) -> String {
-    let stem = |path: &Path| Some(path.file_stem()?.to_string_lossy().into_owned());
-    match stem(path) {
-        Some(name) if name != "map" => name,
-        _ => path.parent().and_then(stem).unwrap_or_default(),
     }
 }

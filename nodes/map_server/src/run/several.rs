@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use map::{MapError, OccupancyGrid};
+use map::MapError;
 use messages::{MapHeader, MapSet, NodeState, PoseHeader, TrackState, Transition, topic};
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
@@ -35,17 +35,17 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         shown: Shown::new(Instant::now()),
         set,
     };
-    server.serve(config)?;
+    server.serve()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
     graph.run(&[&poses], TICK, |wake| {
         while let Some(pose) = poses.receive()? {
-            server.follow(pose.header(), config)?;
+            server.follow(pose.header())?;
         }
         if wake.tick && watch.look(files.look()) == Look::Settled {
             server.health.state(NodeState::Busy)?;
             let outcome = load(config, path);
             if watch.judged(files.look()) {
-                server.judge(outcome, (config, path))?;
+                server.judge(outcome, path)?;
                 files.follow(&server.set);
                 watch = Watch::new(files.look());
             }
@@ -64,7 +64,8 @@ struct Loaded {
 struct LoadedMap {
     name: String,
     yaml: PathBuf,
-    grid: OccupancyGrid,
+    header: MapHeader,
+    cells: Vec<u8>,
 }
 
 /// Reads the maps, if the graph can hold all of them.
@@ -77,9 +78,10 @@ fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
         let grid = map::load_within(left, &file.yaml, |key| warn(&key))?;
         left = left.without(&grid);
         maps.push(LoadedMap {
+            header: header(&grid, config.cells, &file.name),
             name: file.name,
             yaml: file.yaml,
-            grid,
+            cells: grid.cells,
         });
     }
     let transitions = set.transitions.iter().map(|transition| Transition {
@@ -132,49 +134,53 @@ struct Server {
 }
 
 impl Server {
-    fn headers(&self, config: &Config) -> Vec<MapHeader> {
+    /// Sends all maps, and the one that is shown.
+    fn serve(&mut self) -> Result<(), TransportError> {
         let stamp = now(self.served);
         let maps = self.set.maps.iter();
-        maps.map(|map| header(&map.grid, stamp, config.cells, &map.name))
-            .collect()
-    }
-
-    /// Sends all maps, and the one that is shown.
-    fn serve(&mut self, config: &Config) -> Result<(), TransportError> {
-        let headers = self.headers(config);
-        let maps = headers.into_iter().zip(&self.set.maps);
+        let maps = maps.map(|map| {
+            (
+                MapHeader {
+                    stamp,
+                    ..map.header
+                },
+                &map.cells[..],
+            )
+        });
         let set = MapSet {
-            maps: maps
-                .map(|(header, map)| (header, &map.grid.cells[..]))
-                .collect(),
+            maps: maps.collect(),
             transitions: self.set.transitions.clone(),
         };
         let mut loan = self.sets.loan(set.bytes())?;
-        let header = set.write(now(self.served), loan.items_mut());
+        let header = set.write(stamp, loan.items_mut());
         *loan.header_mut() = header;
         loan.send()?;
         self.served += 1;
         self.health.count_sent(1);
         for map in &self.set.maps {
-            let OccupancyGrid {
+            let MapHeader {
                 width,
                 height,
                 resolution_m,
+                map_id,
                 ..
-            } = map.grid;
-            let (name, map_id) = (&map.name, format!("{:016x}", map.grid.id()));
+            } = map.header;
+            let (name, map_id) = (&map.name, format!("{map_id:016x}"));
             tracing::info!(name, width, height, resolution_m, map_id, "serving the map");
         }
-        self.show(config)?;
+        self.show()?;
         self.health.state(NodeState::Ready)
     }
 
-    fn show(&mut self, config: &Config) -> Result<(), TransportError> {
+    fn show(&mut self) -> Result<(), TransportError> {
         let number = self.shown.map().min(self.set.maps.len() - 1);
         let map = &self.set.maps[number];
-        let mut loan = self.maps.loan(map.grid.cells.len())?;
-        *loan.header_mut() = header(&map.grid, now(self.served), config.cells, &map.name);
-        loan.items_mut().copy_from_slice(&map.grid.cells);
+        let mut loan = self.maps.loan(map.cells.len())?;
+        *loan.header_mut() = MapHeader {
+            stamp: now(self.served),
+            ..map.header
+        };
+        loan.items_mut().copy_from_slice(&map.cells);
         loan.send()?;
         self.served += 1;
         self.health.count_sent(1);
@@ -182,15 +188,15 @@ impl Server {
     }
 
     /// Shows the map on which the robot is.
-    fn follow(&mut self, pose: &PoseHeader, config: &Config) -> Result<(), TransportError> {
+    fn follow(&mut self, pose: &PoseHeader) -> Result<(), TransportError> {
         let mut maps = self.set.maps.iter();
-        let Some(number) = maps.position(|map| map.grid.id() == pose.map_id) else {
+        let Some(number) = maps.position(|map| map.header.map_id == pose.map_id) else {
             return Ok(());
         };
         let is_found = pose.state != TrackState::Searching as u32;
         if self.shown.changes_to((number, is_found), Instant::now()) {
             tracing::info!("the robot is on map {}", self.set.maps[number].name);
-            self.show(config)?;
+            self.show()?;
         }
         Ok(())
     }
@@ -198,13 +204,13 @@ impl Server {
     fn judge(
         &mut self,
         outcome: Result<Loaded, MapError>,
-        (config, path): (&Config, &Path),
+        path: &Path,
     ) -> Result<(), TransportError> {
         let problem = match outcome {
             Ok(set) => {
                 let before = std::mem::replace(&mut self.set, set);
                 self.shown = Shown::new(Instant::now());
-                match self.serve(config) {
+                match self.serve() {
                     Err(error @ TransportError::SharedMemoryFull { .. }) => {
                         self.set = before;
                         with_causes(&error)

@@ -8,7 +8,7 @@ use crate::program::ScanProgram;
 use crate::search::index::SearchIndex;
 use crate::search::task::lead::Lead;
 use crate::space::Space;
-use crate::votes::{CollectConfig, VoteSet};
+use crate::votes::{CollectConfig, VoteSet, VoteShare};
 
 /// A map that is searched together with others.
 #[derive(Debug)]
@@ -29,7 +29,8 @@ impl SearchIndex {
     /// Searches several maps together, each with a workspace and a place for what is found:
     /// of each map the poses that have at least a share of the best one's votes, wherever that
     /// is. Votes of maps are compared as shares of the highest possible there, without
-    /// rounding. `None` if `stop` said so before the end.
+    /// rounding. A pose of such a share is known to be elsewhere, on a map that somebody else
+    /// searches; none has no votes. `None` if `stop` said so before the end.
     ///
     /// The outcome does not depend on the order of the maps, as far as it is certified. Of
     /// poses below the floor, a map that does not have the best pose has only those with half
@@ -40,10 +41,11 @@ impl SearchIndex {
     pub fn search_together(
         maps: &mut [Searched<'_>],
         how: (InstructionSet, usize),
-        config: CollectConfig,
+        (config, known): (CollectConfig, VoteShare),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         let lead = Lead::default();
+        lead.raise(known);
         let attempts = maps.iter_mut().map(|map| {
             let (workspace, found) = (&mut *map.workspace, &mut *map.found);
             let together = (&lead, stop);
@@ -119,7 +121,10 @@ mod tests {
                 },
             );
         let mut searched: Vec<_> = searched.collect();
-        SearchIndex::search_together(&mut searched, how, config, &|| false).unwrap();
+        SearchIndex::search_together(&mut searched, how, (config, VoteShare::default()), &|| {
+            false
+        })
+        .unwrap();
         found
     }
 
