@@ -29,17 +29,24 @@ const SHOWN: usize = 80;
 pub enum Form {
     /// As the bridge sends it; the preamble of the request is that of the answer.
     Postcard(Preamble),
-    /// The same to one shard of a set of maps, whose answer is merged with others'.
-    Part,
     /// JSON.
     Json,
+}
+
+/// What the answer is to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// The places, in the form of the request.
+    Hypotheses(Form),
+    /// What one shard of a set of maps finds, which is merged with others'.
+    Part,
 }
 
 /// A scan that somebody wants to be located.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// How it came.
-    pub form: Form,
+    /// What is asked for.
+    pub wanted: Wanted,
     /// As in topic `scan`.
     pub header: ScanHeader,
     /// Metres.
@@ -59,9 +66,8 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     }
     if encoding == JSON {
         let (header, ranges) = json::read(payload, now_ns)?;
-        let form = Form::Json;
         return Ok(Request {
-            form,
+            wanted: Wanted::Hypotheses(Form::Json),
             header,
             ranges,
         });
@@ -73,12 +79,12 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     }
     let mut scan = network_payload::decode::<topic::Scan>(&as_scan, payload)?;
     scan.rebase(now_ns);
-    let form = match encoding {
-        PART => Form::Part,
-        _ => Form::Postcard(scan.preamble),
+    let wanted = match encoding {
+        PART => Wanted::Part,
+        _ => Wanted::Hypotheses(Form::Postcard(scan.preamble)),
     };
     Ok(Request {
-        form,
+        wanted,
         header: scan.header,
         ranges: scan.items,
     })
@@ -88,7 +94,7 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
 /// encoding and its bytes. Maps have names where several are searched.
 ///
 /// # Errors
-/// If the engine gave what cannot be sent, or a part of an answer is wanted.
+/// If the engine gave what cannot be sent.
 pub fn write(
     form: Form,
     header: &HypothesesHeader,
@@ -97,8 +103,6 @@ pub fn write(
     now_ns: i64,
 ) -> Result<(String, Vec<u8>), LocateError> {
     match form {
-        // Hypotheses are no part: that is written by who has it.
-        Form::Part => Err(LocateError::NoShard),
         Form::Json => Ok((
             JSON_ANSWER.into(),
             json::write(header, hypotheses, name_of)?,
@@ -157,7 +161,8 @@ mod tests {
         let payload =
             network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
         let asked = read(ENCODINGS[0], &payload, 50_000).unwrap();
-        assert_eq!(asked.form, Form::Postcard(PREAMBLE));
+        let form = Form::Postcard(PREAMBLE);
+        assert_eq!(asked.wanted, Wanted::Hypotheses(form));
         assert_eq!(asked.ranges, [1.0, 2.0]);
         assert_eq!(
             asked.header.stamp.entered_ns,
@@ -165,7 +170,7 @@ mod tests {
             "as old as there"
         );
         let header = HypothesesHeader::zeroed();
-        let (encoding, payload) = write(asked.form, &header, &[], &|_| None, 60_000).unwrap();
+        let (encoding, payload) = write(form, &header, &[], &|_| None, 60_000).unwrap();
         let answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
         assert_eq!((answer.preamble.sender, answer.preamble.sequence), (7, 3));
         assert_eq!(answer.preamble.clock_ns, 60_000);

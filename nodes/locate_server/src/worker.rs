@@ -10,7 +10,7 @@ use zenoh::Wait;
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
-use crate::request::{Form, PART_ANSWER};
+use crate::request::{PART_ANSWER, Wanted};
 use crate::{LocateError, request};
 
 /// Answers until nobody takes requests any more.
@@ -47,7 +47,7 @@ fn answer(
     )?;
     let stop = || deadline.has_passed();
     let scan = (&asked.header, asked.ranges.as_slice());
-    if asked.form == Form::Part {
+    let Wanted::Hypotheses(form) = asked.wanted else {
         let Some(mut part) = locator.locate_part(workspace, scan, &stop)? else {
             return Err(deadline.late());
         };
@@ -56,12 +56,12 @@ fn answer(
             reason: error.to_string(),
         })?;
         return Ok((PART_ANSWER.to_owned(), bytes));
-    }
+    };
     let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
         return Err(deadline.late());
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
     let name_of = |map_id| locator.name_of(map_id).map(str::to_owned);
-    request::write(asked.form, &header, &hypotheses, &name_of, header.sent_ns)
+    request::write(form, &header, &hypotheses, &name_of, header.sent_ns)
 }
