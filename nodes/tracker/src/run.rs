@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::EngineError;
 use engine::fit::Ends;
-use engine::joined::{ByOdometry, Joiner, Role};
+use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT, Role};
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
@@ -26,7 +26,7 @@ use initial::Initial;
 use inputs::Inputs;
 use outputs::Outputs;
 use search::Searchers;
-use turn::{ODOMETRY_WAIT, Since, Turn};
+use turn::{Since, Turn};
 
 /// A scan that waits for odometry is looked at as often, while nothing comes.
 const TICK: Duration = Duration::from_millis(50);
