@@ -232,7 +232,9 @@ impl World {
             }
             _ => {
                 let workspace = &mut self.workspace;
-                let found = self.set.locate_unless(workspace, scan, heading, &|| false)?;
+                let found = self
+                    .set
+                    .locate_unless(workspace, scan, heading, &|| false)?;
                 let found = found.expect(all);
                 (found.outcome, found.places)
             }
