@@ -6,6 +6,7 @@ pub mod answers;
 pub mod axe;
 pub mod browser;
 pub mod building;
+pub mod drawn_map;
 pub mod executables;
 pub mod help;
 pub mod http;

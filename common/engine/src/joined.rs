@@ -5,12 +5,14 @@
 //! where the target frame was in the middle of the first laser's scan: there they are
 //! carried least far, and the pose is that which the scan gives without odometry, too.
 //! That frame is the laser's own where the graph has one, the base where several are
-//! joined. Pure: when a scan comes and for how long odometry is waited for, others decide.
+//! joined. Pure: when a scan comes, and when its wait for odometry is over, others decide.
 
 mod brought;
 mod config;
 mod kept;
 mod laser;
+
+use std::time::Duration;
 
 use geometry::Pose;
 use messages::{FrameName, Name, Odometry, ScanHeader};
@@ -23,6 +25,10 @@ use crate::EngineError;
 use crate::motion::Motion;
 use crate::observation::{CarriedScan, Observation};
 use laser::Laser;
+
+/// A scan waits this long for odometry past its last beam: odometry comes ten times a
+/// second at least, and a process that sends it may not run for a while.
+pub const ODOMETRY_WAIT: Duration = Duration::from_millis(100);
 
 /// Samples of odometry that are kept: ten seconds at 100 Hz.
 const ODOMETRY_KEPT: usize = 1024;

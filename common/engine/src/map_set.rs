@@ -46,6 +46,15 @@ pub struct Located<'w> {
     pub ends: Option<&'w Ends>,
 }
 
+impl Workspace {
+    /// That of one map, for who asks it by itself.
+    #[must_use]
+    pub fn of_one(&mut self) -> &mut locator::Workspace {
+        self.maps.resize_with(1, locator::Workspace::default);
+        &mut self.maps[0]
+    }
+}
+
 impl MapSet {
     /// A set of at least one map, all prepared with the same settings.
     ///

@@ -6,6 +6,7 @@ use bytemuck::Zeroable;
 use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
 use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
 use recording::{Kind, Message, Record, Recording, RecordingError};
+use ros::measurements;
 use transport::with_causes;
 
 use super::TakenScan;
@@ -137,19 +138,14 @@ fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry
     let Message::Odometry(message) = &record.message else {
         return Ok(None);
     };
-    let pose = message.pose.pose.planar();
-    let pose = pose.map_err(|source| RecordingError::Unusable {
+    let odometry = measurements::odometry(message);
+    let odometry = odometry.map_err(|source| RecordingError::Unusable {
         path: recording.path().to_owned(),
         topic: record.topic.to_string(),
         log_time_ns: record.log_time_ns,
         source,
     })?;
-    Ok(Some(Odometry {
-        stamp: measured(message.header.stamp.as_ns()),
-        odom_from_child: pose.into(),
-        child_frame: FrameName::new(&message.child_frame_id),
-        ..Odometry::zeroed()
-    }))
+    Ok(Some(odometry))
 }
 
 /// Whether an error is about a message of a channel other than `topic`.

@@ -5,7 +5,7 @@ use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
 use engine::localizer::{Outcome, Preparation, Prior};
-use engine::locator::{self, Locator, OccupancyView};
+use engine::locator::{Locator, OccupancyView};
 use engine::map_set::{self, MapSet};
 use engine::observation::Observation;
 use engine::peaks::{PeakConfig, Places, Target};
@@ -25,8 +25,7 @@ pub struct World {
     pub map_id: u64,
     maps: Vec<KnownMap>,
     set: MapSet,
-    workspace: locator::Workspace,
-    together: map_set::Workspace,
+    workspace: map_set::Workspace,
     /// The last places, of the first laser.
     of_laser: Places,
 }
@@ -167,8 +166,7 @@ impl World {
             map_id: maps[0].id,
             maps,
             set: MapSet::new(locators),
-            workspace: locator::Workspace::default(),
-            together: map_set::Workspace::default(),
+            workspace: map_set::Workspace::default(),
             of_laser: Places::default(),
         }
     }
@@ -227,14 +225,16 @@ impl World {
         let all = "a search that nothing stops ends with an outcome";
         let (outcome, places) = match self.set.locators() {
             [locator] => {
-                let workspace = &mut self.workspace;
+                let workspace = self.workspace.of_one();
                 let found = locator.locate_unless(workspace, scan, heading, &|| false)?;
                 let found = found.expect(all);
                 (found.outcome, found.places)
             }
             _ => {
-                let together = &mut self.together;
-                let found = self.set.locate_unless(together, scan, heading, &|| false)?;
+                let workspace = &mut self.workspace;
+                let found = self
+                    .set
+                    .locate_unless(workspace, scan, heading, &|| false)?;
                 let found = found.expect(all);
                 (found.outcome, found.places)
             }

@@ -205,6 +205,21 @@ impl Pose {
     }
 }
 
+impl Transform {
+    /// A transform in the plane, at height 0.
+    #[must_use]
+    pub fn from_planar(pose: geometry::Pose) -> Self {
+        Transform {
+            translation: Vector3 {
+                x: pose.x,
+                y: pose.y,
+                z: 0.0,
+            },
+            rotation: Quaternion::from_yaw(pose.yaw),
+        }
+    }
+}
+
 impl PoseWithCovariance {
     /// An estimate in the plane, with its covariance row by row over x, y and
     /// yaw: m², m·rad, rad².

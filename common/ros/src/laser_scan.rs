@@ -1,9 +1,10 @@
 //! `sensor_msgs/msg/LaserScan`.
 
+use messages::ScanHeader;
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
-use super::{Header, RosMessage};
+use super::{Header, RosMessage, Time};
 
 /// One turn of a laser.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -30,6 +31,27 @@ pub struct LaserScan {
     pub intensities: Vec<f32>,
 }
 
+impl LaserScan {
+    /// A scan of the graph, with the time `stamp`.
+    #[must_use]
+    pub fn of(stamp: Time, scan: &ScanHeader, ranges: &[f32]) -> Self {
+        let steps = ranges.len().saturating_sub(1) as f64;
+        LaserScan {
+            header: Header::new(stamp, scan.frame.as_str()),
+            // Recordings hold 32 bits, and a scan that was played came from them.
+            angle_min: scan.angle_min as f32,
+            angle_max: (scan.angle_min + steps * scan.angle_increment) as f32,
+            angle_increment: scan.angle_increment as f32,
+            time_increment: scan.time_increment_s as f32,
+            scan_time: scan.scan_time_s as f32,
+            range_min: scan.range_min_m,
+            range_max: scan.range_max_m,
+            ranges: ranges.to_vec(),
+            intensities: Vec::new(),
+        }
+    }
+}
+
 impl RosMessage for LaserScan {
     const SCHEMA: &'static str = "sensor_msgs/msg/LaserScan";
     const DEFINITION: &'static str = definition!(
@@ -47,4 +69,29 @@ float32[] intensities
 ",
         Header,
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::FrameName;
+
+    use super::*;
+
+    #[test]
+    fn a_scan_ends_where_its_last_beam_points() {
+        let header = ScanHeader {
+            angle_min: -1.5,
+            angle_increment: 0.5,
+            range_max_m: 80.0,
+            frame: FrameName::new("laser"),
+            ..ScanHeader::zeroed()
+        };
+        let message = LaserScan::of(Time::default(), &header, &[1.0, f32::INFINITY, 3.0]);
+        assert_eq!((message.angle_min, message.angle_max), (-1.5, -0.5));
+        assert_eq!(message.ranges, [1.0, f32::INFINITY, 3.0]);
+        assert_eq!(message.header.frame_id, "laser");
+        let empty = LaserScan::of(Time::default(), &header, &[]);
+        assert_eq!(empty.angle_max, -1.5);
+    }
 }

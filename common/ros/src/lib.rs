@@ -4,8 +4,8 @@
 //!
 //! A struct has the fields of its `.msg` in their order, because CDR names
 //! none: the definition stands beside it as a constant, in the form in which a
-//! recording carries it. Conversions to the plane refuse what is no number or
-//! no rotation.
+//! recording carries it, and what makes the message of the graph's (`of`). Conversions to
+//! the plane refuse what is no number or no rotation.
 //!
 //! | file | between the graph and ROS |
 //! |---|---|

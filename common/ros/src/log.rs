@@ -1,5 +1,6 @@
 //! `rcl_interfaces/msg/Log`.
 
+use messages::LogHeader;
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
@@ -24,6 +25,21 @@ pub struct Log {
     pub line: u32,
 }
 
+impl Log {
+    /// A line of a node's log in the graph, with the time `stamp`.
+    #[must_use]
+    pub fn of(stamp: Time, header: &LogHeader, text: &str) -> Self {
+        Log {
+            stamp,
+            // The numbers of the graph are those of ROS; one that does not fit is none.
+            level: u8::try_from(header.level).unwrap_or_default(),
+            name: header.node.as_str().to_owned(),
+            msg: text.to_owned(),
+            ..Log::default()
+        }
+    }
+}
+
 impl RosMessage for Log {
     const SCHEMA: &'static str = "rcl_interfaces/msg/Log";
     const DEFINITION: &'static str = definition!(
@@ -43,4 +59,31 @@ uint32 line
 ",
         Time,
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{LogLevel, Name};
+
+    use super::*;
+
+    #[test]
+    fn level_name_and_line_are_kept() {
+        let header = LogHeader {
+            node: Name::new("accumulator"),
+            level: LogLevel::Warn as u32,
+            ..LogHeader::zeroed()
+        };
+        let log = Log::of(Time::default(), &header, "no map");
+        assert_eq!(
+            (log.level, &*log.name, &*log.msg),
+            (30, "accumulator", "no map")
+        );
+        let foreign = LogHeader {
+            level: 1 << 20,
+            ..header
+        };
+        assert_eq!(Log::of(Time::default(), &foreign, "").level, 0);
+    }
 }

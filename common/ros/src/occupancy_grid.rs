@@ -1,10 +1,11 @@
 //! `nav_msgs/msg/OccupancyGrid`.
 
 use map::OccupancyGrid;
+use messages::{FieldHeader, MapHeader};
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
-use super::{ConversionError, Header, Pose, RosMessage, Time};
+use super::{ConversionError, Header, Pose, RosMessage, Time, planar};
 
 /// A map.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -67,6 +68,42 @@ impl OccupancyGridMsg {
             },
             // Unknown is 255, and -1 in the message: the same bits.
             data: grid.cells.iter().map(|&cell| cell as i8).collect(),
+        }
+    }
+
+    /// The map of the graph; its header and load time are empty.
+    #[must_use]
+    pub fn of_map(map: &MapHeader, cells: &[u8]) -> Self {
+        OccupancyGridMsg {
+            header: Header::default(),
+            info: MapMetaData {
+                resolution: map.resolution_m as f32,
+                width: map.width,
+                height: map.height,
+                origin: planar::pose(map.map_from_grid.into()),
+                ..MapMetaData::default()
+            },
+            // As above.
+            data: cells.iter().map(|&cell| cell.cast_signed()).collect(),
+        }
+    }
+
+    /// The intensities on a map of the graph, as per cent of what a pose would have if
+    /// every beam agreed.
+    #[must_use]
+    pub fn of_field(header: Header, field: &FieldHeader, items: &[u16], map: &MapHeader) -> Self {
+        let full = field.highest_possible.max(1);
+        let percent = |&item: &u16| (u32::from(item) * 100 / full).min(100) as i8;
+        OccupancyGridMsg {
+            info: MapMetaData {
+                map_load_time: header.stamp,
+                resolution: (map.resolution_m * f64::from(field.block)) as f32,
+                width: field.width,
+                height: field.height,
+                origin: planar::pose(map.map_from_grid.into()),
+            },
+            header,
+            data: items.iter().map(percent).collect(),
         }
     }
 }

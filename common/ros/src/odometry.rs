@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
-use super::{Header, PoseWithCovariance, RosMessage, TwistWithCovariance};
+use super::{Header, PoseWithCovariance, RosMessage, Time, Twist, TwistWithCovariance, planar};
 
 /// What the wheels report.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -16,6 +16,22 @@ pub struct Odometry {
     pub pose: PoseWithCovariance,
     /// How it moves.
     pub twist: TwistWithCovariance,
+}
+
+impl Odometry {
+    /// Odometry of the graph, with the time `stamp`.
+    #[must_use]
+    pub fn of(stamp: Time, odometry: &messages::Odometry) -> Self {
+        Odometry {
+            header: Header::new(stamp, odometry.frame.as_str()),
+            child_frame_id: odometry.child_frame.as_str().to_owned(),
+            pose: planar::estimate(odometry.odom_from_child.into(), odometry.covariance),
+            twist: TwistWithCovariance {
+                twist: Twist::from_planar(odometry.twist.into()),
+                ..TwistWithCovariance::default()
+            },
+        }
+    }
 }
 
 impl RosMessage for Odometry {
@@ -41,4 +57,36 @@ geometry_msgs/Vector3 angular
 ",
         Vector3,
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{FrameName, Pose2};
+
+    use super::*;
+
+    #[test]
+    fn odometry_comes_back() {
+        let pose = Pose2 {
+            x: 1.0,
+            y: 2.0,
+            yaw: 0.5,
+        };
+        let given = messages::Odometry {
+            odom_from_child: pose,
+            twist: pose,
+            covariance: [0.25; 9],
+            frame: FrameName::new("odom"),
+            child_frame: FrameName::new("base_link"),
+            ..messages::Odometry::zeroed()
+        };
+        let message = Odometry::of(Time::default(), &given);
+        assert_eq!(message.child_frame_id, "base_link");
+        assert_eq!(message.pose.planar_covariance(), [0.25; 9]);
+        assert_eq!(message.twist.twist.planar(), pose.into());
+        let back = message.pose.pose.planar().unwrap();
+        // The yaw is rounded to 2⁻⁴⁰ rad.
+        assert!(back.is_within(pose.into(), 0.0, 1e-12), "{back:?}");
+    }
 }

@@ -3,7 +3,7 @@
 use geometry::{Pose, wrap_angle};
 
 use crate as ros;
-use crate::{Quaternion, Vector3};
+use crate::Quaternion;
 
 /// Steps of a yaw to the radian: 2⁴⁰, so a step is a millionth of a micrometre
 /// at a metre.
@@ -45,14 +45,7 @@ pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
 /// A transform, at height 0.
 #[must_use]
 pub fn transform(pose: Pose) -> ros::Transform {
-    ros::Transform {
-        translation: Vector3 {
-            x: pose.x,
-            y: pose.y,
-            z: 0.0,
-        },
-        rotation: Quaternion::from_yaw(rounded(pose.yaw)),
-    }
+    ros::Transform::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
 /// The transform of a laser that hangs upside down, where `level` is that of its frame

@@ -1,9 +1,10 @@
 //! `geometry_msgs/msg/PoseStamped`.
 
+use messages::GroundTruth;
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
-use super::{Header, Pose, RosMessage};
+use super::{Header, Pose, RosMessage, Time, planar};
 
 /// A pose, when it was, and in which frame.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -12,6 +13,17 @@ pub struct PoseStamped {
     pub header: Header,
     /// The pose.
     pub pose: Pose,
+}
+
+impl PoseStamped {
+    /// A true pose of the graph, with the time `stamp`.
+    #[must_use]
+    pub fn of(stamp: Time, truth: &GroundTruth) -> Self {
+        PoseStamped {
+            header: Header::new(stamp, truth.frame.as_str()),
+            pose: planar::pose(truth.map_from_laser.into()),
+        }
+    }
 }
 
 impl RosMessage for PoseStamped {

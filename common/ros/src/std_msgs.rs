@@ -11,6 +11,17 @@ pub struct Header {
     pub frame_id: String,
 }
 
+impl Header {
+    /// What was measured at `stamp` in a frame.
+    #[must_use]
+    pub fn new(stamp: Time, frame: &str) -> Self {
+        Header {
+            stamp,
+            frame_id: frame.to_owned(),
+        }
+    }
+}
+
 /// A moment since 1970.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Time {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use bytemuck::Zeroable;
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
-use engine::joined::{JoinConfig, Joiner, Kept, Role, Seen};
+use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT, Role, Seen};
 use engine::localizer::Workspace;
 use messages::{ScanHeader, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -30,10 +30,6 @@ use supply::Supply;
 /// How long a map that has been prepared waits to be used at most, while no
 /// scan comes; a scan that waits for odometry is looked at as often.
 const TICK: Duration = Duration::from_millis(25);
-
-/// A scan waits this long for odometry past its last beam: odometry comes ten times a
-/// second at least, and a process that sends it may not run for a while.
-const ODOMETRY_WAIT: Duration = Duration::from_millis(100);
 
 /// Readings of each kind that are kept to take headings and poses from: ten seconds
 /// of odometry at 100 Hz.

@@ -10,13 +10,14 @@ use std::time::Duration;
 
 use bytemuck::Zeroable;
 use messages::{
-    Corner, HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader, RegionHeader, TrackState,
-    Verdict, topic,
+    Corner, HypothesesHeader, Hypothesis, Pose2, PoseHeader, RegionHeader, TrackState, Verdict,
+    topic,
 };
 use network_payload::{Preamble, Wire};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tests::browser::Browser;
+use tests::drawn_map::DrawnMap;
 use tests::http::{Site, token_file};
 use tests::needs::Need;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
@@ -203,14 +204,7 @@ impl FarRobot {
             .publisher_detection()
             .wait()
             .unwrap();
-        let cells = [0, 100, 255, 0, 0, 100];
-        let mut header = MapHeader {
-            width: 3,
-            height: 2,
-            resolution_m: 0.05,
-            ..MapHeader::default()
-        };
-        header.map_id = header.id_of(&cells);
+        let DrawnMap { header, cells } = DrawnMap::small();
         let payload = Self::payload::<topic::Map>(0, &header, &cells);
         publisher.put(payload).wait().unwrap();
         publisher

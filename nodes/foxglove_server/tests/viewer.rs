@@ -9,12 +9,12 @@ use std::net::TcpStream;
 
 use bytemuck::Zeroable;
 use messages::{
-    FieldHeader, FrameName, HypothesesHeader, Hypothesis, MapHeader, Pose2, ScanHeader, Stamp,
-    Verdict, topic,
+    FieldHeader, FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp, Verdict, topic,
 };
 use ros::{LaserScan, OccupancyGridMsg, PoseWithCovarianceStamped};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use tests::drawn_map::DrawnMap;
 use tests::http::Site;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
@@ -25,19 +25,6 @@ use tungstenite::{Message, WebSocket, client};
 const SECOND: i64 = 1_000_000_000;
 /// When the first scan was measured.
 const START: i64 = 1_137_772_793 * SECOND;
-
-const CELLS: [u8; 6] = [0, 100, 255, 0, 0, 100];
-
-fn map_header() -> MapHeader {
-    let mut header = MapHeader {
-        width: 3,
-        height: 2,
-        resolution_m: 0.05,
-        ..MapHeader::default()
-    };
-    header.map_id = header.id_of(&CELLS);
-    header
-}
 
 /// The node in a graph of its own, which the test feeds.
 struct World {
@@ -75,13 +62,6 @@ impl World {
         }
     }
 
-    fn send_map(&self) {
-        let mut loan = self.maps.loan(CELLS.len()).unwrap();
-        *loan.header_mut() = map_header();
-        loan.items_mut().copy_from_slice(&CELLS);
-        loan.send().unwrap();
-    }
-
     fn stamp(counter: u64) -> Stamp {
         Stamp {
             measured_ns: START + counter.cast_signed() * SECOND,
@@ -108,7 +88,7 @@ impl World {
         let mut loan = self.hypotheses.loan(1).unwrap();
         *loan.header_mut() = HypothesesHeader {
             stamp: Self::stamp(counter),
-            map_id: map_header().map_id,
+            map_id: DrawnMap::small().header.map_id,
             verdict: Verdict::Unique as u32,
             mount_known: 1,
             ..HypothesesHeader::zeroed()
@@ -128,7 +108,7 @@ impl World {
         let mut loan = self.fields.loan(2).unwrap();
         *loan.header_mut() = FieldHeader {
             stamp: Self::stamp(0),
-            map_id: map_header().map_id,
+            map_id: DrawnMap::small().header.map_id,
             width: 2,
             height: 1,
             block: 2,
@@ -313,7 +293,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
 #[test]
 fn who_comes_late_gets_the_map_and_the_mount() {
     let world = World::new("fox-late");
-    world.send_map();
+    DrawnMap::small().send(&world.maps);
     world.send_scan(0);
     for _ in 0..2 {
         let mut viewer = Viewer::connect(world.site);
@@ -330,7 +310,7 @@ fn who_comes_late_gets_the_map_and_the_mount() {
 fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
     let world = World::new("fox-field");
     let health = world.graph.subscriber::<topic::Health>().unwrap();
-    world.send_map();
+    DrawnMap::small().send(&world.maps);
     world.send_scan(0);
     assert!(!world.fields.has_subscribers());
     let mut viewer = Viewer::connect(world.site);

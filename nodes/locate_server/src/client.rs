@@ -58,16 +58,29 @@ impl Question {
         (header, ranges): (&ScanHeader, &[f32]),
         encoding: &str,
     ) -> Result<Self, LocateError> {
-        let preamble = Preamble {
-            sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
-            sequence: header.stamp.counter,
-            clock_ns: monotonic_ns(),
-        };
-        Ok(Question {
-            encoding: encoding.to_owned(),
-            payload: network_payload::encode::<topic::Scan>(&preamble, header, ranges)?,
-        })
+        let payload = scan_bytes(session, (header, ranges))?;
+        Ok(Question::of(encoding, payload))
     }
+
+    pub(crate) fn of(encoding: &str, payload: Vec<u8>) -> Self {
+        Question {
+            encoding: encoding.to_owned(),
+            payload,
+        }
+    }
+}
+
+/// A scan as the bridge sends it.
+pub(crate) fn scan_bytes(
+    session: &Session,
+    (header, ranges): (&ScanHeader, &[f32]),
+) -> Result<Vec<u8>, LocateError> {
+    let preamble = Preamble {
+        sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
+        sequence: header.stamp.counter,
+        clock_ns: monotonic_ns(),
+    };
+    Ok(network_payload::encode::<topic::Scan>(&preamble, header, ranges)?)
 }
 
 /// The answer to a question as bytes, and what they say of themselves.

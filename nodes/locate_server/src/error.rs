@@ -93,9 +93,6 @@ pub enum LocateError {
         /// What is wrong, and what is allowed.
         reason: String,
     },
-    /// Hypotheses are no part of an answer.
-    #[error("hypotheses are no part of an answer: ask with {}", ENCODINGS[0])]
-    NoShard,
     /// A server says so.
     #[error("the server rejects the request: {says}")]
     Refused {

@@ -28,7 +28,7 @@ pub use client::ask;
 pub use config::Config;
 pub use error::{BUSY, LATE, LocateError, REFUSED};
 pub use locator::{Answer, Locator, SearchedMap, Workspace};
-pub use request::{Form, JSON, JSON_ANSWER, PART, PART_ANSWER, Request, read, write};
+pub use request::{Form, JSON, JSON_ANSWER, PART, PART_ANSWER, Request, Wanted, read, write};
 pub use run::run;
 pub use shard::{Part, Shard};
 pub use shards::{OverMaps, ask_shards};

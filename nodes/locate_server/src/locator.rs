@@ -4,16 +4,20 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::Prior;
+use engine::localizer::{Prior, Together};
 use engine::locator::{LocatorConfig, OccupancyView};
 pub use engine::map_set::Workspace;
 use engine::map_set::{Located, MapSet};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
+use engine::votes::VoteShare;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
 use crate::shard::{Part, Shard};
+
+/// Millions of steps of a short search: about as many milliseconds.
+const GLANCE_MILLIONS: f64 = 20.0;
 
 /// A map, or several, ready to be searched by any number of threads.
 #[derive(Debug)]
@@ -138,18 +142,39 @@ impl Locator {
         }))
     }
 
-    /// The same as it is merged with what others find on other maps of the set.
+    /// The same as it is merged with what others find on other maps of the set, of which a pose
+    /// of such a share of the votes is known.
     ///
     /// # Errors
     /// As [`Locator::locate`].
     pub fn locate_part(
         &self,
         workspace: &mut Workspace,
-        scan: (&ScanHeader, &[f32]),
+        (header, ranges): (&ScanHeader, &[f32]),
+        lead: VoteShare,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Part>, EngineError> {
-        let found = self.search(workspace, scan, stop)?;
+        let together = Together {
+            lead,
+            ..Together::default()
+        };
+        let scan = Scan::of(header, ranges);
+        let found = self.set.locate_beside(workspace, &scan, together, stop)?;
         Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found)))
+    }
+
+    /// The votes of the best pose that a short search finds.
+    ///
+    /// # Errors
+    /// As [`Locator::locate`].
+    pub fn glance(
+        &self,
+        workspace: &mut Workspace,
+        (header, ranges): (&ScanHeader, &[f32]),
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<VoteShare>, EngineError> {
+        let scan = Scan::of(header, ranges);
+        self.set.glance(workspace, &scan, GLANCE_MILLIONS, stop)
     }
 
     fn search<'w>(

@@ -4,13 +4,14 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use serde::Serialize;
 use transport::monotonic_ns;
 use zenoh::Wait;
 
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
-use crate::request::{Form, PART_ANSWER};
+use crate::request::{GLANCE_ANSWER, Glance, PART_ANSWER, Wanted};
 use crate::{LocateError, request};
 
 /// Answers until nobody takes requests any more.
@@ -47,21 +48,37 @@ fn answer(
     )?;
     let stop = || deadline.has_passed();
     let scan = (&asked.header, asked.ranges.as_slice());
-    if asked.form == Form::Part {
-        let Some(mut part) = locator.locate_part(workspace, scan, &stop)? else {
-            return Err(deadline.late());
-        };
-        part.search_ns = start.elapsed().as_nanos() as u64;
-        let bytes = postcard::to_allocvec(&part).map_err(|error| LocateError::Part {
-            reason: error.to_string(),
-        })?;
-        return Ok((PART_ANSWER.to_owned(), bytes));
-    }
+    let form = match asked.wanted {
+        Wanted::Hypotheses(form) => form,
+        Wanted::Part { lead } => {
+            let Some(mut part) = locator.locate_part(workspace, scan, lead, &stop)? else {
+                return Err(deadline.late());
+            };
+            part.search_ns = start.elapsed().as_nanos() as u64;
+            return Ok((PART_ANSWER.to_owned(), bytes_of(&part)?));
+        }
+        Wanted::Glance => {
+            let Some(lead) = locator.glance(workspace, scan, &stop)? else {
+                return Err(deadline.late());
+            };
+            let glance = Glance {
+                lead: (lead.votes, lead.possible),
+                search_ns: start.elapsed().as_nanos() as u64,
+            };
+            return Ok((GLANCE_ANSWER.to_owned(), bytes_of(&glance)?));
+        }
+    };
     let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
         return Err(deadline.late());
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
     let name_of = |map_id| locator.name_of(map_id).map(str::to_owned);
-    request::write(asked.form, &header, &hypotheses, &name_of, header.sent_ns)
+    request::write(form, &header, &hypotheses, &name_of, header.sent_ns)
+}
+
+fn bytes_of(answer: &impl Serialize) -> Result<Vec<u8>, LocateError> {
+    postcard::to_allocvec(answer).map_err(|error| LocateError::Part {
+        reason: error.to_string(),
+    })
 }

@@ -224,10 +224,7 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
 }
 
 pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
-    Ok(Header {
-        stamp: stamp(of.measured_ns)?,
-        frame_id: map_frame.to_owned(),
-    })
+    Ok(Header::new(stamp(of.measured_ns)?, map_frame))
 }
 
 /// The transform from the map to the odometry, `at_ns`.
@@ -238,10 +235,7 @@ pub(crate) fn transform(
     map_from_odom: Pose,
 ) -> Result<TfMessage, GatewayError> {
     let transform = TransformStamped {
-        header: Header {
-            stamp: stamp(at_ns)?,
-            frame_id: map_frame.to_owned(),
-        },
+        header: Header::new(stamp(at_ns)?, map_frame),
         child_frame_id: odom.to_owned(),
         transform: ros::planar::transform(map_from_odom),
     };

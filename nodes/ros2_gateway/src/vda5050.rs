@@ -39,7 +39,7 @@ pub(crate) fn of(from: &PoseHeader) -> Position {
         x: base.map(|base| base.x),
         y: base.map(|base| base.y),
         theta: base.map(|base| base.yaw),
-        map_id: super::verdict::map_id(from),
+        map_id: ros::backcast_msgs::map_id(from),
         localized,
         localization_score: if localized { from.probability } else { 0.0 },
         deviation_range: localized.then_some(WITHIN_95 * ellipse.major_m),

@@ -10,7 +10,7 @@ mod turn;
 use std::time::{Duration, Instant};
 
 use engine::EngineError;
-use engine::joined::{ByOdometry, Joiner, Role};
+use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT, Role};
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
@@ -26,7 +26,7 @@ use inputs::Inputs;
 use map::Served;
 use outputs::Outputs;
 use search::Searchers;
-use turn::{ODOMETRY_WAIT, Since, Turn};
+use turn::{Since, Turn};
 
 /// A scan that waits for odometry is looked at as often, while nothing comes.
 const TICK: Duration = Duration::from_millis(50);

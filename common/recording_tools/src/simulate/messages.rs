@@ -1,12 +1,11 @@
 //! Snapshots of a drive as ROS 2 messages, with the frames that robots use:
 //! `map`, `odom`, `base_link` and `laser`, or `front_laser` of a laser called front.
 
-use geometry::{Mount, Pose};
 use map::OccupancyGrid;
 use recording::Message;
 use ros::{
-    Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, Quaternion, TfMessage, Time,
-    Transform, TransformStamped, Vector3, lasers,
+    Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, Time, Transform,
+    TransformStamped, Twist, lasers, planar,
 };
 use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
 
@@ -32,16 +31,22 @@ impl Messages {
 
     pub(super) fn map(&self, map: &OccupancyGrid, stamp: Time) -> Message {
         let mut message = OccupancyGridMsg::from_grid(map);
-        message.header = header(stamp, "map");
+        message.header = Header::new(stamp, "map");
         message.info.map_load_time = stamp;
         Message::Map(message)
     }
 
     pub(super) fn mounts(&self, stamp: Time) -> Message {
-        let transform = |laser: &NamedMount| TransformStamped {
-            header: header(stamp, "base_link"),
-            child_frame_id: frame(&laser.name),
-            transform: transform(laser.mount),
+        let transform = |laser: &NamedMount| {
+            let level = Transform::from_planar(laser.mount.base_from_laser);
+            TransformStamped {
+                header: Header::new(stamp, "base_link"),
+                child_frame_id: frame(&laser.name),
+                transform: match laser.mount.is_upside_down {
+                    false => level,
+                    true => planar::upside_down(level),
+                },
+            }
         };
         let transforms = self.lasers.iter().map(transform).collect();
         Message::StaticTransforms(TfMessage { transforms })
@@ -49,20 +54,18 @@ impl Messages {
 
     pub(super) fn odometry(&self, wheels: &Wheels, stamp: Time) -> Message {
         let mut message = Odometry {
-            header: header(stamp, "odom"),
+            header: Header::new(stamp, "odom"),
             child_frame_id: "base_link".into(),
             ..Odometry::default()
         };
         message.pose.pose = ros::Pose::from_planar(wheels.odom_from_base);
-        let Pose { x, y, yaw } = wheels.twist;
-        message.twist.twist.linear = Vector3 { x, y, z: 0.0 };
-        message.twist.twist.angular.z = yaw;
+        message.twist.twist = Twist::from_planar(wheels.twist);
         Message::Odometry(Box::new(message))
     }
 
     pub(super) fn truth(&self, snapshot: &Snapshot, stamp: Time) -> Message {
         Message::PoseStamped(PoseStamped {
-            header: header(stamp, "map"),
+            header: Header::new(stamp, "map"),
             pose: ros::Pose::from_planar(snapshot.map_from_laser),
         })
     }
@@ -75,7 +78,7 @@ impl Messages {
     ) -> impl Iterator<Item = (String, Message)> {
         let scans = std::iter::once(snapshot.ranges).chain(snapshot.others);
         self.lasers.iter().zip(scans).map(move |(laser, ranges)| {
-            let scan = self.scan(header(stamp, &frame(&laser.name)), ranges);
+            let scan = self.scan(Header::new(stamp, &frame(&laser.name)), ranges);
             (lasers::topic_of(&laser.name), scan)
         })
     }
@@ -101,30 +104,5 @@ fn frame(laser: &str) -> String {
     match laser {
         "" => "laser".to_owned(),
         name => format!("{name}_laser"),
-    }
-}
-
-fn transform(mount: Mount) -> Transform {
-    let Pose { x, y, yaw } = mount.base_from_laser;
-    let level = Quaternion::from_yaw(yaw);
-    Transform {
-        translation: Vector3 { x, y, z: 0.0 },
-        rotation: match mount.is_upside_down {
-            false => level,
-            // Rolled by half a turn about x before it is turned about z.
-            true => Quaternion {
-                x: level.w,
-                y: level.z,
-                z: 0.0,
-                w: 0.0,
-            },
-        },
-    }
-}
-
-fn header(stamp: Time, frame: &str) -> Header {
-    Header {
-        stamp,
-        frame_id: frame.into(),
     }
 }

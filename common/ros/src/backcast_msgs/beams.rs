@@ -36,6 +36,27 @@ pub struct Beam {
     pub fate: u32,
 }
 
+impl Beams {
+    /// The beams of a scan as the graph has them, without loss.
+    #[must_use]
+    pub fn of(header: Header, from: &messages::BeamsHeader, items: &[messages::Beam]) -> Self {
+        let beam = |beam: &messages::Beam| Beam {
+            bearing: beam.bearing,
+            range_m: beam.range_m,
+            weight: beam.weight,
+            fate: beam.fate,
+        };
+        Beams {
+            header,
+            entered_ns: from.stamp.entered_ns,
+            counter: from.stamp.counter,
+            map_id: from.map_id,
+            map_from_laser: from.map_from_laser.into(),
+            beams: items.iter().map(beam).collect(),
+        }
+    }
+}
+
 impl RosMessage for Beams {
     const SCHEMA: &'static str = "backcast_msgs/msg/Beams";
     const DEFINITION: &'static str = definition!(

@@ -60,6 +60,43 @@ pub struct Hypothesis {
     pub support: u64,
 }
 
+impl Hypotheses {
+    /// The places of a scan as the graph has them, without loss.
+    #[must_use]
+    pub fn of(
+        header: Header,
+        from: &messages::HypothesesHeader,
+        items: &[messages::Hypothesis],
+    ) -> Self {
+        let hypothesis = |item: &messages::Hypothesis| Hypothesis {
+            map_from_laser: item.map_from_laser.into(),
+            map_from_base: item.map_from_base.into(),
+            covariance: item.covariance,
+            score: item.score,
+            probability: item.probability,
+            intensity: item.intensity,
+            support: item.support,
+        };
+        Hypotheses {
+            header,
+            entered_ns: from.stamp.entered_ns,
+            counter: from.stamp.counter,
+            map_id: from.map_id,
+            sent_ns: from.sent_ns,
+            search_ns: from.search_ns,
+            extract_ns: from.extract_ns,
+            verdict: from.verdict,
+            alternatives: from.alternatives,
+            confidence: from.confidence,
+            inlier_share: from.inlier_share,
+            best: from.best,
+            highest_possible: from.highest_possible,
+            mount_known: from.mount_known != 0,
+            hypotheses: items.iter().map(hypothesis).collect(),
+        }
+    }
+}
+
 impl RosMessage for Hypotheses {
     const SCHEMA: &'static str = "backcast_msgs/msg/Hypotheses";
     const DEFINITION: &'static str = definition!(

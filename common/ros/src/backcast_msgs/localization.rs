@@ -1,9 +1,10 @@
 //! `backcast_msgs/msg/Localization`.
 
+use messages::PoseHeader;
 use serde::{Deserialize, Serialize};
 
 use crate::definition::definition;
-use crate::{Header, PoseWithCovariance, RosMessage, Time};
+use crate::{Header, PoseWithCovariance, RosMessage, Time, planar};
 
 /// Where the robot is, and how sure that is, for programs of a robot: what of the tracker's
 /// verdict on a scan they decide by.
@@ -28,6 +29,40 @@ pub struct Localization {
     pub pose: PoseWithCovariance,
     /// Why it is in that state, and what to do, in words.
     pub reason: String,
+}
+
+impl Localization {
+    /// What the tracker says of a scan, with its words.
+    #[must_use]
+    pub fn of(header: Header, from: &PoseHeader, words: &[u8]) -> Self {
+        // The pose of a laser is not the robot's.
+        let pose_known = from.pose_known == 1 && from.mount_known == 1;
+        let pose = match pose_known {
+            true => planar::estimate(from.map_from_base.into(), from.base_covariance),
+            false => PoseWithCovariance::default(),
+        };
+        Localization {
+            header,
+            // There are four states.
+            state: u8::try_from(from.state).unwrap_or(u8::MAX),
+            probability: from.probability,
+            since: Time::from_ns(from.since_ns.max(0)).unwrap_or_default(),
+            alternatives: from.places.saturating_sub(1),
+            map_id: map_id(from),
+            pose_known,
+            pose,
+            reason: String::from_utf8_lossy(words).into_owned(),
+        }
+    }
+}
+
+/// The map's id as texts have it; empty where there is no map.
+#[must_use]
+pub fn map_id(from: &PoseHeader) -> String {
+    match from.map_id {
+        0 => String::new(),
+        id => format!("{id:016x}"),
+    }
 }
 
 impl RosMessage for Localization {
@@ -62,4 +97,46 @@ string reason
         Header,
         PoseWithCovariance,
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Pose2, TrackState};
+
+    use super::*;
+
+    #[test]
+    fn the_message_says_what_the_tracker_says() {
+        let mut from = PoseHeader {
+            map_id: 0xff,
+            state: TrackState::Doubtful as u32,
+            places: 3,
+            since_ns: 5_000_000_007,
+            pose_known: 1,
+            mount_known: 1,
+            map_from_base: Pose2 {
+                x: 1.0,
+                y: 2.0,
+                yaw: 0.0,
+            },
+            ..PoseHeader::zeroed()
+        };
+        let said = Localization::of(Header::default(), &from, b"only fit 0.4");
+        assert_eq!((said.state, said.alternatives), (2, 2));
+        assert_eq!((said.since.sec, said.since.nanosec), (5, 7));
+        assert_eq!(
+            (&*said.map_id, &*said.reason),
+            ("00000000000000ff", "only fit 0.4")
+        );
+        assert!(said.pose_known && said.pose.pose.position.y == 2.0);
+        // Before the first scan, and with no map.
+        (from.since_ns, from.places, from.map_id, from.mount_known) = (-1, 0, 0, 0);
+        let said = Localization::of(Header::default(), &from, b"\xff");
+        assert_eq!(
+            (said.since, said.alternatives, &*said.map_id),
+            (Time::default(), 0, "")
+        );
+        assert!(!said.pose_known && said.pose.pose.position.y == 0.0);
+    }
 }

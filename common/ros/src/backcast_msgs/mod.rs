@@ -16,7 +16,7 @@ mod votes;
 
 pub use beams::{Beam, Beams};
 pub use hypotheses::{Hypotheses, Hypothesis};
-pub use localization::Localization;
+pub use localization::{Localization, map_id};
 pub use tracked_pose::TrackedPose;
 pub use votes::{Vote, Votes};
 
@@ -40,6 +40,12 @@ impl From<geometry::Pose> for Pose2D {
             y: pose.y,
             theta: pose.yaw,
         }
+    }
+}
+
+impl From<messages::Pose2> for Pose2D {
+    fn from(pose: messages::Pose2) -> Self {
+        geometry::Pose::from(pose).into()
     }
 }
 

@@ -58,6 +58,38 @@ pub struct TrackedPose {
     pub words: String,
 }
 
+impl TrackedPose {
+    /// The pose of the tracker as the graph has it, with its words, without loss.
+    #[must_use]
+    pub fn of(header: Header, from: &messages::PoseHeader, words: &[u8]) -> Self {
+        TrackedPose {
+            header,
+            entered_ns: from.stamp.entered_ns,
+            counter: from.stamp.counter,
+            map_id: from.map_id,
+            sent_ns: from.sent_ns,
+            tracking_ns: from.tracking_ns,
+            since_ns: from.since_ns,
+            since_m: from.since_m,
+            map_from_laser: from.map_from_laser.into(),
+            map_from_base: from.map_from_base.into(),
+            map_from_odom: from.map_from_odom.into(),
+            laser_covariance: from.laser_covariance,
+            base_covariance: from.base_covariance,
+            probability: from.probability,
+            lead: from.lead,
+            score: from.score,
+            state: from.state,
+            reason: from.reason,
+            places: from.places,
+            pose_known: from.pose_known != 0,
+            mount_known: from.mount_known != 0,
+            odom_known: from.odom_known != 0,
+            words: String::from_utf8_lossy(words).into_owned(),
+        }
+    }
+}
+
 impl RosMessage for TrackedPose {
     const SCHEMA: &'static str = "backcast_msgs/msg/TrackedPose";
     const DEFINITION: &'static str = definition!(

@@ -78,6 +78,52 @@ pub struct Vote {
     pub intensity: u16,
 }
 
+impl Votes {
+    /// The votes of a scan as the graph has them, without loss.
+    #[must_use]
+    pub fn of(
+        header: Header,
+        (votes, items): (&messages::VotesHeader, &[messages::Vote]),
+        map: Option<&messages::MapHeader>,
+    ) -> Self {
+        let vote = |vote: &messages::Vote| Vote {
+            x: vote.x,
+            y: vote.y,
+            heading: vote.heading,
+            intensity: vote.intensity,
+        };
+        Votes {
+            header,
+            entered_ns: votes.stamp.entered_ns,
+            counter: votes.stamp.counter,
+            map_id: votes.map_id,
+            total: votes.total,
+            engine_ns: votes.engine_ns,
+            poses_evaluated: votes.poses_evaluated,
+            outcome: votes.outcome,
+            headings: votes.headings,
+            floor: votes.floor,
+            certified_floor: votes.certified_floor,
+            best: votes.best,
+            highest_possible: votes.highest_possible,
+            truncated: votes.truncated != 0,
+            heading_known: votes.heading_known != 0,
+            mount_known: votes.mount_known != 0,
+            beams_used: votes.beams_used,
+            beams_silent: votes.beams_silent,
+            known_heading: votes.known_heading,
+            bearing_rounding: votes.bearing_rounding,
+            base_from_laser: votes.base_from_laser.into(),
+            occupied_from: map.map_or(0, |map| map.occupied_from),
+            free_to: map.map_or(0, |map| map.free_to),
+            max_beams: votes.max_beams,
+            pooling: votes.pooling,
+            beam_arc_m: votes.beam_arc_m,
+            votes: items.iter().map(vote).collect(),
+        }
+    }
+}
+
 impl RosMessage for Votes {
     const SCHEMA: &'static str = "backcast_msgs/msg/Votes";
     const DEFINITION: &'static str = definition!(

@@ -177,10 +177,7 @@ impl Laser {
 
 fn stamped(stamp: Time, parent: &str, child: &str, parent_from_child: Pose) -> TransformStamped {
     TransformStamped {
-        header: Header {
-            stamp,
-            frame_id: parent.to_owned(),
-        },
+        header: Header::new(stamp, parent),
         child_frame_id: child.to_owned(),
         transform: planar::transform(parent_from_child),
     }

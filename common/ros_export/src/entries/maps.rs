@@ -1,9 +1,9 @@
-//! The map and the intensity image as ROS says them.
+//! The map and the intensity image, where their headers and items agree.
 
 use std::collections::BTreeMap;
 
 use messages::{FieldHeader, MapHeader, Topic, topic};
-use ros::{Header, MapMetaData, OccupancyGridMsg, planar};
+use ros::{Header, OccupancyGridMsg};
 
 use crate::TranscriptError;
 
@@ -14,18 +14,7 @@ pub(super) fn occupancy_grid(
 ) -> Result<OccupancyGridMsg, TranscriptError> {
     check_size(topic::Map::NAME, map.width, map.height, cells.len())?;
     map.check_id(cells)?;
-    Ok(OccupancyGridMsg {
-        header: Header::default(),
-        info: MapMetaData {
-            resolution: map.resolution_m as f32,
-            width: map.width,
-            height: map.height,
-            origin: planar::pose(map.map_from_grid.into()),
-            ..MapMetaData::default()
-        },
-        // Unknown is 255, and -1 in the message: the same bits.
-        data: cells.iter().map(|&cell| cell.cast_signed()).collect(),
-    })
+    Ok(OccupancyGridMsg::of_map(map, cells))
 }
 
 /// The intensities, as per cent of what a pose would have if every beam agreed.
@@ -36,19 +25,7 @@ pub(super) fn field(
     map: &MapHeader,
 ) -> Result<OccupancyGridMsg, TranscriptError> {
     check_size(topic::Field::NAME, field.width, field.height, items.len())?;
-    let full = field.highest_possible.max(1);
-    let percent = |&item: &u16| (u32::from(item) * 100 / full).min(100) as i8;
-    Ok(OccupancyGridMsg {
-        info: MapMetaData {
-            map_load_time: header.stamp,
-            resolution: (map.resolution_m * f64::from(field.block)) as f32,
-            width: field.width,
-            height: field.height,
-            origin: planar::pose(map.map_from_grid.into()),
-        },
-        header,
-        data: items.iter().map(percent).collect(),
-    })
+    Ok(OccupancyGridMsg::of_field(header, field, items, map))
 }
 
 /// What the recording says about its map.

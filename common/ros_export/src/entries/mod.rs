@@ -5,11 +5,8 @@
 //! recorded again has the same times. What has no measurement (the map, the
 //! mount, health) waits for the first one, and then stands at its time.
 
-mod answers;
 mod frames;
-mod log;
 mod maps;
-mod measurements;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -21,7 +18,11 @@ use messages::{
     Topic, Vote, VotesHeader, topic,
 };
 use recording::write::Encoded;
-use ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time, diagnostics, lasers, poses};
+use ros::backcast_msgs as own;
+use ros::{
+    Header, LaserScan, Log, OccupancyGridMsg, PoseStamped, RosMessage, TfMessage, Time,
+    diagnostics, lasers, poses,
+};
 
 use crate::{Options, TranscriptError, topics};
 
@@ -86,7 +87,7 @@ impl Entries {
         if let Some(mounts) = self.frames.on_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
         }
-        let message = measurements::scan(at.stamp, scan, ranges);
+        let message = LaserScan::of(at.stamp, scan, ranges);
         match scan.laser.as_str() {
             "" => self.message(topics::SCAN, at.ns, &message),
             laser => self.message(lasers::topic_of(laser), at.ns, &message),
@@ -101,7 +102,7 @@ impl Entries {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
         let transform = self.frames.on_odometry(odometry, at.stamp);
         self.message(topics::TF, at.ns, &transform)?;
-        let message = measurements::odometry(at.stamp, odometry);
+        let message = ros::Odometry::of(at.stamp, odometry);
         self.message(topics::ODOM, at.ns, &message)
     }
 
@@ -111,7 +112,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), TranscriptError> {
         let at = self.measured(truth.stamp, topic::GroundTruthTopic::NAME)?;
-        let message = measurements::ground_truth(at.stamp, truth);
+        let message = PoseStamped::of(at.stamp, truth);
         self.message(topics::GROUND_TRUTH, at.ns, &message)
     }
 
@@ -123,7 +124,7 @@ impl Entries {
         let at = self.measured(votes.stamp, topic::Votes::NAME)?;
         let map = self.map.as_ref();
         let map = map.filter(|map| map.map_id == votes.map_id);
-        let message = answers::votes(self.in_map(at.stamp), (votes, items), map);
+        let message = own::Votes::of(self.in_map(at.stamp), (votes, items), map);
         self.message(topics::OWN_VOTES, at.ns, &message)
     }
 
@@ -138,7 +139,7 @@ impl Entries {
     ) -> Result<(), TranscriptError> {
         let at = self.measured(header.stamp, topic::Hypotheses::NAME)?;
         let in_map = self.in_map(at.stamp);
-        let own = answers::hypotheses(in_map.clone(), header, items);
+        let own = own::Hypotheses::of(in_map.clone(), header, items);
         self.message(topics::OWN_HYPOTHESES, at.ns, &own)?;
         let array = poses::array(in_map.clone(), header, items);
         self.message(topics::HYPOTHESES, at.ns, &array)?;
@@ -186,7 +187,7 @@ impl Entries {
             return Ok(());
         }
         let at = self.measured(header.stamp, topic::Tracked::NAME)?;
-        let own = answers::tracked(self.in_map(at.stamp), header, words);
+        let own = own::TrackedPose::of(self.in_map(at.stamp), header, words);
         self.message(topics::OWN_POSE, at.ns, &own)?;
         if let Some(pose) = poses::tracked(self.in_map(at.stamp), header) {
             self.message(topics::POSE, at.ns, &pose)?;
@@ -203,7 +204,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn beams(&mut self, beams: &BeamsHeader, items: &[Beam]) -> Result<(), TranscriptError> {
         let at = self.measured(beams.stamp, topic::Beams::NAME)?;
-        let message = answers::beams(self.in_map(at.stamp), beams, items);
+        let message = own::Beams::of(self.in_map(at.stamp), beams, items);
         self.message(topics::OWN_BEAMS, at.ns, &message)
     }
 
@@ -320,17 +321,14 @@ impl Entries {
             self.message(topics::DIAGNOSTICS, at.ns, &message)?;
         }
         for (line, text) in std::mem::take(&mut self.waiting_log) {
-            let message = log::of(at.stamp, &line, &text);
+            let message = Log::of(at.stamp, &line, &text);
             self.message(topics::ROSOUT, at.ns, &message)?;
         }
         Ok(())
     }
 
     fn in_map(&self, stamp: Time) -> Header {
-        Header {
-            stamp,
-            frame_id: self.map_frame.clone(),
-        }
+        Header::new(stamp, &self.map_frame)
     }
 
     fn message<M: RosMessage>(

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use messages::{MapHeader, topic};
+use messages::topic;
 use tempfile::TempDir;
+use tests::drawn_map::DrawnMap;
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use zenoh::handlers::FifoChannelHandler;
@@ -239,17 +240,8 @@ fn a_late_joiner_gets_the_map_through_the_router() {
     let isolated = Isolated::new("kept-r1");
     let graph = isolated.join("test");
     let maps = graph.publisher::<topic::Map>().unwrap();
-    let mut header = MapHeader {
-        width: 3,
-        height: 2,
-        resolution_m: 0.05,
-        ..MapHeader::default()
-    };
-    header.map_id = header.id_of(&[0; 6]);
-    let mut loan = maps.loan(6).unwrap();
-    *loan.header_mut() = header;
-    loan.items_mut().fill(0);
-    loan.send().unwrap();
+    let drawn = DrawnMap::small();
+    drawn.send(&maps);
     let health = graph.subscriber::<topic::Health>().unwrap();
     let config = fleet.papers.of("r1", "one");
     let bridge = bridge(&graph, &fleet.papers, "r1", &config);
@@ -267,6 +259,6 @@ fn a_late_joiner_gets_the_map_through_the_router() {
     let encoding = sample.encoding().to_string();
     let map =
         network_payload::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
-    assert_eq!(map.header.map_id, header.map_id);
+    assert_eq!(map.header.map_id, drawn.header.map_id);
     bridge.stop();
 }

@@ -5,10 +5,11 @@ use std::io::Read;
 use bytemuck::Zeroable;
 use messages::{BeamsHeader, FieldHeader, TrackState, topic};
 use serde_json::{Value, json};
+use tests::drawn_map::DrawnMap;
 use transport::{Flow, TransportError};
 use tungstenite::Message;
 
-use crate::world::{CELLS, World, map_name, next, next_of};
+use crate::world::{World, map_name, next, next_of};
 
 #[test]
 fn what_flows_in_the_graph_is_reported() {
@@ -74,7 +75,7 @@ fn the_map_is_a_byte_a_cell() {
         )
     };
     let (status, _, cells) = world.site.raw(request("").as_bytes());
-    assert_eq!((status, cells), (200, CELLS.to_vec()));
+    assert_eq!((status, cells), (200, DrawnMap::small().cells));
     let (status, _, cells) = world
         .site
         .raw(request(&format!("If-None-Match: \"{}\"\r\n", map_name())).as_bytes());
@@ -87,7 +88,7 @@ fn the_map_is_a_byte_a_cell() {
     flate2::read::GzDecoder::new(&packed[..])
         .read_to_end(&mut cells)
         .unwrap();
-    assert_eq!(cells, CELLS);
+    assert_eq!(cells, DrawnMap::small().cells);
 }
 
 #[test]

@@ -4,11 +4,10 @@ use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 
 use bytemuck::Zeroable;
-use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader, TrackState, Verdict, topic,
-};
+use messages::{HypothesesHeader, Hypothesis, Pose2, PoseHeader, TrackState, Verdict, topic};
 use serde_json::Value;
 use tempfile::TempDir;
+use tests::drawn_map::DrawnMap;
 use tests::http::{Site, token_file};
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, Publisher, TransportError};
@@ -16,22 +15,9 @@ use tungstenite::{Message, WebSocket, client};
 
 pub(crate) const TOKEN: &str = "0123456789abcdef";
 
-pub(crate) const CELLS: [u8; 6] = [0, 100, 255, 0, 0, 100];
-
-fn map_header() -> MapHeader {
-    let mut header = MapHeader {
-        width: 3,
-        height: 2,
-        resolution_m: 0.05,
-        ..MapHeader::default()
-    };
-    header.map_id = header.id_of(&CELLS);
-    header
-}
-
 /// As the API says it.
 pub(crate) fn map_name() -> String {
-    format!("{:016x}", map_header().map_id)
+    format!("{:016x}", DrawnMap::small().header.map_id)
 }
 
 /// The node in a graph of its own, and what it may be asked.
@@ -70,24 +56,17 @@ impl World {
             _isolated: isolated,
             _folder: folder,
         };
-        world.serve_map();
+        DrawnMap::small().send(&world.maps);
         world.node = Some(start(&world.graph, world.site.0, &token, arguments));
         wait_until_ready(&world.graph, "monitor");
         world
-    }
-
-    fn serve_map(&self) {
-        let mut loan = self.maps.loan(CELLS.len()).unwrap();
-        *loan.header_mut() = map_header();
-        loan.items_mut().copy_from_slice(&CELLS);
-        loan.send().unwrap();
     }
 
     pub(crate) fn answer(&self, counter: u64, x: f64) {
         let mut loan = self.hypotheses.loan(1).unwrap();
         let header = loan.header_mut();
         *header = HypothesesHeader {
-            map_id: map_header().map_id,
+            map_id: DrawnMap::small().header.map_id,
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
         };
@@ -109,7 +88,7 @@ impl World {
         let mut loan = self.poses.loan(words.len()).unwrap();
         let header = loan.header_mut();
         *header = PoseHeader {
-            map_id: map_header().map_id,
+            map_id: DrawnMap::small().header.map_id,
             sent_ns: transport::monotonic_ns(),
             map_from_laser: Pose2 {
                 x,

@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use bytemuck::Zeroable;
 use messages::{
-    Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2,
-    PoseHeader, Stamp, TrackState, Verdict, topic,
+    Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, NodeState, Pose2, PoseHeader, Stamp,
+    TrackState, Verdict, topic,
 };
+use tests::drawn_map::DrawnMap;
 use tests::http::Site;
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns};
@@ -134,24 +135,13 @@ struct Source {
 impl Source {
     /// Serves a corridor of 100 by 10 metres.
     fn new(graph: &Graph) -> Self {
-        let (width, height) = (1000, 100);
         let is_free = |i: usize| (1..999).contains(&(i % 1000)) && (1..99).contains(&(i / 1000));
         let cells = (0..100_000).map(|i| if is_free(i) { 0 } else { 100 });
-        let cells: Vec<u8> = cells.collect();
-        let mut header = MapHeader {
-            width,
-            height,
-            resolution_m: 0.1,
-            ..MapHeader::default()
-        };
-        header.map_id = header.id_of(&cells);
+        let drawn = DrawnMap::new(1000, 0.1, cells.collect());
         let map = graph.publisher::<topic::Map>().unwrap();
-        let mut loan = map.loan(cells.len()).unwrap();
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&cells);
-        loan.send().unwrap();
+        drawn.send(&map);
         Source {
-            map_id: header.map_id,
+            map_id: drawn.header.map_id,
             _map: map,
             hypotheses: graph.publisher().unwrap(),
             poses: graph.publisher().unwrap(),

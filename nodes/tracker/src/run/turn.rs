@@ -6,10 +6,6 @@ use messages::{ScanHeader, Stamp};
 
 use super::TICK;
 
-/// A scan waits this long for odometry past its last beam: odometry comes ten times a
-/// second at least, and a process that sends it may not run for a while.
-pub(super) const ODOMETRY_WAIT: Duration = Duration::from_millis(100);
-
 /// A scan waits this long for a search: the slowest search of a map that is as large
 /// as one may be takes less on a slow computer. What comes later is lost.
 pub(super) const SEARCH_WAIT: Duration = Duration::from_secs(5);
@@ -54,6 +50,8 @@ pub(super) enum Turn {
 
 #[cfg(test)]
 mod tests {
+    use engine::joined::ODOMETRY_WAIT;
+
     use super::*;
 
     #[test]
