@@ -80,7 +80,9 @@ pub(crate) fn scan_bytes(
         sequence: header.stamp.counter,
         clock_ns: monotonic_ns(),
     };
-    Ok(network_payload::encode::<topic::Scan>(&preamble, header, ranges)?)
+    Ok(network_payload::encode::<topic::Scan>(
+        &preamble, header, ranges,
+    )?)
 }
 
 /// The answer to a question as bytes, and what they say of themselves.

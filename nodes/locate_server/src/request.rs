@@ -22,7 +22,7 @@ pub const PART: &str = "application/postcard;backcast.ScanForPart/v2";
 /// That of its answer.
 pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v1";
 /// That of the answer to a question for a glance: a [`Glance`] in postcard.
-pub const GLANCE_ANSWER: &str = "application/postcard;backcast.Glance/v1";
+pub(crate) const GLANCE_ANSWER: &str = "application/postcard;backcast.Glance/v1";
 /// What a request may say of itself.
 pub(crate) const ENCODINGS: [&str; 3] = ["application/postcard;backcast.Scan/v2", JSON, PART];
 /// Characters of a foreign encoding that an error shows.
@@ -54,7 +54,7 @@ pub enum Wanted {
 
 /// A question to one shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PartQuestion<'a> {
+pub(crate) struct PartQuestion<'a> {
     /// Whether a short search is to say what the best pose has that it finds.
     pub glance: bool,
     /// Votes of a pose on a map of another shard, and how many are possible there; 0 of 1 where
@@ -67,7 +67,7 @@ pub struct PartQuestion<'a> {
 
 /// What a short search of one shard finds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Glance {
+pub(crate) struct Glance {
     /// Votes of the best pose, and how many are possible.
     pub lead: (u16, u16),
     /// How long it took, nanoseconds.
@@ -233,8 +233,7 @@ mod tests {
 
     #[test]
     fn a_shard_is_asked_beside_what_another_one_knows() {
-        let scan =
-            network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
+        let scan = network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
         let asked = |glance, lead| {
             let scan = &scan[..];
             let question = PartQuestion { glance, lead, scan };
@@ -243,7 +242,10 @@ mod tests {
         };
         let (wanted, ranges) = asked(false, (7, 9)).unwrap();
         let lead = VoteShare::new(7, 9);
-        assert_eq!((wanted, &ranges[..]), (Wanted::Part { lead }, &[1.0, 2.0][..]));
+        assert_eq!(
+            (wanted, &ranges[..]),
+            (Wanted::Part { lead }, &[1.0, 2.0][..])
+        );
         assert_eq!(asked(true, (0, 1)).unwrap().0, Wanted::Glance);
         for wrong in [(1, 0), (8, 7)] {
             let error = asked(false, wrong).unwrap_err().to_string();
@@ -260,7 +262,6 @@ mod tests {
         check("zenoh/bytes", b"", "allowed are application/postcard");
         check("application/postcard;backcast.Scan/v9", b"", JSON);
         check(ENCODINGS[0], b"\xff", "does not match its postcard schema");
-        check(PART, b"\xff", "");
         check(JSON, b"{", "not a scan in JSON");
         check(JSON, &vec![b' '; (1 << 20) + 1], "at most 1048576");
     }

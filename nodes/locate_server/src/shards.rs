@@ -76,7 +76,13 @@ pub fn ask_shards(
     let (lead, glanced) = match of {
         1 => (VoteShare::default(), Duration::ZERO),
         // Who is there answers at once; who dies now is not waited for until the deadline.
-        _ => glance(session, (set, of), &there, &scan, Instant::now() + deadline / 4)?,
+        _ => glance(
+            session,
+            (set, of),
+            &there,
+            &scan,
+            Instant::now() + deadline / 4,
+        )?,
     };
     let question = part_question(false, lead, &scan)?;
     let ask = |number| part(session, &Shard { number, of }.name(set), &question, due);
