@@ -137,7 +137,8 @@ impl MapSet {
 }
 
 impl MapSet {
-    /// The share of a pose that a search of so many steps finds, millions of them: mostly that
+    /// The share of a pose that a search of so many steps on each map finds, millions of them:
+    /// mostly that
     /// of the best one, where it is on one of the maps; `None` if `stop` said so before the end.
     ///
     /// # Errors
@@ -162,10 +163,7 @@ impl MapSet {
             collect: Some(collect),
             ..Together::default()
         };
-        let searched = self.search(workspace, scan.into(), together, stop)?;
-        let maps = workspace.maps.iter();
-        let shares = maps.map(|map| map.outcome().best_share());
-        Ok(searched.and(shares.max_by(|a, b| a.compare(*b))))
+        self.search(workspace, scan.into(), together, stop)
     }
 
     fn search(
@@ -174,7 +172,7 @@ impl MapSet {
         scan: Observation<'_>,
         together: Together,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<()>, EngineError> {
+    ) -> Result<Option<VoteShare>, EngineError> {
         let maps = &mut workspace.maps;
         maps.resize_with(self.locators.len(), locator::Workspace::default);
         let localizers = self.locators.iter().map(Locator::localizer);

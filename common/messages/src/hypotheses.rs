@@ -18,7 +18,7 @@ use crate::{Pose2, Stamp};
 pub struct HypothesesHeader {
     /// Of the scan.
     pub stamp: Stamp,
-    /// The map that was searched; 0 where there was none.
+    /// The map that was searched; of several, that of the best place; 0 where there was none.
     pub map_id: u64,
     /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
     pub sent_ns: i64,
@@ -40,6 +40,17 @@ pub struct HypothesesHeader {
     pub highest_possible: u32,
     /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
     pub mount_known: u64,
+}
+
+impl HypothesesHeader {
+    /// Those of the places that are on the best one's map, for who knows one map alone.
+    pub fn on_map<'a>(
+        &self,
+        places: &'a [Hypothesis],
+    ) -> impl Iterator<Item = &'a Hypothesis> + Clone + use<'a> {
+        let map_id = self.map_id;
+        places.iter().filter(move |place| place.map_id == map_id)
+    }
 }
 
 /// One place where the robot may be.

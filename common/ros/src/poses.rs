@@ -9,14 +9,14 @@ use nalgebra::Matrix3;
 use crate::planar;
 use crate::{Header, PoseArray, PoseWithCovarianceStamped};
 
-/// All hypotheses, best first: of the base, or of the laser where no mount is
-/// known.
+/// All hypotheses that are on the map of the best one, best first: of the base, or of the laser
+/// where no mount is known.
 #[must_use]
 pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> PoseArray {
     let pose = |item| planar::pose(robot(from, item));
     PoseArray {
         header,
-        poses: items.iter().map(pose).collect(),
+        poses: from.on_map(items).map(pose).collect(),
     }
 }
 
@@ -64,12 +64,13 @@ fn covariance(from: &HypothesesHeader, item: &Hypothesis) -> Covariance {
     own.carried(item.map_from_laser.into(), robot(from, item))
 }
 
-/// The covariance about a pose of a robot that is at one of these places.
+/// The covariance about a pose of a robot that is at one of these places, as far as they are on
+/// its map.
 fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covariance {
-    let parts = items
-        .iter()
-        .map(|item| covariance(from, item).about(robot(from, item), about).0);
-    Covariance(parts.sum::<Matrix3<f64>>() / items.len() as f64)
+    let on_map = from.on_map(items);
+    let count = on_map.clone().count().max(1);
+    let parts = on_map.map(|item| covariance(from, item).about(robot(from, item), about).0);
+    Covariance(parts.sum::<Matrix3<f64>>() / count as f64)
 }
 
 /// Where the tracker has the robot: of the base, or of the laser where no mount is known.

@@ -16,8 +16,8 @@ use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
 use crate::shard::{Part, Shard};
 
-/// Millions of steps of a short search: about as many milliseconds.
-const GLANCE_MILLIONS: f64 = 20.0;
+/// Millions of steps of a short search on each map: about as many milliseconds.
+const GLANCE_MILLIONS: f64 = 5.0;
 
 /// A map, or several, ready to be searched by any number of threads.
 #[derive(Debug)]

@@ -184,7 +184,7 @@ fn is_unique(header: &HypothesesHeader) -> bool {
 }
 
 fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
-    let likely = items.iter().enumerate();
+    let likely = header.on_map(items).enumerate();
     let likely = likely.filter(|(rank, item)| *rank == 0 || item.probability >= LIKELY);
     let poses = likely.map(|(_, item)| ros::poses::robot(header, item));
     Answer {

@@ -20,8 +20,8 @@ pub struct Together {
 
 impl Localizer {
     /// Searches maps together, each in a workspace of its own, with the settings of the first:
-    /// of each map the poses that come near the best one of all. `None` if `stop` said so
-    /// before the end.
+    /// of each map the poses that come near the best one of all. Gives what that one has, be it
+    /// known beforehand, or `None` if `stop` said so before the end.
     ///
     /// Votes are compared as shares of the highest possible on each map, without rounding.
     ///
@@ -35,19 +35,19 @@ impl Localizer {
         scan: Observation<'_>,
         together: Together,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<()>, EngineError> {
+    ) -> Result<Option<VoteShare>, EngineError> {
         let found = match together.heading {
-            Some(heading) => at_heading(&mut maps, scan, heading, stop)?,
+            Some(heading) => at_heading(&mut maps, scan, heading, stop)?.map(|()| together.lead),
             None => at_any_heading(&mut maps, scan, together, stop)?,
         };
-        if found.is_none() {
+        let Some(counted) = found else {
             return Ok(None);
-        }
+        };
         let shares = maps
             .iter()
             .map(|(_, workspace)| workspace.outcome.best_share());
-        let shares = shares.chain([together.lead]);
-        let lead = shares.max_by(|a, b| a.compare(*b)).expect("a map");
+        let shares = shares.chain([counted]);
+        let lead = shares.max_by(|a, b| a.compare(*b)).expect("a share");
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
             outcome.lead = lead.on(outcome.highest_possible as u16);
@@ -57,7 +57,7 @@ impl Localizer {
                 outcome.found.confine((outcome.lead, floor), Some(least));
             }
         }
-        Ok(Some(()))
+        Ok(Some(lead))
     }
 }
 
@@ -66,7 +66,7 @@ fn at_any_heading(
     scan: Observation<'_>,
     together: Together,
     stop: &dyn Fn() -> bool,
-) -> Result<Option<()>, EngineError> {
+) -> Result<Option<VoteShare>, EngineError> {
     for (map, workspace) in maps.iter_mut() {
         let (space, votes) = (&map.space, &map.config.votes);
         workspace.program.compile(scan, 0.0, space, votes)?;

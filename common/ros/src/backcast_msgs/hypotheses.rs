@@ -61,7 +61,8 @@ pub struct Hypothesis {
 }
 
 impl Hypotheses {
-    /// The places of a scan as the graph has them, without loss.
+    /// The places of a scan as the graph has them; where several maps were searched, those on the
+    /// map of the best one.
     #[must_use]
     pub fn of(
         header: Header,
@@ -92,7 +93,7 @@ impl Hypotheses {
             best: from.best,
             highest_possible: from.highest_possible,
             mount_known: from.mount_known != 0,
-            hypotheses: items.iter().map(hypothesis).collect(),
+            hypotheses: from.on_map(items).map(hypothesis).collect(),
         }
     }
 }

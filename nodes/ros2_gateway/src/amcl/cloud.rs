@@ -31,8 +31,8 @@ pub(super) fn of_hypotheses(
     from: &HypothesesHeader,
     items: &[Hypothesis],
 ) -> ParticleCloud {
-    let likely = items
-        .iter()
+    let likely = from
+        .on_map(items)
         .filter(|item| item.probability >= LIKELY)
         .take(MOST);
     let place = |item: &Hypothesis| {

@@ -30,7 +30,10 @@ impl SearchIndex {
     /// of each map the poses that have at least a share of the best one's votes, wherever that
     /// is. Votes of maps are compared as shares of the highest possible there, without
     /// rounding. A pose of such a share is known to be elsewhere, on a map that somebody else
-    /// searches; none has no votes. `None` if `stop` said so before the end.
+    /// searches; none has no votes.
+    ///
+    /// Gives what the best pose of all that were counted has, or `None` if `stop` said so before
+    /// the end.
     ///
     /// The outcome does not depend on the order of the maps, as far as it is certified. Of
     /// poses below the floor, a map that does not have the best pose has only those with half
@@ -43,7 +46,7 @@ impl SearchIndex {
         how: (InstructionSet, usize),
         (config, known): (CollectConfig, VoteShare),
         stop: &dyn Fn() -> bool,
-    ) -> Option<()> {
+    ) -> Option<VoteShare> {
         let lead = Lead::default();
         lead.raise(known);
         let attempts = maps.iter_mut().map(|map| {
@@ -55,7 +58,7 @@ impl SearchIndex {
             (attempt, found)
         });
         let mut attempts: Vec<_> = attempts.collect();
-        Attempt::find_all(&mut attempts, stop)
+        Attempt::find_all(&mut attempts, stop).map(|()| lead.share())
     }
 }
 

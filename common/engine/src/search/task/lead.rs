@@ -29,10 +29,15 @@ impl Lead {
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, better);
     }
 
+    /// What the best pose has.
+    pub(in crate::search) fn share(&self) -> VoteShare {
+        unpack(self.0.load(Ordering::Relaxed))
+    }
+
     /// The least number of votes that is as good as the best pose, on a map on which such a
     /// number is possible.
     pub(in crate::search) fn on(&self, possible: u16) -> u16 {
-        let best = unpack(self.0.load(Ordering::Relaxed));
+        let best = self.share();
         match best.possible == possible {
             true => best.votes,
             false => best.on(possible),
