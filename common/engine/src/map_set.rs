@@ -17,7 +17,6 @@ use crate::localizer::{Localizer, Outcome, Together};
 use crate::locator::{self, Locator};
 use crate::observation::Observation;
 use crate::peaks::{Found, Merged, Places, merge};
-use crate::votes::{CollectConfig, VoteShare};
 
 /// Maps that are ready to be asked, by any number of threads.
 #[derive(Debug, Clone)]
@@ -96,8 +95,8 @@ impl MapSet {
         self.locate_beside(workspace, scan, together, stop)
     }
 
-    /// The same beside a pose on another map that somebody else searches: what has too small a
-    /// share of its votes is left out, as if one search had found both.
+    /// The same while others search other maps: beside what the best pose has, be it theirs, too
+    /// few votes are left out, as if one search had found all.
     ///
     /// # Errors
     /// See [`MapSet::locate_unless`].
@@ -108,7 +107,7 @@ impl MapSet {
         &self,
         workspace: &'w mut Workspace,
         scan: impl Into<Observation<'s>>,
-        together: Together,
+        together: Together<'_>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Located<'w>>, EngineError> {
         let scan = scan.into();
@@ -137,42 +136,13 @@ impl MapSet {
 }
 
 impl MapSet {
-    /// The share of a pose that a search of so many steps on each map finds, millions of them:
-    /// mostly that
-    /// of the best one, where it is on one of the maps; `None` if `stop` said so before the end.
-    ///
-    /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
-    ///
-    /// # Panics
-    /// If the locators were prepared for known headings.
-    pub fn glance<'s>(
-        &self,
-        workspace: &mut Workspace,
-        scan: impl Into<Observation<'s>>,
-        millions: f64,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<VoteShare>, EngineError> {
-        let collect = CollectConfig {
-            floor_share: 1.0,
-            candidates: 0,
-            work_limit: Some(millions),
-            ..self.locators[0].localizer().config().collect
-        };
-        let together = Together {
-            collect: Some(collect),
-            ..Together::default()
-        };
-        self.search(workspace, scan.into(), together, stop)
-    }
-
     fn search(
         &self,
         workspace: &mut Workspace,
         scan: Observation<'_>,
-        together: Together,
+        together: Together<'_>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<VoteShare>, EngineError> {
+    ) -> Result<Option<()>, EngineError> {
         let maps = &mut workspace.maps;
         maps.resize_with(self.locators.len(), locator::Workspace::default);
         let localizers = self.locators.iter().map(Locator::localizer);
@@ -195,6 +165,7 @@ mod tests {
     use crate::peaks::{PeakConfig, Place, Score};
     use crate::program::VoteConfig;
     use crate::scan::Scan;
+    use crate::search::Lead;
     use crate::testing::{any_grid, any_scan};
 
     /// None where the grid has no obstacle or no room.
@@ -299,22 +270,17 @@ mod tests {
             prop_assume!(locators.len() > 1);
             let cut = cut.min(locators.len() - 1);
             let mut workspace = Workspace::default();
-            let mut ask = |locators: &[Locator], lead| {
+            let mut ask = |locators: &[Locator], lead: &Lead| {
                 let set = MapSet::new(locators.to_vec());
-                let together = Together { lead, ..Together::default() };
+                let together = Together { lead: Some(lead), ..Together::default() };
                 let found = set.locate_beside(&mut workspace, &scan.scan(), together, &|| false);
                 found.unwrap().unwrap().found.clone()
             };
-            let all = ask(&locators, VoteShare::default());
-            let mut glances = locators.iter().map(|locator| {
-                let set = MapSet::new(vec![locator.clone()]);
-                let share = set.glance(&mut Workspace::default(), &scan.scan(), 1.0, &|| false);
-                share.unwrap().unwrap()
-            });
-            // A pose that was seen is nowhere better than the best.
-            prop_assert!(glances.all(|share| share.compare(all.lead).is_le()));
-            let first = ask(&locators[..cut], all.lead);
-            let mut second = ask(&locators[cut..], all.lead);
+            let lead = Lead::default();
+            let all = ask(&locators, &lead);
+            prop_assert_eq!(lead.share().compare(all.lead), std::cmp::Ordering::Equal);
+            let first = ask(&locators[..cut], &lead);
+            let mut second = ask(&locators[cut..], &lead);
             let config = *locators[0].peaks();
             second.leading_map += cut as u32;
             second.places.iter_mut().for_each(|place| place.map += cut as u32);

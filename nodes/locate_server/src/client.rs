@@ -70,13 +70,18 @@ impl Question {
     }
 }
 
+/// A number for who asks by this session.
+pub(crate) fn sender(session: &Session) -> u64 {
+    u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes()))
+}
+
 /// A scan as the bridge sends it.
 pub(crate) fn scan_bytes(
     session: &Session,
     (header, ranges): (&ScanHeader, &[f32]),
 ) -> Result<Vec<u8>, LocateError> {
     let preamble = Preamble {
-        sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
+        sender: sender(session),
         sequence: header.stamp.counter,
         clock_ns: monotonic_ns(),
     };

@@ -16,6 +16,7 @@ mod counts;
 mod dispatcher;
 mod error;
 mod json;
+mod leads;
 mod locator;
 mod request;
 mod run;

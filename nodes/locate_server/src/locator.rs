@@ -10,14 +10,11 @@ pub use engine::map_set::Workspace;
 use engine::map_set::{Located, MapSet};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
-use engine::votes::VoteShare;
+use engine::search::Lead;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
 use crate::shard::{Part, Shard};
-
-/// Millions of steps of a short search on each map: about as many milliseconds.
-const GLANCE_MILLIONS: f64 = 5.0;
 
 /// A map, or several, ready to be searched by any number of threads.
 #[derive(Debug)]
@@ -142,8 +139,8 @@ impl Locator {
         }))
     }
 
-    /// The same as it is merged with what others find on other maps of the set, of which a pose
-    /// of such a share of the votes is known.
+    /// The same as it is merged with what others find on other maps of the set, while it is known
+    /// what the best pose of all has.
     ///
     /// # Errors
     /// As [`Locator::locate`].
@@ -151,30 +148,16 @@ impl Locator {
         &self,
         workspace: &mut Workspace,
         (header, ranges): (&ScanHeader, &[f32]),
-        lead: VoteShare,
+        lead: &Lead,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Part>, EngineError> {
         let together = Together {
-            lead,
+            lead: Some(lead),
             ..Together::default()
         };
         let scan = Scan::of(header, ranges);
         let found = self.set.locate_beside(workspace, &scan, together, stop)?;
         Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found)))
-    }
-
-    /// The votes of the best pose that a short search finds.
-    ///
-    /// # Errors
-    /// As [`Locator::locate`].
-    pub fn glance(
-        &self,
-        workspace: &mut Workspace,
-        (header, ranges): (&ScanHeader, &[f32]),
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<VoteShare>, EngineError> {
-        let scan = Scan::of(header, ranges);
-        self.set.glance(workspace, &scan, GLANCE_MILLIONS, stop)
     }
 
     fn search<'w>(

@@ -5,7 +5,6 @@
 //! these types; JSON is for everybody else: any language writes a scan with what it
 //! brings along, and new fields of a message do not break it.
 
-use engine::votes::VoteShare;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
 use network_payload::{Preamble, Wire};
 use serde::{Deserialize, Serialize};
@@ -21,8 +20,6 @@ pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
 pub const PART: &str = "application/postcard;backcast.ScanForPart/v2";
 /// That of its answer.
 pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v1";
-/// That of the answer to a question for a glance: a [`Glance`] in postcard.
-pub(crate) const GLANCE_ANSWER: &str = "application/postcard;backcast.Glance/v1";
 /// What a request may say of itself.
 pub(crate) const ENCODINGS: [&str; 3] = ["application/postcard;backcast.Scan/v2", JSON, PART];
 /// Characters of a foreign encoding that an error shows.
@@ -42,36 +39,24 @@ pub enum Form {
 pub enum Wanted {
     /// The places, in the form of the request.
     Hypotheses(Form),
-    /// What one shard of a set of maps finds, which is merged with others', beside a pose of
-    /// such a share of the votes on a map of another one.
+    /// What one shard of a set of maps finds, which is merged with others'.
     Part {
-        /// No votes where none is known.
-        lead: VoteShare,
+        /// Which question it is, so that others can say what they found for it.
+        question: QuestionId,
     },
-    /// What a short search of one shard finds.
-    Glance,
 }
+
+/// The number of a question to all shards: of the one who asks, and among theirs.
+pub(crate) type QuestionId = (u64, u64);
 
 /// A question to one shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PartQuestion<'a> {
-    /// Whether a short search is to say what the best pose has that it finds.
-    pub glance: bool,
-    /// Votes of a pose on a map of another shard, and how many are possible there; 0 of 1 where
-    /// none is known.
-    pub lead: (u16, u16),
+    /// Its number.
+    pub id: QuestionId,
     /// The scan, as the bridge sends it.
     #[serde(borrow)]
     pub scan: &'a [u8],
-}
-
-/// What a short search of one shard finds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Glance {
-    /// Votes of the best pose, and how many are possible.
-    pub lead: (u16, u16),
-    /// How long it took, nanoseconds.
-    pub search_ns: u64,
 }
 
 /// A scan that somebody wants to be located.
@@ -118,10 +103,7 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     scan.rebase(now_ns);
     let wanted = match of_part {
         None => Wanted::Hypotheses(Form::Postcard(scan.preamble)),
-        Some(PartQuestion { glance: true, .. }) => Wanted::Glance,
-        Some(PartQuestion { lead, .. }) => Wanted::Part {
-            lead: VoteShare::new(lead.0, lead.1),
-        },
+        Some(PartQuestion { id, .. }) => Wanted::Part { question: id },
     };
     Ok(Request {
         wanted,
@@ -132,16 +114,9 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
 
 impl<'a> PartQuestion<'a> {
     fn read(payload: &'a [u8]) -> Result<Self, LocateError> {
-        let unsound = |reason: String| LocateError::Part { reason };
-        let asked: PartQuestion<'_> =
-            postcard::from_bytes(payload).map_err(|error| unsound(error.to_string()))?;
-        let (votes, possible) = asked.lead;
-        match votes <= possible && possible > 0 {
-            true => Ok(asked),
-            false => Err(unsound(format!(
-                "a pose has {votes} of {possible} votes: allowed are at most all, of 1 at least"
-            ))),
-        }
+        postcard::from_bytes(payload).map_err(|error| LocateError::Part {
+            reason: error.to_string(),
+        })
     }
 }
 
@@ -232,25 +207,20 @@ mod tests {
     }
 
     #[test]
-    fn a_shard_is_asked_beside_what_another_one_knows() {
+    fn a_question_to_a_shard_has_a_number() {
         let scan = network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
-        let asked = |glance, lead| {
-            let scan = &scan[..];
-            let question = PartQuestion { glance, lead, scan };
-            let payload = postcard::to_allocvec(&question).unwrap();
-            read(PART, &payload, 50_000).map(|request| (request.wanted, request.ranges))
+        let question = PartQuestion {
+            id: (7, 9),
+            scan: &scan,
         };
-        let (wanted, ranges) = asked(false, (7, 9)).unwrap();
-        let lead = VoteShare::new(7, 9);
-        assert_eq!(
-            (wanted, &ranges[..]),
-            (Wanted::Part { lead }, &[1.0, 2.0][..])
-        );
-        assert_eq!(asked(true, (0, 1)).unwrap().0, Wanted::Glance);
-        for wrong in [(1, 0), (8, 7)] {
-            let error = asked(false, wrong).unwrap_err().to_string();
-            assert!(error.contains("allowed are at most all"), "{error}");
-        }
+        let payload = postcard::to_allocvec(&question).unwrap();
+        let asked = read(PART, &payload, 50_000).unwrap();
+        assert_eq!(asked.wanted, Wanted::Part { question: (7, 9) });
+        assert_eq!(asked.ranges, [1.0, 2.0]);
+        assert!(matches!(
+            read(PART, b"\xff", 0),
+            Err(LocateError::Part { .. })
+        ));
     }
 
     #[test]

@@ -11,12 +11,13 @@ use transport::{Flow, Graph, Waker, wall_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::query::{Query, Queryable};
-use zenoh::sample::SampleKind;
+use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Result as ZenohResult, Session, Wait};
 use zenoh_session::KeyError;
 
 use crate::counts::Counts;
 use crate::dispatcher::Dispatcher;
+use crate::leads::{Leads, SentLead};
 use crate::locator::{Locator, SearchedMap};
 use crate::{Config, LocateError, Shard, worker};
 
@@ -87,6 +88,7 @@ struct Service {
     to_all: Option<Queryable<()>>,
     _handed_on: Queryable<()>,
     _team: Subscriber<()>,
+    _leads: Subscriber<()>,
     _token: LivelinessToken,
 }
 
@@ -105,11 +107,13 @@ impl Service {
         let (dispatcher, work_queue) =
             Dispatcher::new(session, &key, load, config.deadline, counts);
         let work_queue = Arc::new(work_queue);
+        let leads = Arc::new(Leads::default());
         for _ in 0..workers {
             let (work_queue, locator, counts) =
                 (work_queue.clone(), locator.clone(), counts.clone());
             // They end when the dispatcher is closed, or with the process.
-            std::thread::spawn(move || worker::work(&work_queue, &locator, &counts));
+            let leads = leads.clone();
+            std::thread::spawn(move || worker::work(&work_queue, (&locator, &leads), &counts));
         }
         let map_id = locator.map_id();
         let since = wall_ns().unsigned_abs();
@@ -123,6 +127,7 @@ impl Service {
                 move |query| dispatcher.ask_me(query, &key)
             })?,
             _team: meet(session, &key, map_id, &dispatcher, waker)?,
+            _leads: take_leads(session, &config.asked_name(), leads, counts)?,
             _token: tried("be alive at", &token, |key| {
                 session.liveliness().declare_token(key).wait()
             })?,
@@ -165,6 +170,23 @@ fn answer(
             .complete(true)
             .callback(ask)
             .wait()
+    })
+}
+
+/// Takes what other shards have found.
+fn take_leads(
+    session: &Session,
+    name: &str,
+    leads: Arc<Leads>,
+    counts: &Arc<Counts>,
+) -> Result<Subscriber<()>, LocateError> {
+    let counts = Arc::clone(counts);
+    tried("subscribe to", &SentLead::key(name), |key| {
+        let take = move |sample: Sample| match SentLead::read(&sample.payload().to_bytes()) {
+            Ok(sent) => leads.take(sent),
+            Err(error) => counts.refuse_lead(&error),
+        };
+        session.declare_subscriber(key).callback(take).wait()
     })
 }
 

@@ -1,18 +1,22 @@
 //! Asking all shards of a set of maps, for programs in Rust.
 
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use engine::peaks::{Found, Merged, PeakConfig, Places, merge};
+use engine::search::Lead;
 use engine::votes::VoteShare;
 use messages::{ScanHeader, Verdict};
-use serde::de::DeserializeOwned;
+use transport::wall_ns;
 use zenoh::{Session, Wait};
 use zenoh_session::KeyError;
 
 use crate::LocateError;
-use crate::client::{PAUSE, Question, ask_bytes, scan_bytes};
-use crate::request::{GLANCE_ANSWER, Glance, PART, PART_ANSWER, PartQuestion};
+use crate::client::{PAUSE, Question, ask_bytes, scan_bytes, sender};
+use crate::leads::SentLead;
+use crate::request::{PART, PART_ANSWER, PartQuestion, QuestionId};
 use crate::shard::{Part, Shard};
 
 /// Most bytes of a part, many times those of all candidates of a thousand maps' names.
@@ -41,11 +45,11 @@ impl OverMaps {
     }
 }
 
-/// Asks all shards of the set of this name, each again and again until the deadline, and merges
-/// what they find. They are asked twice, all at once: for the votes of a pose that a short search
-/// finds, and then for all that counts beside the best of these, for a shard without the right
-/// map would search its maps far deeper than that needs. A server that dies meanwhile costs no answer where another one
-/// has the same shard, and is named by its maps where none has.
+/// Asks all shards of the set of this name at once, each again and again until the deadline,
+/// and merges what they find. As soon as one has an answer, the others are told what its best
+/// pose has: a shard without the right map would search its maps far deeper than that needs. A
+/// server that dies meanwhile costs no answer where another one has the same shard, and is named
+/// by its maps where none has.
 ///
 /// # Errors
 /// [`LocateError::Late`] if no shard answered in time, [`LocateError::Refused`] if the scan is
@@ -62,9 +66,9 @@ pub fn ask_shards(
     let late = || LocateError::Late {
         deadline_ms: deadline.as_millis(),
     };
-    let (of, there) = loop {
-        if let Some(found) = shards(session, set)? {
-            break found;
+    let of = loop {
+        if let Some(of) = shards(session, set)? {
+            break of;
         }
         if Instant::now() + PAUSE >= due {
             return Err(late());
@@ -72,84 +76,27 @@ pub fn ask_shards(
         std::thread::sleep(PAUSE);
     };
     let scan = scan_bytes(session, (header, ranges))?;
-    // One shard alone knows all poses.
-    let (lead, glanced) = match of {
-        1 => (VoteShare::default(), Duration::ZERO),
-        // Who is there answers at once; who dies now is not waited for until the deadline.
-        _ => glance(
-            session,
-            (set, of),
-            &there,
-            &scan,
-            Instant::now() + deadline / 4,
-        )?,
-    };
-    let question = part_question(false, lead, &scan)?;
-    let ask = |number| part(session, &Shard { number, of }.name(set), &question, due);
-    let parts = of_each(1..=of, ask)?;
-    let Some(first) = parts.first() else {
-        return Err(late());
-    };
-    if parts.iter().any(|part| part.maps != first.maps) {
-        let reason = "servers have other maps than each other under one name".to_owned();
-        return Err(LocateError::Part { reason });
-    }
-    let mut all = merged(&parts, config)?;
-    all.slowest += glanced;
-    Ok(all)
-}
-
-/// The best share that short searches of the shards that are there find, and how long the
-/// slowest took.
-fn glance(
-    session: &Session,
-    (set, of): (&str, u16),
-    there: &BTreeSet<u16>,
-    scan: &[u8],
-    due: Instant,
-) -> Result<(VoteShare, Duration), LocateError> {
-    let question = part_question(true, VoteShare::default(), scan)?;
-    let ask = |number| -> Result<Glance, LocateError> {
-        let name = Shard { number, of }.name(set);
-        answer(session, &name, (&question, GLANCE_ANSWER), due)
-    };
-    let glances = of_each(there.iter().copied(), ask)?;
-    let mut best = VoteShare::default();
-    for Glance { lead, .. } in &glances {
-        let (votes, possible) = *lead;
-        if possible == 0 || votes > possible {
-            let reason = format!("a pose has {votes} of {possible} votes");
-            return Err(LocateError::Part { reason });
-        }
-        let share = VoteShare::new(votes, possible);
-        if share.compare(best).is_gt() {
-            best = share;
-        }
-    }
-    let slowest = glances.iter().map(|glance| glance.search_ns).max();
-    Ok((best, Duration::from_nanos(slowest.unwrap_or_default())))
-}
-
-fn part_question(glance: bool, lead: VoteShare, scan: &[u8]) -> Result<Question, LocateError> {
-    let asked = PartQuestion {
-        glance,
-        lead: (lead.votes, lead.possible),
-        scan,
-    };
-    let payload = postcard::to_allocvec(&asked).map_err(|error| LocateError::Part {
+    let id = question_id(session);
+    let payload = postcard::to_allocvec(&PartQuestion { id, scan: &scan });
+    let payload = payload.map_err(|error| LocateError::Part {
         reason: error.to_string(),
     })?;
-    Ok(Question::of(PART, payload))
-}
-
-/// What shards say that are asked at once; those that are late are left out.
-fn of_each<T: Send>(
-    shards: impl Iterator<Item = u16>,
-    ask: impl Fn(u16) -> Result<T, LocateError> + Sync,
-) -> Result<Vec<T>, LocateError> {
+    let question = Question::of(PART, payload);
+    let lead = Lead::default();
+    let name = |number| Shard { number, of }.name(set);
+    let ask = |number| {
+        let part = part(session, &name(number), &question, due)?;
+        let found = part.found()?.lead;
+        if found.compare(lead.share()).is_gt() {
+            lead.raise(found);
+            let others = (1..=of).filter(|other| *other != number);
+            others.for_each(|other| tell(session, &name(other), id, found));
+        }
+        Ok(part)
+    };
+    let ask = &ask;
     let answers: Vec<_> = std::thread::scope(|scope| {
-        let ask = &ask;
-        let asked: Vec<_> = shards
+        let asked: Vec<_> = (1..=of)
             .map(|number| scope.spawn(move || ask(number)))
             .collect();
         let joined = asked.into_iter().map(std::thread::ScopedJoinHandle::join);
@@ -157,9 +104,43 @@ fn of_each<T: Send>(
             |end: Result<_, _>| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         joined.map(answer).collect()
     });
-    let is_answer = |answer: &Result<T, _>| !matches!(answer, Err(LocateError::Late { .. }));
-    // The others have answers.
-    answers.into_iter().filter(is_answer).collect()
+    let mut parts = Vec::new();
+    for answer in answers {
+        match answer {
+            Ok(part) => parts.push(part),
+            // The others have answers.
+            Err(LocateError::Late { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let Some(first) = parts.first() else {
+        return Err(late());
+    };
+    if parts.iter().any(|part| part.maps != first.maps) {
+        let reason = "servers have other maps than each other under one name".to_owned();
+        return Err(LocateError::Part { reason });
+    }
+    merged(&parts, config)
+}
+
+/// A number that no other question has.
+fn question_id(session: &Session) -> QuestionId {
+    // Also not one of a session of this number before.
+    static ASKED: LazyLock<AtomicU64> = LazyLock::new(|| AtomicU64::new(wall_ns().unsigned_abs()));
+    let sender = sender(session);
+    (sender, ASKED.fetch_add(1, Ordering::Relaxed))
+}
+
+/// Tells a shard what a pose has that another one found. Where that does not arrive, it takes
+/// longer and finds the same.
+fn tell(session: &Session, shard: &str, question: QuestionId, found: VoteShare) {
+    let sent = SentLead {
+        question,
+        votes: (found.votes, found.possible),
+    };
+    if let Ok(bytes) = postcard::to_allocvec(&sent) {
+        let _ = session.put(SentLead::key(shard), bytes).wait();
+    }
 }
 
 fn merged(parts: &[Part], config: &PeakConfig) -> Result<OverMaps, LocateError> {
@@ -185,12 +166,12 @@ fn merged(parts: &[Part], config: &PeakConfig) -> Result<OverMaps, LocateError> 
     })
 }
 
-/// How many shards a set has, and which of them are there; `None` where none is.
-fn shards(session: &Session, set: &str) -> Result<Option<(u16, BTreeSet<u16>)>, LocateError> {
+/// How many shards a set has, by the servers that are there; `None` where there is none.
+fn shards(session: &Session, set: &str) -> Result<Option<u16>, LocateError> {
     let key = format!("{}/*/*/*/*", network_payload::locate(&format!("{set}.$*")));
     let failed = KeyError::when("look who is at", &key);
     let tokens = session.liveliness().get(&key).wait().map_err(failed)?;
-    let (mut found, mut there) = (BTreeSet::new(), BTreeSet::new());
+    let mut found = BTreeSet::new();
     for reply in tokens {
         let Ok(sample) = reply.into_result() else {
             continue;
@@ -198,10 +179,9 @@ fn shards(session: &Session, set: &str) -> Result<Option<(u16, BTreeSet<u16>)>, 
         let name = sample.key_expr().as_str().split('/').nth(2);
         let shard = name.and_then(|name| Shard::of_name(name, set));
         found.extend(shard.map(|shard| shard.of));
-        there.extend(shard.map(|shard| shard.number));
     }
     match (found.len(), found.pop_first()) {
-        (0 | 1, of) => Ok(of.map(|of| (of, there))),
+        (0 | 1, of) => Ok(of),
         (_, of) => {
             let numbers: Vec<String> = of.iter().chain(&found).map(u16::to_string).collect();
             let reason = format!(
@@ -219,21 +199,12 @@ fn part(
     question: &Question,
     due: Instant,
 ) -> Result<Part, LocateError> {
-    answer(session, name, (question, PART_ANSWER), due)
-}
-
-fn answer<T: DeserializeOwned>(
-    session: &Session,
-    name: &str,
-    (question, allowed): (&Question, &str),
-    due: Instant,
-) -> Result<T, LocateError> {
     let remaining = due.saturating_duration_since(Instant::now());
     let (encoding, payload) = ask_bytes(session, name, question, remaining)?;
     let unsound = |reason: String| LocateError::Part { reason };
-    if encoding != allowed {
+    if encoding != PART_ANSWER {
         return Err(unsound(format!(
-            "it is {encoding:?}: allowed is {allowed:?}"
+            "it is {encoding:?}: allowed is {PART_ANSWER:?}"
         )));
     }
     let bytes = payload.len();

@@ -4,21 +4,25 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use serde::Serialize;
 use transport::monotonic_ns;
 use zenoh::Wait;
 
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
+use crate::leads::Leads;
 use crate::locator::{Locator, Workspace};
-use crate::request::{GLANCE_ANSWER, Glance, PART_ANSWER, Wanted};
+use crate::request::{PART_ANSWER, Wanted};
 use crate::{LocateError, request};
 
 /// Answers until nobody takes requests any more.
-pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
+pub(crate) fn work(
+    work_queue: &WorkQueue,
+    (locator, leads): (&Locator, &Leads),
+    counts: &Arc<Counts>,
+) {
     let mut workspace = Workspace::default();
     while let Some(job) = work_queue.next() {
-        match answer(&job, locator, &mut workspace) {
+        match answer(&job, (locator, leads), &mut workspace) {
             Ok((encoding, payload)) => {
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
                 counts.sent(&reply.wait());
@@ -31,7 +35,7 @@ pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Count
 
 fn answer(
     job: &Job,
-    locator: &Locator,
+    (locator, leads): (&Locator, &Leads),
     workspace: &mut Workspace,
 ) -> Result<(String, Vec<u8>), LocateError> {
     let deadline = job.deadline;
@@ -50,22 +54,16 @@ fn answer(
     let scan = (&asked.header, asked.ranges.as_slice());
     let form = match asked.wanted {
         Wanted::Hypotheses(form) => form,
-        Wanted::Part { lead } => {
-            let Some(mut part) = locator.locate_part(workspace, scan, lead, &stop)? else {
+        Wanted::Part { question } => {
+            let lead = leads.of(question);
+            let Some(mut part) = locator.locate_part(workspace, scan, &lead, &stop)? else {
                 return Err(deadline.late());
             };
             part.search_ns = start.elapsed().as_nanos() as u64;
-            return Ok((PART_ANSWER.to_owned(), bytes_of(&part)?));
-        }
-        Wanted::Glance => {
-            let Some(lead) = locator.glance(workspace, scan, &stop)? else {
-                return Err(deadline.late());
-            };
-            let glance = Glance {
-                lead: (lead.votes, lead.possible),
-                search_ns: start.elapsed().as_nanos() as u64,
-            };
-            return Ok((GLANCE_ANSWER.to_owned(), bytes_of(&glance)?));
+            let bytes = postcard::to_allocvec(&part).map_err(|error| LocateError::Part {
+                reason: error.to_string(),
+            })?;
+            return Ok((PART_ANSWER.to_owned(), bytes));
         }
     };
     let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
@@ -75,10 +73,4 @@ fn answer(
     header.sent_ns = monotonic_ns();
     let name_of = |map_id| locator.name_of(map_id).map(str::to_owned);
     request::write(form, &header, &hypotheses, &name_of, header.sent_ns)
-}
-
-fn bytes_of(answer: &impl Serialize) -> Result<Vec<u8>, LocateError> {
-    postcard::to_allocvec(answer).map_err(|error| LocateError::Part {
-        reason: error.to_string(),
-    })
 }

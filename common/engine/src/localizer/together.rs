@@ -4,24 +4,22 @@ use super::{Localizer, Workspace};
 use crate::EngineError;
 use crate::instruction_set::InstructionSet;
 use crate::observation::Observation;
-use crate::search::{SearchIndex, Searched};
-use crate::votes::{CollectConfig, VoteShare, least_close};
+use crate::search::{Lead, SearchIndex, Searched};
+use crate::votes::least_close;
 
-/// What is known and wanted beside the settings of the maps.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Together {
+/// What is known beside the scan.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Together<'a> {
     /// The heading in the maps' frames, radians, where it is given.
     pub heading: Option<f64>,
-    /// The share of a pose on a map that somebody else searches; no votes where none is known.
-    pub lead: VoteShare,
-    /// What is collected, where it is not what the first map's settings say.
-    pub collect: Option<CollectConfig>,
+    /// What the best pose has, where others search other maps; it may rise meanwhile.
+    pub lead: Option<&'a Lead>,
 }
 
 impl Localizer {
     /// Searches maps together, each in a workspace of its own, with the settings of the first:
-    /// of each map the poses that come near the best one of all. Gives what that one has, be it
-    /// known beforehand, or `None` if `stop` said so before the end.
+    /// of each map the poses that come near the best one of all. `None` if `stop` said so
+    /// before the end.
     ///
     /// Votes are compared as shares of the highest possible on each map, without rounding.
     ///
@@ -33,20 +31,22 @@ impl Localizer {
     pub fn search_together(
         mut maps: Vec<(&Localizer, &mut Workspace)>,
         scan: Observation<'_>,
-        together: Together,
+        together: Together<'_>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<VoteShare>, EngineError> {
+    ) -> Result<Option<()>, EngineError> {
+        let own = Lead::default();
+        let best = together.lead.unwrap_or(&own);
         let found = match together.heading {
-            Some(heading) => at_heading(&mut maps, scan, heading, stop)?.map(|()| together.lead),
-            None => at_any_heading(&mut maps, scan, together, stop)?,
+            Some(heading) => at_heading(&mut maps, scan, heading, stop)?,
+            None => at_any_heading(&mut maps, scan, best, stop)?,
         };
-        let Some(counted) = found else {
+        if found.is_none() {
             return Ok(None);
-        };
+        }
         let shares = maps
             .iter()
             .map(|(_, workspace)| workspace.outcome.best_share());
-        let shares = shares.chain([counted]);
+        let shares = shares.chain([best.share()]);
         let lead = shares.max_by(|a, b| a.compare(*b)).expect("a share");
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
@@ -57,23 +57,22 @@ impl Localizer {
                 outcome.found.confine((outcome.lead, floor), Some(least));
             }
         }
-        Ok(Some(lead))
+        Ok(Some(()))
     }
 }
 
 fn at_any_heading(
     maps: &mut [(&Localizer, &mut Workspace)],
     scan: Observation<'_>,
-    together: Together,
+    lead: &Lead,
     stop: &dyn Fn() -> bool,
-) -> Result<Option<VoteShare>, EngineError> {
+) -> Result<Option<()>, EngineError> {
     for (map, workspace) in maps.iter_mut() {
         let (space, votes) = (&map.space, &map.config.votes);
         workspace.program.compile(scan, 0.0, space, votes)?;
     }
     let config = &maps.first().expect("a map").0.config;
     let how = (InstructionSet::best(), usize::from(config.threads));
-    let collect = together.collect.unwrap_or(config.collect);
     let searched = maps.iter_mut().map(|(map, workspace)| {
         let Workspace {
             program,
@@ -90,7 +89,7 @@ fn at_any_heading(
         }
     });
     let mut searched: Vec<_> = searched.collect();
-    let found = SearchIndex::search_together(&mut searched, how, (collect, together.lead), stop);
+    let found = SearchIndex::search_together(&mut searched, how, (config.collect, lead), stop);
     for (map, workspace) in maps.iter_mut() {
         let Workspace {
             program, outcome, ..

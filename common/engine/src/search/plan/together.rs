@@ -8,7 +8,7 @@ use crate::program::ScanProgram;
 use crate::search::index::SearchIndex;
 use crate::search::task::lead::Lead;
 use crate::space::Space;
-use crate::votes::{CollectConfig, VoteSet, VoteShare};
+use crate::votes::{CollectConfig, VoteSet};
 
 /// A map that is searched together with others.
 #[derive(Debug)]
@@ -29,11 +29,8 @@ impl SearchIndex {
     /// Searches several maps together, each with a workspace and a place for what is found:
     /// of each map the poses that have at least a share of the best one's votes, wherever that
     /// is. Votes of maps are compared as shares of the highest possible there, without
-    /// rounding. A pose of such a share is known to be elsewhere, on a map that somebody else
-    /// searches; none has no votes.
-    ///
-    /// Gives what the best pose of all that were counted has, or `None` if `stop` said so before
-    /// the end.
+    /// rounding. The lead rises with them, and by what others find on maps that they search
+    /// meanwhile. `None` if `stop` said so before the end.
     ///
     /// The outcome does not depend on the order of the maps, as far as it is certified. Of
     /// poses below the floor, a map that does not have the best pose has only those with half
@@ -44,21 +41,19 @@ impl SearchIndex {
     pub fn search_together(
         maps: &mut [Searched<'_>],
         how: (InstructionSet, usize),
-        (config, known): (CollectConfig, VoteShare),
+        (config, lead): (CollectConfig, &Lead),
         stop: &dyn Fn() -> bool,
-    ) -> Option<VoteShare> {
-        let lead = Lead::default();
-        lead.raise(known);
+    ) -> Option<()> {
         let attempts = maps.iter_mut().map(|map| {
             let (workspace, found) = (&mut *map.workspace, &mut *map.found);
-            let together = (&lead, stop);
+            let together = (lead, stop);
             let attempt = map
                 .index
                 .attempt(workspace, how, map.grid, map.scan, config, together);
             (attempt, found)
         });
         let mut attempts: Vec<_> = attempts.collect();
-        Attempt::find_all(&mut attempts, stop).map(|()| lead.share())
+        Attempt::find_all(&mut attempts, stop)
     }
 }
 
@@ -124,10 +119,8 @@ mod tests {
                 },
             );
         let mut searched: Vec<_> = searched.collect();
-        SearchIndex::search_together(&mut searched, how, (config, VoteShare::default()), &|| {
-            false
-        })
-        .unwrap();
+        SearchIndex::search_together(&mut searched, how, (config, &Lead::default()), &|| false)
+            .unwrap();
         found
     }
 

@@ -8,9 +8,10 @@ use std::sync::atomic::Ordering;
 
 use crate::votes::VoteShare;
 
-/// The share that the best pose has, in one word, so that threads need no lock.
+/// The share that the best pose has, in one word, so that threads need no lock. Whoever knows
+/// of a pose on a map that somebody else searches may raise it while a search is at work.
 #[derive(Debug)]
-pub(in crate::search) struct Lead(AtomicU32);
+pub struct Lead(AtomicU32);
 
 impl Default for Lead {
     /// No pose has a vote so far.
@@ -20,8 +21,8 @@ impl Default for Lead {
 }
 
 impl Lead {
-    /// Takes a pose that was counted.
-    pub(in crate::search) fn raise(&self, share: VoteShare) {
+    /// Takes what a pose has that was counted.
+    pub fn raise(&self, share: VoteShare) {
         let better = |now| share.compare(unpack(now)).is_gt().then(|| pack(share));
         // It only rises, whoever is first.
         let _ = self
@@ -30,7 +31,8 @@ impl Lead {
     }
 
     /// What the best pose has.
-    pub(in crate::search) fn share(&self) -> VoteShare {
+    #[must_use]
+    pub fn share(&self) -> VoteShare {
         unpack(self.0.load(Ordering::Relaxed))
     }
 
