@@ -12,8 +12,6 @@ mod config;
 mod kept;
 mod laser;
 
-use std::time::Duration;
-
 use geometry::Pose;
 use messages::{FrameName, Name, Odometry, ScanHeader};
 
@@ -26,9 +24,9 @@ use crate::motion::Motion;
 use crate::observation::{CarriedScan, Observation};
 use laser::Laser;
 
-/// A scan waits this long for odometry past its last beam: odometry comes ten times a
+/// A scan waits so many milliseconds for odometry past its last beam: odometry comes ten times a
 /// second at least, and a process that sends it may not run for a while.
-pub const ODOMETRY_WAIT: Duration = Duration::from_millis(100);
+pub const ODOMETRY_WAIT_MS: u64 = 100;
 
 /// Samples of odometry that are kept: ten seconds at 100 Hz.
 const ODOMETRY_KEPT: usize = 1024;

@@ -174,10 +174,7 @@ mod tests {
     }
 
     fn header(nanosec: u32, frame_id: &str) -> Header {
-        Header {
-            stamp: Time { sec: 0, nanosec },
-            frame_id: frame_id.into(),
-        }
+        Header::new(Time { sec: 0, nanosec }, frame_id)
     }
 
     /// A recording with a scan, odometry of a frame, and a true pose.

@@ -213,13 +213,13 @@ mod tests {
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
         for (second, topic) in (0..).zip(topics) {
             let message = LaserScan {
-                header: Header {
-                    stamp: Time {
+                header: Header::new(
+                    Time {
                         sec: second,
                         nanosec: 7,
                     },
-                    frame_id: "laser".into(),
-                },
+                    "laser",
+                ),
                 ranges: vec![1.5],
                 ..LaserScan::default()
             };

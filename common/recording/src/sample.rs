@@ -73,10 +73,7 @@ pub(crate) fn bytes(packing: Packing) -> Vec<u8> {
 }
 
 fn header(scan: usize, frame: &str) -> Header {
-    Header {
-        stamp: Time::from_ns(stamp_ns(scan)).unwrap(),
-        frame_id: frame.to_owned(),
-    }
+    Header::new(Time::from_ns(stamp_ns(scan)).unwrap(), frame)
 }
 
 fn mount() -> Message {

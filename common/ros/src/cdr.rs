@@ -68,10 +68,7 @@ mod tests {
 
     fn scan() -> LaserScan {
         LaserScan {
-            header: Header {
-                stamp: Time { sec: 7, nanosec: 8 },
-                frame_id: "laser".to_owned(),
-            },
+            header: Header::new(Time { sec: 7, nanosec: 8 }, "laser"),
             angle_min: -1.5,
             ranges: vec![1.0, f32::INFINITY],
             ..LaserScan::default()

@@ -31,10 +31,7 @@ pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
         ],
     };
     DiagnosticArray {
-        header: Header {
-            stamp,
-            frame_id: String::new(),
-        },
+        header: Header::new(stamp, ""),
         status: vec![status],
     }
 }

@@ -81,13 +81,13 @@ mod tests {
     use crate::cdr;
 
     fn header() -> Header {
-        Header {
-            stamp: Time {
+        Header::new(
+            Time {
                 sec: 1_137_772_793,
                 nanosec: 5,
             },
-            frame_id: "map".to_owned(),
-        }
+            "map",
+        )
     }
 
     fn assert_survives<M>(message: &M)

@@ -85,10 +85,7 @@ mod tests {
     #[test]
     fn a_scan_without_a_mount_says_so() {
         let scan = LaserScan {
-            header: ros::Header {
-                stamp: Time { sec: 7, nanosec: 5 },
-                frame_id: "laser".to_owned(),
-            },
+            header: ros::Header::new(Time { sec: 7, nanosec: 5 }, "laser"),
             angle_min: -1.5,
             angle_increment: 0.25,
             ..LaserScan::default()

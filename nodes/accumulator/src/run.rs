@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use bytemuck::Zeroable;
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
-use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT, Role, Seen};
+use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT_MS, Role, Seen};
 use engine::localizer::Workspace;
 use messages::{ScanHeader, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -120,7 +120,9 @@ impl Node {
                 }
                 return Ok(Flow::Continue);
             };
-            if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
+            if self.joiner.lacks_odometry()
+                && since.elapsed() < Duration::from_millis(ODOMETRY_WAIT_MS)
+            {
                 self.pending = Some((scan, since));
                 return Ok(Flow::Continue);
             }

@@ -92,10 +92,7 @@ impl World {
 }
 
 fn header(stamp_ns: i64, frame: &str) -> ros::Header {
-    ros::Header {
-        stamp: Time::from_ns(stamp_ns).unwrap(),
-        frame_id: frame.into(),
-    }
+    ros::Header::new(Time::from_ns(stamp_ns).unwrap(), frame)
 }
 
 fn scan(stamp_ns: i64) -> Message {

@@ -10,7 +10,7 @@ mod turn;
 use std::time::{Duration, Instant};
 
 use engine::EngineError;
-use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT, Role};
+use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT_MS, Role};
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
@@ -173,7 +173,7 @@ impl Node {
         match self.turn {
             Turn::Idle => self.next_scan(),
             Turn::Odometry { scan, since } => {
-                let is_over = since.is_over(ODOMETRY_WAIT, self.looks);
+                let is_over = since.is_over(Duration::from_millis(ODOMETRY_WAIT_MS), self.looks);
                 if self.joiner.lacks_odometry() && !is_over {
                     return Ok(false);
                 }

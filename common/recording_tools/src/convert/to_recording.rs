@@ -237,10 +237,7 @@ fn late(name: String, time_ns: i64) -> Broken {
 }
 
 pub(super) fn header(stamp: Time, frame: &str) -> Header {
-    Header {
-        stamp,
-        frame_id: frame.to_owned(),
-    }
+    Header::new(stamp, frame)
 }
 
 /// A time, if a recording can say it.

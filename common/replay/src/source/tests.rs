@@ -7,13 +7,13 @@ use super::*;
 const SECOND: i64 = 1_000_000_000;
 
 fn header(second: i32, frame: &str) -> ros::Header {
-    ros::Header {
-        stamp: Time {
+    ros::Header::new(
+        Time {
             sec: second,
             nanosec: 5,
         },
-        frame_id: frame.into(),
-    }
+        frame,
+    )
 }
 
 fn scan(second: i32, frame: &str) -> Message {

@@ -58,10 +58,7 @@ impl Bond {
     fn send(&mut self, active: bool) -> Result<(), GatewayError> {
         self.sent_ns = Some(monotonic_ns());
         self.publisher.send(&BondStatus {
-            header: Header {
-                stamp: Time::from_ns(wall_ns()).unwrap_or_default(),
-                frame_id: String::new(),
-            },
+            header: Header::new(Time::from_ns(wall_ns()).unwrap_or_default(), ""),
             id: self.id.clone(),
             instance_id: self.instance_id.clone(),
             active,

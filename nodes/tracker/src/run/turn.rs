@@ -50,7 +50,7 @@ pub(super) enum Turn {
 
 #[cfg(test)]
 mod tests {
-    use engine::joined::ODOMETRY_WAIT;
+    use engine::joined::ODOMETRY_WAIT_MS;
 
     use super::*;
 
@@ -62,9 +62,10 @@ mod tests {
         };
         let second = Duration::from_secs(1);
         let suspended = at(100 * second, 7);
-        assert!(!suspended.is_over(ODOMETRY_WAIT, 8) && suspended.is_over(ODOMETRY_WAIT, 9));
+        let odometry = Duration::from_millis(ODOMETRY_WAIT_MS);
+        assert!(!suspended.is_over(odometry, 8) && suspended.is_over(odometry, 9));
         assert!(!suspended.is_over(SEARCH_WAIT, 31) && suspended.is_over(SEARCH_WAIT, 32));
         assert!(!at(Duration::ZERO, 7).is_over(SEARCH_WAIT, 1000));
-        assert!(at(second, u32::MAX).is_over(ODOMETRY_WAIT, 1));
+        assert!(at(second, u32::MAX).is_over(odometry, 1));
     }
 }

@@ -135,13 +135,13 @@ pub(crate) fn mount_message() -> (&'static str, Message) {
 }
 
 fn header(second: i32, frame: &str) -> ros::Header {
-    ros::Header {
-        stamp: ros::Time {
+    ros::Header::new(
+        ros::Time {
             sec: second,
             nanosec: 0,
         },
-        frame_id: frame.into(),
-    }
+        frame,
+    )
 }
 
 /// Writes the messages a second apart.
