@@ -53,7 +53,7 @@ impl DistanceField {
     /// that.
     fn near(&self, x: f64, y: f64, sigma: f64) -> (f64, f64) {
         let distance = self.distance(x, y);
-        let off = distance.map_or(f64::INFINITY, |(distance, _)| distance / sigma);
+        let off = distance.map_or(f64::INFINITY, |distance| distance / sigma);
         (off, (-0.5 * off * off).exp())
     }
 
