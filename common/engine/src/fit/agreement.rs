@@ -81,7 +81,7 @@ impl DistanceField {
         (sigma, config): (f64, &FitConfig),
     ) -> (f64, BeamClass) {
         let end = self.distance(x + reading * dx, y + reading * dy);
-        let off = end.map_or(f64::INFINITY, |(distance, _)| distance / sigma);
+        let off = end.map_or(f64::INFINITY, |distance| distance / sigma);
         let near = (-0.5 * off * off).exp();
         let hit = self.cast_ray((x, y), (dx, dy), reading);
         let longest = reading - THROUGH_SIGMAS * sigma;

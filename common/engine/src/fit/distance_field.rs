@@ -1,9 +1,12 @@
 //! A map as the second stage reads it: how far from obstacles a point is, and
 //! what a ray meets on its way.
 
+use super::lanes::{LANES, Lanes, lanes};
 use super::{FitConfig, distance, drawing};
 use crate::EngineError;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
+use crate::instruction_set::InstructionSet;
+use crate::simd::Simd;
 
 /// Distances to obstacles and to what is unknown.
 #[derive(Debug, Clone)]
@@ -18,6 +21,8 @@ pub struct DistanceField {
     to_unknown: Vec<u8>,
     /// How far the map is a drawing, 0..=1.
     drawn_share: f64,
+    /// What it is read with.
+    pub(super) simd: Simd,
 }
 
 /// What a ray hits, in cells from where it starts.
@@ -36,6 +41,9 @@ const MIN_STEP: f64 = 0.5;
 /// How far walls lie from where somebody drew them, metres: right answers on a map of
 /// offices that was drawn by hand lie 12 cm off, along both axes together.
 const DRAWN_ERROR_M: f64 = 0.1;
+
+/// Farther than any reach, cells.
+const OFF_THE_MAP: f32 = 1e6;
 
 /// The farthest that a point of a cell and a point of another cell can lie
 /// nearer to each other than the centres do.
@@ -73,6 +81,7 @@ impl DistanceField {
             to_occupied: distance::transform(width, height, |i| cells[i] == Cell::Occupied),
             to_unknown: to_unknown.into_iter().map(|cells| cells as u8).collect(),
             drawn_share: drawing::share(&grid, frame.resolution_m),
+            simd: Simd::new(InstructionSet::best()),
         })
     }
 
@@ -98,11 +107,11 @@ impl DistanceField {
         self.drawn_share * DRAWN_ERROR_M
     }
 
-    /// Distance of a point to the nearest occupied cell, and how it grows along
-    /// x and y: bilinear between the centres of cells, and beyond the outermost
-    /// as at the nearest point between them. `None` off the map.
+    /// Distance of a point to the nearest occupied cell: bilinear between the centres of
+    /// cells, and beyond the outermost as at the nearest point between them. `None` off the
+    /// map.
     #[inline(always)]
-    pub(super) fn distance(&self, x: f64, y: f64) -> Option<(f64, [f64; 2])> {
+    pub(super) fn distance(&self, x: f64, y: f64) -> Option<f64> {
         let (right, top) = (self.width - 1, self.height - 1);
         if !(x >= 0.0 && y >= 0.0 && x <= self.width as f64 && y <= self.height as f64) {
             return None;
@@ -116,8 +125,31 @@ impl DistanceField {
         let (a, b) = (corner(low_row, column), corner(low_row, next));
         let (c, d) = (corner(high_row, column), corner(high_row, next));
         let (low, high) = (a + u * (b - a), c + u * (d - c));
-        let along_x = (b - a) + v * ((d - c) - (b - a));
-        Some((low + v * (high - low), [along_x, high - low]))
+        Some(low + v * (high - low))
+    }
+
+    /// The distances of points side by side, and how they grow along x and y; off the map
+    /// they are far from everything.
+    #[inline(always)]
+    pub(super) fn distances(&self, x: Lanes, y: Lanes) -> (Lanes, [Lanes; 2]) {
+        let (width, height) = (self.width as f32, self.height as f32);
+        let is_inside = lanes(|i| x[i] >= 0.0 && y[i] >= 0.0 && x[i] <= width && y[i] <= height);
+        let (column, right, u) = between_centres(x, self.width);
+        let (row, up, v) = between_centres(y, self.height);
+        let corners = lanes(|i| {
+            let at = row[i] as usize * self.width + column[i] as usize;
+            let (right, up) = (right[i] as usize, up[i] as usize * self.width);
+            [at, at + right, at + up, at + up + right].map(|at| self.to_occupied[at])
+        });
+        let [a, b, c, d] = std::array::from_fn(|corner| lanes(|i| corners[i][corner]));
+        let low = lanes(|i| a[i] + u[i] * (b[i] - a[i]));
+        let along_y = lanes(|i| c[i] + u[i] * (d[i] - c[i]) - low[i]);
+        let along_x = lanes(|i| (b[i] - a[i]) + v[i] * ((d[i] - c[i]) - (b[i] - a[i])));
+        let distance = lanes(|i| match is_inside[i] {
+            true => low[i] + v[i] * along_y[i],
+            false => OFF_THE_MAP,
+        });
+        (distance, [along_x, along_y])
     }
 
     /// What a ray from a point in a direction, a vector of length 1, meets
@@ -185,6 +217,18 @@ impl DistanceField {
     }
 }
 
+/// The cells whose centres lie below places along an axis of so many cells, how many cells
+/// on the next centres are, which is none behind the last, and how far the places lie on the
+/// way there, 0..=1.
+#[inline(always)]
+fn between_centres(places: Lanes, cells: usize) -> ([u32; LANES], [u32; LANES], Lanes) {
+    let last = cells as u32 - 1;
+    let places = places.map(|place| (place - 0.5).max(0.0).min(last as f32));
+    let below = places.map(|place| place as u32);
+    let next = below.map(|below| u32::from(below < last));
+    (below, next, lanes(|i| places[i] - below[i] as f32))
+}
+
 #[cfg(test)]
 mod tests {
     use geometry::Pose;
@@ -197,15 +241,18 @@ mod tests {
     fn distance_is_bilinear_between_the_centres_of_cells() {
         let distance_field = distance_field(&["....", "#...", "...."]);
         let at = |x, y| distance_field.distance(x, y);
-        // Distances are kept in 32 bits.
-        let diagonal = f64::from(2f32.sqrt());
-        assert_eq!(at(1.5, 1.5), Some((1.0, [1.0, diagonal - 1.0])));
-        let (distance, [along_x, _]) = at(1.0, 1.5).unwrap();
-        assert_eq!((distance, along_x), (0.5, 1.0));
-        assert_eq!(at(4.0, 1.5).unwrap().0, 3.0);
+        assert_eq!(
+            (at(1.5, 1.5), at(1.0, 1.5), at(4.0, 1.5)),
+            (Some(1.0), Some(0.5), Some(3.0))
+        );
         for (x, y) in [(-0.1, 1.5), (4.1, 1.5), (1.5, 3.1), (f64::NAN, 1.0)] {
             assert_eq!(at(x, y), None, "{x} {y}");
         }
+        let (distance, slope) = distance_field.distances([1.5; LANES], [1.5; LANES]);
+        assert_eq!(
+            (distance[0], slope[0][0], slope[1][0]),
+            (1.0, 1.0, 2f32.sqrt() - 1.0)
+        );
     }
 
     #[test]
@@ -222,19 +269,49 @@ mod tests {
         assert_eq!(back.occupied, None, "it leaves the map");
     }
 
+    fn field_of(grid: &Grid) -> DistanceField {
+        let occupancy: Vec<u8> = grid
+            .cells()
+            .iter()
+            .map(|cell| match cell {
+                Cell::Occupied => 100,
+                Cell::Open => 0,
+                Cell::Blocked => messages::UNKNOWN,
+            })
+            .collect();
+        let frame = GridFrame {
+            resolution_m: 0.1,
+            map_from_grid: Pose::IDENTITY,
+        };
+        let sides = (grid.width(), grid.height());
+        DistanceField::new(frame, sides, &occupancy, CellRules::default()).unwrap()
+    }
+
     proptest! {
+        #[test]
+        fn points_side_by_side_are_as_far_as_one_by_one(
+            grid in crate::testing::any_grid(),
+            points in proptest::array::uniform8((-2.0..42.0f64, -2.0..42.0f64)),
+        ) {
+            let field = field_of(&grid);
+            let (distances, slopes) = field.distances(
+                points.map(|(x, _)| x as f32),
+                points.map(|(_, y)| y as f32),
+            );
+            for (i, (x, y)) in points.into_iter().enumerate() {
+                let (x, y) = (f64::from(x as f32), f64::from(y as f32));
+                let expected = field.distance(x, y).unwrap_or(f64::from(OFF_THE_MAP));
+                prop_assert!((f64::from(distances[i]) - expected).abs() <= 1e-5 * expected.max(1.0));
+                // Centres of neighbouring cells differ by one cell at most.
+                prop_assert!(slopes.iter().all(|slope| slope[i].abs() < 1.0 + 1e-5));
+            }
+        }
+
         #[test]
         fn a_long_step_passes_no_obstacle(
             grid in crate::testing::any_grid(), start in (0.0..40.0f64, 0.0..40.0f64), angle in 0.0..7.0f64,
         ) {
-            let occupancy: Vec<u8> = grid.cells().iter().map(|cell| match cell {
-                Cell::Occupied => 100,
-                Cell::Open => 0,
-                Cell::Blocked => messages::UNKNOWN,
-            }).collect();
-            let frame = GridFrame { resolution_m: 0.1, map_from_grid: Pose::IDENTITY };
-            let sides = (grid.width(), grid.height());
-            let distance_field = DistanceField::new(frame, sides, &occupancy, CellRules::default()).unwrap();
+            let distance_field = field_of(&grid);
             let (dy, dx) = angle.sin_cos();
             let hit = distance_field.cast_ray(start, (dx, dy), 100.0);
             // Steps of a tenth of a cell, until the ray ends.

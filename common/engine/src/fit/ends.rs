@@ -3,6 +3,7 @@
 use messages::Reading;
 
 use super::BeamClass;
+use super::lanes::{EndLanes, LANES};
 use crate::EngineError;
 use crate::beams::{BeamConfig, Chosen};
 use crate::fit::readings::{Readings, is_sound};
@@ -16,6 +17,8 @@ use crate::space::Space;
 pub struct Ends {
     chosen: Chosen,
     pub(crate) ends: Vec<End>,
+    /// The same side by side.
+    pub(super) lanes: Vec<EndLanes>,
     silent: Vec<f64>,
     readings: Readings,
     /// The weights of all beams together.
@@ -80,7 +83,7 @@ impl Ends {
                     End::new((0.0, 0.0), beam.angle, reading, beam.weight)
                 }));
                 self.silent.extend_from_slice(&self.chosen.silent);
-                self.weight = self.ends.iter().map(|end| end.weight).sum();
+                self.sum_up();
                 Ok(())
             }
             Observation::Carried(_) => {
@@ -101,8 +104,24 @@ impl Ends {
 
     fn clear(&mut self) {
         self.ends.clear();
+        self.lanes.clear();
         self.silent.clear();
         self.weight = 0.0;
+    }
+
+    /// Fills in what follows from the ends.
+    fn sum_up(&mut self) {
+        self.weight = self.ends.iter().map(|end| end.weight).sum();
+        self.lanes.clear();
+        self.lanes.extend(self.ends.chunks(LANES).map(|ends| {
+            let mut lanes = EndLanes::default();
+            for (i, end) in ends.iter().enumerate() {
+                lanes.x[i] = (end.from.0 + end.reading * end.towards.0) as f32;
+                lanes.y[i] = (end.from.1 + end.reading * end.towards.1) as f32;
+                lanes.weight[i] = end.weight as f32;
+            }
+            lanes
+        }));
     }
 
     /// Takes the beams from a message, in the buffers of a scan before.
@@ -124,19 +143,20 @@ impl Ends {
             let from = (reading.from_x / resolution_m, reading.from_y / resolution_m);
             let range = (reading.range_m, reading.range_m / resolution_m);
             let end = End::new(from, reading.bearing, range, reading.weight);
-            self.weight += end.weight;
             self.ends.push(end);
         }
+        self.sum_up();
         Ok(())
     }
 
     #[cfg(test)]
     pub(super) fn of(ends: Vec<End>) -> Self {
-        Ends {
-            weight: ends.iter().map(|end| end.weight).sum(),
+        let mut all = Ends {
             ends,
             ..Ends::default()
-        }
+        };
+        all.sum_up();
+        all
     }
 }
 

@@ -21,6 +21,7 @@ mod drawing;
 #[cfg(test)]
 pub(crate) mod drawn;
 mod ends;
+mod lanes;
 mod readings;
 mod refine;
 

@@ -4,6 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::ends::Ends;
+use super::lanes::{Add, Lanes, Pull, Pulls, lanes};
 use super::{DistanceField, FitConfig, GridPose};
 
 /// A pose that was moved to the nearest best fit.
@@ -139,10 +140,7 @@ impl DistanceField {
         let mut pose = start;
         for (reach, last_step) in reaches.into_iter().zip(LAST_STEPS) {
             for _ in 0..MAX_STEPS {
-                let mut sums = Sums::default();
-                self.linearise(ends, pose, reach * sigma, |weight, distance, slope| {
-                    sums.add(weight, distance, slope);
-                });
+                let sums = self.linearise::<LaneSums>(ends, pose, reach * sigma).sums();
                 let Some(step) = sums.step(ends.weight, pose, known) else {
                     break;
                 };
@@ -156,11 +154,8 @@ impl DistanceField {
                 }
             }
         }
-        let (mut sums, mut walls) = (Sums::default(), Walls::default());
-        self.linearise(ends, pose, reaches[1] * sigma, |weight, distance, slope| {
-            sums.add(weight, distance, slope);
-            walls.add(weight, slope);
-        });
+        let (sums, walls): (LaneSums, Walls) = self.linearise(ends, pose, reaches[1] * sigma);
+        let sums = sums.sums();
         Refined {
             pose,
             curvature: sums.curvature(),
@@ -170,35 +165,15 @@ impl DistanceField {
         }
     }
 
-    /// Calls for each end that has a say: its weight, its distance, and how that grows
-    /// with x, y and the heading.
-    #[inline(always)]
-    fn linearise(
-        &self,
-        ends: &Ends,
-        pose: GridPose,
-        reach: f64,
-        mut add: impl FnMut(f64, f64, [f64; 3]),
-    ) {
-        let turn = pose.heading.sin_cos();
-        for end in &ends.ends {
-            let (dx, dy) = end.direction(turn);
-            let (x, y) = end.start(turn);
-            let (ahead, aside) = (x + end.reading * dx, y + end.reading * dy);
-            let Some((distance, [along_x, along_y])) =
-                self.distance(pose.x + ahead, pose.y + aside)
-            else {
-                continue;
-            };
-            if distance >= reach {
-                continue;
-            }
-            let off = distance / reach;
-            let share = 1.0 - off * off;
-            // Turning by a radian moves the end by (-aside, ahead).
-            let gradient = [along_x, along_y, ahead * along_y - aside * along_x];
-            add(end.weight * share * share, distance, gradient);
-        }
+    /// Sums what the ends say of a pose.
+    fn linearise<A: Add + Default>(&self, ends: &Ends, pose: GridPose, reach: f64) -> A {
+        self.simd.run(Pull {
+            field: self,
+            ends: &ends.lanes,
+            pose,
+            reach,
+            sums: A::default(),
+        })
     }
 }
 
@@ -210,26 +185,30 @@ struct Walls([Vector3<f64>; 8]);
 /// Directions along the axes reach half of 45° to either side: the tangent of that.
 const HALF_DIRECTION: f64 = std::f64::consts::SQRT_2 - 1.0;
 
-impl Walls {
+impl Add for Walls {
     #[inline(always)]
-    fn add(&mut self, weight: f64, slope: [f64; 3]) {
-        let [x, y, _] = slope;
-        let (right, up) = (usize::from(x > 0.0), usize::from(y > 0.0));
-        let direction = match () {
-            () if y.abs() < HALF_DIRECTION * x.abs() => right,
-            () if x.abs() < HALF_DIRECTION * y.abs() => 2 + up,
-            () => 4 + right + 2 * up,
-        };
-        self.0[direction] += weight * Vector3::from(slope);
+    fn add(&mut self, pulls: &Pulls) {
+        for (i, &weight) in pulls.weight.iter().enumerate() {
+            let [x, y, h] = pulls.slope.map(|slope| f64::from(slope[i]));
+            let (right, up) = (usize::from(x > 0.0), usize::from(y > 0.0));
+            let direction = match () {
+                () if y.abs() < HALF_DIRECTION * x.abs() => right,
+                () if x.abs() < HALF_DIRECTION * y.abs() => 2 + up,
+                () => 4 + right + 2 * up,
+            };
+            self.0[direction] += f64::from(weight) * Vector3::new(x, y, h);
+        }
     }
+}
 
+impl Walls {
     fn products(&self) -> Matrix3<f64> {
         self.0.iter().map(|pull| pull * pull.transpose()).sum()
     }
 }
 
 /// The normal equations.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Sums {
     /// Σ w ∇d ∇dᵀ, whose lower half is the mirrored upper one: xx, xy, xh, yy,
     /// yh, hh.
@@ -239,21 +218,59 @@ struct Sums {
     weight: f64,
 }
 
-impl Sums {
-    #[inline(always)]
-    fn add(&mut self, weight: f64, distance: f64, [x, y, h]: [f64; 3]) {
-        let (wx, wy, wh) = (weight * x, weight * y, weight * h);
-        let products = [wx * x, wx * y, wx * h, wy * y, wy * h, wh * h];
-        for (sum, product) in self.products.iter_mut().zip(products) {
-            *sum += product;
-        }
-        for (sum, slope) in self.slope.iter_mut().zip([wx, wy, wh]) {
-            *sum += slope * distance;
-        }
-        self.squares += weight * distance * distance;
-        self.weight += weight;
-    }
+/// The same, lane by lane.
+#[derive(Debug, Default)]
+struct LaneSums {
+    products: [Lanes; 6],
+    slope: [Lanes; 3],
+    squares: Lanes,
+    weight: Lanes,
+}
 
+impl Add for LaneSums {
+    #[inline(always)]
+    fn add(&mut self, pulls: &Pulls) {
+        let Pulls {
+            weight: w,
+            distance: d,
+            slope: [x, y, h],
+        } = pulls;
+        let times = |a: &Lanes, b: &Lanes| lanes(|i| a[i] * b[i]);
+        let (wx, wy, wh, wd) = (times(w, x), times(w, y), times(w, h), times(w, d));
+        let add = |sum: &mut Lanes, a: &Lanes, b: &Lanes| *sum = lanes(|i| sum[i] + a[i] * b[i]);
+        let products = [(&wx, x), (&wx, y), (&wx, h), (&wy, y), (&wy, h), (&wh, h)];
+        for (sum, (a, b)) in self.products.iter_mut().zip(products) {
+            add(sum, a, b);
+        }
+        for (sum, slope) in self.slope.iter_mut().zip([x, y, h]) {
+            add(sum, &wd, slope);
+        }
+        add(&mut self.squares, &wd, d);
+        self.weight = lanes(|i| self.weight[i] + w[i]);
+    }
+}
+
+impl LaneSums {
+    fn sums(&self) -> Sums {
+        let sum = |lanes: &Lanes| lanes.iter().copied().map(f64::from).sum();
+        Sums {
+            products: self.products.each_ref().map(sum),
+            slope: self.slope.each_ref().map(sum),
+            squares: sum(&self.squares),
+            weight: sum(&self.weight),
+        }
+    }
+}
+
+impl Add for (LaneSums, Walls) {
+    #[inline(always)]
+    fn add(&mut self, pulls: &Pulls) {
+        self.0.add(pulls);
+        self.1.add(pulls);
+    }
+}
+
+impl Sums {
     fn curvature(&self) -> Matrix3<f64> {
         let [xx, xy, xh, yy, yh, hh] = self.products;
         Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh)

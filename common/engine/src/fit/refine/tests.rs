@@ -1,6 +1,7 @@
 use super::super::drawn::distance_field;
 use super::*;
 use crate::fit::ends::End;
+use crate::fit::lanes::{LANES, lanes};
 
 /// An L-shaped room, 20 cells wide.
 const ROOM: [&str; 12] = [
@@ -31,7 +32,7 @@ fn scan(rows: &[&str], pose: GridPose) -> Ends {
         let (dy, dx) = (pose.heading + angle).sin_cos();
         let is_at_wall = |reading: &f64| {
             let at = map.distance(pose.x + reading * dx, pose.y + reading * dy);
-            at.is_some_and(|(distance, _)| distance < 0.05)
+            at.is_some_and(|distance| distance < 0.05)
         };
         let reading = (0..4000)
             .map(|step| 0.01 * f64::from(step))
@@ -102,11 +103,17 @@ fn what_no_beam_shows_stays_as_it_was() {
 /// The deviations that walls which err add to those of a pose, by how the distances
 /// of its ends grow.
 fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
-    let (mut sums, mut walls) = (Sums::default(), Walls::default());
-    for &slope in pulls {
-        sums.add(1.0, 0.5, slope);
-        walls.add(1.0, slope);
+    let (mut lane_sums, mut walls) = (LaneSums::default(), Walls::default());
+    for slope in pulls {
+        let one = Pulls {
+            weight: lanes(|i| f32::from(u8::from(i == 0))),
+            distance: [0.5; LANES],
+            slope: slope.map(|slope| [slope as f32; LANES]),
+        };
+        lane_sums.add(&one);
+        walls.add(&one);
     }
+    let sums = lane_sums.sums();
     let refined = Refined {
         pose: TRUTH,
         curvature: sums.curvature() + 1e-9 * Matrix3::identity(),
