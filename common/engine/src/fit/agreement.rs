@@ -35,6 +35,28 @@ impl DistanceField {
         score / ends.weight.max(f64::MIN_POSITIVE)
     }
 
+    /// What [`DistanceField::score`] is at most, by the ends alone: no ray is followed.
+    pub(crate) fn score_at_most(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> f64 {
+        let sigma = config.sigma_cells(self.frame.resolution_m);
+        let turn = pose.heading.sin_cos();
+        let value = |end: &End| {
+            let ((dx, dy), (x, y)) = (end.direction(turn), end.start(turn));
+            let (x, y) = (pose.x + x, pose.y + y);
+            let (_, near) = self.near(x + end.reading * dx, y + end.reading * dy, sigma);
+            end.weight * near.max(config.unknown_score)
+        };
+        let score: f64 = ends.ends.iter().map(value).sum();
+        score / ends.weight.max(f64::MIN_POSITIVE)
+    }
+
+    /// How many standard deviations an end lies from an obstacle, and what it is worth for
+    /// that.
+    fn near(&self, x: f64, y: f64, sigma: f64) -> (f64, f64) {
+        let distance = self.distance(x, y);
+        let off = distance.map_or(f64::INFINITY, |distance| distance / sigma);
+        (off, (-0.5 * off * off).exp())
+    }
+
     /// What became of each beam at a pose, in the order of their bearings.
     #[must_use]
     pub fn classes(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> Vec<BeamClass> {
@@ -80,9 +102,7 @@ impl DistanceField {
         (x, y): (f64, f64),
         (sigma, config): (f64, &FitConfig),
     ) -> (f64, BeamClass) {
-        let end = self.distance(x + reading * dx, y + reading * dy);
-        let off = end.map_or(f64::INFINITY, |distance| distance / sigma);
-        let near = (-0.5 * off * off).exp();
+        let (off, near) = self.near(x + reading * dx, y + reading * dy, sigma);
         let hit = self.cast_ray((x, y), (dx, dy), reading);
         let longest = reading - THROUGH_SIGMAS * sigma;
         let is_through = hit.occupied.is_some_and(|occupied| occupied < longest);

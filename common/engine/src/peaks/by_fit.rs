@@ -1,6 +1,8 @@
 //! Places by how well the scan fits the map there: the votes' candidates are
 //! refined, judged again and put in order.
 
+use std::cmp::Ordering;
+
 use geometry::{Covariance, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
@@ -22,6 +24,10 @@ pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &Pea
 /// Neighbouring beams whose readings differ by more standard deviations of the fit
 /// end on different pieces of what is seen.
 const PIECE_SIGMAS: f64 = 4.0;
+
+/// So many times `lead_scale` behind the best one, a place is as good as impossible: its
+/// probability is 1/22 000 of the best one's.
+const NEGLIGIBLE: f64 = 10.0;
 
 /// Over a place on another map the best one must lead by so many times as much: maps that were
 /// made by others, in other ways, are not as comparable as places on one.
@@ -47,21 +53,16 @@ impl Workspace {
             .iter()
             .map(|summit| place(input, (distance_field, ends), summit, config));
         self.refined.extend(places.enumerate());
-        // Of equal ones, that with more votes comes first.
-        self.refined.sort_unstable_by(|(i, a), (j, b)| {
-            let by_score = b.score.total_cmp(&a.score);
-            by_score.then(i.cmp(j))
-        });
         self.places.clear();
         self.margin = Margin {
             may_lack: input.may_lack(config.ambiguous_share),
             ..Margin::default()
         };
-        keep_distinct(&self.refined, &mut self.places.places, config);
-        if let Some(best) = self.places.places.first().copied() {
+        let grid_pose = |place: &Place| GridPose::of(distance_field.frame, place.map_from_laser);
+        let score = |place: &Place| distance_field.score(ends, grid_pose(place), &config.fit);
+        if let Some((best, scored)) = score_best(&mut self.refined, score) {
             let found = &mut self.places;
-            let pose = GridPose::of(distance_field.frame, best.map_from_laser);
-            distance_field.classify(ends, pose, &config.fit, &mut found.classes);
+            distance_field.classify(ends, grid_pose(&best), &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
             let through = ends.share(&found.classes, BeamClass::Through);
             let resolution = distance_field.frame.resolution_m;
@@ -73,6 +74,14 @@ impl Workspace {
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
             (self.margin.needed, self.margin.left_out) = (needed, left_out);
+            let matters = needed.max(left_out + NEGLIGIBLE * config.lead_scale);
+            for (_, place) in &mut self.refined[scored..] {
+                if lead(best.score, place.score) < matters {
+                    place.score = score(place);
+                }
+            }
+            self.refined.sort_unstable_by(by_score);
+            keep_distinct(&self.refined, &mut found.places, config);
             found.judge_by_fit((best.score, self.margin), &mut self.leads, config);
         }
         &self.places
@@ -137,6 +146,30 @@ pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
 
+/// The best first; of equal ones, that with more votes.
+fn by_score((i, a): &(usize, Place), (j, b): &(usize, Place)) -> Ordering {
+    b.score.total_cmp(&a.score).then(i.cmp(j))
+}
+
+/// The best of places that have bounds of their scores. Those whose bounds reach its score
+/// come first then, this many, and have their scores.
+fn score_best(
+    places: &mut [(usize, Place)],
+    score: impl Fn(&Place) -> f64,
+) -> Option<(Place, usize)> {
+    places.sort_unstable_by(by_score);
+    let (mut best, mut scored) = (f64::NEG_INFINITY, 0);
+    for (_, place) in places.iter_mut() {
+        if place.score < best {
+            break;
+        }
+        place.score = score(place);
+        (best, scored) = (best.max(place.score), scored + 1);
+    }
+    let best = places[..scored].iter().min_by(|a, b| by_score(a, b))?;
+    Some((best.1, scored))
+}
+
 /// Keeps the best of all poses that came to lie at one place.
 fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &PeakConfig) {
     let angle = config.same_place_deg.to_radians();
@@ -155,7 +188,7 @@ fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &Peak
     }
 }
 
-/// The refined place of a candidate.
+/// The refined place of a candidate, with a bound of its score.
 fn place(
     input: &PeakInput<'_>,
     (distance_field, ends): (&DistanceField, &Ends),
@@ -184,7 +217,7 @@ fn place(
         map: 0,
         map_from_laser,
         covariance: covariance(distance_field, is_known, &refined),
-        score: distance_field.score(ends, pose, &config.fit),
+        score: distance_field.score_at_most(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
         possible: input.highest_possible as u16,

@@ -100,8 +100,9 @@ pub struct Place {
     pub map_from_laser: Pose,
     /// The peak's spread, in the map frame.
     pub covariance: Covariance,
-    /// How well the scan fits the map there, at most 1; by votes alone, the
-    /// share of those that the pose could have at most.
+    /// How well the scan fits the map there, at most 1; of a place too far behind the best
+    /// one to matter, a bound of that by where the beams end. By votes alone, the share of
+    /// those that the pose could have at most.
     pub score: f64,
     /// How likely the robot is there, 0..=1; 0 by votes alone.
     pub probability: f64,
