@@ -64,8 +64,9 @@ pub struct Hypothesis {
     pub map_from_base: Pose2,
     /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
-    /// How well the scan fits the map there, at most 1; by votes alone, the share
-    /// of those that the pose could have at most.
+    /// How well the scan fits the map there, at most 1; of a place too far behind the best one to
+    /// matter, a bound of that. By votes alone, the share of those that the pose could have at
+    /// most.
     pub score: f32,
     /// How likely the robot is there, 0..=1; what the hypotheses leave is that it
     /// is at none of them.

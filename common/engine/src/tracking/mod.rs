@@ -255,7 +255,7 @@ impl Tracker {
             match (due, found) {
                 (_, None) => {}
                 (Some((since, _)), Some(found)) => self.places.take_ahead(seen, &since, found),
-                (None, Some(found)) => self.places.take(found),
+                (None, Some(found)) => self.places.take(seen, found),
             }
             if found.is_some() {
                 self.keys_since_search = 0;

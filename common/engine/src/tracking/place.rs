@@ -19,8 +19,6 @@ pub struct Candidate {
     pub pose: Pose,
     /// Of that pose.
     pub covariance: Covariance,
-    /// How well the scan fits there, at most 1.
-    pub score: f64,
     /// Of the pose that led there.
     pub votes: u64,
 }
@@ -37,7 +35,6 @@ impl Candidate {
             map,
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
-            score: hypothesis.score.into(),
             votes: hypothesis.intensity,
         }
     }
@@ -58,14 +55,11 @@ impl Candidate {
         candidates.retain(|candidate| 2 * candidate.votes >= best);
     }
 
-    pub(super) fn fitted(&self) -> Fitted {
-        Fitted {
-            pose: self.pose,
-            // What a drawn map errs by in addition is in it.
-            covariance: tightened(with_map_error(self.covariance.0, 0.0)),
-            score: self.score,
-            off: 0.0,
-        }
+    /// Its pose and covariance, as places have it.
+    pub(super) fn at(&self) -> (Pose, Matrix3<f64>) {
+        // What a drawn map errs by in addition is in it.
+        let covariance = with_map_error(self.covariance.0, 0.0);
+        (self.pose, tightened(covariance))
     }
 }
 

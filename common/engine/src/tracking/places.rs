@@ -182,11 +182,20 @@ impl Places {
         place.set(&fitted);
     }
 
-    /// Takes what a search found for the scan.
-    pub(super) fn take(&mut self, found: &[Candidate]) {
+    /// Takes what a search found for the scan. Of places far behind, a search has a bound of the
+    /// score alone, and here each is weighed against places that are kept.
+    pub(super) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
         self.candidates.clear();
-        let found = found.iter().map(|found| (found.map, found.fitted()));
-        self.candidates.extend(found);
+        self.candidates.extend(found.iter().map(|found| {
+            let (pose, covariance) = found.at();
+            let fitted = Fitted {
+                pose,
+                covariance,
+                score: seen[found.map as usize].score(pose),
+                off: 0.0,
+            };
+            (found.map, fitted)
+        }));
     }
 
     /// Takes what a search found for an earlier scan, from where the robot has gone a
@@ -195,11 +204,8 @@ impl Places {
         let noise = self.config.odometry_error;
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|candidate| {
-            let Fitted {
-                pose, covariance, ..
-            } = candidate.fitted();
             let seen = &seen[candidate.map as usize];
-            let settled = seen.settle(path.predict((pose, covariance), noise));
+            let settled = seen.settle(path.predict(candidate.at(), noise));
             (candidate.map, settled)
         }));
     }

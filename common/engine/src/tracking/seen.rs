@@ -97,6 +97,12 @@ impl Seen<'_> {
         best
     }
 
+    /// How well the scan fits at a pose, at most 1.
+    pub(super) fn score(&self, pose: Pose) -> f64 {
+        let at = GridPose::of(self.distance_field.frame, pose);
+        self.distance_field.score(self.ends, at, self.fit)
+    }
+
     fn fit(
         &self,
         start: Pose,
