@@ -20,16 +20,18 @@
 //! The order counts: of equally good poses, that on the map which is named first is the
 //! better one.
 
-use std::collections::BTreeMap;
+mod transition;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use geometry::Pose;
 use serde::Deserialize;
 use serde_saphyr::{MessageFormatter, UserMessageFormatter};
 
 use crate::MapError;
 use crate::keys::Scalar;
+pub use transition::Transition;
+use transition::TransitionEntry;
 
 /// The file of a folder that says which maps it has.
 const LIST: &str = "maps.yaml";
@@ -40,9 +42,6 @@ pub const MAX_MAPS: usize = 1000;
 /// Most bytes of a file that names maps.
 const MAX_LIST_BYTES: u64 = 1 << 20;
 
-/// The longest side of a transition, metres.
-const MAX_TRANSITION_M: f64 = 100.0;
-
 /// The maps of a building or a campus.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapSet {
@@ -50,20 +49,6 @@ pub struct MapSet {
     pub maps: Vec<MapFile>,
     /// Where a robot may go from one of them to another.
     pub transitions: Vec<Transition>,
-}
-
-/// A rectangle that two maps have, as a lift, stairs, or a door between two buildings. A robot
-/// that is somewhere in it on one map is at the same place of it on the other.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Transition {
-    /// What it is called.
-    pub name: String,
-    /// The numbers of the two maps in their set, from 0.
-    pub maps: [usize; 2],
-    /// The rectangle's centre and its x axis on each of them.
-    pub map_from_region: [Pose; 2],
-    /// Its sides along its x and y, metres.
-    pub size_m: [f64; 2],
 }
 
 /// A map of a set.
@@ -83,14 +68,6 @@ struct List {
     maps: Vec<Entry>,
     #[serde(default)]
     transitions: Vec<TransitionEntry>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TransitionEntry {
-    name: Scalar,
-    size: [Scalar; 2],
-    at: BTreeMap<String, [Scalar; 3]>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -233,53 +210,12 @@ fn listed(path: &Path) -> Result<MapSet, MapError> {
     let between = list.transitions.iter();
     let between = between.map(|entry| {
         entry.transitions(&maps).map_err(|reason| {
-            let name = entry.name.text();
+            let name = entry.name();
             refused(path, format!("transition {name:?}: {reason}"))
         })
     });
     let transitions = between.collect::<Result<Vec<_>, _>>()?.concat();
     Ok(MapSet { maps, transitions })
-}
-
-impl TransitionEntry {
-    /// One for each two of its maps.
-    fn transitions(&self, maps: &[MapFile]) -> Result<Vec<Transition>, String> {
-        let number = |scalar: &Scalar| scalar.number().filter(|number| number.is_finite());
-        let side = |scalar: &Scalar| number(scalar).filter(|m| *m > 0.0 && *m <= MAX_TRANSITION_M);
-        let [Some(along_x), Some(along_y)] = self.size.each_ref().map(side) else {
-            return Err(format!(
-                "its size is {:?} x {:?}: allowed are two sides above 0 and up to \
-                 {MAX_TRANSITION_M} m",
-                self.size[0].text(),
-                self.size[1].text()
-            ));
-        };
-        let mut sides = Vec::new();
-        for (name, pose) in &self.at {
-            let Some(map) = maps.iter().position(|map| map.name == *name) else {
-                let all = all_names(maps);
-                return Err(format!("there is no map {name:?}: allowed are {all}"));
-            };
-            let [Some(x), Some(y), Some(degrees)] = pose.each_ref().map(number) else {
-                return Err(format!(
-                    "its place on {name:?} is not x and y in metres and an angle in degrees"
-                ));
-            };
-            sides.push((map, Pose::new(x, y, degrees.to_radians())));
-        }
-        if sides.len() < 2 {
-            return Err("it is on one map: needed are two at least".to_owned());
-        }
-        let pairs = sides.iter().enumerate();
-        let pairs = pairs.flat_map(|(i, a)| sides[i + 1..].iter().map(move |b| (a, b)));
-        let transition = |(a, b): (&(usize, Pose), &(usize, Pose))| Transition {
-            name: self.name.text().to_owned(),
-            maps: [a.0, b.0],
-            map_from_region: [a.1, b.1],
-            size_m: [along_x, along_y],
-        };
-        Ok(pairs.map(transition).collect())
-    }
 }
 
 fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
@@ -346,173 +282,4 @@ fn refused(path: &Path, reason: String) -> MapError {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in files {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, text).unwrap();
-        }
-        folder
-    }
-
-    fn names(maps: &[MapFile]) -> Vec<&str> {
-        maps.iter().map(|map| &*map.name).collect()
-    }
-
-    #[test]
-    fn a_folder_of_maps_is_a_set_by_their_names() {
-        let files = [
-            ("b.yaml", ""),
-            ("a/map.yaml", ""),
-            ("c.png", ""),
-            ("d/x", ""),
-        ];
-        let folder = folder(&files);
-        let maps = set_of(folder.path()).unwrap().maps;
-        assert_eq!(names(&maps), ["a", "b"]);
-        assert_eq!(maps[0].yaml, folder.path().join("a/map.yaml"));
-    }
-
-    #[test]
-    fn a_list_names_maps_in_its_order() {
-        let list =
-            "maps:\n  - {name: up, map: u.yaml, floor: 1}\n  - name: down\n    map: /d.yaml\n";
-        let folder = folder(&[("maps.yaml", list), ("x.yaml", "")]);
-        for path in [folder.path().to_owned(), folder.path().join("maps.yaml")] {
-            let maps = set_of(path).unwrap().maps;
-            assert_eq!(names(&maps), ["up", "down"]);
-            assert_eq!(maps[0].yaml, folder.path().join("u.yaml"));
-            assert_eq!(maps[0].floor.as_deref(), Some("1"));
-            assert_eq!(
-                (&*maps[1].yaml, &maps[1].floor),
-                (Path::new("/d.yaml"), &None)
-            );
-        }
-    }
-
-    #[test]
-    fn maps_are_selected_by_their_names_and_by_their_floors() {
-        let map = |(name, floor): (&str, Option<&str>)| MapFile {
-            name: name.to_owned(),
-            yaml: PathBuf::from("x.yaml"),
-            floor: floor.map(str::to_owned),
-        };
-        let floors = [
-            ("east", Some("1")),
-            ("west", Some("1")),
-            ("roof", Some("2")),
-        ];
-        let maps: Vec<MapFile> = floors
-            .into_iter()
-            .chain([("yard", None)])
-            .map(map)
-            .collect();
-        let check = |on: &[&str], expected: &[&str]| {
-            let on: Vec<String> = on.iter().map(|&name| name.to_owned()).collect();
-            let set = MapSet::without_transitions(maps.clone());
-            assert_eq!(names(&set.select(&on).unwrap().maps), expected, "{on:?}");
-        };
-        check(&[], &["east", "west", "roof", "yard"]);
-        check(&["yard", "west"], &["west", "yard"]);
-        check(&["1"], &["east", "west"]);
-        check(&["2", "east", "2", "roof"], &["east", "roof"]);
-        for wrong in ["3", "", "Yard"] {
-            let on = ["1".to_owned(), wrong.to_owned()];
-            let set = MapSet::without_transitions(maps.clone());
-            let error = set.select(&on).unwrap_err().to_string();
-            assert!(error.contains(&format!("{wrong:?} is neither")), "{error}");
-            let there = "east (floor 1), west (floor 1), roof (floor 2), yard";
-            assert!(error.contains(there), "{error}");
-        }
-    }
-
-    const FLOORS: &str = "maps:
-  - {name: cellar, map: c.yaml}
-  - {name: ground, map: g.yaml}
-  - {name: first, map: f.yaml}
-";
-
-    #[test]
-    fn transitions_are_between_each_two_of_their_maps() {
-        let lift = "transitions:
-  - name: lift
-    size: [1.6, 2]
-    at: {ground: [12, 3.5, 0], cellar: [1, 2, -90], first: [-1.5, '3', 90]}
-";
-        let folder = folder(&[("maps.yaml", &format!("{FLOORS}{lift}"))]);
-        let set = set_of(folder.path()).unwrap();
-        let maps: Vec<[usize; 2]> = set.transitions.iter().map(|t| t.maps).collect();
-        assert_eq!(maps, [[0, 2], [0, 1], [2, 1]]);
-        let [_, down, up] = &set.transitions[..] else {
-            panic!("three pairs of three maps");
-        };
-        assert_eq!((&*up.name, up.size_m), ("lift", [1.6, 2.0]));
-        let quarter = std::f64::consts::FRAC_PI_2;
-        assert_eq!(down.map_from_region[0], Pose::new(1.0, 2.0, -quarter));
-        assert_eq!(up.map_from_region[0], Pose::new(-1.5, 3.0, quarter));
-        // Of some maps, those between them, by their new numbers.
-        let on = ["ground".to_owned(), "first".to_owned()];
-        let some = set.select(&on).unwrap();
-        assert_eq!(names(&some.maps), ["ground", "first"]);
-        let maps: Vec<[usize; 2]> = some.transitions.iter().map(|t| t.maps).collect();
-        assert_eq!(maps, [[1, 0]]);
-    }
-
-    #[test]
-    fn what_is_no_transition_is_refused_with_what_is_allowed() {
-        let check = |lift: &str, expected: &str| {
-            let list = format!("{FLOORS}transitions:\n  - {{name: lift, {lift}}}\n");
-            let folder = folder(&[("maps.yaml", &list)]);
-            let error = set_of(folder.path()).unwrap_err().to_string();
-            assert!(error.contains(expected), "{lift}: {error}");
-        };
-        let two = "at: {ground: [1, 2, 3], first: [1, 2, 3]}";
-        check(&format!("size: [0, 2], {two}"), "above 0 and up to 100 m");
-        check(&format!("size: [1, 101], {two}"), "\"1\" x \"101\"");
-        check(&format!("size: [1, 2, 3], {two}"), "3");
-        check(&format!("size: [1, 2], sice: 3, {two}"), "sice");
-        check("size: [1, 2], at: {ground: [1, 2, 3]}", "needed are two");
-        check(
-            "size: [1, 2], at: {ground: [1, 2, 3], roof: [1, 2, 3]}",
-            "transition \"lift\": there is no map \"roof\": allowed are cellar, ground, first",
-        );
-        check(
-            "size: [1, 2], at: {ground: [1, 2, x], first: [1, 2, 3]}",
-            "its place on \"ground\" is not x and y",
-        );
-    }
-
-    #[test]
-    fn what_is_no_set_is_refused_with_what_is_allowed() {
-        let check = |list: &str, expected: &str| {
-            let folder = folder(&[("maps.yaml", list)]);
-            let error = set_of(folder.path()).unwrap_err().to_string();
-            assert!(error.contains(expected), "{error}");
-        };
-        check("maps: []", "there are no maps");
-        check(
-            "maps:\n  - {name: a/b, map: x.yaml}",
-            "1 to 64 of a-z A-Z 0-9",
-        );
-        check(
-            "maps:\n  - {name: a, map: x.yaml}\n  - {name: a, map: y.yaml}",
-            "both called \"a\"",
-        );
-        check("maps:\n  - {name: a, mapp: x.yaml}", "mapp");
-        check("mapps: []", "mapps");
-        let empty = folder(&[]);
-        assert!(
-            set_of(empty.path())
-                .unwrap_err()
-                .to_string()
-                .contains("no maps")
-        );
-        assert!(set_of(empty.path().join("nowhere")).is_err());
-        let twice = [PathBuf::from("a/x.yaml"), PathBuf::from("b/x.yaml")];
-        assert!(set_of_files(&twice).is_err());
-    }
-}
+mod tests;

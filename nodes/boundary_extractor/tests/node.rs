@@ -14,7 +14,7 @@ use transport::{Graph, Publisher};
 const ROOM: [&str; 5] = ["########", "#......#", "#..#...#", "#......#", "########"];
 
 fn start(graph: &Graph) -> NodeProcess {
-    NodeProcess::start(env!("CARGO_BIN_EXE_boundary_extractor"), graph, &[""; 0])
+    NodeProcess::start(env!("CARGO_BIN_EXE_boundary_extractor"), graph, [""; 0])
 }
 
 fn occupancy(rows: &[&str]) -> Vec<u8> {

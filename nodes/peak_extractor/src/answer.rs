@@ -1,21 +1,22 @@
 //! The node's one function: from a message of `votes` to one of `hypotheses`.
 
+mod beams;
+mod together;
+
 use bytemuck::Zeroable;
 use engine::EngineError;
-use engine::fit::{BeamClass, Ends};
+use engine::fit::Ends;
 use engine::grid::GridFrame;
-use engine::peaks::{self, Found, Judged, Merged, PeakConfig, Place, Places, Target, merge};
+use engine::peaks::{self, Judged, Merged, PeakConfig, Place, Places, Target};
 use engine::space::Space;
-use engine::votes::VoteShare;
 use geometry::Pose;
-use messages::{
-    Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader,
-};
+use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader};
 
 use crate::PeakError;
-use crate::check::{Checked, check, check_on_map, mount};
+use crate::check::{Checked, check, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
+use beams::judged;
 
 /// What answering takes, kept from scan to scan. It may serve any maps.
 #[derive(Debug, Default)]
@@ -71,7 +72,7 @@ pub fn answer<'w>(
     workspace: &'w mut Workspace,
 ) -> Result<Answer<'w>, PeakError> {
     if header.maps > 0 {
-        return on_several(header, votes, (maps, scans), config, workspace);
+        return together::on_several(header, votes, (maps, scans), config, workspace);
     }
     let Some(checked) = check(header, votes, maps)? else {
         return Ok(nothing(header));
@@ -98,65 +99,6 @@ pub fn answer<'w>(
         (map_ids, beams),
         (base_from_laser, frame),
     ))
-}
-
-/// The same of votes on several maps that were searched together, as the engine's `MapSet` does
-/// it in one process.
-fn on_several<'w>(
-    header: &VotesHeader,
-    votes: &[Vote],
-    (maps, scans): (&Maps, &Scans),
-    config: &PeakConfig,
-    workspace: &'w mut Workspace,
-) -> Result<Answer<'w>, PeakError> {
-    let by_map = scans.by_map(header.stamp)?;
-    let parts: u64 = by_map.iter().map(|on_map| on_map.total).sum();
-    if by_map.is_empty() || parts != votes.len() as u64 {
-        return Err(PeakError::Parts {
-            maps: by_map.len(),
-            parts,
-            total: votes.len(),
-        });
-    }
-    let base_from_laser = mount(header)?;
-    let Workspace {
-        maps: on_maps,
-        map_ids,
-        merged,
-        beams,
-    } = workspace;
-    on_maps.resize_with(by_map.len(), OnMap::default);
-    map_ids.clear();
-    map_ids.extend(by_map.iter().map(|on_map| on_map.map_id));
-    let share =
-        |votes: &VotesHeader| VoteShare::new(votes.best as u16, votes.highest_possible as u16);
-    let (lead, each) = (share(header), config.of_each_map());
-    let mut found = Vec::with_capacity(by_map.len());
-    let mut rest = votes;
-    for (number, (on_map, workspace)) in (0..).zip(by_map.iter().zip(on_maps.iter_mut())) {
-        let (here, after) = rest.split_at(on_map.total as usize);
-        rest = after;
-        let checked = check_on_map(on_map, here, maps, lead)?;
-        let judged = workspace.judge(header, &checked, scans, &each)?;
-        let lead = (number, share(on_map));
-        found.push(Found::with(lead, on_map.certified_floor, &judged));
-    }
-    *merged = merge(&found, config);
-    let best = &on_maps[merged.best_of];
-    merged.places.classes.clone_from(best.peaks.classes());
-    let best_map = &by_map[merged.best_of];
-    let frame = maps.get(best_map.map_id)?.frame;
-    beams.clear();
-    if let Some(ends) = best.peaks.judged_ends(config.score) {
-        beams.extend(judged(ends, &merged.places));
-    }
-    let votes = VotesHeader {
-        maps: header.maps,
-        engine_ns: header.engine_ns,
-        ..*best_map
-    };
-    let of = (&map_ids[..], &beams[..]);
-    Ok(said(&votes, &merged.places, of, (base_from_laser, frame)))
 }
 
 fn said<'w>(
@@ -262,32 +204,6 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
         highest_possible: votes.highest_possible,
         mount_known: mount_known.into(),
         ..nothing(votes).header
-    }
-}
-
-/// All beams of a scan, as they fare at the best place.
-fn judged(ends: &Ends, places: &Places) -> impl Iterator<Item = Beam> {
-    let voted = ends.judged(&places.classes).map(|beam| Beam {
-        bearing: beam.bearing as f32,
-        range_m: beam.reading_m as f32,
-        weight: beam.weight as f32,
-        fate: fate(beam.class) as u32,
-    });
-    let silent = ends.silent().iter().map(|&bearing| Beam {
-        bearing: bearing as f32,
-        range_m: f32::INFINITY,
-        weight: 0.0,
-        fate: BeamFate::NoReturn as u32,
-    });
-    voted.chain(silent)
-}
-
-fn fate(class: BeamClass) -> BeamFate {
-    match class {
-        BeamClass::Hit => BeamFate::Hit,
-        BeamClass::Short => BeamFate::Short,
-        BeamClass::Through => BeamFate::Through,
-        BeamClass::Unknown => BeamFate::Unknown,
     }
 }
 

@@ -1,14 +1,16 @@
 //! The places that are kept, and how a key scan weighs them.
 
+mod crossing;
+mod found;
+
 use geometry::Pose;
 use messages::Transition;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
-use super::place::{Candidate, Place};
-use super::seen::{Fitted, Seen, information, squared_deviations};
-use super::transition::other_side;
+use super::place::Place;
+use super::seen::{Fitted, Seen};
 use super::verdict::Belief;
 use crate::peaks::lead;
 
@@ -27,20 +29,6 @@ pub(super) const FARTHEST_BEHIND: f64 = 20.0;
 
 /// A candidate confirms a place whose prediction lies within four deviations.
 const GATE: f64 = 16.0;
-
-/// What a search adds to the deviations of a prediction in the gate: half its cell and
-/// heading, and the steps of its fit.
-const GATE_M: f64 = 0.1;
-const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
-
-/// A candidate in the gate that scores better by this much, and by this much a squared
-/// deviation, is where the place is.
-const SNAP: f64 = 0.02;
-const SNAP_BY_DEVIATION: f64 = 0.01;
-
-/// Where it is not known how the robot moved to a scan, it is no farther than by this
-/// speed, metres a second, as far as where odometry slips.
-const SPEED_M_S: f64 = 1.5;
 
 /// Fits that come so close are of one place: as candidates of a search are distinguished.
 const SAME_M: f64 = 0.3;
@@ -182,34 +170,6 @@ impl Places {
         place.set(&fitted);
     }
 
-    /// Takes what a search found for the scan. Of places far behind, a search has a bound of the
-    /// score alone, and here each is weighed against places that are kept.
-    pub(super) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
-        self.candidates.clear();
-        self.candidates.extend(found.iter().map(|found| {
-            let (pose, covariance) = found.at();
-            let fitted = Fitted {
-                pose,
-                covariance,
-                score: seen[found.map as usize].score(pose),
-                off: 0.0,
-            };
-            (found.map, fitted)
-        }));
-    }
-
-    /// Takes what a search found for an earlier scan, from where the robot has gone a
-    /// way since.
-    pub(super) fn take_ahead(&mut self, seen: &[Seen<'_>], path: &DrivenPath, found: &[Candidate]) {
-        let noise = self.config.odometry_error;
-        self.candidates.clear();
-        self.candidates.extend(found.iter().map(|candidate| {
-            let seen = &seen[candidate.map as usize];
-            let settled = seen.settle(path.predict(candidate.at(), noise));
-            (candidate.map, settled)
-        }));
-    }
-
     /// Weighs all places by a key scan, and those that were taken with them; those
     /// that are not believed have gone `way` since the last one.
     pub(super) fn weigh(
@@ -248,38 +208,6 @@ impl Places {
         self.tidy(belief);
     }
 
-    /// Moves places to candidates that confirm them and fit better.
-    fn snap(&mut self) {
-        let more = Vector3::new(GATE_M, GATE_M, GATE_RADIANS).map(|d| d * d);
-        for place in &mut self.kept {
-            let (pose, covariance) = place.predicted;
-            let known = information(&(covariance + Matrix3::from_diagonal(&more)));
-            let mut best: Option<(f64, f64, &Fitted)> = None;
-            let on_map = self.candidates.iter().filter(|(map, _)| *map == place.map);
-            for (_, candidate) in on_map {
-                let off = squared_deviations(candidate.pose, pose, &known);
-                let worth = candidate.score - SNAP_BY_DEVIATION * off;
-                if off < GATE && best.is_none_or(|(most, _, _)| worth > most) {
-                    best = Some((worth, off, candidate));
-                }
-            }
-            if let Some((worth, off, candidate)) = best
-                && worth > place.last + SNAP
-            {
-                place.set(&Fitted { off, ..*candidate });
-            }
-        }
-        let places = &self.kept;
-        self.is_known.clear();
-        self.is_known
-            .extend(self.candidates.iter().map(|&(map, candidate)| {
-                let at = (map, candidate.pose);
-                places
-                    .iter()
-                    .any(|place| place.is_within(at, SAME_M, SAME_RADIANS))
-            }));
-    }
-
     /// The highest score of any place, and the map that it is on.
     fn best_score(&self) -> (u32, f64) {
         let places = self.kept.iter().map(|place| (place.map, place.last));
@@ -309,42 +237,6 @@ impl Places {
         }
     }
 
-    /// Adds the candidates that are at no place that is kept.
-    fn add_new(
-        &mut self,
-        best: Best,
-        belief: &Belief,
-        (fits_badly, unknown_s): (bool, Option<f64>),
-    ) {
-        let tracked = belief
-            .place()
-            .and_then(|id| self.get(id))
-            .map(|p| (p.map, p.predicted.0));
-        let is_first = self.key_scans == 0;
-        let near_m = NEAR_M + SPEED_M_S * unknown_s.unwrap_or(0.0);
-        for i in 0..self.candidates.len() {
-            if self.is_known[i] {
-                continue;
-            }
-            let (map, found) = self.candidates[i];
-            let far = match tracked {
-                _ if is_first => self.first_lag,
-                Some(_) if !fits_badly => self.config.newborn_lag_unique,
-                _ => self.config.newborn_lag,
-            };
-            let is_near = tracked.is_some_and(|(tracked_on, pose)| {
-                tracked_on == map && pose.distance_to(found.pose) <= near_m
-            });
-            let lag = match is_near {
-                true => far.min(self.config.newborn_lag_near),
-                false => far,
-            };
-            let log_weight = -self.against(best, found.score) - lag;
-            let id = self.new_id();
-            self.kept.push(Place::born(id, (map, &found), log_weight));
-        }
-    }
-
     /// Where the scan fits badly at the place that is believed, and well beside it,
     /// odometry has slipped, and the robot is there.
     fn follow_slip(&mut self, best: Best, born: usize, belief: &mut Belief) {
@@ -369,50 +261,6 @@ impl Places {
             place.age = tracked.age;
             place.mean = 0.9 * tracked.mean + 0.1 * place.last;
             belief.slip(place.id, tracked.predicted.0.angle_to(place.pose));
-        }
-    }
-
-    /// Where the place that is believed, or else leads, lies in a transition, the robot may be
-    /// on its other side just as well: what scans said before says nothing of that, and what
-    /// this one says counts alone.
-    fn add_across(
-        &mut self,
-        (seen, transitions): (&[Seen<'_>], &[Transition]),
-        best: Best,
-        belief: &Belief,
-    ) {
-        let leading = self
-            .kept
-            .iter()
-            .reduce(|a, b| match b.log_weight > a.log_weight {
-                true => b,
-                false => a,
-            });
-        let believed = belief.place().and_then(|id| self.get(id));
-        let Some(here) = believed.or(leading).copied() else {
-            return;
-        };
-        let sides = transitions.iter().filter_map(|transition| {
-            other_side(transition, (here.map, here.pose), here.covariance)
-        });
-        for (map, predicted) in sides {
-            let fitted = seen[map as usize].settle(predicted);
-            let log_weight = here.log_weight - self.against(best, fitted.score);
-            let at = (map, fitted.pose);
-            let mut kept = self.kept.iter_mut();
-            match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
-                Some(place) => {
-                    place.crossed = true;
-                    place.log_weight = place.log_weight.max(log_weight);
-                }
-                None => {
-                    let id = self.new_id();
-                    self.kept.push(Place {
-                        crossed: true,
-                        ..Place::born(id, (map, &fitted), log_weight)
-                    });
-                }
-            }
         }
     }
 

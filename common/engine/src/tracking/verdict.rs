@@ -1,6 +1,8 @@
 //! Which place is accepted, and with what probability.
 
-use geometry::{Covariance, Pose};
+mod apart;
+
+use geometry::Pose;
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
@@ -9,15 +11,12 @@ use super::driven_path::DrivenPath;
 use super::place::{MEAN_OVER, Place};
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
+use apart::{is_elsewhere, lead, probability, spread};
 
 /// Key scans since a step that is not known that have to agree before a place is the only
 /// one: nothing ties what was seen before to where the robot is now. One that is kept needs
 /// them where odometry was interrupted.
 pub(super) const MIN_KEYS: u32 = 3;
-
-/// Places so near each other are not distinguished by the verdict.
-const DISTINCT_M: f64 = 1.0;
-const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
 /// A lead below this makes the pose doubtful.
 const MIN_LEAD: f64 = 3.0;
@@ -363,43 +362,4 @@ impl Belief {
             since_m: self.since_m,
         }
     }
-}
-
-/// The covariance, about one of several places on its map, of a robot that is at any of them.
-fn spread(places: &[Place], about: &Place) -> Matrix3<f64> {
-    let on_map = || places.iter().filter(|place| place.map == about.map);
-    let top = on_map().next().map_or(0.0, |best| best.log_weight);
-    let weight = |place: &Place| (place.log_weight - top).exp();
-    let all: f64 = on_map().map(weight).sum();
-    let parts = on_map().map(|place| {
-        let about = Covariance(place.covariance).about(place.pose, about.pose);
-        about.0 * (weight(place) / all)
-    });
-    parts.sum()
-}
-
-/// How likely the place is that leads by this much: a logistic regression over 2191 key
-/// scans of seven drives, which docs/tracking.md has as a table. The lead by itself
-/// is overconfident, for scans of one place err together.
-fn probability(lead: f64) -> f64 {
-    1.0 / (1.0 + (-(0.2 + 0.4 * lead)).exp())
-}
-
-fn is_elsewhere(place: &Place, best: &Place) -> bool {
-    !place.is_within((best.map, best.pose), DISTINCT_M, DISTINCT_RADIANS)
-}
-
-/// By how much the best place leads over the next that lies elsewhere. A new one is
-/// not the next, unless the best is new itself, or all are of the first key scan.
-fn lead(places: &Places) -> f64 {
-    let Some(best) = places.all().first() else {
-        return 0.0;
-    };
-    let are_first = best.age <= 1 || places.key_scans() <= 1;
-    let counts = |place: &&Place| are_first || place.age > 1;
-    let mut others = places.all().iter().filter(counts);
-    let next = others.find(|place| is_elsewhere(place, best));
-    next.map_or(FARTHEST_BEHIND, |next| {
-        (best.log_weight - next.log_weight).min(FARTHEST_BEHIND)
-    })
 }

@@ -324,26 +324,29 @@ mod tests {
         assert!(said.contains("its executables are accumulator"), "{said}");
     }
 
-    #[test]
-    fn a_map_goes_to_its_server() {
-        let text = "nodes: [{id: m, path: bin/map_server, args: --map a.yaml}]";
+    fn parsed(text: &str) -> Dataflow {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
             several: &[],
         };
+        dataflow::parse(text, &topics).unwrap()
+    }
+
+    #[test]
+    fn a_map_goes_to_its_server() {
+        let text = "nodes: [{id: m, path: bin/map_server, args: --map a.yaml}]";
         let options = Options {
             map: Some("/maps/b.yaml".into()),
             ..Options::default()
         };
-        let args = applied(&options, dataflow::parse(text, &topics).unwrap()).unwrap();
+        let args = applied(&options, parsed(text)).unwrap();
         assert_eq!(args, [["--map=/maps/b.yaml"]]);
         let several = Options {
             maps: Some("/maps".into()),
             ..Options::default()
         };
-        let args = applied(&several, dataflow::parse(text, &topics).unwrap()).unwrap();
-        assert_eq!(args, [["--maps=/maps"]]);
+        assert_eq!(applied(&several, parsed(text)).unwrap(), [["--maps=/maps"]]);
         let error = applied(&options, graph("", "")).unwrap_err().to_string();
         assert!(error.contains("--map is for the map_server"), "{error}");
     }
@@ -351,19 +354,12 @@ mod tests {
     #[test]
     fn monitors_stay_unless_they_are_left_out() {
         let text = "nodes: [{id: a, path: bin/accumulator}, {id: page, path: bin/monitor}]";
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
         let nodes = |no_monitor| {
             let options = Options {
                 no_monitor,
                 ..Options::default()
             };
-            applied(&options, dataflow::parse(text, &topics).unwrap())
-                .unwrap()
-                .len()
+            applied(&options, parsed(text)).unwrap().len()
         };
         assert_eq!((nodes(false), nodes(true)), (2, 1));
     }

@@ -74,8 +74,7 @@ fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
     let mut left = config.memory.limit();
     let mut maps = Vec::with_capacity(set.maps.len());
     for file in set.maps {
-        let warn = |key: &map::UnknownKey| tracing::warn!("{key}");
-        let grid = map::load_within(left, &file.yaml, |key| warn(&key))?;
+        let grid = map::load_within(left, &file.yaml, |key| tracing::warn!("{key}"))?;
         left = left.without(&grid);
         maps.push(LoadedMap {
             header: header(&grid, config.cells, &file.name),

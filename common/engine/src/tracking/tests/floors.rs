@@ -141,5 +141,5 @@ fn floors_that_look_alike_leave_a_doubt() {
     let after: Vec<_> = after.collect();
     assert!(after.len() >= 6, "{states:?}");
     let is_unique = |state: &&(TrackState, u32)| state.0 == TrackState::Unique;
-    assert!(!after.iter().any(|state| is_unique(state)), "{states:?}");
+    assert!(!after.iter().any(is_unique), "{states:?}");
 }

@@ -1,0 +1,126 @@
+//! What a search found, beside the places that are kept.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Best, GATE, NEAR_M, Place, Places, SAME_M, SAME_RADIANS};
+use crate::tracking::driven_path::DrivenPath;
+use crate::tracking::place::Candidate;
+use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
+use crate::tracking::verdict::Belief;
+
+/// What a search adds to the deviations of a prediction in the gate: half its cell and
+/// heading, and the steps of its fit.
+const GATE_M: f64 = 0.1;
+const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
+/// A candidate in the gate that scores better by this much, and by this much a squared
+/// deviation, is where the place is.
+const SNAP: f64 = 0.02;
+const SNAP_BY_DEVIATION: f64 = 0.01;
+
+/// Where it is not known how the robot moved to a scan, it is no farther than by this
+/// speed, metres a second, as far as where odometry slips.
+const SPEED_M_S: f64 = 1.5;
+
+impl Places {
+    /// Takes what a search found for the scan. Of places far behind, a search has a bound of the
+    /// score alone, and here each is weighed against places that are kept.
+    pub(in crate::tracking) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
+        self.candidates.clear();
+        self.candidates.extend(found.iter().map(|found| {
+            let (pose, covariance) = found.at();
+            let fitted = Fitted {
+                pose,
+                covariance,
+                score: seen[found.map as usize].score(pose),
+                off: 0.0,
+            };
+            (found.map, fitted)
+        }));
+    }
+
+    /// Takes what a search found for an earlier scan, from where the robot has gone a
+    /// way since.
+    pub(in crate::tracking) fn take_ahead(
+        &mut self,
+        seen: &[Seen<'_>],
+        path: &DrivenPath,
+        found: &[Candidate],
+    ) {
+        let noise = self.config.odometry_error;
+        self.candidates.clear();
+        self.candidates.extend(found.iter().map(|candidate| {
+            let seen = &seen[candidate.map as usize];
+            let settled = seen.settle(path.predict(candidate.at(), noise));
+            (candidate.map, settled)
+        }));
+    }
+
+    /// Moves places to candidates that confirm them and fit better.
+    pub(super) fn snap(&mut self) {
+        let more = Vector3::new(GATE_M, GATE_M, GATE_RADIANS).map(|d| d * d);
+        for place in &mut self.kept {
+            let (pose, covariance) = place.predicted;
+            let known = information(&(covariance + Matrix3::from_diagonal(&more)));
+            let mut best: Option<(f64, f64, &Fitted)> = None;
+            let on_map = self.candidates.iter().filter(|(map, _)| *map == place.map);
+            for (_, candidate) in on_map {
+                let off = squared_deviations(candidate.pose, pose, &known);
+                let worth = candidate.score - SNAP_BY_DEVIATION * off;
+                if off < GATE && best.is_none_or(|(most, _, _)| worth > most) {
+                    best = Some((worth, off, candidate));
+                }
+            }
+            if let Some((worth, off, candidate)) = best
+                && worth > place.last + SNAP
+            {
+                place.set(&Fitted { off, ..*candidate });
+            }
+        }
+        let places = &self.kept;
+        self.is_known.clear();
+        self.is_known
+            .extend(self.candidates.iter().map(|&(map, candidate)| {
+                let at = (map, candidate.pose);
+                places
+                    .iter()
+                    .any(|place| place.is_within(at, SAME_M, SAME_RADIANS))
+            }));
+    }
+
+    /// Adds the candidates that are at no place that is kept.
+    pub(super) fn add_new(
+        &mut self,
+        best: Best,
+        belief: &Belief,
+        (fits_badly, unknown_s): (bool, Option<f64>),
+    ) {
+        let tracked = belief
+            .place()
+            .and_then(|id| self.get(id))
+            .map(|p| (p.map, p.predicted.0));
+        let is_first = self.key_scans == 0;
+        let near_m = NEAR_M + SPEED_M_S * unknown_s.unwrap_or(0.0);
+        for i in 0..self.candidates.len() {
+            if self.is_known[i] {
+                continue;
+            }
+            let (map, found) = self.candidates[i];
+            let far = match tracked {
+                _ if is_first => self.first_lag,
+                Some(_) if !fits_badly => self.config.newborn_lag_unique,
+                _ => self.config.newborn_lag,
+            };
+            let is_near = tracked.is_some_and(|(tracked_on, pose)| {
+                tracked_on == map && pose.distance_to(found.pose) <= near_m
+            });
+            let lag = match is_near {
+                true => far.min(self.config.newborn_lag_near),
+                false => far,
+            };
+            let log_weight = -self.against(best, found.score) - lag;
+            let id = self.new_id();
+            self.kept.push(Place::born(id, (map, &found), log_weight));
+        }
+    }
+}
