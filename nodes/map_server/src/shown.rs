@@ -15,11 +15,11 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    /// The first of the set.
-    pub(crate) fn new(now: Instant) -> Self {
+    /// The map with this number.
+    pub(crate) fn at(map: usize) -> Self {
         Shown {
-            map: 0,
-            named: (0, now),
+            map,
+            named: (map, Instant::now()),
         }
     }
 
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn the_map_on_which_the_robot_is_is_shown_at_once() {
         let now = Instant::now();
-        let mut shown = Shown::new(now);
+        let mut shown = Shown::at(0);
         assert!(!shown.changes_to((0, true), now));
         assert!(shown.changes_to((2, true), now));
         assert!(!shown.changes_to((2, true), now));
@@ -60,7 +60,7 @@ mod tests {
     fn while_it_is_sought_one_has_to_lead_for_a_while() {
         let start = Instant::now();
         let at = |seconds| start + Duration::from_secs(seconds);
-        let mut shown = Shown::new(start);
+        let mut shown = Shown::at(0);
         assert!(!shown.changes_to((1, false), at(1)));
         assert!(!shown.changes_to((0, false), at(2)));
         assert!(!shown.changes_to((1, false), at(3)));

@@ -25,6 +25,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     })?;
     files.follow(&set);
     let mut watch = Watch::new(files.look());
+    let poses = graph.subscriber::<topic::Tracked>()?;
     // Whoever looks at `map` sees that it is one of a set.
     let sets = graph.publisher::<topic::Maps>()?;
     let mut server = Server {
@@ -32,11 +33,10 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         maps: graph.publisher()?,
         health,
         served: 0,
-        shown: Shown::new(Instant::now()),
+        shown: Shown::at(0),
         set,
     };
     server.serve()?;
-    let poses = graph.subscriber::<topic::Tracked>()?;
     graph.run(&[&poses], TICK, |wake| {
         while let Some(pose) = poses.receive()? {
             server.follow(pose.header())?;
@@ -59,6 +59,16 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
 struct Loaded {
     maps: Vec<LoadedMap>,
     transitions: Vec<Transition>,
+}
+
+impl Loaded {
+    fn is_same(&self, other: &Loaded) -> bool {
+        let ids = |set: &Loaded| -> Vec<u64> {
+            let maps = set.maps.iter();
+            maps.map(|map| map.header.map_id).collect()
+        };
+        ids(self) == ids(other) && self.transitions == other.transitions
+    }
 }
 
 struct LoadedMap {
@@ -172,8 +182,7 @@ impl Server {
     }
 
     fn show(&mut self) -> Result<(), TransportError> {
-        let number = self.shown.map().min(self.set.maps.len() - 1);
-        let map = &self.set.maps[number];
+        let map = &self.set.maps[self.shown.map()];
         let mut loan = self.maps.loan(map.cells.len())?;
         *loan.header_mut() = MapHeader {
             stamp: now(self.served),
@@ -206,12 +215,18 @@ impl Server {
         path: &Path,
     ) -> Result<(), TransportError> {
         let problem = match outcome {
+            Ok(set) if set.is_same(&self.set) => {
+                tracing::info!("the files of the set were rewritten with the same maps");
+                return self.health.state(NodeState::Ready);
+            }
             Ok(set) => {
+                let shown = self.set.maps[self.shown.map()].name.clone();
                 let before = std::mem::replace(&mut self.set, set);
-                self.shown = Shown::new(Instant::now());
+                let stays = self.set.maps.iter().position(|map| map.name == shown);
+                let kept = std::mem::replace(&mut self.shown, Shown::at(stays.unwrap_or(0)));
                 match self.serve() {
                     Err(error @ TransportError::SharedMemoryFull { .. }) => {
-                        self.set = before;
+                        (self.set, self.shown) = (before, kept);
                         with_causes(&error)
                     }
                     outcome => return outcome,
