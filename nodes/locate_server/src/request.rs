@@ -16,7 +16,7 @@ use crate::json;
 pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// That of its answer.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
-/// The encoding of a request to one shard of a set of maps: a [`PartQuestion`] in postcard.
+/// The encoding of a request to one shard of a set of maps, in postcard.
 pub const PART: &str = "application/postcard;backcast.ScanForPart/v2";
 /// That of its answer.
 pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v1";
