@@ -204,7 +204,7 @@ mod tests {
         let payload = encode::<topic::Map>(&PREAMBLE, &map, &cells).unwrap();
         assert!(payload.len() < 10_000, "{}", payload.len());
         let encoding = encoding::<topic::Map>();
-        assert_eq!(encoding, "application/postcard+zstd;backcast.Map/v1");
+        assert_eq!(encoding, "application/postcard+zstd;backcast.Map/v2");
         let back = decode::<topic::Map>(&encoding, &payload).unwrap();
         assert_eq!((back.header, back.items), (map, cells));
     }

@@ -74,9 +74,11 @@ pub(super) fn look_up_neon(table: &[u8; TABLE], used: usize, index: [u8; PIECE])
     let index: uint8x16_t = must_cast(index);
     let pieces: [uint8x16_t; 4] = must_cast(*table);
     must_cast(if used <= PIECE {
-        vqtbl1q_u8(pieces[0], index)
+        // SAFETY: every processor of this architecture has NEON.
+        unsafe { vqtbl1q_u8(pieces[0], index) }
     } else {
         let [first, second, third, fourth] = pieces;
-        vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index)
+        // SAFETY: every processor of this architecture has NEON.
+        unsafe { vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index) }
     })
 }

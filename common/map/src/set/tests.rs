@@ -94,8 +94,8 @@ const FLOORS: &str = "maps:
 fn transitions_are_between_each_two_of_their_maps() {
     let lift = "transitions:
   - name: lift
-size: [1.6, 2]
-at: {ground: [12, 3.5, 0], cellar: [1, 2, -90], first: [-1.5, '3', 90]}
+    size: [1.6, 2]
+    at: {ground: [12, 3.5, 0], cellar: [1, 2, -90], first: [-1.5, '3', 90]}
 ";
     let folder = folder(&[("maps.yaml", &format!("{FLOORS}{lift}"))]);
     let set = set_of(folder.path()).unwrap();

@@ -10,8 +10,8 @@ use crate::check::{check_on_map, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
 
-/// Reads the places from votes on several maps that were searched together, as the engine's `MapSet` does
-/// it in one process.
+/// Reads the places from votes on several maps that were searched together, as the engine's
+/// `MapSet` does it in one process.
 pub(super) fn on_several<'w>(
     header: &VotesHeader,
     votes: &[Vote],
@@ -20,7 +20,9 @@ pub(super) fn on_several<'w>(
     workspace: &'w mut Workspace,
 ) -> Result<Answer<'w>, PeakError> {
     let by_map = scans.by_map(header.stamp)?;
-    let parts: u64 = by_map.iter().map(|on_map| on_map.total).sum();
+    let parts = by_map
+        .iter()
+        .fold(0, |all: u64, on_map| all.saturating_add(on_map.total));
     if by_map.is_empty() || parts != votes.len() as u64 {
         return Err(PeakError::Parts {
             maps: by_map.len(),
