@@ -297,7 +297,11 @@ impl Tracker {
             places.map(|place| place.hypothesis(0, of_laser)).collect()
         })?;
         let mut candidates = Vec::new();
-        Candidate::fill(&mut candidates, hypotheses.iter().map(|found| (0, found)), of_laser);
+        Candidate::fill(
+            &mut candidates,
+            hypotheses.iter().map(|found| (0, found)),
+            of_laser,
+        );
         Ok(candidates)
     }
 }
