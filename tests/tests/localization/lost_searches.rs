@@ -63,7 +63,7 @@ impl Robot {
         };
         let arguments: &[&str] = match name {
             "map_server" => &[option, maps.to_str().unwrap()],
-            "accumulator" => &["--search", "asked"],
+            "accumulator" if self.maps.is_none() => &["--search", "asked"],
             _ => &[],
         };
         let path = executables::path(name);
