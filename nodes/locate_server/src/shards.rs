@@ -46,7 +46,7 @@ impl OverMaps {
 }
 
 /// Asks all shards of the set of this name at once, each again and again until the deadline,
-/// and merges what they find. As soon as one has an answer, the others are told what its best
+/// and merges what they find. As soon as one has an answer, the others are sent what its best
 /// pose has: a shard without the right map would search its maps far deeper than that needs. A
 /// server that dies meanwhile costs no answer where another one has the same shard, and is named
 /// by its maps where none has.

@@ -124,7 +124,9 @@ impl DistanceField {
 
 #[cfg(test)]
 mod tests {
-    use super::super::drawn::distance_field;
+    use proptest::prelude::*;
+
+    use super::super::drawn::{distance_field, field_of};
     use super::*;
     use crate::fit::ends::End;
 
@@ -208,5 +210,23 @@ mod tests {
         assert_eq!(score(&[(22.0, 6.0)]), 0.3);
         let both = judged(&[(0.0, 6.0), (22.0, 6.0)]);
         assert!((both.0 - 0.65).abs() < 1e-12 && both.1 == 0.5);
+    }
+
+    proptest! {
+        #[test]
+        fn no_score_is_above_its_bound(
+            grid in crate::testing::any_grid(),
+            readings in proptest::collection::vec((-180.0..180.0f64, 0.5..50.0f64), 1..20),
+            (x, y, heading) in (-2.0..42.0f64, -2.0..42.0f64, -4.0..4.0f64),
+            sigma in 0.5..4.0f64,
+        ) {
+            let map = field_of(&grid);
+            let pose = GridPose { x, y, heading };
+            let config = FitConfig { fit_sigma_cells: sigma, ..FitConfig::default() };
+            let scan = ends(&readings);
+            let score = map.score(&scan, pose, &config);
+            let bound = map.score_at_most(&scan, pose, &config);
+            prop_assert!(score <= bound, "{score} {bound}");
+        }
     }
 }

@@ -231,11 +231,10 @@ fn between_centres(places: Lanes, cells: usize) -> ([u32; LANES], [u32; LANES], 
 
 #[cfg(test)]
 mod tests {
-    use geometry::Pose;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::fit::drawn::distance_field;
+    use crate::fit::drawn::{distance_field, field_of};
 
     #[test]
     fn distance_is_bilinear_between_the_centres_of_cells() {
@@ -267,24 +266,6 @@ mod tests {
         assert_eq!(from(0.5, 8.0).occupied, None, "beyond the limit");
         let back = distance_field.cast_ray((8.5, 0.5), (-1.0, 0.0), 20.0);
         assert_eq!(back.occupied, None, "it leaves the map");
-    }
-
-    fn field_of(grid: &Grid) -> DistanceField {
-        let occupancy: Vec<u8> = grid
-            .cells()
-            .iter()
-            .map(|cell| match cell {
-                Cell::Occupied => 100,
-                Cell::Open => 0,
-                Cell::Blocked => messages::UNKNOWN,
-            })
-            .collect();
-        let frame = GridFrame {
-            resolution_m: 0.1,
-            map_from_grid: Pose::IDENTITY,
-        };
-        let sides = (grid.width(), grid.height());
-        DistanceField::new(frame, sides, &occupancy, CellRules::default()).unwrap()
     }
 
     proptest! {

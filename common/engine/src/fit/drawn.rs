@@ -5,7 +5,7 @@ use geometry::Pose;
 use messages::UNKNOWN;
 
 use super::DistanceField;
-use crate::grid::{CellRules, GridFrame};
+use crate::grid::{Cell, CellRules, Grid, GridFrame};
 
 pub(crate) fn distance_field(rows: &[&str]) -> DistanceField {
     let cell = |cell| match cell {
@@ -19,15 +19,24 @@ pub(crate) fn distance_field(rows: &[&str]) -> DistanceField {
         .flat_map(|row| row.bytes())
         .map(cell)
         .collect();
+    of_cells((rows[0].len(), rows.len()), &occupancy)
+}
+
+/// That of a grid.
+pub(crate) fn field_of(grid: &Grid) -> DistanceField {
+    let occupancy = |cell: &Cell| match cell {
+        Cell::Occupied => 100,
+        Cell::Open => 0,
+        Cell::Blocked => UNKNOWN,
+    };
+    let occupancy: Vec<u8> = grid.cells().iter().map(occupancy).collect();
+    of_cells((grid.width(), grid.height()), &occupancy)
+}
+
+fn of_cells(sides: (usize, usize), occupancy: &[u8]) -> DistanceField {
     let frame = GridFrame {
         resolution_m: 0.1,
         map_from_grid: Pose::IDENTITY,
     };
-    DistanceField::new(
-        frame,
-        (rows[0].len(), rows.len()),
-        &occupancy,
-        CellRules::default(),
-    )
-    .expect("drawings are maps")
+    DistanceField::new(frame, sides, occupancy, CellRules::default()).expect("drawings are maps")
 }

@@ -239,7 +239,7 @@ impl Belief {
         })
     }
 
-    /// Whether the robot may be on another map, to or from which it has come by a transition:
+    /// Whether the robot may be on another map, to or from which a transition leads:
     /// maps of one building are alike, so that takes as much to exclude as a start does.
     fn may_have_crossed(&self, places: &[Place]) -> bool {
         let Some(best) = places.first() else {
