@@ -19,11 +19,11 @@ use nix::fcntl::Flock;
 use crate::idle::IdlePublishers;
 use crate::log_sender::LogSender;
 use crate::losses::Losses;
-use crate::membership::Membership;
+use crate::membership::{Membership, alive};
 use crate::signals::Signals;
 use crate::{
-    GraphName, Health, Publisher, Subscriber, TransportError, Waker, alive, descriptors, log,
-    log_lines, root,
+    GraphName, Health, Publisher, Subscriber, TransportError, Waker, descriptors, log, log_lines,
+    root,
 };
 
 /// How long joining waits for another process that is cleaning up after a dead

@@ -14,9 +14,9 @@ use std::time::Duration;
 use iceoryx2::node::{DeadNodeView, Node, NodeDetails, NodeState, NodeView};
 use iceoryx2::prelude::{CallbackProgression, ipc};
 
-use crate::membership::{Membership, SHARED_MEMORY, graph_of_file};
+use crate::membership::{Membership, SHARED_MEMORY, alive, graph_of_file};
 use crate::root::current_user;
-use crate::{Claim, GraphName, TransportError, alive, log, with_causes};
+use crate::{Claim, GraphName, TransportError, log, with_causes};
 
 /// How long to wait for another process that cleans up the same dead node.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);

@@ -39,7 +39,7 @@
 //! | `graph_name`, `membership`, `root` | which graph; what keeps it apart from others; the user's folder |
 //! | `graph` | joining, and making the ends of topics |
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
-//! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
+//! | `publisher` (`loan`), `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
 //! | `peers` | who is at the other end of a topic |
 //! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT, SIGTERM and SIGHUP, other threads |
@@ -47,7 +47,7 @@
 //! | `node`, `log` | `main` of a node: logging, exit code |
 //! | `log_lines`, `log_sender`, `log_limit` | what a node logs, on its way to topic `log`; what repeats too fast |
 //! | `space`, `losses` | room in shared memory, looked up before it is used; what was lost without it |
-//! | `alive`, `leftovers` | who lives, by locks; removing what a graph leaves |
+//! | `membership/alive`, `leftovers` | who lives, by locks; removing what a graph leaves |
 //! | `descriptors` | whether the process may open enough files |
 //! | `error`, `causes` | what can go wrong; an error with its causes on one line |
 //! | `testing` | for tests of nodes: a graph of their own, the node as a process |
@@ -95,7 +95,6 @@
 //! the old one goes with its last sample. Wake-ups and connections take about
 //! 20 KiB for each pair of publisher and subscriber.
 
-mod alive;
 mod causes;
 mod clock;
 mod descriptors;
@@ -108,7 +107,6 @@ mod header;
 mod health;
 mod idle;
 mod leftovers;
-mod loan;
 mod log;
 mod log_limit;
 mod log_lines;
@@ -126,7 +124,6 @@ mod subscriber;
 pub mod testing;
 mod waker;
 
-pub use alive::Claim;
 pub use causes::with_causes;
 pub use clock::{monotonic_ns, wall_ns};
 pub use error::TransportError;
@@ -136,11 +133,10 @@ pub use graph::Graph;
 pub use graph_name::{GRAPH_VARIABLE, GraphName};
 pub use health::Health;
 pub use leftovers::{files_of, remove_dead_graphs, remove_leftovers};
-pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
-pub use membership::{control_socket, is_launched, running_graphs};
+pub use membership::{Claim, control_socket, is_launched, running_graphs};
 pub use peers::Peers;
-pub use publisher::Publisher;
+pub use publisher::{Loan, Publisher};
 pub use space::shared_memory_has_room;
 pub use subscriber::{Input, Sample, Subscriber};
 pub use waker::Waker;

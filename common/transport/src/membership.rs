@@ -1,6 +1,8 @@
 //! What iceoryx2 must know so that one graph of one user stays apart from all
 //! others: the folder where its processes meet and the prefix of its files.
 
+pub(crate) mod alive;
+
 use std::fs::{DirEntry, Permissions, read_dir, set_permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
@@ -9,7 +11,9 @@ use std::time::Duration;
 use iceoryx2::prelude::{Config, FileName, Path as IoxPath, SemanticString};
 
 use crate::root::{current_user, path_for};
-use crate::{Claim, GraphName, TransportError};
+use crate::{GraphName, TransportError};
+
+pub use alive::Claim;
 
 /// Where Linux keeps POSIX shared memory.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";

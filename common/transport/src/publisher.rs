@@ -3,6 +3,8 @@
 //! A subscriber that is too slow loses its oldest samples; it never holds the
 //! publisher up, and the publisher never waits for anybody.
 
+mod loan;
+
 use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
@@ -19,7 +21,9 @@ use crate::header::Header;
 use crate::idle::Connects;
 use crate::losses::Losses;
 use crate::service::{self, Samples};
-use crate::{Loan, Peers, TransportError, space};
+use crate::{Peers, TransportError, space};
+
+pub use loan::Loan;
 
 pub(crate) type Port<T> =
     IoxPublisher<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;

@@ -1,5 +1,10 @@
 //! The command line: reads it, calls the command, picks the exit code.
 
+#[cfg(feature = "tools")]
+mod shell;
+#[cfg(feature = "tools")]
+mod tools;
+
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -7,7 +12,7 @@ use command_line::CommandError;
 use launcher::{check, control, run};
 
 #[cfg(feature = "tools")]
-use crate::tools::{OnRecordings, OnTheSide};
+use tools::{OnRecordings, OnTheSide};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -15,15 +20,14 @@ use crate::tools::{OnRecordings, OnTheSide};
 /// --rate max`.
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
-pub(crate) struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
     run: run::Options,
 }
 
-pub(crate) const EXIT_CODES: &str =
-    "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
 
 /// One variant a command. The tools stand where they do in the help.
 #[derive(Debug, Subcommand)]
@@ -74,7 +78,7 @@ pub fn main() -> ExitCode {
 }
 
 /// Says on standard error why a command failed; its exit code.
-pub(crate) fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
+fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", transport::with_causes(&error));
         ExitCode::from(error.exit_code())

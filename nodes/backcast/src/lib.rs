@@ -5,7 +5,3 @@
 //! Without the feature `tools` there is the launcher alone, as a robot needs it.
 
 pub mod cli;
-#[cfg(feature = "tools")]
-mod shell;
-#[cfg(feature = "tools")]
-mod tools;

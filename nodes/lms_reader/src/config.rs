@@ -8,7 +8,7 @@ use messages::{FrameName, Name};
 use sick::cola::{AngleConvention, DeviceAngles, Encoding, KnownDevice, USUAL_REACH_M};
 use sick::lms2xx::{Baud, RangeMode, Unit};
 
-use crate::scan::ScanSettings;
+use crate::scan::{ScanSettings, Stamps};
 
 /// Reads scans from a SICK laser scanner and publishes them as `scan`.
 #[derive(Debug, Clone, Parser)]
@@ -141,17 +141,6 @@ pub enum Rate {
     /// As fast as it can be read: a subscriber that is slower gets the newest
     /// scans alone.
     Max,
-}
-
-/// Whose time a scan gets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Stamps {
-    /// The host's, when the first beam was shot: the device's counter of
-    /// microseconds is followed.
-    Host,
-    /// The device's date and time, which must be set, by NTP say; telegrams are
-    /// made to carry it.
-    Device,
 }
 
 impl Config {

@@ -21,6 +21,6 @@ mod pace;
 mod run;
 pub mod scan;
 
-pub use config::{Config, Rate, Reach, Stamps};
+pub use config::{Config, Rate, Reach};
 pub use error::LmsError;
 pub use run::run;

@@ -3,11 +3,12 @@
 //! Pure: the caller says when the telegram came. It decides nothing about what
 //! a range is good for; it only distinguishes readings from codes.
 
+use clap::ValueEnum;
 use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
 use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};
 
+use crate::LmsError;
 use crate::clock::DeviceClock;
-use crate::{LmsError, Stamps};
 
 /// Raw distances below this are codes, not distances: 0 nothing came back, 1
 /// dazzled, 2 implausible, the others reserved (SICK's operating instructions,
@@ -17,6 +18,17 @@ const FIRST_DISTANCE: u16 = 16;
 /// The longest time from scan to transmission that is believed, µs. A mirror
 /// turns at 5 Hz or faster.
 const LONGEST_DELAY_US: u32 = 1_000_000;
+
+/// Whose time a scan gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Stamps {
+    /// The host's, when the first beam was shot: the device's counter of
+    /// microseconds is followed.
+    Host,
+    /// The device's date and time, which must be set, by NTP say; telegrams are
+    /// made to carry it.
+    Device,
+}
 
 /// What the telegram does not say.
 #[derive(Debug, Clone, Copy, PartialEq)]

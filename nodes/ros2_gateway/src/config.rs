@@ -5,7 +5,7 @@ use geometry::Mount;
 use messages::FrameName;
 
 use crate::GatewayError;
-use crate::amcl::{Options, Role};
+use crate::role::{Options, Role};
 
 /// Connects a graph to a ROS 2 robot that uses rmw_zenoh (jazzy and later), without ROS
 /// installed.

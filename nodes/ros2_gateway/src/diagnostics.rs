@@ -6,8 +6,8 @@ use transport::{TransportError, monotonic_ns, wall_ns};
 use zenoh_session::Report;
 
 use crate::GatewayError;
-use crate::outgoing::stamp;
 use crate::rmw_zenoh::{Member, Publisher};
+use crate::stamps::stamp;
 
 /// Sends it, dated by the robot's clock.
 pub(crate) struct Diagnostics {

@@ -10,12 +10,12 @@ use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
 use zenoh_session::Report;
 
-use crate::amcl::Role;
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
 use crate::outlet::{Outlet, Rules};
 use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
+use crate::role::Role;
 use crate::seeding::{Belief, Seeding};
 use crate::topics::Topics;
 use crate::{GatewayError, Seed};

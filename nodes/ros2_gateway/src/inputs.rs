@@ -5,10 +5,10 @@ use transport::{TransportError, monotonic_ns};
 use zenoh_session::{Report, Routers};
 
 use crate::GatewayError;
-use crate::amcl::Role;
 use crate::config::{Brought, Config};
 use crate::incoming::Incoming;
 use crate::rmw_zenoh::{Member, Watch};
+use crate::role::Role;
 use crate::topics::Topics;
 use crate::waiting::{Input, Status, Waiting};
 

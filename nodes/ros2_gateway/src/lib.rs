@@ -21,14 +21,16 @@ mod inputs;
 mod outgoing;
 mod outlet;
 mod rmw_zenoh;
+mod role;
 mod run;
 mod seeding;
+mod stamps;
 mod topics;
 mod vda5050;
 mod verdict;
 mod waiting;
 
-pub use amcl::{Options, Role};
 pub use config::{Brought, Config, Seed};
 pub use error::GatewayError;
+pub use role::{Options, Role};
 pub use run::run;

@@ -12,6 +12,7 @@ use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
 use crate::rmw_zenoh::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
+use crate::stamps::{in_map, stamp};
 use crate::topics::Topics;
 
 /// Hypotheses that are less likely are no place to be: there are up to 64, and one of
@@ -223,10 +224,6 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
     pose
 }
 
-pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
-    Ok(Header::new(stamp(of.measured_ns)?, map_frame))
-}
-
 /// The transform from the map to the odometry, `at_ns`.
 pub(crate) fn transform(
     at_ns: i64,
@@ -242,11 +239,6 @@ pub(crate) fn transform(
     Ok(TfMessage {
         transforms: vec![transform],
     })
-}
-
-pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
-    let stamp = Time::from_ns(stamp_ns).filter(|_| stamp_ns >= 0);
-    stamp.ok_or(GatewayError::Unstampable { stamp_ns })
 }
 
 #[cfg(test)]
@@ -317,11 +309,5 @@ mod tests {
         let items = [item(1.0, 0.0), item(2.0, 0.5), item(3.0, 0.001)];
         let places = answer(&HypothesesHeader::zeroed(), &items).map_from_base;
         assert_eq!(places, [1.0, 2.0].map(|x| Pose::new(x, 0.0, 0.0)));
-    }
-
-    #[test]
-    fn times_that_ros_cannot_say_are_refused() {
-        assert_eq!(stamp(5).unwrap().nanosec, 5);
-        assert!(stamp(-1).is_err() && stamp(i64::MAX).is_err());
     }
 }

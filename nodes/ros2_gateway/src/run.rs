@@ -8,20 +8,21 @@ use ros::{Empty, Nothing};
 use transport::{Flow, Graph, Subscriber, TransportError};
 use zenoh_session::Report;
 
-use crate::amcl::{self, Role};
+use crate::amcl;
 use crate::config::MAP_FRAME;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::{Inputs, Taken};
 use crate::outgoing::Outgoing;
 use crate::rmw_zenoh::{Member, Seen, Service, Watch};
+use crate::role::Role;
 use crate::seeding::Seeding;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 use crate::{Config, GatewayError};
 
 /// How long a late joiner of the graph may wait for the map.
-pub(crate) const TICK: Duration = Duration::from_millis(50);
+const TICK: Duration = Duration::from_millis(50);
 
 /// Carries messages until the stop flag is set.
 ///
@@ -31,7 +32,7 @@ pub(crate) const TICK: Duration = Duration::from_millis(50);
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     match config.amcl.role {
         Role::Seed => seed(graph, config),
-        Role::Amcl => amcl::run(graph, config),
+        Role::Amcl => amcl::run(graph, config, TICK),
     }
 }
 

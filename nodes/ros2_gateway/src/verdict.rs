@@ -9,8 +9,8 @@ use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
 use zenoh_session::{KeyError, Report};
 
-use crate::outgoing::in_map;
 use crate::rmw_zenoh::{Member, Publisher};
+use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::{GatewayError, vda5050};
 

@@ -5,6 +5,7 @@
 )]
 
 mod builds;
+mod cycles;
 mod dependencies;
 mod links;
 mod purity;

@@ -1,20 +1,7 @@
 //! How well a scan agrees with the map at a pose, beam by beam.
 
 use super::ends::{End, Ends};
-use super::{DistanceField, FitConfig, GridPose};
-
-/// What became of a beam.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BeamClass {
-    /// It ends at an obstacle.
-    Hit,
-    /// It ends in the open: something stands there that the map does not have.
-    Short,
-    /// It passes through an obstacle of the map.
-    Through,
-    /// It ends behind unknown space, where the map says nothing.
-    Unknown,
-}
+use super::{BeamClass, DistanceField, FitConfig, GridPose};
 
 /// An end point within this many standard deviations lies at the obstacle.
 const HIT_SIGMAS: f64 = 2.0;

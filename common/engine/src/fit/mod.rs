@@ -14,6 +14,7 @@
 //! cell (0, 0) at (0.5, 0.5).
 
 mod agreement;
+mod beam_class;
 mod config;
 pub(crate) mod distance;
 mod distance_field;
@@ -22,6 +23,7 @@ mod drawing;
 pub(crate) mod drawn;
 mod ends;
 mod lanes;
+mod pull;
 mod readings;
 mod refine;
 
@@ -29,7 +31,7 @@ use geometry::{Pose, wrap_angle};
 use nalgebra::Vector3;
 
 use crate::grid::GridFrame;
-pub use agreement::BeamClass;
+pub use beam_class::BeamClass;
 pub use config::FitConfig;
 pub use distance_field::DistanceField;
 pub(crate) use distance_field::lacks;

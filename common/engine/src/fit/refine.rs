@@ -4,7 +4,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::ends::Ends;
-use super::lanes::{Add, Lanes, Pull, Pulls, lanes};
+use super::lanes::{Lanes, lanes};
+use super::pull::{Add, Pull, Pulls};
 use super::{DistanceField, FitConfig, GridPose};
 
 /// A pose that was moved to the nearest best fit.

@@ -65,10 +65,10 @@ pub(super) fn judge(pending: Pending<'_>) -> Judgement {
 
 #[cfg(test)]
 mod tests {
-    use crate::cola::{Encoding, encoding};
+    use crate::cola::{Encoding, stream};
 
     fn read(pieces: &[&[u8]]) -> Vec<String> {
-        encoding::seen(Encoding::Text, pieces)
+        stream::seen(Encoding::Text, pieces)
     }
 
     #[test]

@@ -31,13 +31,15 @@ mod partial;
 mod range_mode;
 mod scan;
 mod status;
+mod stream;
 
 pub use answer::{Answer, Reply};
 pub use command::{Baud, Command, DEFAULT_PASSWORD, Mode};
 pub use configuration::Configuration;
 pub use crc::crc;
-pub use framing::{CommandFramer, FromDevice, FromHost, MAX_PAYLOAD, ReplyFramer};
+pub use framing::MAX_PAYLOAD;
 pub use partial::PartialScans;
 pub use range_mode::{RangeMode, Unit};
 pub use scan::{Part, Readings, Scan};
 pub use status::{DeviceStatus, Status};
+pub use stream::{CommandFramer, FromDevice, FromHost, ReplyFramer};

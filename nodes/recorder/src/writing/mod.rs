@@ -9,8 +9,10 @@ mod parts;
 mod preamble;
 mod staged;
 mod store;
+mod tally;
 
 pub(crate) use black_box::BlackBox;
 pub(crate) use parts::{Limits, Parts};
 pub(crate) use preamble::Preamble;
-pub(crate) use store::{Store, Tally};
+pub(crate) use store::Store;
+pub(crate) use tally::Tally;

@@ -1,5 +1,7 @@
 //! What a lifecycle manager starts and stops: the node but for its life.
 
+mod parts;
+
 use messages::{InitialPose, topic};
 use transport::{Graph, Subscriber, TransportError};
 use zenoh_session::Report;
@@ -9,12 +11,12 @@ use super::hint;
 use super::hints;
 use super::lifecycle::{Change, Primary};
 use super::parameters::Parameters;
-use super::parts::Parts;
 use super::saved_pose;
 use crate::inputs::Inputs;
 use crate::rmw_zenoh::Member;
 use crate::topics::Topics;
 use crate::{Config, GatewayError};
+use parts::Parts;
 
 /// What the graph says.
 pub(super) struct Said {

@@ -8,7 +8,6 @@
 mod body;
 mod bond;
 mod cloud;
-mod declared;
 mod hint;
 mod hints;
 mod life;
@@ -17,14 +16,13 @@ mod outgoing;
 mod parameter_services;
 mod parameters;
 mod params_file;
-mod parts;
 mod saved_pose;
 mod sim_clock;
 mod standing;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::time::Duration;
 
-use clap::ValueEnum;
 use transport::{Flow, Graph};
 use zenoh_session::Report;
 
@@ -32,64 +30,14 @@ use crate::GatewayError;
 use crate::config::{Config, MAP_FRAME, Seed};
 use crate::inputs::Inputs;
 use crate::rmw_zenoh::{self, Member};
-use crate::run::TICK;
 use crate::topics::Topics;
 use body::{Body, Joined, Said};
 use life::Life;
 use parameter_services::ParameterServices;
 use parameters::Parameters;
 
-/// Options of the gateway in AMCL's place.
-#[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "In AMCL's place")]
-pub struct Options {
-    /// What the gateway is to the robot
-    #[arg(long = "as", value_name = "ROLE", default_value = "seed")]
-    pub role: Role,
-
-    /// Parameters in the form of ROS, as nav2_amcl has them; with --as amcl
-    #[arg(long, value_name = "FILE")]
-    pub params_file: Option<PathBuf>,
-
-    /// Start active, for robots without a lifecycle manager; with --as amcl
-    #[arg(long)]
-    pub autostart: bool,
-
-    /// Believe initial poses of initialpose, set_initial_pose and the parameters at once,
-    /// with no scan that confirms them; with --as amcl
-    #[arg(long)]
-    pub believe_initial_pose: bool,
-}
-
-impl Options {
-    /// Refuses what counts in AMCL's place alone.
-    pub(crate) fn check(&self) -> Result<(), GatewayError> {
-        let given = [
-            (self.params_file.is_some(), "params-file"),
-            (self.autostart, "autostart"),
-            (self.believe_initial_pose, "believe-initial-pose"),
-        ];
-        match given.into_iter().find(|(is_given, _)| *is_given) {
-            Some((_, option)) if self.role != Role::Amcl => Err(GatewayError::Option {
-                option,
-                reason: "allowed with --as amcl".to_owned(),
-            }),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// What the gateway is to the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Role {
-    /// Beside a particle filter, which gets its initial pose
-    Seed,
-    /// In the place of nav2_amcl
-    Amcl,
-}
-
-/// Is nav2's AMCL until the stop flag is set.
-pub(crate) fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+/// Is nav2's AMCL until the stop flag is set; looks for what came every `tick`.
+pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), GatewayError> {
     let node = rmw_zenoh::resolve(&config.namespace, config.node());
     let node = node.map_err(|reason| GatewayError::Option {
         option: "node",
@@ -135,7 +83,7 @@ pub(crate) fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     if config.amcl.autostart {
         life.start(|change| body.change(change, &parameters));
     }
-    graph.run(&[&said.hypotheses, &said.poses, &said.health], TICK, |_| {
+    graph.run(&[&said.hypotheses, &said.poses, &said.health], tick, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
         let state = life.lifecycle.primary();
@@ -177,22 +125,6 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-
-    #[test]
-    fn options_of_amcls_place_are_refused_elsewhere() {
-        let parse = |words: &[&str]| Config::parse_from(["ros2_gateway"].iter().chain(words));
-        let options: [&[&str]; 3] = [
-            &["--autostart"],
-            &["--params-file", "a"],
-            &["--believe-initial-pose"],
-        ];
-        for words in options {
-            let error = parse(words).amcl.check().unwrap_err().to_string();
-            assert_eq!(error, format!("{}: allowed with --as amcl", words[0]));
-            let with = [words, &["--as", "amcl"]].concat();
-            parse(&with).amcl.check().unwrap();
-        }
-    }
 
     #[test]
     fn parameters_name_frames_and_topics_where_no_option_does() {

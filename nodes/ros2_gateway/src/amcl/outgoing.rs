@@ -13,8 +13,9 @@ use super::parameters::Parameters;
 use super::standing::Standing;
 use crate::GatewayError;
 use crate::diagnostics::Diagnostics;
-use crate::outgoing::{in_map, transform};
+use crate::outgoing::transform;
 use crate::rmw_zenoh::{Member, Publisher};
+use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 

@@ -2,6 +2,8 @@
 //!
 //! Refuses what is of another type, out of range, or cannot change while the node runs.
 
+mod declared;
+
 use std::collections::BTreeMap;
 
 use geometry::Pose;
@@ -10,8 +12,8 @@ use ros::rcl_interfaces::{
     ParameterValue, SetParametersResult,
 };
 
-use super::declared::{ALL, Counts, Declared};
 use crate::GatewayError;
+use declared::{ALL, Counts, Declared};
 
 /// What a parameter holds.
 #[derive(Debug, Clone, PartialEq)]

@@ -16,11 +16,21 @@ use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
 use zenoh_session::KeyError;
 
-use super::Keeping;
 use crate::GatewayError;
 
 /// What all tokens begin with.
 const TOKENS: &str = "@ros2_lv";
+
+/// Which messages a topic has for those who come late, in the words of ROS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keeping {
+    /// Best effort, volatile: sensors.
+    Fresh,
+    /// Reliable, volatile.
+    Reliable,
+    /// Reliable, transient local: the last of each sender is there.
+    Kept,
+}
 
 /// A type as keys name it.
 #[derive(Debug, Clone, PartialEq, Eq)]

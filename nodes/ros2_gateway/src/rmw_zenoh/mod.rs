@@ -20,9 +20,9 @@ mod subscription;
 mod watch;
 
 pub(crate) use attachment::Attachment;
-pub(crate) use entity::Member;
+pub(crate) use entity::{Keeping, Member};
 pub(crate) use name::resolve;
 pub(crate) use publisher::Publisher;
 pub(crate) use service::Service;
-pub(crate) use subscription::{Keeping, Subscription};
+pub(crate) use subscription::Subscription;
 pub(crate) use watch::{Seen, Watch};

@@ -14,23 +14,12 @@ use zenoh::sample::Sample;
 use zenoh_session::{Past, Queue, QueueLimits};
 
 use super::entity::Kind;
-use super::{Attachment, Member, description};
+use super::{Attachment, Keeping, Member, description};
 use crate::GatewayError;
 
 /// Senders of a topic whose sequence is followed; who has more is not informed what it
 /// lost.
 const MAX_SENDERS: usize = 64;
-
-/// Which messages a topic has for those who come late, in the words of ROS.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Keeping {
-    /// Best effort, volatile: sensors.
-    Fresh,
-    /// Reliable, volatile.
-    Reliable,
-    /// Reliable, transient local: the last of each sender is there.
-    Kept,
-}
 
 /// Receives messages.
 pub(crate) struct Subscription<M> {

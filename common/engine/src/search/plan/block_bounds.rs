@@ -1,10 +1,9 @@
 //! Where the robot may be, roughly: upper bounds, block by block.
 
 use super::Workspace;
+use super::search::Bounding;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::bounds::set_bounds::SetBounds;
-use crate::search::bounds::set_program::SetProgram;
 use crate::search::index::SearchIndex;
 use crate::search::index::within::Size;
 use crate::simd::Simd;
@@ -28,13 +27,6 @@ impl BlockBounds {
     pub fn rows(&self) -> usize {
         self.bounds.len() / self.columns
     }
-}
-
-/// What blocks are bounded with.
-#[derive(Debug, Default)]
-pub(in crate::search) struct Bounding {
-    program: SetProgram,
-    bounds: SetBounds,
 }
 
 impl SearchIndex {

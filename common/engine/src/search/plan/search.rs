@@ -1,12 +1,13 @@
 //! Searches of a prepared map, whichever way they go.
 
 use super::attempt::Attempt;
-use super::block_bounds::Bounding;
 use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::beam_sampling::{self, BeamSampling};
+use crate::search::bounds::set_bounds::SetBounds;
+use crate::search::bounds::set_program::SetProgram;
 use crate::search::index::SearchIndex;
 use crate::search::task::lead::Lead;
 use crate::search::task::{Shared, Task};
@@ -26,6 +27,13 @@ pub struct Workspace {
     sampling: BeamSampling,
     shares: Vec<beam_sampling::Share>,
     pub(in crate::search) bounding: Bounding,
+}
+
+/// What blocks are bounded with.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Bounding {
+    pub(super) program: SetProgram,
+    pub(super) bounds: SetBounds,
 }
 
 impl SearchIndex {

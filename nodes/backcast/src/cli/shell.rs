@@ -7,7 +7,7 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use command_line::{CommandError, OutputError, stdout};
 
-use crate::cli::Cli;
+use super::Cli;
 
 /// What `backcast completions` takes.
 #[derive(Debug, Args)]

@@ -7,8 +7,7 @@ use clap::Subcommand;
 use evaluation::{evaluate, locate};
 use recording_tools::{convert, doctor, info, simulate};
 
-use crate::cli::{EXIT_CODES, end};
-use crate::shell;
+use super::{EXIT_CODES, end, shell};
 
 /// What is done with recordings.
 #[derive(Debug, Subcommand)]

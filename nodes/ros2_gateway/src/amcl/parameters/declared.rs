@@ -1,6 +1,6 @@
 //! The parameters of AMCL: what each holds, what it means here, and which mean nothing.
 
-use crate::amcl::parameters::Value;
+use super::Value;
 
 /// A parameter.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,98 @@
+//! Telegrams in a stream, in either encoding.
+
+use super::cola_b::Parity;
+use super::{Encoding, LmdScanData, Telegram, cola_a, cola_b};
+use crate::SickError;
+use crate::framer::{self, Judgement, Pending, Protocol};
+
+impl Encoding {
+    /// Appends a telegram with everything around it. A content beyond
+    /// [`cola_b::MAX_CONTENT`] would not be read again.
+    pub fn frame(self, telegram: &Telegram<'_>, out: &mut Vec<u8>) {
+        match self {
+            Encoding::Text => cola_a::frame(out, |out| telegram.write(self, out)),
+            Encoding::Binary => cola_b::frame(out, |out| telegram.write(self, out)),
+        }
+    }
+}
+
+/// CoLa as a protocol: an encoding, and what its checksum needs.
+#[derive(Debug, Default)]
+pub struct Cola {
+    encoding: Encoding,
+    parity: Parity,
+}
+
+/// Finds CoLa telegrams of either direction in a stream.
+pub type Framer = framer::Framer<Cola>;
+
+impl Framer {
+    /// A framer at the start of a stream in this encoding.
+    #[must_use]
+    pub fn new(encoding: Encoding) -> Self {
+        Framer::of(Cola {
+            encoding,
+            parity: Parity::default(),
+        })
+    }
+}
+
+impl Protocol for Cola {
+    type Telegram<'a> = Telegram<'a>;
+
+    fn extend(&mut self, piece: &[u8]) {
+        if self.encoding == Encoding::Binary {
+            self.parity.extend(piece);
+        }
+    }
+
+    fn release(&mut self, count: usize) {
+        if self.encoding == Encoding::Binary {
+            self.parity.release(count);
+        }
+    }
+
+    fn judge(&self, pending: Pending<'_>) -> Judgement {
+        match self.encoding {
+            Encoding::Text => cola_a::judge(pending),
+            Encoding::Binary => cola_b::judge(&self.parity, pending),
+        }
+    }
+
+    fn stands_alone(&self, content: &[u8]) -> bool {
+        self.encoding == Encoding::Binary && LmdScanData::is_in(content)
+    }
+
+    fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
+        Telegram::read(self.encoding, content)
+    }
+
+    fn read_again<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
+        match LmdScanData::is_in(content) {
+            true => LmdScanData::read_checked(self.encoding, content).map(Telegram::ScanData),
+            false => self.read(content),
+        }
+    }
+}
+
+/// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
+#[cfg(test)]
+pub(super) fn seen(encoding: Encoding, pieces: &[&[u8]]) -> Vec<String> {
+    let mut framer = Framer::new(encoding);
+    let mut seen = Vec::new();
+    let mut drain = |framer: &mut Framer| {
+        while let Some(next) = framer.next_frame() {
+            seen.push(match next {
+                Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
+                Err(error) => format!("!{error}"),
+            });
+        }
+    };
+    for piece in pieces {
+        framer.push(piece);
+        drain(&mut framer);
+    }
+    framer.finish();
+    drain(&mut framer);
+    seen
+}

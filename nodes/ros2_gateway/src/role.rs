@@ -1,0 +1,79 @@
+//! What the gateway is to the robot, and the options that go with it.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use crate::GatewayError;
+
+/// Options of the gateway in AMCL's place.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "In AMCL's place")]
+pub struct Options {
+    /// What the gateway is to the robot
+    #[arg(long = "as", value_name = "ROLE", default_value = "seed")]
+    pub role: Role,
+
+    /// Parameters in the form of ROS, as nav2_amcl has them; with --as amcl
+    #[arg(long, value_name = "FILE")]
+    pub params_file: Option<PathBuf>,
+
+    /// Start active, for robots without a lifecycle manager; with --as amcl
+    #[arg(long)]
+    pub autostart: bool,
+
+    /// Believe initial poses of initialpose, set_initial_pose and the parameters at once,
+    /// with no scan that confirms them; with --as amcl
+    #[arg(long)]
+    pub believe_initial_pose: bool,
+}
+
+impl Options {
+    /// Refuses what counts in AMCL's place alone.
+    pub(crate) fn check(&self) -> Result<(), GatewayError> {
+        let given = [
+            (self.params_file.is_some(), "params-file"),
+            (self.autostart, "autostart"),
+            (self.believe_initial_pose, "believe-initial-pose"),
+        ];
+        match given.into_iter().find(|(is_given, _)| *is_given) {
+            Some((_, option)) if self.role != Role::Amcl => Err(GatewayError::Option {
+                option,
+                reason: "allowed with --as amcl".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What the gateway is to the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Role {
+    /// Beside a particle filter, which gets its initial pose
+    Seed,
+    /// In the place of nav2_amcl
+    Amcl,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use crate::Config;
+
+    #[test]
+    fn options_of_amcls_place_are_refused_elsewhere() {
+        let parse = |words: &[&str]| Config::parse_from(["ros2_gateway"].iter().chain(words));
+        let options: [&[&str]; 3] = [
+            &["--autostart"],
+            &["--params-file", "a"],
+            &["--believe-initial-pose"],
+        ];
+        for words in options {
+            let error = parse(words).amcl.check().unwrap_err().to_string();
+            assert_eq!(error, format!("{}: allowed with --as amcl", words[0]));
+            let with = [words, &["--as", "amcl"]].concat();
+            parse(&with).amcl.check().unwrap();
+        }
+    }
+}

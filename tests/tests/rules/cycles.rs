@@ -1,0 +1,262 @@
+//! Files of a crate depend on each other in one direction.
+//!
+//! A file that lies below another one may use what that one has, and the other way round: what
+//! stands in a folder's `mod.rs` is there for the files in it. Between all others there is no
+//! way back, so that each file can be read with those alone on which it builds. What an error
+//! names, as the limit that was passed, does not count: `error.rs` does nothing with it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use syn::visit::Visit;
+use syn::{Attribute, Item, UseTree};
+
+use crate::workspace::metadata;
+
+/// A module by the names on the way to it from the root of its crate.
+type Name = Vec<String>;
+
+/// What a file has and what it uses; tests and what is declared inside functions count as used.
+#[derive(Default)]
+struct Module {
+    /// Modules in files of their own and in this one.
+    children: BTreeSet<String>,
+    /// Names that it brings in, by what they are called here.
+    imports: BTreeMap<String, Name>,
+    /// Modules of which it brings in everything.
+    globs: Vec<Name>,
+    /// What is defined here.
+    items: BTreeSet<String>,
+    /// All paths in it.
+    paths: BTreeSet<Name>,
+}
+
+#[test]
+fn no_two_files_of_a_crate_depend_on_each_other() {
+    let mut seen = 0;
+    let mut cycles = Vec::new();
+    for package in metadata()["packages"].as_array().unwrap() {
+        for target in package["targets"].as_array().unwrap() {
+            let root = Path::new(target["src_path"].as_str().unwrap());
+            let is_of_src = root.parent().unwrap().ends_with("src");
+            if !is_of_src {
+                continue;
+            }
+            let modules = modules_of(root);
+            seen += modules.len();
+            let crate_name = package["name"].as_str().unwrap();
+            let found = cycles_between(&modules).into_iter();
+            cycles.extend(found.map(|way| format!("{crate_name}: {way}")));
+        }
+    }
+    assert!(seen > 500, "only {seen} files were read");
+    assert!(cycles.is_empty(), "{}", cycles.join("\n"));
+}
+
+/// The modules of a crate that have files of their own, but for those of tests.
+fn modules_of(root: &Path) -> BTreeMap<Name, Module> {
+    let mut modules = BTreeMap::new();
+    let folder = root.parent().unwrap();
+    read(root, folder, Vec::new(), &mut modules);
+    modules
+}
+
+fn read(file: &Path, folder: &Path, name: Name, modules: &mut BTreeMap<Name, Module>) {
+    let source = syn::parse_file(&std::fs::read_to_string(file).unwrap()).unwrap();
+    let mut module = Module::default();
+    for item in &source.items {
+        if let Item::Mod(child) = item
+            && child.content.is_none()
+            && !is_for_tests(&child.attrs)
+        {
+            let child = child.ident.to_string();
+            let below = folder.join(&child);
+            let alone = below.with_extension("rs");
+            let file = match alone.exists() {
+                true => alone,
+                false => below.join("mod.rs"),
+            };
+            read(&file, &below, joined(&name, [&child]), modules);
+            module.children.insert(child);
+        }
+    }
+    module.visit_file(&source);
+    modules.insert(name, module);
+}
+
+fn is_for_tests(attributes: &[Attribute]) -> bool {
+    let is_cfg = |attribute: &&Attribute| attribute.path().is_ident("cfg");
+    attributes.iter().filter(is_cfg).any(|attribute| {
+        let mut text = String::new();
+        let tokens = attribute.meta.require_list().unwrap().tokens.clone();
+        text.push_str(&tokens.to_string());
+        text.contains("test")
+    })
+}
+
+fn joined<S: ToString>(name: &[String], rest: impl IntoIterator<Item = S>) -> Name {
+    let rest = rest.into_iter().map(|part| part.to_string());
+    name.iter().cloned().chain(rest).collect()
+}
+
+impl Module {
+    fn import(&mut self, before: &[String], tree: &UseTree) {
+        match tree {
+            UseTree::Path(path) => self.import(&joined(before, [&path.ident]), &path.tree),
+            UseTree::Name(name) if name.ident == "self" => {
+                self.imports
+                    .insert(before.last().unwrap().clone(), before.to_vec());
+            }
+            UseTree::Name(name) => {
+                let path = joined(before, [&name.ident]);
+                self.imports.insert(name.ident.to_string(), path);
+            }
+            UseTree::Rename(name) => {
+                let path = joined(before, [&name.ident]);
+                self.imports.insert(name.rename.to_string(), path);
+            }
+            UseTree::Glob(_) => self.globs.push(before.to_vec()),
+            UseTree::Group(group) => {
+                let trees = group.items.iter();
+                trees.for_each(|tree| self.import(before, tree));
+            }
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Module {
+    fn visit_item(&mut self, item: &'ast Item) {
+        let defined = match item {
+            Item::Mod(inner) if is_for_tests(&inner.attrs) => return,
+            Item::Use(import) => return self.import(&[], &import.tree),
+            Item::Const(item) => Some(&item.ident),
+            Item::Enum(item) => Some(&item.ident),
+            Item::Fn(item) => Some(&item.sig.ident),
+            Item::Static(item) => Some(&item.ident),
+            Item::Struct(item) => Some(&item.ident),
+            Item::Trait(item) => Some(&item.ident),
+            Item::Type(item) => Some(&item.ident),
+            Item::Union(item) => Some(&item.ident),
+            _ => None,
+        };
+        self.items.extend(defined.map(ToString::to_string));
+        syn::visit::visit_item(self, item);
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let names = path.segments.iter().map(|part| part.ident.to_string());
+        self.paths.insert(names.collect());
+        syn::visit::visit_path(self, path);
+    }
+}
+
+/// The module in which what a path names is defined, if it is of this crate.
+///
+/// `asked` are the modules whose globs are being followed: two may bring in each other.
+fn home(
+    modules: &BTreeMap<Name, Module>,
+    from: &[String],
+    path: &[String],
+    asked: &mut BTreeSet<Name>,
+) -> Option<Name> {
+    let mut at = from.to_vec();
+    let mut path = path;
+    while let [first, rest @ ..] = path {
+        let module = &modules[&at];
+        match first.as_str() {
+            "crate" => at.clear(),
+            "self" => {}
+            "super" => _ = at.pop(),
+            first if module.children.contains(first) => at.push(first.to_owned()),
+            first if module.items.contains(first) => return Some(at),
+            first => {
+                // What is taken from a crate may be called as the crate is.
+                let imported = module.imports.get(first);
+                if let Some(import) = imported.filter(|import| import[0] != first) {
+                    return home(modules, &at, &joined(import, rest), asked);
+                }
+                if !asked.insert(at.clone()) {
+                    return None;
+                }
+                let found = module.globs.iter().find_map(|glob| {
+                    let place = home(modules, &at, glob, asked)?;
+                    home(modules, &place, path, asked)
+                });
+                asked.remove(&at);
+                return found;
+            }
+        }
+        path = rest;
+    }
+    Some(at)
+}
+
+/// The ways between files of which each depends on the other one, through others or at once.
+fn cycles_between(modules: &BTreeMap<Name, Module>) -> Vec<String> {
+    let uses: BTreeMap<&Name, BTreeMap<Name, BTreeSet<String>>> = modules
+        .iter()
+        .map(|(name, module)| {
+            if name.last().is_some_and(|file| file == "error") {
+                return (name, BTreeMap::new());
+            }
+            let paths = module.imports.values().chain(&module.globs);
+            let mut uses: BTreeMap<Name, BTreeSet<String>> = BTreeMap::new();
+            for path in paths.chain(&module.paths) {
+                let home = home(modules, name, path, &mut BTreeSet::new());
+                let is_beside = |home: &Name| !home.starts_with(name) && !name.starts_with(home);
+                if let Some(home) = home.filter(is_beside) {
+                    let what = path.last().unwrap().clone();
+                    uses.entry(home).or_default().insert(what);
+                }
+            }
+            (name, uses)
+        })
+        .collect();
+    let reaches = |from: &Name, to: &Name| {
+        let (mut reached, mut next) = (BTreeSet::new(), vec![from]);
+        while let Some(name) = next.pop() {
+            if name == to {
+                return true;
+            }
+            if reached.insert(name) {
+                next.extend(uses[name].keys());
+            }
+        }
+        false
+    };
+    let mut ways = Vec::new();
+    for (from, others) in &uses {
+        for (to, what) in others.iter().filter(|(to, _)| reaches(to, from)) {
+            let what = Vec::from_iter(what.iter().map(String::as_str)).join(", ");
+            ways.push(format!("{} -> {}: {what}", from.join("::"), to.join("::")));
+        }
+    }
+    ways
+}
+
+#[test]
+fn ways_back_are_found_through_names_that_are_handed_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    write(
+        "lib.rs",
+        "mod a; mod b; mod c; mod d; mod error; pub use d::*; #[cfg(test)] mod tests;",
+    );
+    write("a/mod.rs", "mod inner; pub use inner::Inner;");
+    // A child may use its parent, and what lies beside that.
+    write("a/inner.rs", "use super::*; pub struct Inner(crate::c::C);");
+    write("b.rs", "use crate::{a::Inner as I, D}; pub struct B(I);");
+    write("c.rs", "pub struct C; fn f() { crate::b::B::new(); }");
+    write(
+        "d.rs",
+        "pub struct D; #[cfg(test)] mod tests { use crate::b::B; }",
+    );
+    write("error.rs", "use crate::b::B; pub struct Error;");
+    let ways = cycles_between(&modules_of(&folder.path().join("lib.rs")));
+    let expected = ["a::inner -> c: C", "b -> a::inner: I, Inner", "c -> b: new"];
+    assert_eq!(ways, expected);
+}
