@@ -4,6 +4,7 @@ use std::io;
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
+use crate::size::check_size;
 use crate::{Color, DrawingError};
 
 /// Pixels, row by row from the top.
@@ -25,7 +26,7 @@ impl Image {
         height: u32,
         mut color: impl FnMut(u32, u32) -> Color,
     ) -> Result<Self, DrawingError> {
-        crate::scene::check_size(width, height)?;
+        check_size(width, height)?;
         let mut rgba = Vec::with_capacity(4 * width as usize * height as usize);
         for y in 0..height {
             for x in 0..width {
@@ -42,7 +43,7 @@ impl Image {
     /// # Errors
     /// If a side is out of range, or the bytes are not four a pixel.
     pub fn new(width: u32, height: u32, rgba: Vec<u8>) -> Result<Self, DrawingError> {
-        crate::scene::check_size(width, height)?;
+        check_size(width, height)?;
         if rgba.len() != 4 * width as usize * height as usize {
             return Err(DrawingError::Pixels {
                 width,

@@ -21,6 +21,7 @@ mod image;
 mod path;
 mod raster;
 mod scene;
+mod size;
 mod text;
 mod vector;
 
@@ -30,6 +31,7 @@ pub use error::DrawingError;
 pub use image::Image;
 pub use path::{Path, Rect};
 pub use raster::to_png;
-pub use scene::{Label, MAX_SIDE, Scene, Stroke};
+pub use scene::{Label, Scene, Stroke};
+pub use size::MAX_SIDE;
 pub use text::{Anchor, TextStyle, Weight};
 pub use vector::to_svg;

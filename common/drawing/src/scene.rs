@@ -1,9 +1,7 @@
 //! What a picture shows, from the back to the front.
 
+use crate::size::check_size;
 use crate::{Color, DrawingError, Image, Path, Rect, TextStyle, text};
-
-/// Most pixels along a side.
-pub const MAX_SIDE: u32 = 16_384;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +62,7 @@ impl Scene {
     /// is what a viewer of SVG says that it is; it is not drawn.
     ///
     /// # Errors
-    /// If a side is 0 or above [`MAX_SIDE`].
+    /// If a side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn new(
         width: u32,
         height: u32,
@@ -110,7 +108,7 @@ impl Scene {
     /// Cuts the picture below, or adds background there.
     ///
     /// # Errors
-    /// If the height is 0 or above [`MAX_SIDE`].
+    /// If the height is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
         check_size(self.width, height)?;
         self.height = height;
@@ -184,18 +182,10 @@ impl Scene {
     }
 }
 
-pub(crate) fn check_size(width: u32, height: u32) -> Result<(), DrawingError> {
-    let allowed = 1..=MAX_SIDE;
-    if allowed.contains(&width) && allowed.contains(&height) {
-        return Ok(());
-    }
-    Err(DrawingError::Size { width, height })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Anchor;
+    use crate::{Anchor, MAX_SIDE};
 
     #[test]
     fn sides_out_of_range_are_refused() {

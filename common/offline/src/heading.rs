@@ -10,6 +10,7 @@ use ros::measurements;
 use transport::with_causes;
 
 use super::TakenScan;
+use super::topics::concerns_other;
 
 /// All that a recording says about headings, and what of it is asked for.
 #[derive(Debug, Clone)]
@@ -146,16 +147,6 @@ fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry
         source,
     })?;
     Ok(Some(odometry))
-}
-
-/// Whether an error is about a message of a channel other than `topic`.
-pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
-    match error {
-        RecordingError::Message { topic: of, .. } | RecordingError::NotCdr { topic: of, .. } => {
-            of != topic
-        }
-        _ => false,
-    }
 }
 
 #[cfg(test)]

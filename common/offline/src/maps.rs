@@ -1,5 +1,6 @@
 //! Which map counts for a scan: the newest that was recorded before it, as the
-//! graph would have it, or the first after it where none came before.
+//! graph would have it, or the first after it where none came before. Where no scan is
+//! asked for, it is the newest.
 
 use std::borrow::Cow;
 use std::iter::Peekable;
@@ -8,6 +9,8 @@ use map::OccupancyGrid;
 use recording::{Recording, RecordingError};
 use ros::OccupancyGridMsg;
 use transport::with_causes;
+
+use crate::OfflineError;
 
 /// A map that was recorded, with its log time.
 type Recorded = Result<(i64, OccupancyGridMsg), RecordingError>;
@@ -115,6 +118,24 @@ impl<'a> Arrived<'a> {
             Err(refusal) if self.refusals.contains(&refusal) => {}
             Err(refusal) => self.refusals.push(refusal),
         }
+    }
+}
+
+/// The newest map that a recording holds.
+///
+/// # Errors
+/// It holds none, or one that cannot be used.
+pub fn map_in(recording: &Recording) -> Result<OccupancyGrid, OfflineError> {
+    recording.map()?.ok_or_else(|| no_map(recording))
+}
+
+/// What is wrong with a recording without a map: that, or its damage.
+pub(super) fn no_map(recording: &Recording) -> OfflineError {
+    match recording.damage_error() {
+        Some(damage) => damage.into(),
+        None => OfflineError::NoMap {
+            recording: recording.path().to_owned(),
+        },
     }
 }
 

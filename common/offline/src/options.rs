@@ -13,7 +13,7 @@ use map::OccupancyGrid;
 use progress::say;
 use recording::{Kind, Recording};
 
-use super::session::map_in;
+use super::maps::map_in;
 use super::topics::TopicOptions;
 use crate::OfflineError;
 

@@ -9,7 +9,7 @@ use messages::{Name, ScanHeader};
 use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
 use ros::{ConversionError, LaserScan, lasers, measurements};
 
-use super::heading::concerns_other;
+use super::topics::concerns_other;
 
 /// A scan and what the recording says about it.
 #[derive(Debug, Clone, PartialEq)]

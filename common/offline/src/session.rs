@@ -18,7 +18,7 @@ use transport::with_causes;
 
 use super::heading::Headings;
 use super::layout::{check_map, frame_of, sides_of};
-use super::maps::{Arrived, Maps};
+use super::maps::{Arrived, Maps, no_map};
 use super::motion::Motion;
 use super::options::{EngineOptions, NamedMap};
 use super::scans::Scans;
@@ -358,23 +358,6 @@ fn no_usable_map(file: &Path, reason: &str) -> OfflineError {
 /// The damage of a recording, as an error.
 pub fn damage_of(recording: &Recording) -> Option<RecordingError> {
     recording.damage_error()
-}
-
-/// The newest map that a recording holds.
-///
-/// # Errors
-/// It holds none, or one that cannot be used.
-pub fn map_in(recording: &Recording) -> Result<OccupancyGrid, OfflineError> {
-    recording.map()?.ok_or_else(|| no_map(recording))
-}
-
-fn no_map(recording: &Recording) -> OfflineError {
-    match damage_of(recording) {
-        Some(damage) => damage.into(),
-        None => OfflineError::NoMap {
-            recording: recording.path().to_owned(),
-        },
-    }
 }
 
 fn map_file(options: &Options, bag: &Path) -> PathBuf {

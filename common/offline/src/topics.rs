@@ -58,3 +58,13 @@ impl TopicOptions {
         Ok(topics)
     }
 }
+
+/// Whether an error is about a message of a channel other than `topic`.
+pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
+    match error {
+        RecordingError::Message { topic: of, .. } | RecordingError::NotCdr { topic: of, .. } => {
+            of != topic
+        }
+        _ => false,
+    }
+}

@@ -4,17 +4,9 @@ use mcap::McapError;
 use mcap::records::{ChunkHeader, Record, op};
 use mcap::sans_io::LinearReader;
 
-use crate::Damage;
 use crate::feed::{each_record, feed, part_options};
 use crate::parse::{parse, reason};
-
-/// Most bytes of a record, and most that a chunk may unpack to: twice the
-/// largest map. Writers aim at chunks of about a megabyte, but a single message
-/// makes one as large as itself.
-///
-/// It bounds the memory that a damaged length can cost: for a chunk with a
-/// checksum the library takes, and fills with zeros, what the chunk claims.
-pub const MAX_CHUNK_BYTES: u64 = 2 * map::MAX_CELLS;
+use crate::{Damage, MAX_CHUNK_BYTES};
 
 /// Bytes of a chunk before its packed records, without the packing's name.
 const HEADER_BYTES: usize = 40;

@@ -1,6 +1,12 @@
-//! Damage in the bytes of a recording.
+//! Damage in the bytes of a recording, and the most that one of its records may hold.
 
-use crate::MAX_CHUNK_BYTES;
+/// Most bytes of a record, and most that a chunk may unpack to: twice the
+/// largest map. Writers aim at chunks of about a megabyte, but a single message
+/// makes one as large as itself.
+///
+/// It bounds the memory that a damaged length can cost: for a chunk with a
+/// checksum the library takes, and fills with zeros, what the chunk claims.
+pub const MAX_CHUNK_BYTES: u64 = 2 * map::MAX_CELLS;
 
 /// Where a file stops being a sound recording, and why. Offsets are bytes from
 /// its start.

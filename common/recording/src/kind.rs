@@ -4,7 +4,8 @@ use std::fmt;
 
 use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
-use crate::TF_STATIC;
+/// Where the transforms are that never change.
+pub const TF_STATIC: &str = "/tf_static";
 
 /// A kind of message, by its schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,5 +1,8 @@
 //! An open recording.
 
+mod raw;
+mod reading;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,10 +10,10 @@ use std::sync::Arc;
 use crate::block::{Block, Part};
 use crate::file::RecordedFile;
 use crate::folder::{self, Listed};
-use crate::{
-    AttachedFile, Channel, Damage, Kind, MetadataRecord, RawRecords, RecordingError, Records,
-    topics,
-};
+use crate::{AttachedFile, Channel, Damage, Kind, MetadataRecord, RecordingError, topics};
+
+pub use raw::{RawRecord, RawRecords};
+pub use reading::Records;
 
 /// A recording whose channels are known and whose checksums have been compared:
 /// one file, or several that are read as one.

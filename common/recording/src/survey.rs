@@ -5,14 +5,16 @@
 //! meets the chunks in another order than the file has them. A channel may be
 //! defined in one that is read later, and a claimed time may be wrong.
 
+mod pass;
+
 use mcap::MAGIC;
 
 use crate::Damage;
 use crate::block::Block;
 use crate::damage::shown;
 use crate::extras::Extras;
-use crate::pass::Pass;
 use crate::registry::Registry;
+use pass::Pass;
 
 /// What the first pass found.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use crate::{Channel, Kind, RecordingError};
+use crate::{Channel, Kind, RecordingError, TF_STATIC};
 
 /// Where scans are by convention.
 pub const SCAN: &str = "/scan";
@@ -15,8 +15,6 @@ pub const ODOM: &str = "/odom";
 /// Where the true poses of the scans are: always under this name, because any
 /// other pose has the same type.
 pub const GROUND_TRUTH: &str = "/ground_truth";
-/// Where the transforms are that never change.
-pub const TF_STATIC: &str = "/tf_static";
 
 fn conventional_name(kind: Kind) -> &'static str {
     match kind {

@@ -1,10 +1,8 @@
-//! What a user can set of a drive, and parsers that refuse by name.
-
-use std::f64::consts::TAU;
-use std::ops::RangeInclusive;
+//! What a user can set of a drive.
 
 use geometry::{Mount, MountError, Pose};
 
+use crate::numbers::{parse, parse_share, within};
 use crate::{LaserConfig, Noise, OdometryConfig, SonarConfig};
 
 /// How the robot drives and what it sees.
@@ -143,33 +141,6 @@ fn parse_duration(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=1.0, "seconds")
 }
 
-/// Numbers with commas between them, if they are so many.
-pub(crate) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let parsed = text.split(',').map(|word| word.trim().parse().ok());
-    parsed.collect::<Option<Vec<f64>>>()?.try_into().ok()
-}
-
-/// A number that is within a range; NaN never is.
-pub(crate) fn within(value: f64, allowed: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
-    let (low, high) = (allowed.start(), allowed.end());
-    match allowed.contains(&value) {
-        true => Ok(value),
-        false => Err(format!("{value} is not within {low} to {high} {unit}")),
-    }
-}
-
-/// A number within a range.
-pub(crate) fn parse(text: &str, allowed: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
-    let value = text
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
-    within(value, allowed, unit)
-}
-
-pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=1.0, "as a share")
-}
-
 fn parse_speed(text: &str) -> Result<f64, String> {
     parse(text, 0.01..=10.0, "metres a second")
 }
@@ -184,12 +155,6 @@ fn parse_rate(text: &str) -> Result<f64, String> {
 
 fn parse_reach(text: &str) -> Result<f64, String> {
     parse(text, 0.1..=1000.0, "metres")
-}
-
-/// An angle of a field of view, degrees in and radians out.
-pub(crate) fn parse_field_of_view(text: &str) -> Result<f64, String> {
-    let degrees = parse(text, 1.0..=360.0, "degrees")?;
-    Ok(degrees.to_radians().min(TAU))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! A laser: one ray a beam, all at one moment or one after the other.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use geometry::{Mount, Pose};
 
 use crate::Bearings;
-use crate::config::parse_field_of_view;
 use crate::noise::Receiver;
+use crate::numbers::parse;
 use crate::scene::Scene;
 
 /// Where a laser looks. Its default is that of the recordings: half a turn, two
@@ -29,6 +29,12 @@ impl LaserConfig {
         let beams = self.beams.map_or(361, |beams| beams as usize);
         Bearings::over(self.field_of_view.unwrap_or(PI), beams)
     }
+}
+
+/// An angle of a field of view, degrees in and radians out.
+fn parse_field_of_view(text: &str) -> Result<f64, String> {
+    let degrees = parse(text, 1.0..=360.0, "degrees")?;
+    Ok(degrees.to_radians().min(TAU))
 }
 
 /// The readings of all beams, metres; `map_from_base` says where the robot is at a

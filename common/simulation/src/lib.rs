@@ -14,6 +14,7 @@ mod drive;
 mod error;
 mod laser;
 mod noise;
+mod numbers;
 mod obstacles;
 mod odometry;
 mod path;

@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::config::{numbers, within};
+use crate::numbers::{numbers, within};
 
 /// Readings are in whole millimetres, as devices give them.
 const STEPS_PER_METRE: f64 = 1000.0;

@@ -4,7 +4,7 @@ use geometry::Pose;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::config::parse_share;
+use crate::numbers::parse_share;
 
 /// Errors of the wheels. Variances grow with the way, so that the rate of the
 /// scans does not matter.

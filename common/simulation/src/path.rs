@@ -6,7 +6,7 @@ use std::str::FromStr;
 use geometry::{Pose, wrap_angle};
 
 use crate::SimulationError;
-use crate::config::numbers;
+use crate::numbers::numbers;
 use crate::obstacles::Obstacles;
 
 /// Most corners of a path.

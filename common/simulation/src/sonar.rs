@@ -14,8 +14,8 @@ use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use crate::Bearings;
-use crate::config::{parse, parse_share};
 use crate::noise::Receiver;
+use crate::numbers::{parse, parse_share};
 use crate::scene::Scene;
 
 /// Where the transducers look, degrees counter-clockwise from ahead: six ahead

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use command_line::stdout;
-use engine::tracking::FollowConfig;
 use map::OccupancyGrid;
 use offline::{Accepted, OfflineError, Options, Session, damage_of};
 use plots::{PlotError, draw_drive};
@@ -13,62 +12,8 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
-use super::{course, drive, follow, jumps, outages, starts};
+use super::{SequenceOptions, course, drive, follow, jumps, outages, starts};
 use crate::EvaluationError;
-
-/// Further options of `backcast evaluate --sequence`.
-#[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Sequences")]
-pub(crate) struct SequenceOptions {
-    /// Track the pose over each recording: from many starts, after moving the robot
-    /// elsewhere ("kidnapped"), and over the whole
-    #[arg(long)]
-    pub sequence: bool,
-
-    /// Number of starts, spread over the recording, 1..=1000
-    #[arg(long, value_name = "COUNT", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub starts: u32,
-
-    /// How many times the robot is moved elsewhere, 0..=1000
-    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub kidnaps: u32,
-
-    /// How many times no data come for 0.5 to 4 s and odometry then begins anew, 0..=1000
-    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub outages: u32,
-
-    /// Ignore the odometry
-    #[arg(long)]
-    pub without_odometry: bool,
-
-    /// Multiply the errors of odometry, against the truth, by this factor, 0..=100
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
-    pub odometry_noise: f64,
-
-    /// True poses that are known to be wrong, by the numbers of their scans from 0
-    #[arg(long, value_name = "N,N", value_delimiter = ',')]
-    pub ignore_truth: Vec<u64>,
-
-    /// Write the drive from its first scan, with no guess, as trajectories to this
-    /// folder, and the true ones beside them (TUM format, which evo reads)
-    #[arg(long, value_name = "FOLDER")]
-    pub trajectories: Option<PathBuf>,
-
-    /// Draw it into this folder: the map, the path, and where the pose was not unique
-    #[arg(long, value_name = "FOLDER")]
-    pub pictures: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub follow: FollowConfig,
-}
-
-fn parse_factor(text: &str) -> Result<f64, String> {
-    let allowed = 0.0..=100.0;
-    match text.parse() {
-        Ok(factor) if allowed.contains(&factor) => Ok(factor),
-        _ => Err("0 to 100 are allowed".to_owned()),
-    }
-}
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.

@@ -10,8 +10,10 @@ mod figures;
 mod follow;
 mod interruption;
 mod jumps;
+mod options;
 mod outages;
 mod run;
 mod starts;
 
-pub(crate) use command::{SequenceOptions, evaluate};
+pub(crate) use command::evaluate;
+pub(crate) use options::SequenceOptions;

@@ -11,8 +11,9 @@ use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag};
 
 use super::file::{self, ending};
-use super::tally::Tally;
-use super::{to_carmen, to_recording};
+use super::report::Report;
+use super::to_carmen;
+use super::to_recording::{self, Rules};
 use crate::RecordingToolsError;
 
 /// What stands below the options.
@@ -48,70 +49,6 @@ fn range(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(range) if (0.1..=10_000.0).contains(&range) => Ok(range),
         _ => Err("allowed are 0.1 to 10000 m".to_owned()),
-    }
-}
-
-/// How a log is understood.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rules {
-    /// Whether laser poses are true ones.
-    pub(super) truth: bool,
-    pub(super) range_max_m: f32,
-}
-
-/// What was converted.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Report {
-    pub(super) scans: u64,
-    pub(super) odometry: u64,
-    /// Messages of a bag, whatever they are.
-    pub(super) messages: u64,
-    /// How lasers were understood, a line each.
-    pub(super) remarks: Vec<String>,
-    /// Lines of a log that were left out.
-    pub(super) tally: Tally,
-    /// Messages that could not be read, and why the first could not.
-    pub(super) refused: u64,
-    pub(super) first_refusal: Option<String>,
-    /// Why the file could not be read to its end.
-    pub(super) damage: Option<String>,
-    /// Scans whose laser sits elsewhere than that of the first one.
-    pub(super) moved_mounts: u64,
-}
-
-impl Report {
-    /// What could not be read, a line each.
-    fn losses(&self) -> Vec<String> {
-        let mut losses = Vec::new();
-        if let Some(first) = &self.tally.first_broken {
-            losses.push(format!(
-                "{} could not be read; {first}",
-                self.tally.broken_lines()
-            ));
-        }
-        if let Some(first) = &self.first_refusal {
-            losses.push(format!("{} could not be read; {first}", self.refused));
-        }
-        if let Some(damage) = &self.damage {
-            losses.push(format!(
-                "it is damaged, and was read only to there: {damage}"
-            ));
-        }
-        losses
-    }
-
-    /// Why there is nothing, in words.
-    fn why_nothing(&self) -> String {
-        let mut reasons = Vec::new();
-        if self.odometry > 0 {
-            reasons.push(format!("{} poses of the odometry", self.odometry));
-        }
-        reasons.extend(self.tally.text());
-        reasons.extend(self.losses());
-        match reasons.is_empty() {
-            true => "it is empty".to_owned(),
-            false => format!("it holds {}", reasons.join("; ")),
-        }
     }
 }
 

@@ -3,7 +3,8 @@
 //! `carmen`, `read` and `write` are the text format, `parameters` and `angles` what a log says
 //! of its lasers beside their readings, `turning` which way their beams run (all pure);
 //! `file` detects kinds of files, `survey` reads a log for the first time, `to_recording`
-//! and `to_carmen` translate. Lines that are not converted are counted by kind (`tally`).
+//! and `to_carmen` translate. Lines that are not converted are counted by kind (`tally`);
+//! `report` says what came of it.
 
 mod angles;
 mod carmen;
@@ -11,6 +12,7 @@ mod command;
 mod file;
 mod parameters;
 mod read;
+mod report;
 mod source;
 mod survey;
 mod tally;

@@ -1,11 +1,10 @@
 //! A laser of a log that becomes a topic of a recording.
 
 use recording::SCAN;
-use ros::{LaserScan, Time};
+use ros::{Header, LaserScan, Time};
 
 use super::carmen::{Kind, Laser, name_of};
 use super::survey::Survey;
-use super::to_recording::header;
 
 /// Where the scans of one laser come from and go to.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +76,7 @@ impl Source {
             (start, step) = (start + steps * step, -step);
         }
         let scan = LaserScan {
-            header: header(stamp, &self.frame),
+            header: Header::new(stamp, &self.frame),
             angle_min: start as f32,
             angle_max: (start + steps * step) as f32,
             angle_increment: step as f32,

@@ -8,7 +8,7 @@ use ros::LaserScan;
 use transport::with_causes;
 
 use super::carmen::{Odometry, Poses};
-use super::command::Report;
+use super::report::Report;
 use super::write::{self, Scan};
 use crate::RecordingToolsError;
 

@@ -13,15 +13,23 @@ use transport::with_causes;
 
 use super::angles;
 use super::carmen::{Broken, Fault, Laser, Line, Odometry};
-use super::command::{Report, Rules};
 use super::file::for_each_line;
 use super::read;
+use super::report::Report;
 use super::source::Source;
 use super::survey::Survey;
 use crate::RecordingToolsError;
 
 /// Two mounts are the same if they differ by less: logs have six digits.
 const SAME_MOUNT: f64 = 1e-3;
+
+/// How a log is understood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rules {
+    /// Whether laser poses are true ones.
+    pub(super) truth: bool,
+    pub(super) range_max_m: f32,
+}
 
 /// Writes what the lines say. `open` opens the log, which is read twice. What cannot
 /// be read is counted.
@@ -141,7 +149,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         laser: geometry::Pose,
     ) -> Result<(), RecordingToolsError> {
         let truth = PoseStamped {
-            header: header(stamp, "map"),
+            header: Header::new(stamp, "map"),
             pose: ros::Pose::from_planar(laser),
         };
         self.write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))
@@ -170,7 +178,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         }
         let motion = geometry::Pose::new(forward, 0.0, turn);
         let message = ros::Odometry {
-            header: header(stamp, "odom"),
+            header: Header::new(stamp, "odom"),
             child_frame_id: "base_link".to_owned(),
             pose: ros::PoseWithCovariance::from_planar(robot, [0.0; 9]),
             twist: TwistWithCovariance {
@@ -199,7 +207,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         }
         self.mounts.push((frame.to_owned(), base_from_laser));
         let transform = |(frame, pose): &(String, geometry::Pose)| TransformStamped {
-            header: header(stamp, "base_link"),
+            header: Header::new(stamp, "base_link"),
             child_frame_id: frame.clone(),
             transform: Transform {
                 translation: Vector3 {
@@ -234,10 +242,6 @@ fn late(name: String, time_ns: i64) -> Broken {
         fault: Fault::Time,
         reason: format!("a recording cannot say a time of {time_ns} ns"),
     }
-}
-
-pub(super) fn header(stamp: Time, frame: &str) -> Header {
-    Header::new(stamp, frame)
 }
 
 /// A time, if a recording can say it.

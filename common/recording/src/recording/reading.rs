@@ -1,9 +1,9 @@
 //! The messages of a recording that are read, decoded, in the order of their log
 //! times.
 
-use crate::{
-    Channel, Kind, Message, RawRecord, RawRecords, Record, Recording, RecordingError, unpack,
-};
+use super::Recording;
+use super::raw::{RawRecord, RawRecords};
+use crate::{Channel, Kind, Message, Record, RecordingError, unpack};
 
 /// Iterates over a recording's messages by log time; where times are equal, in
 /// the order of the file.

@@ -10,13 +10,13 @@ use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader};
 use mcap::{MAGIC, McapError};
 
+use super::Survey;
 use crate::block::Block;
 use crate::chunk::Chunk;
 use crate::damage::shown;
 use crate::feed::{feed, options};
 use crate::parse::{name, parse, reason};
 use crate::registry::Registry;
-use crate::survey::Survey;
 use crate::{Damage, MAX_CHUNK_BYTES};
 
 /// How far the pass is.

@@ -9,10 +9,11 @@ use std::collections::BinaryHeap;
 
 use mcap::records::{Record, op};
 
+use super::Recording;
 use crate::block::Block;
 use crate::file::RecordedFile;
 use crate::parse::parse;
-use crate::{Channel, Damage, Recording, RecordingError};
+use crate::{Channel, Damage, RecordingError};
 
 /// A message that is not decoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
