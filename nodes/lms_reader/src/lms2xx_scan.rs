@@ -139,7 +139,7 @@ mod tests {
             upside_down: false,
             laser: Name::new(""),
             frame: FrameName::new("laser"),
-            stamps: crate::Stamps::Host,
+            stamps: crate::scan::Stamps::Host,
         }
     }
 

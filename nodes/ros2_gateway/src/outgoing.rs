@@ -2,7 +2,7 @@
 
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict};
-use ros::{Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time, TransformStamped};
+use ros::{Header, PoseArray, PoseWithCovarianceStamped, TfMessage, TransformStamped};
 use transport::TransportError;
 use zenoh_session::Report;
 

@@ -8,7 +8,8 @@ use sick::cola::{Answer, Encoding, Framer, Telegram, Value};
 
 use super::outlet::{Outlet, SLICE};
 use crate::cola_setup::{Setup, Wanted};
-use crate::{Config, LmsError, Stamps};
+use crate::scan::Stamps;
+use crate::{Config, LmsError};
 
 /// How long an attempt to connect, or to send the request, may take. A device
 /// is near, and a stop must not wait for long.
