@@ -12,31 +12,10 @@ use std::path::{Path, PathBuf};
 use geometry::Pose;
 use serde_saphyr::{MessageFormatter, Spanned, UserMessageFormatter};
 
-use crate::grid::{origin_is_allowed, resolution_is_allowed};
 use crate::keys::{Keys, Scalar};
-use crate::rules::Rules;
+use crate::limits::{origin_is_allowed, resolution_is_allowed};
+use crate::rules::{Mode, Rules, Thresholds};
 use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError, UnknownKey};
-
-/// How the shades of an image become occupancy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mode {
-    /// Occupied, free or unknown by the thresholds.
-    #[default]
-    Trinary,
-    /// As trinary, but between the thresholds 0..=100; transparent is unknown.
-    Scale,
-    /// The shade itself, 0..=100; brighter is unknown.
-    Raw,
-}
-
-/// Where shares of occupancy, 0..=1, turn occupied and free.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Thresholds {
-    /// Above it a cell is occupied.
-    pub(crate) occupied: f64,
-    /// Below it a cell is free.
-    pub(crate) free: f64,
-}
 
 /// What a description says.
 #[derive(Debug, PartialEq)]
