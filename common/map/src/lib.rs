@@ -32,4 +32,6 @@ pub use load::{image_of, load, load_noting, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
 pub use rules::Mode;
 pub use save::save;
-pub use set::{MAX_MAPS, MapFile, MapSet, Transition, set_of, set_of_files};
+pub use set::{
+    MAX_MAPS, MapFile, MapSet, Transition, list_of, set_of, set_of_files, set_of_noting,
+};

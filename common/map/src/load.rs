@@ -95,7 +95,8 @@ fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
     rows.flatten().map(|pixel| rules.occupancy(pixel)).collect()
 }
 
-fn read_text(yaml: &Path) -> Result<String, MapError> {
+/// The text of a description.
+pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
     let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
         MapError::Description {
             path: yaml.to_owned(),
