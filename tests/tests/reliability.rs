@@ -6,7 +6,7 @@
 )]
 
 use std::collections::BTreeSet;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ use recording::{Message, Recording};
 use serde_json::{Value, json};
 use tests::live::{Live, files_of};
 use tests::needs::Need;
-use transport::testing::wait_for_health;
+use transport::testing::{OwnFileSystem, wait_for_health};
 use transport::{Graph, GraphName, monotonic_ns};
 
 fn name(tag: &str) -> String {
@@ -239,34 +239,11 @@ fn fill(path: &str) {
 /// its own, of so many bytes. If not, it has been run there, or the kernel forbids that,
 /// which is said.
 fn has_its_own(test: &str, path: &str, size: &str) -> bool {
-    const INSIDE: &str = "BACKCAST_TEST_INSIDE";
-    if std::env::var_os(INSIDE).is_some() {
-        return true;
-    }
     // The executables are built before, where there is room.
     let _ = tests::executables::path("backcast");
-    let mount = format!("mount -t tmpfs -o size={size} tmpfs {path}");
-    let user: &[&str] = match nix::unistd::geteuid().is_root() {
-        true => &["--mount"],
-        false => &["--mount", "--user", "--map-root-user"],
-    };
-    let probe = Command::new("unshare")
-        .args(user)
-        .args(["sh", "-c", &mount])
-        .stderr(Stdio::null())
-        .status();
-    if !probe.is_ok_and(|status| status.success()) {
+    let place = OwnFileSystem::of_test(test, path, size);
+    if place == OwnFileSystem::Forbidden {
         Need::Namespaces.is_missing(test, "this kernel lets this user mount nothing");
-        return false;
     }
-    let inner = format!("{mount} && exec \"$0\" {test} --exact --nocapture");
-    let status = Command::new("unshare")
-        .args(user)
-        .args(["sh", "-c", &inner])
-        .arg(std::env::current_exe().unwrap())
-        .env(INSIDE, "1")
-        .status()
-        .unwrap();
-    assert!(status.success(), "{test} fails in a namespace of its own");
-    false
+    place == OwnFileSystem::Here
 }

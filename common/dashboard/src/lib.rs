@@ -25,6 +25,7 @@ mod webhook;
 
 pub use error::DashboardError;
 pub use options::Options;
-pub use robot::{Abilities, Request, Robot};
+pub use robot::{Request, Robot};
 pub use robots::Robots;
 pub use server::Server;
+pub use view::Abilities;

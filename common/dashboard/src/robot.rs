@@ -13,13 +13,12 @@ use messages::{
     Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, LogHeader,
     MapHeader, PoseHeader,
 };
-use serde::Serialize;
 use tokio::sync::{broadcast, watch};
 use transport::wall_ns;
 
 use crate::view::{
-    Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot, StateChange,
-    Times, Track, Tracked, field_frame,
+    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot,
+    StateChange, Times, Track, Tracked, field_frame,
 };
 use crate::webhook::Webhook;
 
@@ -36,15 +35,6 @@ pub enum Request {
     Region(Vec<[f64; 2]>),
     /// A black box be saved.
     Save,
-}
-
-/// Whether a node listens to requests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Abilities {
-    /// An accumulator takes regions.
-    pub region: bool,
-    /// A recorder saves its black box.
-    pub save: bool,
 }
 
 /// A robot that can be watched.

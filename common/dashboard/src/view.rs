@@ -32,8 +32,6 @@ use geometry::Covariance;
 use messages::Pose2;
 use serde::Serialize;
 
-use crate::robot::Abilities;
-
 /// A message to those who watch a robot.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -68,6 +66,15 @@ pub(crate) enum Message<'a> {
         /// Its clock.
         t: f64,
     },
+}
+
+/// Whether a node listens to requests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Abilities {
+    /// An accumulator takes regions.
+    pub region: bool,
+    /// A recorder saves its black box.
+    pub save: bool,
 }
 
 /// A region of the map, or all of it.

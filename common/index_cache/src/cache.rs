@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::SystemTime;
 
@@ -10,7 +10,7 @@ use engine::EngineError;
 use engine::localizer::{Localizer, Preparation};
 use engine::search::{IndexKey, SearchIndex};
 
-use crate::error::FileError;
+use crate::error::{FileError, failed};
 use crate::{CacheError, file, folder};
 
 /// A folder of kept indexes. It may be used by several processes at once, and any file
@@ -146,18 +146,6 @@ impl IndexCache {
         // It is the last to be removed now; where that cannot be noted, so be it.
         let _ = file.set_modified(SystemTime::now());
         Ok(Some(index))
-    }
-}
-
-pub(crate) fn failed(
-    action: &'static str,
-    path: &Path,
-) -> impl Fn(std::io::Error) -> CacheError + use<> {
-    let path = path.to_owned();
-    move |source| CacheError::File {
-        action,
-        path: path.clone(),
-        source,
     }
 }
 

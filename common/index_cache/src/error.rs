@@ -1,7 +1,7 @@
 //! Errors of cached indexes.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use engine::search::SectionError;
 
@@ -64,6 +64,19 @@ pub enum CacheError {
         /// The same.
         limit_mb: u64,
     },
+}
+
+/// The error of what the system refuses to do with a file or folder.
+pub(crate) fn failed(
+    action: &'static str,
+    path: &Path,
+) -> impl Fn(io::Error) -> CacheError + use<> {
+    let path = path.to_owned();
+    move |source| CacheError::File {
+        action,
+        path: path.clone(),
+        source,
+    }
 }
 
 /// What is wrong with a file.

@@ -9,7 +9,7 @@ use std::time::SystemTime;
 use tempfile::NamedTempFile;
 
 use crate::CacheError;
-use crate::cache::failed;
+use crate::error::failed;
 
 /// How the names of all files end.
 pub(crate) const ENDING: &str = "index";

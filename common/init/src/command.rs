@@ -21,6 +21,7 @@ use crate::descriptor::{Served, Source, descriptor_of};
 pub const NOTES: &str = "\
 Examples:
   backcast init --laser 192.168.0.1 --map map.yaml --mount 0.2,0,0 --out graph.yaml
+  backcast init --laser 192.168.0.1 --maps building/ --out graph.yaml
   backcast init --serial /dev/ttyUSB0 --map map.yaml --out graph.yaml
   backcast init --ros2 tcp/192.168.0.5:7447 --out graph.yaml
   backcast init --replay drive.mcap --map map.yaml --out graph.yaml
@@ -125,7 +126,8 @@ fn source(config: &Config) -> Result<Source, InitError> {
     let is_robot = config.ros2.is_some();
     let has_map = config.map.is_some() || config.maps.is_some();
     if !has_map && !is_robot {
-        let needed = "--map is missing: the map of the building, a YAML file beside its image";
+        let needed = "--map is missing, the map of the building, a YAML file beside its image; \
+                      or --maps, a folder of several";
         return Err(InitError::Usage(needed.to_owned()));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
@@ -194,7 +196,7 @@ fn used_map(file: &Path) -> Result<String, InitError> {
 }
 
 fn used_set(path: &Path) -> Result<String, InitError> {
-    for map in map::set_of(path)?.maps {
+    for map in map::set_of_noting(path, say)?.maps {
         map::load(map.yaml)?;
     }
     absolute(path)

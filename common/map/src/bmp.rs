@@ -10,9 +10,8 @@ use image::codecs::bmp::BmpDecoder;
 use image::{ColorType, ImageDecoder};
 
 use crate::MapError;
-use crate::grid::size_is_allowed;
-use crate::kind::Claim;
-use crate::load::HEAD_BYTES;
+use crate::claim::{Claim, HEAD_BYTES};
+use crate::limits::size_is_allowed;
 use crate::raster::{Channels, Raster, Samples};
 
 /// The bytes that every such file starts with.

@@ -5,38 +5,19 @@
 //! mode). Other programs add keys of their own: they are returned, so that a
 //! misspelt one is not lost without a word. The image is named here, not opened.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use geometry::Pose;
+use serde::de::IgnoredAny;
 use serde_saphyr::{MessageFormatter, Spanned, UserMessageFormatter};
 
-use crate::grid::{origin_is_allowed, resolution_is_allowed};
 use crate::keys::{Keys, Scalar};
-use crate::rules::Rules;
+use crate::limits::{origin_is_allowed, resolution_is_allowed};
+use crate::rules::{Mode, Rules, Thresholds};
 use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError, UnknownKey};
-
-/// How the shades of an image become occupancy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mode {
-    /// Occupied, free or unknown by the thresholds.
-    #[default]
-    Trinary,
-    /// As trinary, but between the thresholds 0..=100; transparent is unknown.
-    Scale,
-    /// The shade itself, 0..=100; brighter is unknown.
-    Raw,
-}
-
-/// Where shares of occupancy, 0..=1, turn occupied and free.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Thresholds {
-    /// Above it a cell is occupied.
-    pub(crate) occupied: f64,
-    /// Below it a cell is free.
-    pub(crate) free: f64,
-}
 
 /// What a description says.
 #[derive(Debug, PartialEq)]
@@ -55,9 +36,8 @@ pub(crate) struct Description {
 impl Description {
     /// Parses the text of the file at `path`.
     pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, MapError> {
-        // Editors of Windows begin a text with a byte order mark.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let keys: Keys = serde_saphyr::from_str(text).map_err(|error| syntax(path, &error))?;
+        let keys: Keys =
+            serde_saphyr::from_str(without_mark(text)).map_err(|error| syntax(path, &error))?;
         let unknown = keys.unknown.iter().map(|key| {
             let (line, column) = place(key);
             UnknownKey {
@@ -80,6 +60,23 @@ impl Description {
             unknown: unknown.collect(),
         })
     }
+}
+
+/// Whether a text is YAML that describes something else than a map: keys without `image`, or a
+/// list.
+pub(crate) fn is_of_something_else(text: &str) -> bool {
+    let text = without_mark(text);
+    let keys: Result<BTreeMap<String, IgnoredAny>, _> = serde_saphyr::from_str(text);
+    if let Ok(keys) = keys {
+        return !keys.is_empty() && !keys.contains_key("image");
+    }
+    let list: Result<Vec<IgnoredAny>, _> = serde_saphyr::from_str(text);
+    list.is_ok_and(|list| !list.is_empty())
+}
+
+/// Editors of Windows begin a text with a byte order mark.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 fn image_of(name: &Spanned<Scalar>, path: &Path) -> Result<PathBuf, MapError> {

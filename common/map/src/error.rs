@@ -26,9 +26,18 @@ pub enum MapError {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// One of the maps of a set cannot be used.
+    #[error("map {name}")]
+    OfSet {
+        /// Which one.
+        name: String,
+        /// What is wrong with it.
+        source: Box<MapError>,
+    },
     /// The graph could not hold the map.
     #[error(
-        "a map of {width} x {height} cells takes about {needed_mb} MB in the graph; allowed are {limit_mb} MB (--memory-limit)"
+        "a map of {width} x {height} cells takes about {needed_mb} MB in the graph{}; allowed are {limit_mb} MB (--memory-limit)",
+        beside(*others_mb)
     )]
     Memory {
         /// Cells along x.
@@ -37,6 +46,8 @@ pub enum MapError {
         height: u32,
         /// What it takes, megabytes.
         needed_mb: u64,
+        /// What the maps of its set that come before it take, megabytes.
+        others_mb: u64,
         /// What the graph may use.
         limit_mb: u64,
     },
@@ -219,7 +230,16 @@ impl MapError {
             MapError::Description { source, .. } | MapError::Image { source, .. } => {
                 source.kind() == io::ErrorKind::NotFound
             }
+            MapError::OfSet { source, .. } => source.is_missing(),
             _ => false,
         }
+    }
+}
+
+/// What the maps take that come before one, in words.
+fn beside(others_mb: u64) -> String {
+    match others_mb {
+        0 => String::new(),
+        _ => format!(", and the maps before it {others_mb} MB"),
     }
 }

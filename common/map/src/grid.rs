@@ -1,38 +1,18 @@
-//! The occupancy grid, its limits and its identity.
-
-use std::f64::consts::TAU;
+//! The occupancy grid and its identity.
 
 use geometry::Pose;
 
 use crate::MapError;
+use crate::limits::{origin_is_allowed, resolution_is_allowed, size_is_allowed};
 
 pub use messages::UNKNOWN;
-
-/// Most cells along a side: a cell's column and row fit a signed 16-bit number,
-/// with room to step off the grid by one.
-pub const MAX_SIDE: u32 = 32_767;
-
-/// Most cells: 20,000 squared, a square kilometre at 5 cm. Several processes keep
-/// the map and tables as large as it; this much still fits a large robot's computer,
-/// while a damaged header that claims more must not be believed.
-pub const MAX_CELLS: u64 = 400_000_000;
-
-/// Shortest side of a cell, metres.
-pub const MIN_RESOLUTION_M: f64 = 0.001;
-
-/// Longest side of a cell, metres.
-pub const MAX_RESOLUTION_M: f64 = 10.0;
-
-/// Farthest origin along each axis, metres: map projections of the whole Earth
-/// stay within, and a nanometre is still resolved to a few hundredths.
-pub const MAX_ORIGIN_M: f64 = 1e8;
 
 /// A map of square cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
-    /// Cells along x, 1..=[`MAX_SIDE`].
+    /// Cells along x, 1..=[`crate::MAX_SIDE`].
     pub width: u32,
-    /// Cells along y, 1..=[`MAX_SIDE`].
+    /// Cells along y, 1..=[`crate::MAX_SIDE`].
     pub height: u32,
     /// Side of a cell, metres.
     pub resolution_m: f64,
@@ -129,27 +109,9 @@ impl OccupancyGrid {
     }
 }
 
-/// Whether a grid may have these sides.
-pub(crate) fn size_is_allowed(width: u32, height: u32) -> bool {
-    let sides = 1..=MAX_SIDE;
-    sides.contains(&width)
-        && sides.contains(&height)
-        && u64::from(width) * u64::from(height) <= MAX_CELLS
-}
-
-/// Whether a cell may have this side; false for NaN.
-pub(crate) fn resolution_is_allowed(metres: f64) -> bool {
-    (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres)
-}
-
-/// Whether a grid may lie there; false for NaN and infinities.
-pub(crate) fn origin_is_allowed(origin: Pose) -> bool {
-    origin.x.abs() <= MAX_ORIGIN_M && origin.y.abs() <= MAX_ORIGIN_M && origin.yaw.abs() <= TAU
-}
-
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
+    use std::f64::consts::{FRAC_PI_2, TAU};
 
     use super::*;
 

@@ -8,11 +8,13 @@
 //! with file, place and what is allowed.
 
 mod bmp;
+mod claim;
 mod description;
 mod error;
 mod grid;
 mod keys;
 mod kind;
+mod limits;
 mod load;
 mod memory;
 mod pgm;
@@ -22,13 +24,14 @@ mod rules;
 mod save;
 mod set;
 
-pub use description::Mode;
 pub use error::MapError;
-pub use grid::{
-    MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,
-};
+pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;
+pub use limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 pub use load::{image_of, load, load_noting, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
+pub use rules::Mode;
 pub use save::save;
-pub use set::{MAX_MAPS, MapFile, MapSet, Transition, set_of, set_of_files};
+pub use set::{
+    MAX_MAPS, MapFile, MapSet, Transition, list_of, set_of, set_of_files, set_of_noting,
+};

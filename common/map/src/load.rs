@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use crate::claim::HEAD_BYTES;
 use crate::description::Description;
 use crate::raster::Raster;
 use crate::{MapError, MemoryLimit, OccupancyGrid, UnknownKey, kind};
@@ -14,9 +15,6 @@ const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
 /// Most bytes of an image: the largest map as plain text of five digits a cell
 /// comes to 1.6 GB, as 16-bit colour with alpha to 2.1 GB.
 const MAX_IMAGE_BYTES: u64 = 1 << 31;
-
-/// What is read of an image to see what it claims to be: more than its header takes.
-pub(crate) const HEAD_BYTES: u64 = 64 << 10;
 
 /// Reads a map as `map_server` does: the YAML file at `yaml`, and the image that
 /// it names, relative to the YAML file's folder.
@@ -97,7 +95,8 @@ fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
     rows.flatten().map(|pixel| rules.occupancy(pixel)).collect()
 }
 
-fn read_text(yaml: &Path) -> Result<String, MapError> {
+/// The text of a description.
+pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
     let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
         MapError::Description {
             path: yaml.to_owned(),

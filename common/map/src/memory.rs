@@ -38,30 +38,40 @@ pub struct MemoryOptions {
     pub memory_limit: Option<u64>,
 }
 
-/// What the graph may use, bytes.
+/// What the graph may use, and what other maps take of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MemoryLimit(u64);
+pub struct MemoryLimit {
+    bytes: u64,
+    taken: u64,
+}
 
 impl MemoryOptions {
     /// As the option says, or else what there is.
     #[must_use]
     pub fn limit(&self) -> MemoryLimit {
         let given = self.memory_limit.map(|megabytes| megabytes << 20);
-        MemoryLimit(given.unwrap_or_else(available))
+        MemoryLimit::of(given.unwrap_or_else(available))
     }
 }
 
 impl MemoryLimit {
     /// For tools that hold a map and no index of it.
-    pub const NONE: MemoryLimit = MemoryLimit(u64::MAX);
+    pub const NONE: MemoryLimit = MemoryLimit::of(u64::MAX);
 
-    /// What is left beside a map that it holds.
+    const fn of(bytes: u64) -> Self {
+        MemoryLimit { bytes, taken: 0 }
+    }
+
+    /// The same for the next map, beside this one.
     #[must_use]
     pub fn without(self, grid: &OccupancyGrid) -> Self {
         let sides = (grid.width, grid.height);
         let searched = searched_cells(sides, grid.resolution_m, &grid.cells);
         let of_map = needed(sides, searched) - BYTES_OF_ALL;
-        MemoryLimit(self.0.saturating_sub(of_map))
+        MemoryLimit {
+            taken: self.taken.saturating_add(of_map),
+            ..self
+        }
     }
 
     /// Whether the graph can hold a map with these sides in which hardly a cell is free:
@@ -98,14 +108,15 @@ impl MemoryLimit {
 
     fn check_searched(self, (width, height): (u32, u32), searched: u64) -> Result<(), MapError> {
         let needed = needed((width, height), searched);
-        if needed <= self.0 {
+        if needed.saturating_add(self.taken) <= self.bytes {
             return Ok(());
         }
         Err(MapError::Memory {
             width,
             height,
             needed_mb: needed >> 20,
-            limit_mb: self.0 >> 20,
+            others_mb: self.taken >> 20,
+            limit_mb: self.bytes >> 20,
         })
     }
 }
@@ -206,6 +217,8 @@ fn decide(limits: &[String], machine: &str) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use geometry::Pose;
+
     use super::*;
     use crate::UNKNOWN;
 
@@ -262,6 +275,21 @@ mod tests {
                         100 MB (--memory-limit)";
         assert_eq!(error, expected);
         assert!(MemoryLimit::NONE.check((32_767, 32_767)).is_ok());
+    }
+
+    #[test]
+    fn a_map_beside_others_is_refused_with_what_they_take() {
+        let memory_limit = Some(100);
+        let mut limit = MemoryOptions { memory_limit }.limit();
+        let free = OccupancyGrid::from_parts(400, 400, 0.05, Pose::default(), vec![0; 160_000]);
+        let free = free.unwrap();
+        assert!(limit.check_grid(&free).is_ok());
+        limit = limit.without(&free);
+        let error = limit.check_grid(&free).unwrap_err().to_string();
+        // 22.9 MB each, and 64.
+        let expected = "a map of 400 x 400 cells takes about 86 MB in the graph, and the maps \
+                        before it 22 MB; allowed are 100 MB (--memory-limit)";
+        assert_eq!(error, expected);
     }
 
     #[test]

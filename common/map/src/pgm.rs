@@ -15,9 +15,8 @@ use std::path::Path;
 use image::codecs::pnm::{GraymapHeader, PnmDecoder, PnmHeader, SampleEncoding};
 
 use crate::MapError;
-use crate::grid::size_is_allowed;
-use crate::kind::Claim;
-use crate::load::HEAD_BYTES;
+use crate::claim::{Claim, HEAD_BYTES, wrong_kind};
+use crate::limits::size_is_allowed;
 use crate::raster::{Channels, FULL, Raster, Samples};
 
 /// What a file claims that begins with `head`, P2 or P5.
@@ -62,7 +61,7 @@ fn read_header(bytes: &[u8], path: &Path) -> Result<(usize, PnmHeader), MapError
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     let (start, header) = read_header(bytes, path)?;
     let Some(header) = header.as_graymap() else {
-        return Err(crate::kind::wrong_kind(bytes, path));
+        return Err(wrong_kind(bytes, path));
     };
     let pixels = Pixels {
         header,

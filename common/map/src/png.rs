@@ -10,9 +10,8 @@ use std::path::Path;
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, Limits};
 
-use crate::grid::size_is_allowed;
-use crate::kind::Claim;
-use crate::load::HEAD_BYTES;
+use crate::claim::{Claim, HEAD_BYTES};
+use crate::limits::size_is_allowed;
 use crate::raster::{Channels, Raster, Samples};
 use crate::{MAX_SIDE, MapError};
 

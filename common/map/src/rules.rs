@@ -8,11 +8,31 @@
 //! images off the thresholds both agree.
 
 use crate::UNKNOWN;
-use crate::description::{Mode, Thresholds};
 use crate::raster::{FULL, Pixel};
 
 const FREE: u8 = 0;
 const OCCUPIED: u8 = 100;
+
+/// How the shades of an image become occupancy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// Occupied, free or unknown by the thresholds.
+    #[default]
+    Trinary,
+    /// As trinary, but between the thresholds 0..=100; transparent is unknown.
+    Scale,
+    /// The shade itself, 0..=100; brighter is unknown.
+    Raw,
+}
+
+/// Where shares of occupancy, 0..=1, turn occupied and free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Thresholds {
+    /// Above it a cell is occupied.
+    pub(crate) occupied: f64,
+    /// Below it a cell is free.
+    pub(crate) free: f64,
+}
 
 /// How the pixels of an image are read.
 #[derive(Debug, Clone, Copy, PartialEq)]

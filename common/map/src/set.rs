@@ -29,12 +29,18 @@ use serde::Deserialize;
 use serde_saphyr::{MessageFormatter, UserMessageFormatter};
 
 use crate::MapError;
+use crate::description::is_of_something_else;
 use crate::keys::Scalar;
+use crate::load::read_text;
 pub use transition::Transition;
 use transition::TransitionEntry;
 
 /// The file of a folder that says which maps it has.
 const LIST: &str = "maps.yaml";
+
+/// What is said of a set without a map.
+const NO_MAPS: &str = "there are no maps: allowed are a folder with maps (*.yaml, or */map.yaml) \
+                       and a file like maps.yaml";
 
 /// Most maps of a set.
 pub const MAX_MAPS: usize = 1000;
@@ -80,21 +86,39 @@ struct Entry {
 }
 
 /// The maps of a set: those that a file names, or those in a folder. There, `maps.yaml` says
-/// which; without it they are all YAML files in the folder and, in each folder below,
-/// `map.yaml`, by their names.
+/// which; without it they are all YAML files in the folder that name an image and, in each folder
+/// below, `map.yaml`, by their names.
 ///
 /// # Errors
-/// Says what cannot be read, or what is wrong and what is allowed. The maps themselves are
+/// Says what cannot be read, or what is wrong and what is allowed. The images of the maps are
 /// not opened.
 pub fn set_of(path: impl AsRef<Path>) -> Result<MapSet, MapError> {
+    set_of_noting(path, |_| {})
+}
+
+/// As [`set_of`], and hands a line on each YAML file that is left out, because it is no map, to
+/// `note`, to be shown to the user.
+///
+/// # Errors
+/// As [`set_of`].
+pub fn set_of_noting(path: impl AsRef<Path>, note: impl FnMut(&str)) -> Result<MapSet, MapError> {
     let path = path.as_ref();
-    let set = match path.is_dir() {
-        true if path.join(LIST).is_file() => listed(&path.join(LIST))?,
-        true => MapSet::without_transitions(in_folder(path)?),
-        false => listed(path)?,
+    let list = list_of(path);
+    let set = match path.is_dir() && !list.is_file() {
+        true => MapSet::without_transitions(in_folder(path, note)?),
+        false => listed(&list)?,
     };
     check(path, &set.maps)?;
     Ok(set)
+}
+
+/// The file that names the maps of a set; in a folder it need not be there.
+#[must_use]
+pub fn list_of(path: &Path) -> PathBuf {
+    match path.is_dir() {
+        true => path.join(LIST),
+        false => path.to_owned(),
+    }
 }
 
 /// Maps that are given one by one, as a set: each is called by its file, or by its folder
@@ -218,12 +242,12 @@ fn listed(path: &Path) -> Result<MapSet, MapError> {
     Ok(MapSet { maps, transitions })
 }
 
-fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
+fn in_folder(folder: &Path, mut note: impl FnMut(&str)) -> Result<Vec<MapFile>, MapError> {
     let failed = |source| MapError::Description {
         path: folder.to_owned(),
         source,
     };
-    let mut maps = Vec::new();
+    let (mut maps, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let below = path.join("map.yaml");
@@ -233,8 +257,24 @@ fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
         if path.is_dir() && below.is_file() {
             maps.push(named(&below));
         } else if is_yaml && path.is_file() {
-            maps.push(named(&path));
+            // What cannot be read may be a map that is being written, and loading it says more.
+            match read_text(&path).is_ok_and(|text| is_of_something_else(&text)) {
+                true => others.push(path),
+                false => maps.push(named(&path)),
+            }
         }
+    }
+    if let ([], [other, ..]) = (&*maps, &*others) {
+        let (other, count) = (other.display(), others.len());
+        let reason =
+            format!("{NO_MAPS}; of {count} YAML files, as {other}, none has the key image");
+        return Err(refused(folder, reason));
+    }
+    for other in others {
+        let other = other.display();
+        note(&format!(
+            "{other} has no key image: it is taken for no map and left out"
+        ));
     }
     maps.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(maps)
@@ -242,11 +282,7 @@ fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
 
 fn check(path: &Path, maps: &[MapFile]) -> Result<(), MapError> {
     if maps.is_empty() {
-        let reason = format!(
-            "there are no maps: allowed are a folder with maps (*.yaml, or */map.yaml) and a \
-             file like {LIST}"
-        );
-        return Err(refused(path, reason));
+        return Err(refused(path, NO_MAPS.to_owned()));
     }
     if maps.len() > MAX_MAPS {
         let reason = format!("{} maps: allowed are {MAX_MAPS}", maps.len());

@@ -124,7 +124,7 @@ impl Options {
         recordings: &[PathBuf],
     ) -> Result<Vec<NamedMap>, OfflineError> {
         let files = match set {
-            Some(set) => map::set_of(set)?,
+            Some(set) => map::set_of_noting(set, say)?,
             None if self.map.len() > 1 || !on.is_empty() => map::set_of_files(&self.map)?,
             None => return Ok(Vec::new()),
         };

@@ -92,7 +92,7 @@ impl Config {
     /// If the set cannot be read, two maps have one name, or `--on` names what is not there.
     pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
         let all = match (&self.maps, &*self.map) {
-            (Some(set), _) => map::set_of(set),
+            (Some(set), _) => map::set_of_noting(set, |line| tracing::info!("{line}")),
             // One map needs no name.
             (None, [yaml]) => Ok(MapSet {
                 maps: vec![MapFile {

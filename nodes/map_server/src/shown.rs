@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// While the robot is sought, the place that leads may be on one map and on another from scan
+/// While no pose is believed, the place that leads may be on one map and on another from scan
 /// to scan: one is shown when it has led for so long.
 const LEADS_FOR: Duration = Duration::from_secs(2);
 
@@ -27,18 +27,19 @@ impl Shown {
         self.map
     }
 
-    /// Takes the map of a pose, and whether the robot is there rather than sought; whether
-    /// another map than before is to be shown.
-    pub(crate) fn changes_to(&mut self, (map, is_found): (usize, bool), now: Instant) -> bool {
+    /// Takes the map of a pose, and whether that pose is believed; whether this map is to be
+    /// shown in place of the one that is.
+    pub(crate) fn is_due(&mut self, (map, is_believed): (usize, bool), now: Instant) -> bool {
         if self.named.0 != map {
             self.named = (map, now);
         }
-        let is_due = is_found || now.duration_since(self.named.1) >= LEADS_FOR;
-        let changes = map != self.map && is_due;
-        if changes {
-            self.map = map;
-        }
-        changes
+        let is_due = is_believed || now.duration_since(self.named.1) >= LEADS_FOR;
+        map != self.map && is_due
+    }
+
+    /// This map is shown now.
+    pub(crate) fn change_to(&mut self, map: usize) {
+        self.map = map;
     }
 }
 
@@ -50,21 +51,23 @@ mod tests {
     fn the_map_on_which_the_robot_is_is_shown_at_once() {
         let now = Instant::now();
         let mut shown = Shown::at(0);
-        assert!(!shown.changes_to((0, true), now));
-        assert!(shown.changes_to((2, true), now));
-        assert!(!shown.changes_to((2, true), now));
+        assert!(!shown.is_due((0, true), now));
+        assert!(shown.is_due((2, true), now));
+        assert!(shown.is_due((2, true), now), "it is not shown yet");
+        shown.change_to(2);
+        assert!(!shown.is_due((2, true), now));
         assert_eq!(shown.map(), 2);
     }
 
     #[test]
-    fn while_it_is_sought_one_has_to_lead_for_a_while() {
+    fn while_no_pose_is_believed_one_has_to_lead_for_a_while() {
         let start = Instant::now();
         let at = |seconds| start + Duration::from_secs(seconds);
         let mut shown = Shown::at(0);
-        assert!(!shown.changes_to((1, false), at(1)));
-        assert!(!shown.changes_to((0, false), at(2)));
-        assert!(!shown.changes_to((1, false), at(3)));
-        assert!(!shown.changes_to((1, false), at(4)));
-        assert!(shown.changes_to((1, false), at(5)));
+        assert!(!shown.is_due((1, false), at(1)));
+        assert!(!shown.is_due((0, false), at(2)));
+        assert!(!shown.is_due((1, false), at(3)));
+        assert!(!shown.is_due((1, false), at(4)));
+        assert!(shown.is_due((1, false), at(5)));
     }
 }

@@ -11,7 +11,8 @@ use serde::Deserialize;
 
 use super::gate::authorize;
 use super::{Refusal, Site};
-use crate::robot::{Abilities, Request};
+use crate::robot::Request;
+use crate::view::Abilities;
 
 /// Where to search.
 #[derive(Debug, Deserialize)]

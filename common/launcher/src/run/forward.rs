@@ -19,6 +19,9 @@ use crate::LauncherError;
 const RECORDED_MAP: &str = "--recorded";
 /// The recording that is played on another map than its own.
 const PLAYED: &str = "--played";
+/// The set that `map_server` serves, and which of its maps and floors count.
+const MAPS: &str = "--maps";
+const ON: &str = "--on";
 const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in
@@ -37,6 +40,9 @@ pub(crate) fn apply(
     if let Some(map) = &options.map {
         let map = std::path::absolute(map).map_err(LauncherError::Folder)?;
         let node = find(dataflow, &[MAP_SERVER], "--map", file)?;
+        for option in [MAPS, ON] {
+            unset(node, option, true);
+        }
         set(node, "--map", Some(&map.to_string_lossy()));
         if let Some(recording) = value(node, RECORDED_MAP).map(str::to_owned) {
             unset(node, RECORDED_MAP, true);
@@ -45,11 +51,12 @@ pub(crate) fn apply(
     }
     if let Some(maps) = &options.maps {
         let maps = std::path::absolute(maps).map_err(LauncherError::Folder)?;
-        let node = find(dataflow, &[MAP_SERVER], "--maps", file)?;
-        for option in ["--map", RECORDED_MAP, PLAYED] {
+        let node = find(dataflow, &[MAP_SERVER], MAPS, file)?;
+        // Names of maps and floors are those of the set that was there.
+        for option in ["--map", RECORDED_MAP, PLAYED, ON] {
             unset(node, option, true);
         }
-        set(node, "--maps", Some(&maps.to_string_lossy()));
+        set(node, MAPS, Some(&maps.to_string_lossy()));
     }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
@@ -82,6 +89,8 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
         .map_err(LauncherError::Folder)?;
     let is_map_server = |node: &&mut Node| node.executable() == MAP_SERVER;
     if let (Some(node), [recording]) = (dataflow.nodes.iter_mut().find(is_map_server), &*recordings)
+        // A set stays, and is not the one map of a recording.
+        && (value(node, MAPS).is_none() || options.map.is_some())
     {
         set(node, RECORDED_MAP, Some(&recording.to_string_lossy()));
     }
@@ -173,228 +182,4 @@ fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), Laun
 }
 
 #[cfg(test)]
-mod tests {
-    use command_line::CommandError;
-
-    use super::*;
-    use crate::LauncherError;
-
-    fn graph(replayer_args: &str, inputs: &str) -> Dataflow {
-        let text = format!(
-            "nodes:
-  - {{id: r, path: bin/replayer, outputs: [scan, odometry, ground_truth], args: \"{replayer_args}\"}}
-  - {{id: a, path: bin/accumulator, args: --beams 9, inputs: {{{inputs}}}}}
-"
-        );
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
-        dataflow::parse(&text, &topics).unwrap()
-    }
-
-    fn applied(
-        options: &Options,
-        mut dataflow: Dataflow,
-    ) -> Result<Vec<Vec<String>>, LauncherError> {
-        apply(options, &mut dataflow, Path::new("g.yaml"))?;
-        Ok(dataflow.nodes.into_iter().map(|n| n.args).collect())
-    }
-
-    #[test]
-    fn options_replace_what_the_descriptor_gives() {
-        let options = Options {
-            rate: Some(Rate::Times(2.0)),
-            repeat: true,
-            ..Options::default()
-        };
-        for before in ["x --rate max y", "x --rate=0.5 y --loop", "x y"] {
-            let args = applied(&options, graph(before, "")).unwrap();
-            assert_eq!(args[0], ["x", "y", "--rate=2", "--loop"], "{before}");
-            assert_eq!(args[1], ["--beams", "9"]);
-        }
-    }
-
-    #[test]
-    fn a_recording_is_played_on_its_own_map_unless_another_is_given() {
-        let map_args = |options: &Options| {
-            let mut dataflow = graph("", "");
-            dataflow.nodes[1].path = "bin/map_server".to_owned();
-            applied(options, dataflow).unwrap().swap_remove(1)
-        };
-        let mut options = Options {
-            replay: vec!["/drive.mcap".into()],
-            ..Options::default()
-        };
-        assert_eq!(
-            map_args(&options),
-            ["--beams", "9", "--recorded=/drive.mcap"]
-        );
-        options.map = Some("/other.yaml".into());
-        let expected = ["--beams", "9", "--map=/other.yaml", "--played=/drive.mcap"];
-        assert_eq!(map_args(&options), expected);
-        // Which of several recordings has the map of all is not known.
-        options.map = None;
-        options.replay.push("/rest.mcap".into());
-        assert_eq!(map_args(&options), ["--beams", "9"]);
-    }
-
-    fn with(heading: HeadingConfig) -> Options {
-        Options {
-            heading,
-            ..Options::default()
-        }
-    }
-
-    #[test]
-    fn headings_reach_the_accumulator() {
-        let fixed = with(HeadingConfig {
-            heading: Some(-90.0),
-            ..HeadingConfig::default()
-        });
-        let args = applied(&fixed, graph("", "")).unwrap();
-        assert_eq!(args[1], ["--beams", "9", "--heading=-90"]);
-        let mut aged = graph("", "");
-        aged.nodes[1].args = ["--heading-from=odometry", "--heading-max-age-s", "3"]
-            .map(Into::into)
-            .into();
-        assert_eq!(applied(&fixed, aged).unwrap()[1], ["--heading=-90"]);
-
-        let odometry = with(HeadingConfig {
-            heading_from: Some(HeadingFrom::Odometry),
-            heading_offset: Some(-1.5),
-            ..HeadingConfig::default()
-        });
-        let mut wired = graph("", "odometry: r/odometry");
-        wired.nodes[1].args = ["--heading", "7", "--heading-max-age-s=3"]
-            .map(Into::into)
-            .into();
-        let args = applied(&odometry, wired).unwrap();
-        assert_eq!(
-            args[1],
-            [
-                "--heading-max-age-s=3",
-                "--heading-from=odometry",
-                "--heading-offset=-1.5"
-            ]
-        );
-        let error = applied(&odometry, graph("", "")).unwrap_err();
-        assert!(
-            matches!(
-                &error,
-                LauncherError::NotWired {
-                    topic: "odometry",
-                    ..
-                }
-            ),
-            "{error}"
-        );
-    }
-
-    #[test]
-    fn the_true_heading_has_no_offset() {
-        let mut options = with(HeadingConfig {
-            heading_from: Some(HeadingFrom::Truth),
-            ..HeadingConfig::default()
-        });
-        let wired = || graph("", "odometry: r/odometry, ground_truth: r/ground_truth");
-        let args = applied(&options, wired()).unwrap();
-        assert_eq!(args[1], ["--beams", "9", "--heading-from=truth"]);
-        options.heading.heading_offset = Some(1.0);
-        let error = applied(&options, wired()).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "--heading-offset needs --heading-from odometry"
-        );
-    }
-
-    #[test]
-    fn an_option_without_its_node_is_refused() {
-        let mut no_replayer = graph("", "");
-        no_replayer.nodes.remove(0);
-        let options = Options {
-            repeat: true,
-            ..Options::default()
-        };
-        let error = applied(&options, no_replayer).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = error.to_string();
-        assert!(said.contains("--loop is for the replayer"), "{said}");
-        assert!(said.contains("its executables are accumulator"), "{said}");
-    }
-
-    fn parsed(text: &str) -> Dataflow {
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
-        dataflow::parse(text, &topics).unwrap()
-    }
-
-    #[test]
-    fn a_map_goes_to_its_server() {
-        let text = "nodes: [{id: m, path: bin/map_server, args: --map a.yaml}]";
-        let options = Options {
-            map: Some("/maps/b.yaml".into()),
-            ..Options::default()
-        };
-        let args = applied(&options, parsed(text)).unwrap();
-        assert_eq!(args, [["--map=/maps/b.yaml"]]);
-        let several = Options {
-            maps: Some("/maps".into()),
-            ..Options::default()
-        };
-        assert_eq!(applied(&several, parsed(text)).unwrap(), [["--maps=/maps"]]);
-        let error = applied(&options, graph("", "")).unwrap_err().to_string();
-        assert!(error.contains("--map is for the map_server"), "{error}");
-    }
-
-    #[test]
-    fn monitors_stay_unless_they_are_left_out() {
-        let text = "nodes: [{id: a, path: bin/accumulator}, {id: page, path: bin/monitor}]";
-        let nodes = |no_monitor| {
-            let options = Options {
-                no_monitor,
-                ..Options::default()
-            };
-            applied(&options, parsed(text)).unwrap().len()
-        };
-        assert_eq!((nodes(false), nodes(true)), (2, 1));
-    }
-
-    #[test]
-    fn playing_at_max_is_seen_in_the_arguments() {
-        assert!(plays_at_max(&graph("--rate max", "")));
-        assert!(plays_at_max(&graph("--rate=max", "")));
-        assert!(!plays_at_max(&graph("--rate 2", "")));
-        assert!(!plays_at_max(&graph("max", "")));
-    }
-
-    #[test]
-    fn recordings_and_their_topics_go_to_the_replayer() {
-        let options = Options {
-            replay: vec!["/a.mcap".into(), "/b".into()],
-            scan_topic: vec!["/front/scan".to_owned()],
-            odom_topic: Some("/wheels".to_owned()),
-            ..Options::default()
-        };
-        let before = "--recording x.mcap --rate=max --scan-topic /scan";
-        let args = applied(&options, graph(before, "")).unwrap();
-        let expected = [
-            "--rate=max",
-            "--recording=/a.mcap",
-            "--recording=/b",
-            "--scan-topic=/front/scan",
-            "--odom-topic=/wheels",
-        ];
-        assert_eq!(args[0], expected);
-        let options = Options {
-            map_topic: Some("/map".to_owned()),
-            ..options
-        };
-        let refusal = applied(&options, graph("", "")).unwrap_err().to_string();
-        assert!(refusal.contains("from the map_server"), "{refusal}");
-    }
-}
+mod tests;

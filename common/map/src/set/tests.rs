@@ -33,6 +33,40 @@ fn a_folder_of_maps_is_a_set_by_their_names() {
 }
 
 #[test]
+fn what_names_no_image_is_no_map_of_a_folder() {
+    let others = [
+        ("dataflow.yaml", "nodes: [{id: m, path: map_server}]\n"),
+        ("params.yaml", "/**:\n  ros__parameters: {image: 1}\n"),
+        ("play.yml", "- hosts: all\n"),
+    ];
+    let told = |folder: &tempfile::TempDir| {
+        let mut lines = Vec::new();
+        let set = set_of_noting(folder.path(), |line| lines.push(line.to_owned()));
+        lines.sort();
+        (set, lines)
+    };
+    let (set, lines) = told(&folder(&others));
+    let error = set.unwrap_err().to_string();
+    assert!(error.contains("there are no maps: allowed are"), "{error}");
+    assert!(error.contains("of 3 YAML files, as "), "{error}");
+    assert!(lines.is_empty());
+
+    // One that is being written, or is broken, is still one.
+    let maps = [
+        ("a.yaml", "\u{feff}image: a.pgm\n"),
+        ("b.yaml", ""),
+        ("c.yaml", "image: ["),
+        ("d.yaml", "imag"),
+        ("e/map.yaml", "resolution: 1\n"),
+    ];
+    let (set, lines) = told(&folder(&[&others[..], &maps[..]].concat()));
+    assert_eq!(names(&set.unwrap().maps), ["a", "b", "c", "d", "e"]);
+    assert_eq!(lines.len(), 3);
+    let said = "dataflow.yaml has no key image: it is taken for no map and left out";
+    assert!(lines[0].ends_with(said), "{lines:?}");
+}
+
+#[test]
 fn a_list_names_maps_in_its_order() {
     let list = "maps:\n  - {name: up, map: u.yaml, floor: 1}\n  - name: down\n    map: /d.yaml\n";
     let folder = folder(&[("maps.yaml", list), ("x.yaml", "")]);

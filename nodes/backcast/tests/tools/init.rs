@@ -67,6 +67,7 @@ fn what_cannot_be_meant_leaves_no_file() {
         ("--replay DRIVE --map DRIVE", 2, "is a recording"),
         ("--replay DRIVE --map nowhere.yaml", 1, "nowhere.yaml"),
         ("--replay DRIVE", 2, "--map is missing"),
+        ("--replay DRIVE", 2, "or --maps, a folder of several"),
         ("--replay DRIVE --map MAP --mount 1,2,3", 2, "/tf_static"),
         ("--ros2 --mount 1,2", 2, "X,Y,YAW_DEG"),
     ] {

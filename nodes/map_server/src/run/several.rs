@@ -1,15 +1,15 @@
 //! A set of maps: all of them for those who search, and the one on which the robot is for those
 //! who show a map.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
-use map::MapError;
-use messages::{MapHeader, MapSet, NodeState, PoseHeader, TrackState, Transition, topic};
-use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
+use map::{MapError, MapFile};
+use messages::{MapHeader, MapSet, NodeState, PoseHeader, Stamp, Transition, topic};
+use transport::{Flow, Graph, Health, Loan, Publisher, TransportError, with_causes};
 
 use super::{TICK, header, now};
-use crate::files::{Files, Fingerprint, Seen, fingerprint};
+use crate::set_files::SetFiles;
 use crate::shown::Shown;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
@@ -18,13 +18,13 @@ use crate::{Config, MapServerError};
 pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), MapServerError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;
-    let mut files = SetFiles::new(path);
+    let mut files = SetFiles::new(path, &config.on);
+    // Looked at before loading: what changes in between is noticed.
+    let mut watch = Watch::new(files.look());
     let set = load(config, path).map_err(|source| MapServerError::Map {
         path: path.to_owned(),
         source: Box::new(source),
     })?;
-    files.follow(&set);
-    let mut watch = Watch::new(files.look());
     let poses = graph.subscriber::<topic::Tracked>()?;
     // Whoever looks at `map` sees that it is one of a set.
     let sets = graph.publisher::<topic::Maps>()?;
@@ -34,9 +34,11 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         health,
         served: 0,
         shown: Shown::at(0),
-        set,
+        set: Loaded::default(),
+        is_refused: false,
+        has_room: true,
     };
-    server.serve()?;
+    server.serve(set, 0)?;
     graph.run(&[&poses], TICK, |wake| {
         while let Some(pose) = poses.receive()? {
             server.follow(pose.header())?;
@@ -46,8 +48,6 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
             let outcome = load(config, path);
             if watch.judged(files.look()) {
                 server.judge(outcome, path)?;
-                files.follow(&server.set);
-                watch = Watch::new(files.look());
             }
         }
         server.health.tick()?;
@@ -55,7 +55,8 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     })
 }
 
-/// The maps of a set, in its order, with the names of their files.
+/// The maps of a set, in its order.
+#[derive(Default)]
 struct Loaded {
     maps: Vec<LoadedMap>,
     transitions: Vec<Transition>,
@@ -73,23 +74,25 @@ impl Loaded {
 
 struct LoadedMap {
     name: String,
-    yaml: PathBuf,
     header: MapHeader,
     cells: Vec<u8>,
 }
 
 /// Reads the maps, if the graph can hold all of them.
 fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
-    let set = map::set_of(path)?.select(&config.on)?;
-    let mut left = config.memory.limit();
+    let set = map::set_of_noting(path, |line| tracing::info!("{line}"))?.select(&config.on)?;
+    let mut limit = config.memory.limit();
     let mut maps = Vec::with_capacity(set.maps.len());
-    for file in set.maps {
-        let grid = map::load_within(left, &file.yaml, |key| tracing::warn!("{key}"))?;
-        left = left.without(&grid);
+    for MapFile { name, yaml, .. } in set.maps {
+        let grid = map::load_within(limit, yaml, |key| tracing::warn!("{key}"));
+        let grid = grid.map_err(|source| MapError::OfSet {
+            name: name.clone(),
+            source: Box::new(source),
+        })?;
+        limit = limit.without(&grid);
         maps.push(LoadedMap {
-            header: header(&grid, config.cells, &file.name),
-            name: file.name,
-            yaml: file.yaml,
+            header: header(&grid, config.cells, &name),
+            name,
             cells: grid.cells,
         });
     }
@@ -104,33 +107,6 @@ fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
     })
 }
 
-/// The file or folder of a set, and the files of its maps.
-struct SetFiles {
-    path: PathBuf,
-    list: PathBuf,
-    maps: Vec<Files>,
-}
-
-impl SetFiles {
-    fn new(path: &Path) -> Self {
-        SetFiles {
-            path: path.to_owned(),
-            list: path.join("maps.yaml"),
-            maps: Vec::new(),
-        }
-    }
-
-    /// Looks at the files of these maps from now on.
-    fn follow(&mut self, set: &Loaded) {
-        self.maps = set.maps.iter().map(|map| Files::new(&map.yaml)).collect();
-    }
-
-    fn look(&mut self) -> (Option<Fingerprint>, Option<Fingerprint>, Vec<Seen>) {
-        let maps = self.maps.iter_mut().map(Files::look).collect();
-        (fingerprint(&self.path), fingerprint(&self.list), maps)
-    }
-}
-
 struct Server {
     sets: Publisher<topic::Maps>,
     maps: Publisher<topic::Map>,
@@ -140,13 +116,17 @@ struct Server {
     /// Which of the maps is sent alone.
     shown: Shown,
     set: Loaded,
+    /// Whether the files hold something else than what is served.
+    is_refused: bool,
+    /// Whether there was room for the map that is to be shown.
+    has_room: bool,
 }
 
 impl Server {
-    /// Sends all maps, and the one that is shown.
-    fn serve(&mut self) -> Result<(), TransportError> {
+    /// Sends all maps, and the one with this number alone; none where not all of them have room.
+    fn serve(&mut self, set: Loaded, shown: usize) -> Result<(), TransportError> {
         let stamp = now(self.served);
-        let maps = self.set.maps.iter();
+        let maps = set.maps.iter();
         let maps = maps.map(|map| {
             (
                 MapHeader {
@@ -156,17 +136,19 @@ impl Server {
                 &map.cells[..],
             )
         });
-        let set = MapSet {
+        let all = MapSet {
             maps: maps.collect(),
-            transitions: self.set.transitions.clone(),
+            transitions: set.transitions.clone(),
         };
-        let mut loan = self.sets.loan(set.bytes())?;
-        let header = set.write(stamp, loan.items_mut());
+        let mut loan = self.sets.loan(all.bytes())?;
+        let header = all.write(stamp, loan.items_mut());
         *loan.header_mut() = header;
+        let shown_loan = filled(&self.maps, &set.maps[shown], now(self.served + 1))?;
         loan.send()?;
-        self.served += 1;
-        self.health.count_sent(1);
-        for map in &self.set.maps {
+        shown_loan.send()?;
+        self.served += 2;
+        self.health.count_sent(2);
+        for map in &set.maps {
             let MapHeader {
                 width,
                 height,
@@ -177,36 +159,68 @@ impl Server {
             let (name, map_id) = (&map.name, format!("{map_id:016x}"));
             tracing::info!(name, width, height, resolution_m, map_id, "serving the map");
         }
-        self.show()?;
-        self.health.state(NodeState::Ready)
+        (self.set, self.shown) = (set, Shown::at(shown));
+        (self.is_refused, self.has_room) = (false, true);
+        self.report_state()
     }
 
-    fn show(&mut self) -> Result<(), TransportError> {
-        let map = &self.set.maps[self.shown.map()];
-        let mut loan = self.maps.loan(map.cells.len())?;
-        *loan.header_mut() = MapHeader {
-            stamp: now(self.served),
-            ..map.header
-        };
-        loan.items_mut().copy_from_slice(&map.cells);
-        loan.send()?;
+    /// Sends the map with this number alone.
+    fn show(&mut self, number: usize) -> Result<(), TransportError> {
+        let map = &self.set.maps[number];
+        filled(&self.maps, map, now(self.served))?.send()?;
+        tracing::info!("the robot is on map {}", map.name);
         self.served += 1;
         self.health.count_sent(1);
+        self.shown.change_to(number);
         Ok(())
     }
 
-    /// Shows the map on which the robot is.
+    /// Shows the map on which the robot is; where there is no room for it, again with the next
+    /// pose.
     fn follow(&mut self, pose: &PoseHeader) -> Result<(), TransportError> {
+        if pose.pose_known == 0 {
+            return Ok(());
+        }
         let mut maps = self.set.maps.iter();
         let Some(number) = maps.position(|map| map.header.map_id == pose.map_id) else {
             return Ok(());
         };
-        let is_found = pose.state != TrackState::Searching as u32;
-        if self.shown.changes_to((number, is_found), Instant::now()) {
-            tracing::info!("the robot is on map {}", self.set.maps[number].name);
-            self.show()?;
+        let named = (number, pose.is_believed());
+        if !self.shown.is_due(named, Instant::now()) {
+            // Back on the map that is shown, the other one is not missed any more.
+            return self.note_room(self.has_room || number == self.shown.map());
         }
-        Ok(())
+        match self.show(number) {
+            Err(error @ TransportError::SharedMemoryFull { .. }) => {
+                if self.has_room {
+                    let name = &self.set.maps[number].name;
+                    let problem = with_causes(&error);
+                    let problem = format!("the robot is on map {name}, not shown: {problem}");
+                    tracing::warn!("{problem}");
+                    self.health.error(&problem)?;
+                }
+                self.note_room(false)
+            }
+            Ok(()) => self.note_room(true),
+            error => error,
+        }
+    }
+
+    /// Whether the map that is to be shown had room.
+    fn note_room(&mut self, has_room: bool) -> Result<(), TransportError> {
+        if self.has_room == has_room {
+            return Ok(());
+        }
+        self.has_room = has_room;
+        self.report_state()
+    }
+
+    fn report_state(&mut self) -> Result<(), TransportError> {
+        let state = match self.is_refused || !self.has_room {
+            true => NodeState::Degraded,
+            false => NodeState::Ready,
+        };
+        self.health.state(state)
     }
 
     fn judge(
@@ -217,18 +231,14 @@ impl Server {
         let problem = match outcome {
             Ok(set) if set.is_same(&self.set) => {
                 tracing::info!("the files of the set were rewritten with the same maps");
-                return self.health.state(NodeState::Ready);
+                self.is_refused = false;
+                return self.report_state();
             }
             Ok(set) => {
-                let shown = self.set.maps[self.shown.map()].name.clone();
-                let before = std::mem::replace(&mut self.set, set);
-                let stays = self.set.maps.iter().position(|map| map.name == shown);
-                let kept = std::mem::replace(&mut self.shown, Shown::at(stays.unwrap_or(0)));
-                match self.serve() {
-                    Err(error @ TransportError::SharedMemoryFull { .. }) => {
-                        (self.set, self.shown) = (before, kept);
-                        with_causes(&error)
-                    }
+                let shown = &self.set.maps[self.shown.map()].name;
+                let stays = set.maps.iter().position(|map| map.name == *shown);
+                match self.serve(set, stays.unwrap_or(0)) {
+                    Err(error @ TransportError::SharedMemoryFull { .. }) => with_causes(&error),
                     outcome => return outcome,
                 }
             }
@@ -239,6 +249,22 @@ impl Server {
         self.health.count_refused(1);
         self.health
             .error(&format!("maps {path} refused: {problem}"))?;
-        self.health.state(NodeState::Degraded)
+        self.is_refused = true;
+        self.report_state()
     }
+}
+
+/// A map on its way to whoever shows one.
+fn filled<'p>(
+    publisher: &'p Publisher<topic::Map>,
+    map: &LoadedMap,
+    stamp: Stamp,
+) -> Result<Loan<'p, topic::Map>, TransportError> {
+    let mut loan = publisher.loan(map.cells.len())?;
+    *loan.header_mut() = MapHeader {
+        stamp,
+        ..map.header
+    };
+    loan.items_mut().copy_from_slice(&map.cells);
+    Ok(loan)
 }

@@ -4,12 +4,14 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod sets;
+
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use messages::{HealthHeader, MapSet, NodeState, TrackState, topic};
+use messages::{HealthHeader, NodeState, topic};
 use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
 use ros::TfMessage;
@@ -273,72 +275,4 @@ fn a_broken_map_at_the_start_is_an_error_that_names_it() {
     let (status, log) = world.finish();
     assert_eq!(status.code(), Some(1));
     assert!(log.contains("map.yaml") && log.contains("map.pgm"), "{log}");
-}
-
-#[test]
-fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
-    let mut world = World::new("of-set", &[0, 255, 205]);
-    fs::write(world.at("other.pgm"), image(&[255, 0])).unwrap();
-    fs::write(
-        world.at("other.yaml"),
-        "image: other.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n\
-         occupied_thresh: 0.65\nfree_thresh: 0.196\n",
-    )
-    .unwrap();
-    let list = "maps:\n  - {name: yard, map: other.yaml}\n  - {name: hall, map: map.yaml}\n";
-    fs::write(world.at("maps.yaml"), list).unwrap();
-    let poses = world.graph.publisher::<topic::Tracked>().unwrap();
-    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
-    let shown = world.graph.subscriber::<topic::Map>().unwrap();
-    let health = world.graph.subscriber::<topic::Health>().unwrap();
-    let folder = world.folder.path().to_owned();
-    world.node = Some(NodeProcess::start(
-        env!("CARGO_BIN_EXE_map_server"),
-        &world.graph,
-        [OsStr::new("--maps"), folder.as_os_str()],
-    ));
-    let mut hall = 0;
-    world.wait(&sets, |header, items| {
-        let set = MapSet::read(header, items).unwrap();
-        let named = set
-            .maps
-            .iter()
-            .map(|(map, cells)| (map.name.to_string(), cells.len()));
-        let expected = [("yard".to_owned(), 2), ("hall".to_owned(), 3)];
-        assert_eq!(named.collect::<Vec<_>>(), expected);
-        hall = set.maps[1].0.map_id;
-        true
-    });
-    world.wait(&shown, |map, _| {
-        assert_eq!(map.name.as_str(), "yard");
-        true
-    });
-    let mut loan = poses.loan(0).unwrap();
-    loan.header_mut().map_id = hall;
-    loan.header_mut().state = TrackState::Unique as u32;
-    loan.send().unwrap();
-    world.wait(&shown, |map, cells| {
-        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 0, 255][..]));
-        true
-    });
-
-    // The set is served again when one of its maps changes; what is shown stays.
-    world.replace("map.pgm", &image(&[0, 0, 205]));
-    world.wait(&sets, |header, items| {
-        let set = MapSet::read(header, items).unwrap();
-        assert_eq!(set.maps[1].1, [100, 100, 255]);
-        true
-    });
-    world.wait(&shown, |map, cells| {
-        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 100, 255][..]));
-        true
-    });
-    // One that is broken leaves all as they are.
-    world.replace("maps.yaml", b"maps: []");
-    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
-    assert!(error.contains("there are no maps"), "{error}");
-    assert!(sets.receive().unwrap().is_none() && shown.receive().unwrap().is_none());
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
 }

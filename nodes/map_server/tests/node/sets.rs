@@ -1,0 +1,225 @@
+//! The node on a set of maps, while files come and change, and the robot goes from one map to
+//! another.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::process::Command;
+use std::thread::sleep;
+use std::time::Duration;
+
+use messages::{MapSet, NodeState, TrackState, topic};
+use transport::testing::{NodeProcess, OwnFileSystem};
+use transport::{Publisher, Subscriber};
+
+use super::{World, image};
+
+impl World {
+    /// One more map, whose only row has these pixels.
+    fn add(&self, name: &str, row: &[u8]) {
+        fs::write(self.at(&format!("{name}.pgm")), image(row)).unwrap();
+        let text = format!(
+            "image: {name}.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n\
+             occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        );
+        self.replace(&format!("{name}.yaml"), text.as_bytes());
+    }
+
+    /// Starts the node on all maps of the folder.
+    fn start_on_set(&mut self) {
+        let options = [OsStr::new("--maps"), self.folder.path().as_os_str()];
+        let node = env!("CARGO_BIN_EXE_map_server");
+        self.node = Some(NodeProcess::start(node, &self.graph, options));
+    }
+
+    /// Waits for a set of so many maps; their ids.
+    fn wait_for_maps(&self, sets: &Subscriber<topic::Maps>, count: usize) -> Vec<u64> {
+        let mut ids = Vec::new();
+        self.wait(sets, |header, items| {
+            let set = MapSet::read(header, items).unwrap();
+            ids = set.maps.iter().map(|(map, _)| map.map_id).collect();
+            ids.len() == count
+        });
+        ids
+    }
+}
+
+/// Sends a pose of the tracker on a map.
+fn send(poses: &Publisher<topic::Tracked>, map_id: u64, state: TrackState, pose_known: u32) {
+    let mut loan = poses.loan(0).unwrap();
+    let header = loan.header_mut();
+    (header.map_id, header.state, header.pose_known) = (map_id, state as u32, pose_known);
+    loan.send().unwrap();
+}
+
+#[test]
+fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
+    let mut world = World::new("of-set", &[0, 255, 205]);
+    world.add("other", &[255, 0]);
+    let list = "maps:\n  - {name: yard, map: other.yaml}\n  - {name: hall, map: map.yaml}\n";
+    fs::write(world.at("maps.yaml"), list).unwrap();
+    let poses = world.graph.publisher::<topic::Tracked>().unwrap();
+    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
+    let shown = world.graph.subscriber::<topic::Map>().unwrap();
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start_on_set();
+    let mut hall = 0;
+    world.wait(&sets, |header, items| {
+        let set = MapSet::read(header, items).unwrap();
+        let named = set
+            .maps
+            .iter()
+            .map(|(map, cells)| (map.name.to_string(), cells.len()));
+        let expected = [("yard".to_owned(), 2), ("hall".to_owned(), 3)];
+        assert_eq!(named.collect::<Vec<_>>(), expected);
+        hall = set.maps[1].0.map_id;
+        true
+    });
+    world.wait(&shown, |map, _| {
+        assert_eq!(map.name.as_str(), "yard");
+        true
+    });
+    send(&poses, hall, TrackState::Unique, 1);
+    world.wait(&shown, |map, cells| {
+        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 0, 255][..]));
+        true
+    });
+
+    // The set is served again when one of its maps changes; what is shown stays.
+    world.replace("map.pgm", &image(&[0, 0, 205]));
+    world.wait(&sets, |header, items| {
+        let set = MapSet::read(header, items).unwrap();
+        assert_eq!(set.maps[1].1, [100, 100, 255]);
+        true
+    });
+    world.wait(&shown, |map, cells| {
+        assert_eq!((map.name.as_str(), cells), ("hall", &[100, 100, 255][..]));
+        true
+    });
+    // One that is broken leaves all as they are.
+    world.replace("maps.yaml", b"maps: []");
+    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
+    assert!(error.contains("there are no maps"), "{error}");
+    assert!(sets.receive().unwrap().is_none() && shown.receive().unwrap().is_none());
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+}
+
+#[test]
+fn maps_that_come_into_the_folder_are_served_and_other_files_are_not_looked_at() {
+    let mut world = World::new("folder-of-set", &[0, 255]);
+    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start_on_set();
+    world.wait_for_maps(&sets, 1);
+
+    // A folder that is copied: it is there for a while before its files are.
+    fs::create_dir(world.at("first")).unwrap();
+    sleep(Duration::from_millis(600));
+    for file in ["map.pgm", "map.yaml"] {
+        fs::copy(world.at(file), world.at("first").join(file)).unwrap();
+    }
+    world.wait_for_maps(&sets, 2);
+
+    // An image that is copied slowly.
+    world.add("second", &[255, 255, 0]);
+    let whole = fs::read(world.at("second.pgm")).unwrap();
+    fs::write(world.at("second.pgm"), &whole[..whole.len() - 2]).unwrap();
+    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
+    assert!(error.contains("map second"), "{error}");
+    fs::write(world.at("second.pgm"), whole).unwrap();
+    world.wait_for_maps(&sets, 3);
+    world.wait_for_state(&health, NodeState::Ready);
+
+    fs::write(world.at("notes.txt"), "1").unwrap();
+    fs::write(world.at("dataflow.yaml"), "nodes: []").unwrap();
+    sleep(Duration::from_secs(1));
+    assert!(sets.receive().unwrap().is_none());
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+    assert!(!log.contains("rewritten"), "{log}");
+}
+
+#[test]
+fn only_a_pose_that_is_believed_changes_the_map_that_is_shown_at_once() {
+    let mut world = World::new("lost-on-set", &[0, 255]);
+    world.add("yard", &[255, 0]);
+    let poses = world.graph.publisher::<topic::Tracked>().unwrap();
+    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
+    let shown = world.graph.subscriber::<topic::Map>().unwrap();
+    world.start_on_set();
+    let maps = world.wait_for_maps(&sets, 2);
+    let mut counter = 0;
+    world.wait(&shown, |map, _| {
+        counter = map.stamp.counter;
+        map.map_id == maps[0]
+    });
+    for _ in 0..5 {
+        for map in [maps[1], maps[0]] {
+            send(&poses, map, TrackState::Lost, 1);
+            sleep(Duration::from_millis(50));
+        }
+    }
+    send(&poses, maps[1], TrackState::Unique, 0);
+    send(&poses, maps[1], TrackState::Doubtful, 1);
+    // The next one that is sent.
+    world.wait(&shown, |map, _| {
+        assert_eq!((map.map_id, map.stamp.counter), (maps[1], counter + 1));
+        true
+    });
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+}
+
+#[test]
+fn without_room_a_set_and_a_map_are_not_sent_and_the_node_goes_on() {
+    let test = "sets::without_room_a_set_and_a_map_are_not_sent_and_the_node_goes_on";
+    match OwnFileSystem::of_test(test, "/dev/shm", "96m") {
+        OwnFileSystem::Here => {}
+        OwnFileSystem::Elsewhere => return,
+        OwnFileSystem::Forbidden => return eprintln!("left out: {test}"),
+    }
+    let mut world = World::new("no-room", &[0, 255]);
+    // Of 1.2 MB.
+    world.add("yard", &[255]);
+    let pixels = [&b"P5\n30000 40\n255\n"[..], &[255; 1_200_000]].concat();
+    fs::write(world.at("yard.pgm"), pixels).unwrap();
+    let poses = world.graph.publisher::<topic::Tracked>().unwrap();
+    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
+    let shown = world.graph.subscriber::<topic::Map>().unwrap();
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start_on_set();
+    let maps = world.wait_for_maps(&sets, 2);
+    world.wait(&shown, |map, _| map.map_id == maps[0]);
+    world.wait_for_state(&health, NodeState::Ready);
+
+    // Poses and reports have room beyond what stays free, a set or the yard has none.
+    let free = "df --output=avail -B1 /dev/shm | tail -n 1";
+    let fill = format!("head -c $(( $({free}) - (1 << 20) - 600000 )) /dev/zero > /dev/shm/filler");
+    let filled = Command::new("sh").args(["-c", &fill]).status().unwrap();
+    assert!(filled.success());
+    send(&poses, maps[1], TrackState::Unique, 1);
+    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
+    assert!(
+        error.contains("the robot is on map yard, not shown"),
+        "{error}"
+    );
+    send(&poses, maps[0], TrackState::Unique, 1);
+    world.wait_for_state(&health, NodeState::Ready);
+    world.replace("map.pgm", &image(&[0, 0]));
+    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
+    assert!(error.contains("refused"), "{error}");
+    assert!(sets.receive().unwrap().is_none() && shown.receive().unwrap().is_none());
+
+    fs::remove_file("/dev/shm/filler").unwrap();
+    send(&poses, maps[1], TrackState::Unique, 1);
+    world.wait(&shown, |map, _| map.map_id == maps[1]);
+    world.replace("map.pgm", &image(&[0, 255, 0]));
+    world.wait_for_maps(&sets, 2);
+    world.wait_for_state(&health, NodeState::Ready);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+}
