@@ -79,7 +79,10 @@ proptest! {
         let mut workspace = Workspace::default();
         let mut ask = |locators: &[Locator]| {
             let set = MapSet::new(locators.to_vec());
-            let found = set.locate_unless(&mut workspace, &scan.scan(), None, &|| false);
+            // As shards do, so that a single map is one of several, too.
+            let lead = Lead::default();
+            let together = Together { lead: Some(&lead), ..Together::default() };
+            let found = set.locate_beside(&mut workspace, &scan.scan(), together, &|| false);
             let found = found.unwrap().unwrap();
             (found.places.clone(), found.found.clone())
         };
