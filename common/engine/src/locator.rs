@@ -223,7 +223,8 @@ impl Locator {
             return Ok(None);
         };
         let peaks = &mut workspace.peaks;
-        let Judged { places, ends, .. } = self.judged((outcome, peaks), scan, &self.peaks)?;
+        let alone = (&self.peaks, false);
+        let Judged { places, ends, .. } = self.judged((outcome, peaks), scan, alone)?;
         Ok(Some(Located {
             outcome,
             places,
@@ -231,17 +232,18 @@ impl Locator {
         }))
     }
 
-    /// The second half alone, for a scan whose votes the workspace has.
+    /// The second half alone, for a scan whose votes the workspace has, and whether other maps
+    /// are searched together with this one.
     pub(crate) fn judge<R>(
         &self,
         workspace: &mut Workspace,
         scan: Observation<'_>,
-        config: &PeakConfig,
+        how: (&PeakConfig, bool),
         read: impl FnOnce(&Outcome, &Judged<'_>) -> R,
     ) -> Result<R, EngineError> {
         let Workspace { localizer, peaks } = workspace;
         let outcome = localizer.outcome();
-        let judged = self.judged((outcome, peaks), scan, config)?;
+        let judged = self.judged((outcome, peaks), scan, how)?;
         Ok(read(outcome, &judged))
     }
 
@@ -249,9 +251,12 @@ impl Locator {
         &self,
         (outcome, peaks): (&Outcome, &'w mut peaks::Workspace),
         scan: Observation<'_>,
-        config: &PeakConfig,
+        (config, has_others): (&PeakConfig, bool),
     ) -> Result<Judged<'w>, EngineError> {
-        let input = PeakInput::of(outcome, self.localizer.frame());
+        let input = PeakInput {
+            has_others,
+            ..PeakInput::of(outcome, self.localizer.frame())
+        };
         let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
         peaks.judge(&input, &self.distance_field, config, find)
     }

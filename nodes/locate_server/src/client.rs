@@ -40,7 +40,7 @@ pub fn ask(
 ) -> Result<Received<topic::Hypotheses>, LocateError> {
     let encoding = network_payload::encoding::<topic::Scan>();
     let question = Question::new(session, (header, ranges), &encoding)?;
-    let (encoding, payload) = ask_bytes(session, map, &question, deadline)?;
+    let (encoding, payload) = ask_bytes(session, map, &question, deadline, &|| {})?;
     let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
     answer.rebase(monotonic_ns());
     Ok(answer)
@@ -90,12 +90,14 @@ pub(crate) fn scan_bytes(
     )?)
 }
 
-/// The answer to a question as bytes, and what they say of themselves.
+/// The answer to a question as bytes, and what they say of themselves; `before` is called before
+/// each attempt.
 pub(crate) fn ask_bytes(
     session: &Session,
     map: &str,
     question: &Question,
     deadline: Duration,
+    before: &dyn Fn(),
 ) -> Result<(String, Vec<u8>), LocateError> {
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
@@ -108,6 +110,7 @@ pub(crate) fn ask_bytes(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
+            before();
             attempt(session, map, question, due - now, events.clone())?;
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));

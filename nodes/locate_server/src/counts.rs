@@ -37,12 +37,14 @@ impl Counts {
 
     /// Says why there is no answer.
     pub(crate) fn refuse(&self, query: &Query, error: &LocateError) {
+        self.refuse_as(query, error, error.encoding());
+    }
+
+    /// The same in a reply with this encoding.
+    pub(crate) fn refuse_as(&self, query: &Query, error: &LocateError, encoding: &str) {
         let says = with_causes(error);
         // Who does not wait any more needs no reply.
-        let _ = query
-            .reply_err(says.as_str())
-            .encoding(error.encoding())
-            .wait();
+        let _ = query.reply_err(says.as_str()).encoding(encoding).wait();
         if matches!(error, LocateError::Busy { .. } | LocateError::Late { .. }) {
             self.busy.fetch_add(1, Ordering::Relaxed);
         } else {

@@ -28,6 +28,8 @@ pub(crate) struct Job {
     pub(crate) query: Query,
     /// Under which the answer goes.
     pub(crate) key: Arc<str>,
+    /// Whether another server handed it on.
+    pub(crate) is_handed_on: bool,
     pub(crate) deadline: Deadline,
 }
 
@@ -155,7 +157,7 @@ impl Dispatcher {
     /// A request to all servers: it may be handed on.
     pub(crate) fn ask(self: &Arc<Self>, query: Query) {
         let key = Arc::clone(&self.key);
-        if let Some(job) = self.open(query, key) {
+        if let Some(job) = self.open(query, key, false) {
             let busy = self.busy.load(Ordering::Relaxed);
             let other = self.team().hand_on(busy, self.workers);
             match other {
@@ -167,19 +169,20 @@ impl Dispatcher {
 
     /// A request that another server hands on, under this one's own `key`.
     pub(crate) fn ask_me(&self, query: Query, key: &Arc<str>) {
-        if let Some(job) = self.open(query, Arc::clone(key)) {
+        if let Some(job) = self.open(query, Arc::clone(key), true) {
             self.take_on(job);
         }
     }
 
     /// Reads what the request says of its time; refuses it if that is nothing.
-    fn open(&self, query: Query, key: Arc<str>) -> Option<Job> {
+    fn open(&self, query: Query, key: Arc<str>, is_handed_on: bool) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
         match deadline(said.as_deref(), self.default_deadline) {
             Ok(allowed) => Some(Job {
                 query,
                 key,
+                is_handed_on,
                 deadline: Deadline::after(allowed),
             }),
             Err(error) => {

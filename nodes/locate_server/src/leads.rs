@@ -5,7 +5,7 @@
 //! `backcast/locate/<shard>/lead`, what the best pose has that another one found, and the search
 //! goes on with that.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use engine::search::Lead;
@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::LocateError;
 use crate::request::QuestionId;
+use crate::shard::are_votes;
 
-/// Questions that are kept, far more than are under way: what is said of one may come before
-/// the question, and after its answer.
-const KEPT: usize = 256;
+/// Questions that are kept at least, and at most.
+const KEPT: (usize, usize) = (256, 65_536);
 
 /// What is said of a question: what a pose has that another shard found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ impl SentLead {
         let sent: SentLead =
             postcard::from_bytes(payload).map_err(|error| unsound(error.to_string()))?;
         let (votes, possible) = sent.votes;
-        match votes <= possible && possible > 0 {
+        match are_votes(sent.votes) {
             true => Ok(sent),
             false => Err(unsound(format!(
                 "a pose has {votes} of {possible} votes: allowed are at most all, of 1 at least"
@@ -47,22 +47,46 @@ impl SentLead {
     }
 }
 
-/// By question; the newest last.
+/// By question.
+#[derive(Debug)]
+pub(crate) struct Leads {
+    kept: usize,
+    known: Mutex<Known>,
+}
+
 #[derive(Debug, Default)]
-pub(crate) struct Leads(Mutex<VecDeque<(QuestionId, Arc<Lead>)>>);
+struct Known {
+    leads: HashMap<QuestionId, Arc<Lead>>,
+    /// The newest last.
+    order: VecDeque<QuestionId>,
+}
 
 impl Leads {
+    /// Where so many questions may be under way. More are kept: what is said of one may come
+    /// before the question and after its answer, and it may be another server of the shard that
+    /// is asked.
+    pub(crate) fn new(under_way: usize) -> Self {
+        Leads {
+            kept: (2 * under_way).clamp(KEPT.0, KEPT.1),
+            known: Mutex::default(),
+        }
+    }
+
     /// What the best pose has that is known for a question, which may rise at any time.
     pub(crate) fn of(&self, question: QuestionId) -> Arc<Lead> {
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, lead)) = known.iter().find(|(id, _)| *id == question) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let Known { leads, order } = &mut *known;
+        if let Some(lead) = leads.get(&question) {
             return Arc::clone(lead);
         }
-        if known.len() == KEPT {
-            known.pop_front();
+        if order.len() == self.kept
+            && let Some(oldest) = order.pop_front()
+        {
+            leads.remove(&oldest);
         }
         let lead = Arc::new(Lead::default());
-        known.push_back((question, Arc::clone(&lead)));
+        leads.insert(question, Arc::clone(&lead));
+        order.push_back(question);
         lead
     }
 
@@ -87,7 +111,7 @@ mod tests {
 
     #[test]
     fn what_is_said_of_a_question_counts_whenever_it_comes() {
-        let leads = Leads::default();
+        let leads = Leads::new(1);
         leads.take(sent(5, (30, 100)));
         let lead = leads.of((1, 5));
         assert_eq!(lead.share(), VoteShare::new(30, 100));
@@ -96,9 +120,19 @@ mod tests {
         leads.take(sent(6, (90, 100)));
         assert_eq!(lead.share(), VoteShare::new(50, 100));
         // Old ones make room, and are not lost for who has them.
-        (7..7 + KEPT as u64).for_each(|question| leads.take(sent(question, (1, 2))));
+        (7..7 + KEPT.0 as u64).for_each(|question| leads.take(sent(question, (1, 2))));
         assert_eq!(leads.of((1, 5)).share(), VoteShare::default());
         assert_eq!(lead.share(), VoteShare::new(50, 100));
+    }
+
+    #[test]
+    fn what_is_said_of_questions_that_wait_is_kept() {
+        let waiting = 1_000;
+        let leads = Leads::new(waiting as usize);
+        (0..waiting).for_each(|question| leads.take(sent(question, (1, 2))));
+        let lead = |question| leads.of((1, question)).share();
+        assert!((0..waiting).all(|question| lead(question) == VoteShare::new(1, 2)));
+        assert_eq!(Leads::new(usize::MAX / 2).kept, KEPT.1);
     }
 
     #[test]

@@ -157,7 +157,9 @@ impl Locator {
         };
         let scan = Scan::of(header, ranges);
         let found = self.set.locate_beside(workspace, &scan, together, stop)?;
-        Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found)))
+        // After the search: it was beside no better pose than that.
+        let how = (self.set.locators()[0].peaks().score, lead.share());
+        Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found, how)))
     }
 
     fn search<'w>(

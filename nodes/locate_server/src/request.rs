@@ -19,7 +19,7 @@ pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
 /// The encoding of a request to one shard of a set of maps, in postcard.
 pub const PART: &str = "application/postcard;backcast.ScanForPart/v2";
 /// That of its answer.
-pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v1";
+pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v2";
 /// What a request may say of itself.
 pub(crate) const ENCODINGS: [&str; 3] = ["application/postcard;backcast.Scan/v2", JSON, PART];
 /// Characters of a foreign encoding that an error shows.

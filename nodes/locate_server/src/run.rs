@@ -103,11 +103,12 @@ impl Service {
         let key = network_payload::locate(&config.asked_name());
         let workers = config.workers();
         let me = session.zid().to_string();
-        let load = (workers, config.waiting.into());
+        let waiting = usize::from(config.waiting);
+        let load = (workers, waiting);
         let (dispatcher, work_queue) =
             Dispatcher::new(session, &key, load, config.deadline, counts);
         let work_queue = Arc::new(work_queue);
-        let leads = Arc::new(Leads::default());
+        let leads = Arc::new(Leads::new(workers * (waiting + 1)));
         for _ in 0..workers {
             let (work_queue, locator, counts) =
                 (work_queue.clone(), locator.clone(), counts.clone());

@@ -8,7 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use engine::map_set::Located;
-use engine::peaks::{Found, Margin, Place};
+use engine::peaks::{Found, Margin, Place, Score};
 use engine::votes::VoteShare;
 use geometry::{Covariance, Pose};
 use map::MapFile;
@@ -107,6 +107,11 @@ pub struct Part {
     pub ids: Vec<u64>,
     /// How long it took, nanoseconds.
     pub search_ns: u64,
+    /// The votes of the best pose that was known when the search ended, be it another shard's,
+    /// and how many are possible on its map: what has too few beside that was not searched.
+    pub beside: (u16, u16),
+    /// Whether places are judged by how well the scan fits, and not by votes alone.
+    by_fit: bool,
     places: Vec<SentPlace>,
     needed: f64,
     left_out: f64,
@@ -131,11 +136,13 @@ struct SentPlace {
 }
 
 impl Part {
-    /// What is sent of what a shard found; its maps have these numbers in the set.
+    /// What is sent of what a shard found, with this score and beside a best pose like this; its
+    /// maps have these numbers in the set.
     pub(crate) fn new(
         (shard, maps): (Shard, Vec<String>),
         held: &[(u32, u64)],
         found: &Located<'_>,
+        (score, beside): (Score, VoteShare),
     ) -> Self {
         let found = found.found;
         let number = |map: u32| held[map as usize].0;
@@ -158,6 +165,8 @@ impl Part {
             maps,
             ids: held.iter().map(|&(_, id)| id).collect(),
             search_ns: 0,
+            beside: (beside.votes, beside.possible),
+            by_fit: score == Score::Fit,
             places: found.places.iter().map(place).collect(),
             needed: found.margin.needed,
             left_out: found.margin.left_out,
@@ -169,47 +178,48 @@ impl Part {
         }
     }
 
-    /// What a shard sent, as it is merged.
+    /// The best pose that was known when the search ended.
+    pub(crate) fn beside(&self) -> VoteShare {
+        VoteShare::new(self.beside.0, self.beside.1)
+    }
+
+    /// What a shard sent that was asked, as it is merged by who judges with this score.
     ///
     /// # Errors
-    /// It is not sound: numbers that are none, or a map that the set does not have.
-    pub(crate) fn found(&self) -> Result<Found, LocateError> {
-        let unsound = |reason: &str| LocateError::Part {
-            reason: reason.to_owned(),
-        };
-        let Part { maps, places, .. } = self;
-        let is_map = |map: u32| (map as usize) < maps.len() && self.shard.holds(map as usize);
-        let numbers = [self.needed, self.left_out, self.inlier_share, self.unseen];
-        if places.len() > MAX_PLACES || self.lead.1 == 0 || !is_map(self.leading_map) {
-            return Err(unsound("its maps or its places are not those of the shard"));
+    /// It is not sound: of another shard, by another score, with numbers that are none or that
+    /// no place has, or of a map that the set does not have.
+    pub(crate) fn found(&self, asked: Shard, score: Score) -> Result<Found, LocateError> {
+        let unsound = |reason: String| LocateError::Part { reason };
+        if self.shard != asked {
+            let found = self.shard;
+            return Err(unsound(format!(
+                "it is of shard {found}: asked was {asked}"
+            )));
         }
-        if !numbers.iter().all(|number| number.is_finite()) {
-            return Err(unsound("it has numbers that are none"));
+        if self.by_fit != (score == Score::Fit) {
+            let reason = "servers judge by another --score than the caller";
+            return Err(unsound(reason.to_owned()));
         }
-        let place = |sent: &SentPlace| {
-            let [x, y, yaw] = sent.pose;
-            let numbers = sent.pose.iter().chain(&sent.covariance);
-            let is_sound = numbers
-                .chain([&sent.score, &sent.drawn_doubt])
-                .all(|number| number.is_finite())
-                && sent.possible > 0
-                && is_map(sent.map);
-            is_sound
-                .then(|| Place {
-                    map: sent.map,
-                    map_from_laser: Pose::new(x, y, yaw),
-                    covariance: Covariance::from_rows(sent.covariance),
-                    score: sent.score,
-                    probability: 0.0,
-                    intensity: sent.intensity,
-                    possible: sent.possible,
-                    drawn_doubt: sent.drawn_doubt,
-                    support: sent.support,
-                })
-                .ok_or_else(|| unsound("a place has no pose on a map of the shard"))
-        };
+        if self.places.len() > MAX_PLACES || !self.is_map(self.leading_map) {
+            let reason = "its maps or its places are not those of the shard";
+            return Err(unsound(reason.to_owned()));
+        }
+        let is_sound = [self.lead, self.beside].into_iter().all(are_votes)
+            && [self.needed, self.left_out].into_iter().all(is_lead)
+            && [self.inlier_share, self.unseen].into_iter().all(is_share);
+        if !is_sound {
+            return Err(unsound("it has numbers that none has".to_owned()));
+        }
+        if !self
+            .places
+            .iter()
+            .all(|place| self.is_map(place.map) && place.is_sound())
+        {
+            let reason = "a place has no pose on a map of the shard, or no score";
+            return Err(unsound(reason.to_owned()));
+        }
         Ok(Found {
-            places: places.iter().map(place).collect::<Result<_, _>>()?,
+            places: self.places.iter().map(SentPlace::place).collect(),
             margin: Margin {
                 needed: self.needed,
                 left_out: self.left_out,
@@ -221,11 +231,88 @@ impl Part {
             unseen: self.unseen,
         })
     }
+
+    /// Whether the shard holds a map of this number.
+    fn is_map(&self, map: u32) -> bool {
+        (map as usize) < self.maps.len() && self.shard.holds(map as usize)
+    }
+}
+
+impl SentPlace {
+    fn is_sound(&self) -> bool {
+        let pose = self.pose.iter().chain(&self.covariance);
+        // Where beams pass through obstacles a score is below 0.
+        pose.chain([&self.score]).all(|number| number.is_finite())
+            && self.score <= 1.0
+            && is_share(self.drawn_doubt)
+            && are_votes((self.intensity, self.possible))
+    }
+
+    fn place(&self) -> Place {
+        let [x, y, yaw] = self.pose;
+        Place {
+            map: self.map,
+            map_from_laser: Pose::new(x, y, yaw),
+            covariance: Covariance::from_rows(self.covariance),
+            score: self.score,
+            probability: 0.0,
+            intensity: self.intensity,
+            possible: self.possible,
+            drawn_doubt: self.drawn_doubt,
+            support: self.support,
+        }
+    }
+}
+
+/// Whether a pose can have so many votes of those that are possible.
+pub(crate) fn are_votes((votes, possible): (u16, u16)) -> bool {
+    votes <= possible && possible > 0
+}
+
+fn is_share(number: f64) -> bool {
+    (0.0..=1.0).contains(&number)
+}
+
+fn is_lead(number: f64) -> bool {
+    number.is_finite() && number >= 0.0
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// What a shard of a set with three maps may say, which has a pose with so many votes, of so
+    /// many that are possible, on its last map.
+    pub(crate) fn part_of(shard: Shard, (votes, possible): (u16, u16)) -> Part {
+        let maps = vec!["a".into(), "b".into(), "c".into()];
+        let last = (0..3).rfind(|map| shard.holds(*map)).unwrap() as u32;
+        let place = SentPlace {
+            map: last,
+            pose: [1.0, 2.0, 0.5],
+            covariance: [0.0; 9],
+            score: f64::from(votes) / f64::from(possible),
+            intensity: votes,
+            possible,
+            drawn_doubt: 0.0,
+            support: 1,
+        };
+        Part {
+            shard,
+            maps,
+            ids: vec![7, 8],
+            search_ns: 1,
+            beside: (votes, possible),
+            by_fit: true,
+            places: vec![place],
+            needed: 0.1,
+            left_out: 0.0,
+            may_lack: false,
+            inlier_share: 0.9,
+            leading_map: last,
+            lead: (votes, possible),
+            unseen: 0.3,
+        }
+    }
 
     #[test]
     fn shards_have_every_so_many_th_map_and_a_name() {
@@ -251,42 +338,40 @@ mod tests {
 
     #[test]
     fn what_no_shard_sends_is_refused() {
-        let place = SentPlace {
-            map: 2,
-            pose: [1.0, 2.0, 0.5],
-            covariance: [0.0; 9],
-            score: 0.9,
-            intensity: 5,
-            possible: 9,
-            drawn_doubt: 0.0,
-            support: 1,
-        };
-        let part = Part {
-            shard: Shard { number: 1, of: 2 },
-            maps: vec!["a".into(), "b".into(), "c".into()],
-            ids: vec![7, 8],
-            search_ns: 1,
-            places: vec![place],
-            needed: 0.1,
-            left_out: 0.0,
-            may_lack: false,
-            inlier_share: 0.9,
-            leading_map: 2,
-            lead: (5, 9),
-            unseen: 0.3,
-        };
-        assert_eq!(part.found().unwrap().places[0].map, 2);
+        let asked = Shard { number: 1, of: 2 };
+        let part = part_of(asked, (5, 9));
+        assert_eq!(part.found(asked, Score::Fit).unwrap().places[0].map, 2);
+        let error = part.found(asked, Score::Votes).unwrap_err().to_string();
+        assert!(error.contains("another --score"), "{error}");
+        let other = Shard { number: 2, of: 2 };
+        let error = part.found(other, Score::Fit).unwrap_err().to_string();
+        assert!(error.contains("of shard 1/2: asked was 2/2"), "{error}");
         let refuse = |change: &dyn Fn(&mut Part)| {
             let mut wrong = part.clone();
             change(&mut wrong);
-            assert!(wrong.found().is_err(), "{wrong:?}");
+            assert!(wrong.found(asked, Score::Fit).is_err(), "{wrong:?}");
         };
+        refuse(&|part| part.shard.of = 3);
         refuse(&|part| part.places[0].map = 1);
         refuse(&|part| part.places[0].map = 3);
         refuse(&|part| part.places[0].pose[1] = f64::NAN);
+        refuse(&|part| part.places[0].covariance[4] = f64::INFINITY);
+        refuse(&|part| part.places[0].score = 2.0);
+        refuse(&|part| part.places[0].score = f64::NEG_INFINITY);
         refuse(&|part| part.places[0].possible = 0);
+        refuse(&|part| part.places[0].intensity = 10);
+        refuse(&|part| part.places[0].drawn_doubt = -0.1);
+        refuse(&|part| part.places[0].drawn_doubt = f64::NAN);
         refuse(&|part| part.leading_map = 1);
-        refuse(&|part| part.lead.1 = 0);
+        refuse(&|part| part.lead = (0, 0));
+        refuse(&|part| part.lead = (65_535, 1));
+        refuse(&|part| part.beside = (0, 0));
+        refuse(&|part| part.beside = (2, 1));
         refuse(&|part| part.needed = f64::INFINITY);
+        refuse(&|part| part.needed = -0.1);
+        refuse(&|part| part.left_out = -0.1);
+        refuse(&|part| part.inlier_share = 1.1);
+        refuse(&|part| part.unseen = -0.1);
+        refuse(&|part| part.unseen = f64::NAN);
     }
 }

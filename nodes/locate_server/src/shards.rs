@@ -51,10 +51,12 @@ impl OverMaps {
 /// server that dies meanwhile costs no answer where another one has the same shard, and is named
 /// by its maps where none has.
 ///
+/// Servers must judge by the same score as the caller.
+///
 /// # Errors
 /// [`LocateError::Late`] if no shard answered in time, [`LocateError::Refused`] if the scan is
-/// none, and an error where servers disagree how many shards there are, or send what is not
-/// sound.
+/// none, and an error where servers disagree how many shards there are, judge by another score,
+/// or send what is not sound.
 pub fn ask_shards(
     session: &Session,
     set: &str,
@@ -67,7 +69,7 @@ pub fn ask_shards(
         deadline_ms: deadline.as_millis(),
     };
     let of = loop {
-        if let Some(of) = shards(session, set)? {
+        if let Some(of) = shards(session, set, due)? {
             break of;
         }
         if Instant::now() + PAUSE >= due {
@@ -83,16 +85,23 @@ pub fn ask_shards(
     })?;
     let question = Question::of(PART, payload);
     let lead = Lead::default();
-    let name = |number| Shard { number, of }.name(set);
+    let tell = |shard: Shard| tell(session, &shard.name(set), id, lead.share());
     let ask = |number| {
-        let part = part(session, &name(number), &question, due)?;
-        let found = part.found()?.lead;
-        if found.compare(lead.share()).is_gt() {
-            lead.raise(found);
+        let shard = Shard { number, of };
+        // A server that takes over was not there when the others were told.
+        let before = || {
+            if lead.share() != VoteShare::default() {
+                tell(shard);
+            }
+        };
+        let part = part(session, &shard.name(set), &question, due, &before)?;
+        let found = part.found(shard, config.score)?;
+        if found.lead.compare(lead.share()).is_gt() {
+            lead.raise(found.lead);
             let others = (1..=of).filter(|other| *other != number);
-            others.for_each(|other| tell(session, &name(other), id, found));
+            others.for_each(|number| tell(Shard { number, of }));
         }
-        Ok(part)
+        Ok((part, found))
     };
     let ask = &ask;
     let answers: Vec<_> = std::thread::scope(|scope| {
@@ -107,20 +116,20 @@ pub fn ask_shards(
     let mut parts = Vec::new();
     for answer in answers {
         match answer {
-            Ok(part) => parts.push(part),
+            Ok(answer) => parts.push(answer),
             // The others have answers.
             Err(LocateError::Late { .. }) => {}
             Err(error) => return Err(error),
         }
     }
-    let Some(first) = parts.first() else {
+    let Some((first, _)) = parts.first() else {
         return Err(late());
     };
-    if parts.iter().any(|part| part.maps != first.maps) {
+    if parts.iter().any(|(part, _)| part.maps != first.maps) {
         let reason = "servers have other maps than each other under one name".to_owned();
         return Err(LocateError::Part { reason });
     }
-    merged(&parts, config)
+    Ok(merged(parts, config))
 }
 
 /// A number that no other question has.
@@ -143,34 +152,42 @@ fn tell(session: &Session, shard: &str, question: QuestionId, found: VoteShare) 
     }
 }
 
-fn merged(parts: &[Part], config: &PeakConfig) -> Result<OverMaps, LocateError> {
-    let mut found: Vec<Found> = Vec::new();
-    for part in parts {
-        found.push(part.found()?);
-    }
-    let Merged { mut places, .. } = merge(&found, config);
+/// At least one part, all of one set.
+fn merged(parts: Vec<(Part, Found)>, config: &PeakConfig) -> OverMaps {
+    let (parts, found): (Vec<Part>, Vec<Found>) = parts.into_iter().unzip();
+    let Merged {
+        mut places,
+        found: merged,
+        ..
+    } = merge(&found, config);
+    // A shard that searched beside a pose that is none of these left out what they may lack, as
+    // where a question has the number of another one.
+    let is_beside_another = |part: &Part| part.beside().compare(merged.lead).is_gt();
     let maps = parts[0].maps.clone();
     let is_searched = |map: usize| parts.iter().any(|part| part.shard.holds(map));
     let missing = maps.iter().enumerate();
     let missing = missing.filter(|(map, _)| !is_searched(*map));
     let not_searched: Vec<String> = missing.map(|(_, name)| name.clone()).collect();
-    if !not_searched.is_empty() && places.verdict == Verdict::Unique {
+    let may_lack = !not_searched.is_empty() || parts.iter().any(is_beside_another);
+    if may_lack && places.verdict == Verdict::Unique {
         places.verdict = Verdict::Ambiguous;
     }
     let slowest = parts.iter().map(|part| part.search_ns).max();
-    Ok(OverMaps {
+    OverMaps {
         places,
         maps,
         not_searched,
         slowest: Duration::from_nanos(slowest.unwrap_or_default()),
-    })
+    }
 }
 
 /// How many shards a set has, by the servers that are there; `None` where there is none.
-fn shards(session: &Session, set: &str) -> Result<Option<u16>, LocateError> {
+fn shards(session: &Session, set: &str, due: Instant) -> Result<Option<u16>, LocateError> {
     let key = format!("{}/*/*/*/*", network_payload::locate(&format!("{set}.$*")));
     let failed = KeyError::when("look who is at", &key);
-    let tokens = session.liveliness().get(&key).wait().map_err(failed)?;
+    let remaining = due.saturating_duration_since(Instant::now());
+    let tokens = session.liveliness().get(&key).timeout(remaining).wait();
+    let tokens = tokens.map_err(failed)?;
     let mut found = BTreeSet::new();
     for reply in tokens {
         let Ok(sample) = reply.into_result() else {
@@ -198,9 +215,10 @@ fn part(
     name: &str,
     question: &Question,
     due: Instant,
+    before: &dyn Fn(),
 ) -> Result<Part, LocateError> {
     let remaining = due.saturating_duration_since(Instant::now());
-    let (encoding, payload) = ask_bytes(session, name, question, remaining)?;
+    let (encoding, payload) = ask_bytes(session, name, question, remaining, before)?;
     let unsound = |reason: String| LocateError::Part { reason };
     if encoding != PART_ANSWER {
         return Err(unsound(format!(
@@ -214,4 +232,41 @@ fn part(
         )));
     }
     postcard::from_bytes(&payload).map_err(|error| unsound(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shard::tests::part_of;
+
+    /// What both shards of a set say, with these votes of 100 and beside such ones.
+    fn verdict(shards: [((u16, u16), (u16, u16)); 2]) -> Verdict {
+        let config = PeakConfig::default();
+        let part = |(number, (lead, beside)): (u16, _)| {
+            let shard = Shard { number, of: 2 };
+            let part = Part {
+                beside,
+                ..part_of(shard, lead)
+            };
+            let found = part.found(shard, config.score).unwrap();
+            (part, found)
+        };
+        let parts = (1..).zip(shards).map(part).collect();
+        merged(parts, &config).places.verdict
+    }
+
+    #[test]
+    fn beside_a_pose_that_no_shard_has_nothing_stands_alone() {
+        let (low, high) = ((10, 100), (80, 100));
+        assert_eq!(verdict([(low, low), (high, high)]), Verdict::Unique);
+        // The other one's pose was told.
+        assert_eq!(verdict([(low, high), (high, high)]), Verdict::Unique);
+        assert_eq!(verdict([(low, (4, 5)), (high, high)]), Verdict::Unique);
+        // None of both has that one.
+        assert_eq!(
+            verdict([(low, (81, 100)), (high, high)]),
+            Verdict::Ambiguous
+        );
+        assert_eq!(verdict([(low, low), (high, (1, 1))]), Verdict::Ambiguous);
+    }
 }

@@ -9,6 +9,7 @@ use zenoh::Wait;
 
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
+use crate::error::BUSY;
 use crate::leads::Leads;
 use crate::locator::{Locator, Workspace};
 use crate::request::{PART_ANSWER, Wanted};
@@ -26,6 +27,11 @@ pub(crate) fn work(
             Ok((encoding, payload)) => {
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
                 counts.sent(&reply.wait());
+            }
+            // The server that handed it on may be a newer one, which knows the encoding: it takes
+            // back what another one is too busy for.
+            Err(error @ LocateError::Encoding { .. }) if job.is_handed_on => {
+                counts.refuse_as(&job.query, &error, BUSY);
             }
             Err(error) => counts.refuse(&job.query, &error),
         }

@@ -81,6 +81,7 @@ pub fn check_on_map<'a>(
         cut: header.truncated == VotesHeader::CUT,
         highest_possible: header.highest_possible,
         lead: lead.on(header.highest_possible as u16).into(),
+        has_others: false,
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),
         frame: map.frame.pooled(pooling as usize),

@@ -85,6 +85,13 @@ impl DistanceField {
         })
     }
 
+    /// The same, read with the instructions of this set.
+    #[cfg(test)]
+    pub(super) fn with(self, set: InstructionSet) -> Self {
+        let simd = Simd::new(set);
+        DistanceField { simd, ..self }
+    }
+
     /// What the map may leave out of the score of the true place, 0..=1, where the best
     /// place has this one: nothing where it was measured, and little where the best lacks
     /// little itself.

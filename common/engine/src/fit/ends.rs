@@ -43,6 +43,10 @@ pub(crate) struct End {
     pub weight: f64,
 }
 
+/// Ends farther off than this lie on no map that their pose is on, and have no say there, cells:
+/// what is summed up of those that are nearer has room in 32 bits.
+const FARTHEST: f64 = 1e6;
+
 impl Ends {
     /// The ends of a scan's beams, thinned as for voting; bearings are not rounded.
     /// Where several lasers are joined, they are the beams of each, seen from its
@@ -116,9 +120,12 @@ impl Ends {
         self.lanes.extend(self.ends.chunks(LANES).map(|ends| {
             let mut lanes = EndLanes::default();
             for (i, end) in ends.iter().enumerate() {
-                lanes.x[i] = (end.from.0 + end.reading * end.towards.0) as f32;
-                lanes.y[i] = (end.from.1 + end.reading * end.towards.1) as f32;
-                lanes.weight[i] = end.weight as f32;
+                let x = end.from.0 + end.reading * end.towards.0;
+                let y = end.from.1 + end.reading * end.towards.1;
+                if x.abs() <= FARTHEST && y.abs() <= FARTHEST {
+                    (lanes.x[i], lanes.y[i]) = (x as f32, y as f32);
+                    lanes.weight[i] = end.weight as f32;
+                }
             }
             lanes
         }));

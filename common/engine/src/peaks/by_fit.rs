@@ -74,7 +74,9 @@ impl Workspace {
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
             (self.margin.needed, self.margin.left_out) = (needed, left_out);
-            let matters = needed.max(left_out + NEGLIGIBLE * config.lead_scale);
+            // A place on another map may be the best one of all.
+            let apart = if input.has_others { ELSEWHERE } else { 1.0 };
+            let matters = (apart * needed).max(left_out + NEGLIGIBLE * config.lead_scale);
             for (_, place) in &mut self.refined[scored..] {
                 if lead(best.score, place.score) < matters {
                     place.score = score(place);

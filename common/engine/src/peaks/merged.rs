@@ -11,9 +11,9 @@ use crate::votes::{VoteShare, is_close};
 pub struct Found {
     /// Distinct places, best first, each with the number of its map.
     pub places: Vec<Place>,
-    /// By how much the best of them must lead over others.
+    /// By how much the first of them must lead over others.
     pub margin: Margin,
-    /// Share of the beams that end at an obstacle at the best of them.
+    /// Share of the beams that end at an obstacle at the first of them.
     pub inlier_share: f64,
     /// The map with the most votes among these, by number.
     pub leading_map: u32,
@@ -70,7 +70,9 @@ pub struct Merged {
 /// found it: places are ordered by their scores, equal ones by the numbers of their maps, and a
 /// place on another map is an alternative like any other.
 ///
-/// Places with less than half of the votes of the best pose count on its map only.
+/// Places with less than half of the votes of the best pose count on its map only. Where so the
+/// first place of a part is left out and another one of it is the best of all, nothing is
+/// `Unique`: the part says of its first place alone by how much that must lead.
 #[must_use]
 pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     let first = all.iter().reduce(|a, b| if b.leads(a) { b } else { a });
@@ -91,7 +93,11 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     // Stable: equal ones of a map stay in their order.
     places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score).then(a.map.cmp(&b.map)));
     let best_of = places.first().map_or(0, |&(number, _)| number);
-    let may_lack = all.iter().any(|found| found.margin.may_lack);
+    // Another place of a part may need a larger lead than its first one, and its score may be a
+    // bound.
+    let is_first = |&(number, place): &(usize, Place)| all[number].places.first() == Some(&place);
+    let may_lack =
+        all.iter().any(|found| found.margin.may_lack) || !places.first().is_none_or(is_first);
     let margin = Margin {
         may_lack,
         ..all[best_of].margin
@@ -148,5 +154,80 @@ impl Places {
             () => Verdict::Unique,
         };
         self.places.truncate(config.max_hypotheses as usize);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::{Covariance, Pose};
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Places on a map of which 100 votes are possible, by their scores and votes.
+    fn found(map: u32, lead: u16, needed: f64, places: &[(f64, u16)]) -> Found {
+        let place = |&(score, intensity): &(f64, u16)| Place {
+            map,
+            map_from_laser: Pose::new(score, f64::from(intensity), 0.0),
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
+            score,
+            probability: 0.0,
+            intensity,
+            possible: 100,
+            drawn_doubt: 0.0,
+            support: 1,
+        };
+        Found {
+            places: places.iter().map(place).collect(),
+            margin: Margin {
+                needed,
+                ..Margin::default()
+            },
+            inlier_share: 0.9,
+            leading_map: map,
+            lead: VoteShare::new(lead, 100),
+            unseen: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_place_behind_a_first_one_that_is_left_out_never_stands_alone() {
+        let other = found(0, 60, 0.09, &[(0.57, 60)]);
+        let verdict = |part: Found| {
+            let merged = merge(&[other.clone(), part], &PeakConfig::default());
+            assert_eq!((merged.best_of, merged.places.places[0].map), (1, 1));
+            merged.places.verdict
+        };
+        // What its first place needs is less than what the second one does.
+        let second = verdict(found(1, 40, 0.09, &[(0.9, 20), (0.7, 40)]));
+        assert_eq!(second, Verdict::Ambiguous);
+        // So far behind the first one, the second one's score may be a bound.
+        let bound = verdict(found(1, 40, 0.09, &[(0.99, 20), (0.85, 40)]));
+        assert_eq!(bound, Verdict::Ambiguous);
+        let first = verdict(found(1, 40, 0.09, &[(0.9, 40), (0.7, 20)]));
+        assert_eq!(first, Verdict::Unique);
+    }
+
+    proptest! {
+        #[test]
+        fn what_stands_alone_is_the_first_place_of_its_part(
+            parts in vec((0u16..=100, 0.0..0.3f64, vec((0.0..1.0f64, 0u16..=100), 0..4)), 1..4),
+            by_votes: bool,
+        ) {
+            let part = |(map, (lead, needed, mut places)): (u32, (u16, f64, Vec<(f64, u16)>))| {
+                places.sort_by(|a, b| b.0.total_cmp(&a.0));
+                found(map, lead, needed, &places)
+            };
+            let parts: Vec<Found> = (0..).zip(parts).map(part).collect();
+            let score = if by_votes { Score::Votes } else { Score::Fit };
+            let config = PeakConfig { score, ..PeakConfig::default() };
+            let merged = merge(&parts, &config);
+            if let Some(best) = merged.found.places.first() {
+                let is_first = parts[merged.best_of].places.first() == Some(best);
+                prop_assert!(is_first || merged.places.verdict != Verdict::Unique);
+                prop_assert!(is_first || merged.found.margin.may_lack);
+            }
+        }
     }
 }

@@ -45,6 +45,8 @@ pub struct PeakInput<'a> {
     /// The votes of the best pose; where several maps are searched and another one has it,
     /// the least number that is as good here.
     pub lead: u32,
+    /// Whether the map is one of several that are searched together.
+    pub has_others: bool,
     /// Headings a turn.
     pub headings: u32,
     /// The heading that was given, in the map frame, radians.
@@ -54,7 +56,7 @@ pub struct PeakInput<'a> {
 }
 
 impl<'a> PeakInput<'a> {
-    /// The input for an outcome on a map.
+    /// The input for an outcome on a map that is searched alone.
     #[must_use]
     pub fn of(outcome: &'a Outcome, frame: GridFrame) -> Self {
         PeakInput {
@@ -63,6 +65,7 @@ impl<'a> PeakInput<'a> {
             cut: outcome.found.cut,
             highest_possible: outcome.highest_possible,
             lead: outcome.lead.into(),
+            has_others: false,
             headings: outcome.headings,
             known_heading: outcome.known_heading,
             frame,

@@ -18,6 +18,7 @@ fn input(votes: &[Vote]) -> PeakInput<'_> {
         cut: false,
         highest_possible: 200,
         lead: votes.first().map_or(0, |vote| vote.intensity.into()),
+        has_others: false,
         headings: 360,
         known_heading: None,
         frame: GridFrame {

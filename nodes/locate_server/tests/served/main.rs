@@ -4,6 +4,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod handed_on;
 mod shards;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -360,32 +361,4 @@ fn a_request_that_nobody_ends_is_asked_again() {
             "{answer:?}"
         );
     });
-}
-
-#[test]
-fn what_was_handed_on_comes_back_when_the_other_leaves() {
-    let server = Server::start("leaves", &["--workers", "1", "--waiting", "1000"]);
-    let caller = caller(&[&server]);
-    // One that says that it has the same map and much time, and has none.
-    let other = session(&[], &[server.endpoint()]);
-    let me = other.zid();
-    let (_silent, kept) = stand_silent(&other, &format!("backcast/locate/corridor/{me}"));
-    let map_id = map::load(world().map()).unwrap().id();
-    let log = server.graph.subscriber::<topic::Log>().unwrap();
-    let token = format!("backcast/locate/corridor/{me}/{map_id:016x}/ffffffffffffffff/64");
-    let token = other.liveliness().declare_token(token).wait().unwrap();
-    // The server logs whom it may hand requests to.
-    let me = me.to_string();
-    wait_until(&server.graph, &log, |_, text| {
-        String::from_utf8_lossy(text).contains(&me)
-    });
-    // All at the same time, so that they are more than the server searches at once.
-    let scan = &scans()[0];
-    let asked: Vec<_> = (0..20).map(|_| ask_json(&caller, scan)).collect();
-    let _held = kept.recv_timeout(TIMEOUT).expect("none was handed on");
-    token.undeclare().wait().unwrap();
-    for replies in asked {
-        replies.recv().unwrap().into_result().unwrap();
-    }
-    server.process.stop();
 }

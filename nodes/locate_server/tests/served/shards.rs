@@ -1,7 +1,9 @@
 //! A set of maps, divided over servers.
 
 use engine::peaks::{PeakConfig, Place};
-use locate_server::{LocateError, OverMaps, SearchedMap, Shard, Workspace, ask_shards};
+use locate_server::{
+    LocateError, OverMaps, PART, PART_ANSWER, Part, SearchedMap, Shard, Workspace, ask_shards,
+};
 use messages::Verdict;
 
 use super::*;
@@ -22,20 +24,14 @@ fn list() -> tempfile::TempDir {
 }
 
 fn shard(tag: &str, set: &tempfile::TempDir, shard: &str) -> Server {
+    shard_with(tag, set, shard, &[])
+}
+
+/// A server of a shard with further options.
+fn shard_with(tag: &str, set: &tempfile::TempDir, shard: &str, options: &[&str]) -> Server {
     let set = set.path().to_str().unwrap();
-    Server::of(
-        tag,
-        &[
-            "--maps",
-            set,
-            "--name",
-            "malaga",
-            "--shard",
-            shard,
-            "--workers",
-            "1",
-        ],
-    )
+    let common = ["--maps", set, "--name", "malaga", "--shard", shard];
+    Server::of(tag, &[&common, &["--workers", "1"], options].concat())
 }
 
 /// Every so many-th scan of a recording.
@@ -163,20 +159,112 @@ fn a_shard_with_another_server_loses_no_question_when_one_is_killed() {
 
 /// A server of the other shard that meets its callers and its replicas at the first one.
 fn shard_of(first: &Server, set: &tempfile::TempDir, number: usize) -> Server {
-    let (set, connect) = (set.path().to_str().unwrap(), first.endpoint());
-    let arguments = [
-        "--maps",
-        set,
-        "--name",
-        "malaga",
-        "--shard",
-        "2/2",
-        "--workers",
-        "1",
-    ];
-    let connect = ["--connect", &connect];
-    Server::of(
-        &format!("replica{number}"),
-        &[&arguments[..], &connect].concat(),
-    )
+    let connect = first.endpoint();
+    let tag = format!("replica{number}");
+    shard_with(&tag, set, "2/2", &["--connect", &connect])
+}
+
+#[test]
+fn shards_that_judge_by_another_score_are_not_merged() {
+    let set = list();
+    let by_votes = shard_with("by_votes", &set, "1/1", &["--score", "votes"]);
+    let scan = &scans_of("malaga_courtyard", 40)[0];
+    let error = ask_all(&caller(&[&by_votes]), scan, TIMEOUT).unwrap_err();
+    let says = error.to_string();
+    assert!(says.contains("another --score than the caller"), "{says}");
+    by_votes.process.stop();
+}
+
+/// What one shard answers to a question of this number.
+fn ask_part(session: &Session, question: (u64, u64), scan: &Scan) -> Part {
+    let preamble = Preamble {
+        sender: 1,
+        sequence: 1,
+        clock_ns: 0,
+    };
+    let scan = network_payload::encode::<topic::Scan>(&preamble, &scan.0, &scan.1).unwrap();
+    let replies = session
+        .get("backcast/locate/malaga.1-of-2?deadline_ms=60000")
+        .payload(postcard::to_allocvec(&(question, scan)).unwrap())
+        .encoding(Encoding::from(PART))
+        .timeout(TIMEOUT)
+        .wait()
+        .unwrap();
+    let sample = replies.recv().unwrap().into_result().unwrap();
+    assert_eq!(sample.encoding().to_string(), PART_ANSWER);
+    postcard::from_bytes(&sample.payload().to_bytes()).unwrap()
+}
+
+#[test]
+fn a_shard_leaves_out_what_has_too_few_votes_beside_what_it_is_told() {
+    let set = list();
+    let server = shard("told", &set, "1/2");
+    let session = caller(&[&server]);
+    let scan = &scans_of("malaga_courtyard", 40)[0];
+    let tell = |bytes: Vec<u8>| {
+        let key = "backcast/locate/malaga.1-of-2/lead";
+        session.put(key, bytes).wait().unwrap();
+    };
+    // The places that have not half of all votes that are possible.
+    let low = |part: &Part| {
+        let value = serde_json::to_value(part).unwrap();
+        let places = value["places"].as_array().unwrap().clone();
+        let votes = |place: &serde_json::Value, key: &str| place[key].as_u64().unwrap();
+        let is_low =
+            |place: &&serde_json::Value| 2 * votes(place, "intensity") < votes(place, "possible");
+        places.iter().filter(is_low).count()
+    };
+    let alone = ask_part(&session, (7, 1), scan);
+    assert!(low(&alone) > 0 && alone.beside != (1, 1), "{alone:?}");
+    // A pose with all votes that are possible, of another shard. Where a question has the number
+    // of another one, it is beside what is known of that.
+    let told = postcard::to_allocvec(&((7u64, 2u64), (1u16, 1u16))).unwrap();
+    tell(told);
+    for _ in 0..2 {
+        let part = ask_part(&session, (7, 2), scan);
+        assert_eq!((low(&part), part.beside), (0, (1, 1)));
+    }
+    assert_eq!(ask_part(&session, (7, 3), scan).beside, alone.beside);
+    let health = server.graph.subscriber::<topic::Health>().unwrap();
+    tell(vec![0xff]);
+    wait_for_health(&server.graph, &health, |report| report.refused == 1);
+    server.process.stop();
+}
+
+#[test]
+fn a_server_that_is_asked_again_is_told_again_what_the_others_have() {
+    let set = list();
+    let server = shard("tells", &set, "1/2");
+    // One that says that it has the other shard, and has none.
+    let other = session(&[], &[server.endpoint()]);
+    let (said, told) = unbounded();
+    let _leads = other
+        .declare_subscriber("backcast/locate/malaga.2-of-2/lead")
+        .callback(move |sample| said.send(sample.payload().to_bytes().into_owned()).unwrap())
+        .wait()
+        .unwrap();
+    let (_silent, kept) = stand_silent(&other, "backcast/locate/malaga.2-of-2");
+    let me = other.zid();
+    let token = format!("backcast/locate/malaga.2-of-2/{me}/ff/ff/1");
+    let _token = other.liveliness().declare_token(token).wait().unwrap();
+    let session = caller(&[&server]);
+    let scan = &scans_of("malaga_courtyard", 40)[0];
+    std::thread::scope(|scope| {
+        let asking = scope.spawn(|| ask_all(&session, scan, TIMEOUT));
+        let first = kept.recv_timeout(TIMEOUT).unwrap();
+        let lead = told.recv_timeout(TIMEOUT).expect("the first shard has it");
+        // Another server would take over.
+        drop(first);
+        let again = told.recv_timeout(TIMEOUT).expect("it is told again");
+        assert_eq!(again, lead);
+        // All that are under way.
+        while !asking.is_finished() {
+            if let Ok(query) = kept.recv_timeout(Duration::from_millis(10)) {
+                let _ = query.reply_err("enough").encoding(REFUSED).wait();
+            }
+        }
+        let answer = asking.join().unwrap();
+        assert!(matches!(answer, Err(LocateError::Refused { .. })));
+    });
+    server.process.stop();
 }

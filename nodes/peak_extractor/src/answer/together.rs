@@ -48,7 +48,8 @@ pub(super) fn on_several<'w>(
     for (number, (on_map, workspace)) in (0..).zip(by_map.iter().zip(on_maps.iter_mut())) {
         let (here, after) = rest.split_at(on_map.total as usize);
         rest = after;
-        let checked = check_on_map(on_map, here, maps, lead)?;
+        let mut checked = check_on_map(on_map, here, maps, lead)?;
+        checked.input.has_others = by_map.len() > 1;
         let judged = workspace.judge(header, &checked, scans, &each)?;
         let lead = (number, share(on_map));
         found.push(Found::with(lead, on_map.certified_floor, &judged));

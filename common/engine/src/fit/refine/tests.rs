@@ -1,7 +1,11 @@
-use super::super::drawn::distance_field;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+use super::super::drawn::{distance_field, field_of};
 use super::*;
 use crate::fit::ends::End;
 use crate::fit::lanes::{LANES, lanes};
+use crate::instruction_set::InstructionSet;
 
 /// An L-shaped room, 20 cells wide.
 const ROOM: [&str; 12] = [
@@ -148,4 +152,57 @@ fn a_scan_without_beams_moves_nothing() {
     let none = Ends::of(Vec::new());
     let refined = distance_field(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
     assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
+}
+
+#[test]
+fn a_reading_beyond_all_maps_has_no_say() {
+    let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
+    let expected = map.refine(&ends, TRUTH, false, &FitConfig::default());
+    for reading in [2e6, 1e20, 1e30, 1e39, 1e300, f64::INFINITY] {
+        let far = [0.0, 0.7].map(|angle| End::new((0.0, 0.0), angle, (reading, reading), 1.0));
+        let with_far = Ends::of([&ends.ends[..], &far].concat());
+        let refined = map.refine(&with_far, TRUTH, false, &FitConfig::default());
+        let off = (refined.pose.x - expected.pose.x).hypot(refined.pose.y - expected.pose.y);
+        assert!(off < 0.01, "{reading}: {refined:?}");
+        assert!(
+            (refined.weight - expected.weight).abs() < 0.1,
+            "{reading}: {refined:?}"
+        );
+        let sums = [refined.curvature, refined.walls];
+        let are_finite = sums
+            .iter()
+            .all(|sums| sums.iter().all(|sum| sum.is_finite()));
+        assert!(
+            are_finite && refined.variance.is_finite(),
+            "{reading}: {refined:?}"
+        );
+    }
+}
+
+proptest! {
+    #[test]
+    fn every_instruction_set_refines_to_the_same_bit(
+        grid in crate::testing::any_grid(),
+        beams in vec((-180.0..180.0f64, 0.5..50.0f64, 0.1..1.0f64), 1..=20),
+        (x, y, heading) in (-2.0..42.0f64, -2.0..42.0f64, -4.0..4.0f64),
+        heading_is_known: bool,
+    ) {
+        let end = |(degrees, reading, weight): (f64, f64, f64)| {
+            End::new((0.5, -0.2), degrees.to_radians(), (0.1 * reading, reading), weight)
+        };
+        let ends = Ends::of(beams.into_iter().map(end).collect());
+        let start = GridPose { x, y, heading };
+        let refined = |set| {
+            let map = field_of(&grid).with(set);
+            let found = map.refine(&ends, start, heading_is_known, &FitConfig::default());
+            let pose = [found.pose.x, found.pose.y, found.pose.heading];
+            let numbers = pose.into_iter().chain([found.variance, found.weight]);
+            let sums = found.curvature.iter().chain(&found.walls).copied();
+            numbers.chain(sums).map(f64::to_bits).collect::<Vec<_>>()
+        };
+        let expected = refined(InstructionSet::Portable);
+        for set in InstructionSet::available() {
+            prop_assert_eq!(refined(set), expected.clone(), "{}", set);
+        }
+    }
 }
