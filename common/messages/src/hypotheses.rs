@@ -12,7 +12,7 @@ use crate::{Pose2, Stamp};
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("HypothesesHeader/v3")
+    type_name("HypothesesHeader/v4")
 )]
 #[repr(C)]
 pub struct HypothesesHeader {
@@ -40,6 +40,10 @@ pub struct HypothesesHeader {
     pub highest_possible: u32,
     /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
     pub mount_known: u64,
+    /// What was searched, as [`searched_id`](crate::searched_id) says it: the map's id, and of
+    /// a set one of all its maps; 0 where nothing was. So an answer that found nothing differs
+    /// from none.
+    pub searched: u64,
 }
 
 impl HypothesesHeader {
@@ -123,10 +127,10 @@ impl std::fmt::Display for Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(HypothesesHeader, size 88, align 8, {
+    crate::pin_layout!(HypothesesHeader, size 96, align 8, {
         stamp: 0, map_id: 24, sent_ns: 32, search_ns: 40, extract_ns: 48, verdict: 56,
         alternatives: 60, confidence: 64, inlier_share: 68, best: 72, highest_possible: 76,
-        mount_known: 80,
+        mount_known: 80, searched: 88,
     });
 
     mod hypothesis {

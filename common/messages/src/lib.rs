@@ -44,7 +44,7 @@ pub use hypotheses::{HypothesesHeader, Hypothesis, Verdict};
 pub use initial_pose::{InitialPose, InitialPoseKind};
 pub use log::{LogHeader, LogLevel};
 pub use map::{FREE_TO, MapHeader, OCCUPIED_FROM, UNKNOWN, WrongMapId, map_id};
-pub use maps::{InvalidMapSet, MapSet, MapsHeader, Transition};
+pub use maps::{InvalidMapSet, MapSet, MapsHeader, Transition, searched_id};
 pub use name::{FrameName, MapName, Name};
 pub use odometry::Odometry;
 pub use particles::{Particle, ParticlesHeader};

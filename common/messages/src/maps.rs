@@ -161,6 +161,22 @@ impl<'a> MapSet<'a> {
     }
 }
 
+/// The id of maps that are searched together, by their ids in their order: of one its own, and
+/// 0 of none. Transitions between them change no search, and do not count.
+#[must_use]
+pub fn searched_id(map_ids: impl IntoIterator<Item = u64>) -> u64 {
+    let mut hasher = XxHash3_64::new();
+    let (mut count, mut last) = (0, 0);
+    for map_id in map_ids {
+        hasher.write_u64(map_id);
+        (count, last) = (count + 1, map_id);
+    }
+    match count {
+        0 | 1 => last,
+        _ => hasher.finish(),
+    }
+}
+
 impl Transition {
     /// Whether it is a rectangle on two of so many maps.
     #[must_use]
@@ -239,6 +255,16 @@ mod tests {
         assert_eq!(later.id(), header.set_id, "when it was read does not count");
         later.maps.swap(0, 1);
         assert_ne!(later.id(), header.set_id, "the order counts");
+    }
+
+    #[test]
+    fn maps_that_are_searched_together_have_one_id() {
+        let id = |ids: &[u64]| searched_id(ids.iter().copied());
+        assert_eq!((id(&[]), id(&[7])), (0, 7));
+        let several = [id(&[7, 8]), id(&[8, 7]), id(&[7, 9]), id(&[7, 8, 9])];
+        for (number, of) in several.iter().enumerate() {
+            assert!(*of != 0 && !several[..number].contains(of), "{several:?}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::{Pose2, Stamp};
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("VotesHeader/v5")
+    type_name("VotesHeader/v6")
 )]
 #[repr(C)]
 pub struct VotesHeader {
@@ -74,6 +74,9 @@ pub struct VotesHeader {
     /// `votes_by_map`, which has what this header says of the leading map for each of them. 0
     /// where one map was searched alone.
     pub maps: u64,
+    /// What was searched, as [`searched_id`](crate::searched_id) says it: the map's id, and of
+    /// a set one of all its maps; 0 where nothing was.
+    pub searched: u64,
 }
 
 /// Header of topic `votes_by_map`: which of the votes of a scan are on which map. The items
@@ -139,13 +142,13 @@ pub struct Vote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(VotesHeader, size 176, align 8, {
+    crate::pin_layout!(VotesHeader, size 184, align 8, {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
         max_beams: 144, pooling: 148, beam_arc_m: 152, has_readings: 160,
-        lasers_used: 164, maps: 168,
+        lasers_used: 164, maps: 168, searched: 176,
     });
 
     mod by_map {

@@ -271,6 +271,7 @@ mod tests {
         let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
         let expected = VotesHeader {
             maps: 0,
+            searched: 0,
             stamp: header().stamp,
             map_id: 77,
             total: 1,

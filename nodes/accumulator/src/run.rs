@@ -14,7 +14,7 @@ use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
 use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT_MS, Role, Seen};
 use engine::localizer::Workspace;
-use messages::{ScanHeader, VotesHeader};
+use messages::{ScanHeader, VotesHeader, searched_id};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
@@ -267,11 +267,13 @@ impl Node {
             return Ok(None);
         };
         let has_readings = matches!(seen, Seen::Carried(_));
+        let searched = searched_id(self.maps.iter().map(|map| map.map_id));
         let workspaces = &*workspaces;
         let by_map = self.maps.iter().zip(workspaces).map(|(map, workspace)| {
             let (mut votes, poses) = answer::answered(scan, map, workspace.outcome(), engine_ns);
             votes.lasers_used = lasers;
             votes.has_readings = has_readings.into();
+            votes.searched = searched;
             (votes, poses)
         });
         if has_readings {

@@ -12,7 +12,7 @@ use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
 use engine::search::Lead;
 use map::OccupancyGrid;
-use messages::{HypothesesHeader, Hypothesis, ScanHeader};
+use messages::{HypothesesHeader, Hypothesis, ScanHeader, searched_id};
 
 use crate::shard::{Part, Shard};
 
@@ -108,9 +108,7 @@ impl Locator {
     /// does.
     #[must_use]
     pub fn map_id(&self) -> u64 {
-        let ids = self.maps.iter().map(|&(id, _)| id);
-        ids.reduce(|all, id| all.rotate_left(1) ^ id)
-            .unwrap_or_default()
+        searched_id(self.maps.iter().map(|&(id, _)| id))
     }
 
     /// The name of a map, where there are several.
@@ -192,6 +190,7 @@ fn described(
         best,
         highest_possible,
         mount_known: mount_known.into(),
+        searched: searched_id(maps.iter().map(|&(id, _)| id)),
         ..HypothesesHeader::zeroed()
     };
     let places = places.places.iter();

@@ -181,7 +181,7 @@ mod tests {
     fn the_forms_are_those_of_the_wire() {
         assert_eq!(ENCODINGS[0], network_payload::encoding::<topic::Scan>());
         let answer = network_payload::encoding::<topic::Hypotheses>();
-        assert!(answer.ends_with("backcast.Hypotheses/v3"), "{answer}");
+        assert!(answer.ends_with("backcast.Hypotheses/v4"), "{answer}");
         // Its keys are those of version 2.
         assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
     }

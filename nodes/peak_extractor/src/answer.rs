@@ -10,7 +10,9 @@ use engine::grid::GridFrame;
 use engine::peaks::{self, Judged, Merged, PeakConfig, Place, Places, Target};
 use engine::space::Space;
 use geometry::Pose;
-use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader};
+use messages::{
+    Beam, BeamsHeader, HypothesesHeader, Hypothesis, SearchOutcome, Verdict, Vote, VotesHeader,
+};
 
 use crate::PeakError;
 use crate::check::{Checked, check, mount};
@@ -75,7 +77,11 @@ pub fn answer<'w>(
         return together::on_several(header, votes, (maps, scans), config, workspace);
     }
     let Some(checked) = check(header, votes, maps)? else {
-        return Ok(nothing(header));
+        let mut answer = nothing(header);
+        if header.outcome == SearchOutcome::NoVotes as u32 {
+            answer.header.searched = header.searched;
+        }
+        return Ok(answer);
     };
     let base_from_laser = mount(header)?;
     workspace.maps.resize_with(1, OnMap::default);
@@ -160,7 +166,7 @@ fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&S
     Ok(space)
 }
 
-/// The answer to votes that say nothing, or that cannot be read.
+/// The answer to votes that say nothing, or that cannot be read: it counts as no search.
 #[must_use]
 pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
     let header = HypothesesHeader {
@@ -203,6 +209,7 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
         best: votes.best,
         highest_possible: votes.highest_possible,
         mount_known: mount_known.into(),
+        searched: votes.searched,
         ..nothing(votes).header
     }
 }
@@ -212,7 +219,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use engine::peaks::Score;
-    use messages::{MapHeader, Pose2, ScanHeader, SearchOutcome, Stamp};
+    use messages::{MapHeader, Pose2, ScanHeader, Stamp};
 
     use super::*;
 
@@ -258,6 +265,7 @@ mod tests {
             max_beams: 180,
             pooling: 1,
             beam_arc_m: 0.2,
+            searched: 9,
             ..Zeroable::zeroed()
         }
     }
@@ -302,6 +310,7 @@ mod tests {
             best: 100,
             highest_possible: 125,
             mount_known: 1,
+            searched: 9,
         };
         let mut workspace = Workspace::default();
         assert_eq!(extract(&header(), &mut workspace).header, expected);
@@ -368,7 +377,7 @@ mod tests {
 
     #[test]
     fn scans_without_votes_have_no_hypotheses() {
-        for outcome in [SearchOutcome::NoVotes, SearchOutcome::Refused] {
+        for (outcome, searched) in [(SearchOutcome::NoVotes, 9), (SearchOutcome::Refused, 0)] {
             let empty = VotesHeader {
                 outcome: outcome as u32,
                 best: 0,
@@ -377,7 +386,9 @@ mod tests {
             let known = (&maps(), &Scans::default());
             let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
             let said = answer(&empty, &[], known, &config, &mut workspace).unwrap();
-            assert_eq!(said, nothing(&empty));
+            let mut expected = nothing(&empty);
+            expected.header.searched = searched;
+            assert_eq!(said, expected);
             assert_eq!(said.header.verdict, Verdict::NoScan as u32);
             assert_eq!(
                 (said.header.stamp, said.header.search_ns),

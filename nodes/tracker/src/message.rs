@@ -5,15 +5,16 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Report;
 use geometry::{Covariance, Pose};
-use messages::{FrameName, PoseHeader, Stamp, TrackReason, TrackState};
+use messages::{FrameName, MapName, PoseHeader, Stamp, TrackReason, TrackState};
 
 /// All that there is to send of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tracked {
     /// Of the scan.
     pub(crate) stamp: Stamp,
-    /// The map.
+    /// The map, and what it is called.
     pub(crate) map_id: u64,
+    pub(crate) map_name: MapName,
     /// What the tracker says of the scan.
     pub(crate) report: Report,
     /// Whose pose that is.

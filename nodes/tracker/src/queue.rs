@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{Hypothesis, ScanHeader, Stamp};
+use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp};
 
 /// Scans and answers that are kept: two seconds of a fast laser.
 const KEPT: usize = 128;
@@ -38,41 +38,54 @@ impl Scans {
     }
 }
 
+/// What came for a scan that was to be searched.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    of: Stamp,
+    /// What was searched, as the header says it.
+    pub(crate) searched: u64,
+    pub(crate) found: Vec<Hypothesis>,
+}
+
 /// The newest answers of searches.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
-    kept: VecDeque<(Stamp, Vec<Hypothesis>)>,
+    kept: VecDeque<Answer>,
 }
 
 impl Answers {
-    /// Takes an answer. The first one to a scan counts: asked again, a searcher may say
-    /// that it does not keep that scan any more.
-    pub(crate) fn push(&mut self, stamp: Stamp, hypotheses: &[Hypothesis]) {
-        if self.of(stamp).is_some_and(|found| !found.is_empty()) {
+    /// Takes an answer. The first search of a scan counts: asked again, a searcher may say that
+    /// it does not keep that scan any more.
+    pub(crate) fn push(&mut self, header: &HypothesesHeader, hypotheses: &[Hypothesis]) {
+        let (of, searched) = (header.stamp, header.searched);
+        let is_late = |before: &Answer| searched == 0 || searched == before.searched;
+        if self.of(of).is_some_and(is_late) {
             return;
         }
-        let mut room = match self.kept.len() {
-            KEPT => self.kept.pop_front().map(|(_, room)| room),
+        let oldest = match self.kept.len() {
+            KEPT => self.kept.pop_front(),
             _ => None,
-        }
-        .unwrap_or_default();
-        room.clear();
-        room.extend_from_slice(hypotheses);
-        self.kept.push_back((stamp, room));
+        };
+        let mut found = oldest.map_or_else(Vec::new, |answer| answer.found);
+        found.clear();
+        found.extend_from_slice(hypotheses);
+        self.kept.push_back(Answer {
+            of,
+            searched,
+            found,
+        });
     }
 
     /// Whether there is one to a scan that entered the graph after this one.
     pub(crate) fn any_after(&self, stamp: Stamp) -> bool {
-        self.kept
-            .iter()
-            .any(|(of, _)| of.entered_ns > stamp.entered_ns)
+        let mut kept = self.kept.iter();
+        kept.any(|answer| answer.of.entered_ns > stamp.entered_ns)
     }
 
-    /// That of a scan.
-    pub(crate) fn of(&self, stamp: Stamp) -> Option<&[Hypothesis]> {
+    /// That to a scan.
+    pub(crate) fn of(&self, stamp: Stamp) -> Option<&Answer> {
         let mut newest_first = self.kept.iter().rev();
-        let found = newest_first.find(|(of, _)| of.is_of(stamp));
-        found.map(|(_, hypotheses)| &hypotheses[..])
+        newest_first.find(|answer| answer.of.is_of(stamp))
     }
 }
 
@@ -105,28 +118,46 @@ mod tests {
         assert_eq!(next, Some((2, vec![2.0])));
     }
 
+    fn header(stamp: Stamp, searched: u64) -> HypothesesHeader {
+        HypothesesHeader {
+            stamp,
+            searched,
+            ..Zeroable::zeroed()
+        }
+    }
+
     #[test]
     fn answers_are_found_by_their_scan() {
         let mut answers = Answers::default();
         for counter in 0..=KEPT as u64 {
             answers.push(
-                stamp(counter),
+                &header(stamp(counter), 7),
                 &[Zeroable::zeroed(); 2][..counter.min(2) as usize],
             );
         }
-        assert_eq!(answers.of(stamp(0)), None);
-        assert_eq!(answers.of(stamp(1)).map(<[_]>::len), Some(1));
-        assert_eq!(answers.of(stamp(KEPT as u64)).map(<[_]>::len), Some(2));
+        let found = |counter| answers.of(stamp(counter)).map(|answer| answer.found.len());
+        assert_eq!(found(0), None);
+        assert_eq!((found(1), found(KEPT as u64)), (Some(1), Some(2)));
     }
 
     #[test]
-    fn the_first_answer_to_a_scan_counts_unless_it_was_empty() {
+    fn the_first_search_of_a_scan_counts() {
         let mut answers = Answers::default();
-        let some = [Zeroable::zeroed(); 2];
-        for found in [&[][..], &some, &[], &some[..1]] {
-            answers.push(stamp(3), found);
-        }
-        assert_eq!(answers.of(stamp(3)).map(<[_]>::len), Some(2));
+        let mut push = |searched, found: usize| {
+            answers.push(
+                &header(stamp(3), searched),
+                &[Zeroable::zeroed(); 2][..found],
+            );
+            let answer = answers.of(stamp(3)).unwrap();
+            (answer.searched, answer.found.len())
+        };
+        assert_eq!(push(0, 0), (0, 0));
+        assert_eq!(push(7, 2), (7, 2));
+        // It is not kept any more, or is searched again.
+        assert_eq!(push(0, 0), (7, 2));
+        assert_eq!(push(7, 1), (7, 2));
+        // On other maps.
+        assert_eq!(push(8, 1), (8, 1));
     }
 
     #[test]
@@ -137,7 +168,7 @@ mod tests {
         };
         let mut answers = Answers::default();
         assert!(!answers.any_after(entered(5)));
-        answers.push(entered(5), &[]);
+        answers.push(&header(entered(5), 7), &[]);
         assert!(answers.any_after(entered(4)) && !answers.any_after(entered(5)));
     }
 }

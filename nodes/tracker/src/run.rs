@@ -52,6 +52,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         joiner: Joiner::new(config.join.clone()),
         worlds: Worlds::default(),
         served: None,
+        shown: None,
         tracker: Follower::new(&config.follow, &[]),
         scans: Scans::default(),
         answers: Answers::default(),
@@ -87,6 +88,8 @@ struct Node {
     /// The maps, and the scan whose turn it is on each of them.
     worlds: Worlds,
     served: Option<Served>,
+    /// The id of the map of a set that is shown.
+    shown: Option<u64>,
     tracker: Follower,
     scans: Scans,
     answers: Answers,
@@ -146,13 +149,14 @@ impl Node {
         if let Some(map) = inputs.maps.newest()? {
             self.health.count_received(1);
             // Of a set it is the map that is shown.
-            if !inputs.sets.has_publishers() {
-                self.take_map(map.header(), map.items())?;
+            match inputs.sets.has_publishers() {
+                true => self.shown = Some(map.header().map_id),
+                false => self.take_map(map.header(), map.items())?,
             }
         }
         while let Some(found) = inputs.hypotheses.receive()? {
             self.health.count_received(1);
-            self.answers.push(found.header().stamp, found.items());
+            self.answers.push(found.header(), found.items());
             self.is_silent = false;
         }
         while let Some(initial) = inputs.initial_poses.receive()? {
@@ -270,8 +274,10 @@ impl Node {
             return self.send_nothing(scan, TrackReason::NoMap);
         }
         let seen = worlds.seen(&self.config.fit);
+        // Where it was refused, or other maps were searched, nobody knows what a search finds.
         let answer = of.and_then(|of| self.answers.of(of));
-        let known = answer.into_iter().flatten();
+        let answer = answer.filter(|answer| answer.searched == worlds.searched());
+        let known = answer.into_iter().flat_map(|answer| &answer.found);
         let known = known.filter_map(|found| Some((worlds.number(found.map_id)?, found)));
         Candidate::fill(&mut self.candidates, known, target);
         let found = answer.map(|_| &self.candidates[..]);
@@ -281,9 +287,14 @@ impl Node {
             self.ask(inputs, scan.stamp)?;
         }
         let report = self.tracker.report();
+        // Where there is no pose, the robot is taken to be on the map on which it was.
+        let map = report
+            .pose
+            .map_or_else(|| self.current_map(), |_| report.map);
         let last = Tracked {
             stamp: scan.stamp,
-            map_id: self.worlds.map_id(report.map),
+            map_id: self.worlds.map_id(map),
+            map_name: self.worlds.name(map),
             report,
             target,
             mount_known: scan.mount_known == 1,
@@ -307,11 +318,14 @@ impl Node {
 
     /// Sends the pose that odometry has carried on, if one is due.
     fn carry(&mut self, stamp: Stamp) -> Result<(), TransportError> {
-        let is_due = self.outputs.is_due();
-        let Some(last) = self
-            .last
-            .filter(|last| is_due && last.report.state != TrackState::Searching)
-        else {
+        if !self.outputs.is_due() {
+            return Ok(());
+        }
+        // On a map that is not served any more there is no pose.
+        let may_go_on = |last: &Tracked| {
+            last.report.state != TrackState::Searching && self.worlds.number(last.map_id).is_some()
+        };
+        let Some(last) = self.last.filter(may_go_on) else {
             return Ok(());
         };
         let newest = self.joiner.by_newest_odometry();

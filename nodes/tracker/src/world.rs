@@ -7,7 +7,7 @@ use engine::grid::{CellRules, GridFrame};
 use engine::observation::Observation;
 use engine::space::Space;
 use engine::tracking::Seen;
-use messages::{MapHeader, MapSet, Transition};
+use messages::{MapHeader, MapName, MapSet, Transition, searched_id};
 
 /// Headings a turn that scans are thinned for, as the search does by default.
 const HEADINGS: u32 = 360;
@@ -16,6 +16,8 @@ const HEADINGS: u32 = 360;
 struct World {
     /// Its id in messages.
     map_id: u64,
+    /// What it is called in its set; empty of one that is served alone.
+    name: MapName,
     /// Distances to obstacles.
     distance_field: DistanceField,
     /// What scans are thinned for.
@@ -38,6 +40,7 @@ impl World {
         let (width, height) = (header.width as usize, header.height as usize);
         Ok(World {
             map_id: header.map_id,
+            name: header.name,
             distance_field: DistanceField::new(frame, (width, height), occupancy, rules)?,
             space: Space::new(HEADINGS, frame.resolution_m, width, height)?,
             ends: Ends::default(),
@@ -83,9 +86,27 @@ impl Worlds {
         map.map_or(0, |map| map.map_id)
     }
 
+    /// What the map with a number is called.
+    pub(crate) fn name(&self, number: u32) -> MapName {
+        let map = self.maps.get(number as usize);
+        map.map_or(MapName::new(""), |map| map.name)
+    }
+
+    /// What a search on all of them has for its id.
+    pub(crate) fn searched(&self) -> u64 {
+        searched_id(self.maps.iter().map(|map| map.map_id))
+    }
+
     /// The number of the map with an id.
     pub(crate) fn number(&self, map_id: u64) -> Option<u32> {
         let number = self.maps.iter().position(|map| map.map_id == map_id);
+        number.map(|number| number as u32)
+    }
+
+    /// The number of the map that is called so: in a set each name is of one map, which keeps
+    /// it when it is edited.
+    pub(crate) fn number_of_name(&self, name: MapName) -> Option<u32> {
+        let number = self.maps.iter().position(|map| map.name == name);
         number.map(|number| number as u32)
     }
 

@@ -111,7 +111,10 @@ impl Places {
         let first = places[0];
         let left_out = |place: &Place| match place.map == first.map {
             true => left_out,
-            false => lead(best, best - doubt_between(&first, place)),
+            false => {
+                let drawn = [first.drawn_doubt, place.drawn_doubt];
+                lead(best, best - doubt_between(first.score, drawn))
+            }
         };
         let rivals = leads.iter().zip(&*places).skip(1);
         let needed = |place: &Place| match place.map == first.map {
@@ -136,10 +139,10 @@ impl Places {
 
 /// By how much the scores of the best place and of one on another map may be off to each other,
 /// because one of the maps was drawn: a drawing has clean walls, which fit a piece of any
-/// building, and leaves out what stands at them.
-fn doubt_between(best: &Place, other: &Place) -> f64 {
-    best.drawn_doubt
-        .max(other.drawn_doubt.min(lacks(best.score)))
+/// building, and leaves out what stands at them. The maps' doubts are those of
+/// [`DistanceField::drawn_doubt`].
+pub(crate) fn doubt_between(best: f64, [of_best, of_other]: [f64; 2]) -> f64 {
+    of_best.max(of_other.min(lacks(best)))
 }
 
 /// How far a score lies behind the best, against what that lacks of a perfect

@@ -24,7 +24,7 @@ use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
-pub(crate) use by_fit::lead;
+pub(crate) use by_fit::{doubt_between, lead};
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
 pub use merged::{Found, Merged, merge};

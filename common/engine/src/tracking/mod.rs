@@ -25,8 +25,10 @@
 //! hypothesis tracking", IEEE Trans. Robotics and Automation 17(5), 2001), with
 //! evidence that is capped.
 
+mod belief;
 mod config;
 mod driven_path;
+mod limits;
 mod matching;
 mod method;
 mod particles;
@@ -44,13 +46,13 @@ pub use place::Candidate;
 pub use report::Report;
 pub use seen::Seen;
 
+use belief::Belief;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
 use messages::Transition;
 use places::Places;
 use transition::other_side;
-use verdict::Belief;
 
 /// What is needed of a search before a scan is done with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -212,7 +214,8 @@ impl Tracker {
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
-        let is_new = (is_suspicious && !was_doubtful) || is_interrupted || self.has_entered();
+        let has_entered = self.has_entered();
+        let is_new = (is_suspicious && !was_doubtful) || is_interrupted || has_entered;
         self.is_key = self.is_far() || is_new || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
@@ -247,6 +250,7 @@ impl Tracker {
     /// has one, for the robot may be where nobody looked.
     pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
+            self.belief.see_nothing(&self.since_scan);
             return;
         }
         if self.is_key {
@@ -285,7 +289,8 @@ impl Tracker {
     /// Where the robot is, and how sure that is.
     #[must_use]
     pub fn report(&self) -> Report {
-        self.belief.report(&self.places, &self.since_key)
+        let unseen = self.is_blank.then_some(&self.since_scan);
+        self.belief.report(&self.places, &self.since_key, unseen)
     }
 }
 

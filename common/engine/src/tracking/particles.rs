@@ -102,6 +102,10 @@ impl ParticleTracker {
     /// See [`Tracker::finish`](super::Tracker::finish).
     pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
+            if self.report.state == TrackState::Unique && self.since_key.is_far(&self.config) {
+                self.enter(TrackState::Doubtful, TrackReason::PoorFit);
+            }
+            self.carry();
             return;
         }
         if self.filter.is_none()
@@ -173,11 +177,20 @@ impl ParticleTracker {
         if self.bad >= LOST_SCANS {
             self.start(seen, []);
         }
-        if state != was || self.report.since_ns == 0 {
+        self.enter(state, reason);
+        self.carry();
+    }
+
+    fn enter(&mut self, state: TrackState, reason: TrackReason) {
+        if state != self.report.state || self.report.since_ns == 0 {
             self.report.since_ns = self.stamp_ns;
             self.report.since_m = 0.0;
         }
         (self.report.state, self.report.reason) = (state, reason);
+    }
+
+    /// The pose at the last scan, by odometry since the last key scan.
+    fn carry(&mut self) {
         let carried = self.found.map(|(pose, covariance)| {
             let noise = self.config.odometry_error;
             self.since_key.predict((pose, covariance.0), noise)

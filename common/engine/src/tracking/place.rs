@@ -6,7 +6,7 @@ use geometry::{Covariance, Pose};
 use messages::Hypothesis;
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
-use super::places::MAX;
+use super::limits::MAX;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::Target;
 
@@ -40,8 +40,8 @@ impl Candidate {
     }
 
     /// Fills in those of the places that a search found, as messages say them, each with the
-    /// number of its map, for which the votes speak most: of many places, some fit a scan well by chance, and with
-    /// each there is one more to distinguish from the true one.
+    /// number of its map, for which the votes speak most: of many places, some fit a scan well
+    /// by chance, and with each there is one more to distinguish from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
         found: impl Iterator<Item = (u32, &'a Hypothesis)>,
@@ -85,8 +85,9 @@ pub(super) struct Place {
     pub id: u32,
     /// Number of the map that it is on.
     pub map: u32,
-    /// Whether the robot may have come there by a transition from another map.
-    pub crossed: bool,
+    /// The map from which the robot may have come there by a transition, while it is not decided
+    /// whether it did.
+    pub crossed_from: Option<u32>,
     pub pose: Pose,
     pub covariance: Matrix3<f64>,
     /// How much speaks for it, natural logarithm of odds; that of the best is
@@ -113,7 +114,7 @@ impl Place {
         Place {
             id,
             map,
-            crossed: false,
+            crossed_from: None,
             pose: found.pose,
             covariance: found.covariance,
             log_weight,
@@ -129,6 +130,12 @@ impl Place {
     /// Whether a pose of a map is so near, metres and radians.
     pub(super) fn is_within(&self, (map, pose): (u32, Pose), metres: f64, radians: f64) -> bool {
         self.map == map && self.pose.is_within(pose, metres, radians)
+    }
+
+    /// Whether the robot may have gone from one of two places to the other by a transition.
+    pub(super) fn is_across(&self, other: &Place) -> bool {
+        self.map != other.map
+            && (self.crossed_from == Some(other.map) || other.crossed_from == Some(self.map))
     }
 
     pub(super) fn set(&mut self, fitted: &Fitted) {

@@ -8,24 +8,16 @@ use messages::Transition;
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
+use super::belief::Belief;
 use super::driven_path::DrivenPath;
+use super::limits::{FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD, NEAR_M};
 use super::place::Place;
 use super::seen::{Fitted, Seen};
-use super::verdict::Belief;
-use crate::peaks::lead;
-
-/// Most places that are kept, and how many of them may be older than one key scan, and
-/// new: those that a place was distinguished from do not give way to what each search finds again.
-pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
-const MAX_OLD: usize = 20;
-const MAX_NEW: usize = 12;
+use crate::peaks::{doubt_between, lead};
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
 /// factor of e, as for the single scan (`--lead-scale`).
 const LEAD_SCALE: f64 = 0.025;
-
-/// A place so far behind the best is dropped, natural logarithm of odds.
-pub(super) const FARTHEST_BEHIND: f64 = 20.0;
 
 /// A candidate confirms a place whose prediction lies within four deviations.
 const GATE: f64 = 16.0;
@@ -44,9 +36,8 @@ const JUNK_BEHIND: f64 = 0.4;
 const JUNK_SCORE: f64 = 0.35;
 const JUNK_SCANS: u32 = 2;
 
-/// Where odometry slips, the robot is this near to where it should be, or turned by at
-/// most this; the more turned, the nearer: a turn that was missed was one in place.
-pub(super) const NEAR_M: f64 = 1.5;
+/// Where odometry slips, the robot is turned by at most this; the more turned, the nearer it is
+/// to where it should be: a turn that was missed was one in place.
 const SLIP_RADIANS: f64 = 100.0 * std::f64::consts::PI / 180.0;
 
 /// There the scan has to fit nearly as well as the scans before.
@@ -54,12 +45,28 @@ const SLIP_FALL: f64 = 0.15;
 const SLIP_BEHIND: f64 = 0.1;
 
 /// What a key scan is measured by.
-#[derive(Debug, Clone, Copy)]
-struct Best {
-    /// The highest score of any place.
+#[derive(Clone, Copy)]
+struct Best<'a> {
+    /// The highest score of any place, and the number of the map that it is on.
     score: f64,
-    /// What the true place may lack of it, for the map leaves it out.
-    left_out: f64,
+    map: u32,
+    /// The scan on each map.
+    seen: &'a [Seen<'a>],
+}
+
+impl Best<'_> {
+    /// What the true place may lack of the score, for a map that was drawn leaves it out: that
+    /// of the best place, or the one of this number on which the true place is.
+    fn left_out(&self, map: u32) -> f64 {
+        let [best, true_one] = [self.map, map].map(|map| &self.seen[map as usize]);
+        match map == self.map {
+            true => best.distance_field.left_out(self.score, best.fit),
+            false => {
+                let drawn = [best, true_one].map(|on| on.distance_field.drawn_doubt(on.fit));
+                doubt_between(self.score, drawn)
+            }
+        }
+    }
 }
 
 /// The places where the robot may be.
@@ -171,7 +178,7 @@ impl Places {
     }
 
     /// Weighs all places by a key scan, and those that were taken with them; those
-    /// that are not believed have gone `way` since the last one.
+    /// that are not believed have gone `path` since the last one.
     pub(super) fn weigh(
         &mut self,
         (seen, transitions): (&[Seen<'_>], &[Transition]),
@@ -187,11 +194,7 @@ impl Places {
         }
         self.snap();
         let (map, score) = self.best_score();
-        let seen_on = &seen[map as usize];
-        let best = Best {
-            score,
-            left_out: seen_on.distance_field.left_out(score, seen_on.fit),
-        };
+        let best = Best { score, map, seen };
         let fits_badly = belief
             .place()
             .and_then(|id| self.get(id))
@@ -202,7 +205,7 @@ impl Places {
         if fits_badly {
             self.follow_slip(best, born, belief);
         }
-        self.add_across((seen, transitions), best, belief);
+        self.add_across(transitions, best, belief);
         self.candidates.clear();
         self.key_scans += 1;
         self.tidy(belief);
@@ -217,18 +220,19 @@ impl Places {
         places.chain(candidates).fold((0, 0.0), higher)
     }
 
-    /// What a key scan says against a place with a score. What the map may leave out
-    /// says nothing.
-    fn against(&self, best: Best, score: f64) -> f64 {
-        let behind = lead(best.score, score + best.left_out).max(0.0);
+    /// What a key scan says against a place with a score, on the map of a number. What the maps
+    /// may leave out says nothing.
+    fn against(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
+        let behind = lead(best.score, score + best.left_out(map)).max(0.0);
         (behind / LEAD_SCALE).min(self.config.scan_cap)
     }
 
-    fn count(&mut self, best: Best) {
+    fn count(&mut self, best: Best<'_>) {
         // They were put in order at the key scan before, and no weight has changed since.
         let top = self.kept.first().map_or(0.0, |best| best.log_weight);
         for i in 0..self.kept.len() {
-            let against = self.against(best, self.kept[i].last);
+            let Place { map, last, .. } = self.kept[i];
+            let against = self.against(best, (map, last));
             let place = &mut self.kept[i];
             place.log_weight += -top - against - 0.25 * place.off.min(GATE);
             let is_bad = place.last < JUNK_SCORE.max(best.score - JUNK_BEHIND);
@@ -239,7 +243,7 @@ impl Places {
 
     /// Where the scan fits badly at the place that is believed, and well beside it,
     /// odometry has slipped, and the robot is there.
-    fn follow_slip(&mut self, best: Best, born: usize, belief: &mut Belief) {
+    fn follow_slip(&mut self, best: Best<'_>, born: usize, belief: &mut Belief) {
         let Some(tracked) = belief.place().and_then(|id| self.get(id)).copied() else {
             return;
         };
@@ -259,6 +263,7 @@ impl Places {
         if let Some(place) = beside.reduce(|a, b| if b.last > a.last { b } else { a }) {
             place.log_weight = place.log_weight.max(tracked.log_weight + scan_cap);
             place.age = tracked.age;
+            place.crossed_from = tracked.crossed_from;
             place.mean = 0.9 * tracked.mean + 0.1 * place.last;
             belief.slip(place.id, tracked.predicted.0.angle_to(place.pose));
         }
@@ -287,9 +292,10 @@ impl Places {
                 continue;
             }
             let met = self.kept[..count]
-                .iter()
+                .iter_mut()
                 .find(|other| other.is_within((place.map, place.pose), MERGED_M, MERGED_RADIANS));
             if let Some(other) = met {
+                other.crossed_from = other.crossed_from.or(place.crossed_from);
                 if belief.place() == Some(place.id) {
                     belief.believe(other.id);
                 }
@@ -301,5 +307,6 @@ impl Places {
             new += usize::from(place.age <= 1);
         }
         self.kept.truncate(count);
+        self.decide_crossing();
     }
 }

@@ -16,7 +16,8 @@ pub struct Report {
     /// Of the target frame, in the map: the place that is believed, else the
     /// one that leads.
     pub pose: Option<Pose>,
-    /// Of that pose. Where no place is believed, it spans all that are kept.
+    /// Of that pose. Unless the state is `Unique`, it spans all places that are kept on the
+    /// pose's map; of other maps, it can say nothing.
     pub covariance: Matrix3<f64>,
     /// How likely the robot is there, 0..=1.
     pub probability: f64,

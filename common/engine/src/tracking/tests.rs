@@ -1,4 +1,6 @@
+mod blind;
 mod building;
+mod drawn;
 mod floors;
 
 use std::f64::consts::PI;
@@ -14,7 +16,7 @@ use crate::peaks::{PeakConfig, PeakInput, Target, by_fit};
 use crate::scan::Scan;
 use crate::space::Space;
 
-use self::building::{ALIKE, Building, UNLIKE, building};
+use self::building::{ALIKE, Building, RESOLUTION_M, UNLIKE, building};
 
 const START: Pose = Pose::new(1.0, 0.8, 0.0);
 

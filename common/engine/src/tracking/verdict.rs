@@ -2,14 +2,14 @@
 
 mod apart;
 
-use geometry::Pose;
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
-use super::TrackingConfig;
+use super::belief::{Belief, Doubt};
 use super::driven_path::DrivenPath;
-use super::place::{MEAN_OVER, Place};
-use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
+use super::limits::NEAR_M;
+use super::place::Place;
+use super::places::Places;
 use super::report::Report;
 use apart::{is_elsewhere, lead, probability, spread};
 
@@ -30,150 +30,7 @@ const LOST_SCANS: u32 = 3;
 const LOST_FALL: f64 = 0.15;
 const LOST_BELOW: f64 = 0.1;
 
-/// Scans fit badly at the place that is believed. What does so for long becomes the mean
-/// there, and would be taken for good: what they are measured by is the mean before.
-#[derive(Debug, Clone, Copy)]
-struct Doubt {
-    mean_before: f64,
-    /// Scores at key scans since.
-    keys: u32,
-    sum: f64,
-}
-
-impl Doubt {
-    fn new(place: &Place) -> Self {
-        Doubt {
-            mean_before: place.mean,
-            keys: 0,
-            sum: 0.0,
-        }
-    }
-
-    fn add(&mut self, place: &Place) {
-        self.keys += 1;
-        self.sum += place.last;
-    }
-
-    /// The mean of so many key scans that the map may have changed there.
-    fn usual(&self) -> Option<f64> {
-        (self.keys >= MEAN_OVER).then(|| self.sum / f64::from(self.keys))
-    }
-}
-
-#[derive(Debug, Clone)]
-pub(super) struct Belief {
-    config: TrackingConfig,
-    /// The place that is believed.
-    place: Option<u32>,
-    was_unique: bool,
-    fits_badly: bool,
-    /// Since scans fit badly there.
-    doubt: Option<Doubt>,
-    /// The last search that was needed had no answer.
-    unchecked: bool,
-    lead: f64,
-    bad_keys: u32,
-    /// Key scans since it was not known how the robot moved.
-    connected_keys: u32,
-    /// Whether odometry was interrupted, and not enough key scans have agreed since.
-    interrupted: bool,
-    slipped: Option<f64>,
-    lost_by: TrackReason,
-    state: TrackState,
-    reason: TrackReason,
-    stamp_ns: i64,
-    since_ns: i64,
-    since_m: f64,
-}
-
 impl Belief {
-    pub(super) fn new(config: TrackingConfig) -> Self {
-        Belief {
-            config,
-            place: None,
-            was_unique: false,
-            fits_badly: false,
-            doubt: None,
-            unchecked: false,
-            lead: 0.0,
-            bad_keys: 0,
-            connected_keys: 0,
-            interrupted: false,
-            slipped: None,
-            lost_by: TrackReason::PoorFit,
-            state: TrackState::Searching,
-            reason: TrackReason::NoScan,
-            stamp_ns: 0,
-            since_ns: 0,
-            since_m: 0.0,
-        }
-    }
-
-    pub(super) fn place(&self) -> Option<u32> {
-        self.place
-    }
-
-    pub(super) fn believe(&mut self, id: u32) {
-        self.place = Some(id);
-        self.was_unique = true;
-        self.doubt = None;
-        self.lead = FARTHEST_BEHIND;
-    }
-
-    pub(super) fn slip(&mut self, id: u32, by: f64) {
-        self.believe(id);
-        self.slipped = Some(by);
-    }
-
-    /// Goes on to the next scan, to which the robot moved so; how many seconds after the one
-    /// before it was measured, if there was one.
-    pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> Option<f64> {
-        self.slipped = None;
-        let is_first = self.since_ns == 0;
-        if is_first {
-            self.since_ns = stamp_ns;
-        }
-        let later_ns = stamp_ns.saturating_sub(self.stamp_ns).max(0);
-        self.stamp_ns = stamp_ns;
-        if moved.is_none() {
-            self.connected_keys = 0;
-        }
-        self.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
-        (!is_first).then_some(later_ns as f64 / 1e9)
-    }
-
-    /// Whether the last scan speaks against a place.
-    pub(super) fn is_doubtful_at(&self, place: &Place) -> bool {
-        let config = &self.config;
-        let mean = self.doubt.map_or(place.mean, |doubt| doubt.mean_before);
-        place.last < config.doubt_score.max(mean - config.doubt_fall)
-    }
-
-    pub(super) fn is_doubtful(&self) -> bool {
-        self.place.is_some() && self.fits_badly
-    }
-
-    /// Odometry does not say how the robot moved to this scan, as it did before.
-    pub(super) fn interrupt(&mut self) {
-        self.interrupted = true;
-    }
-
-    /// Whether a place is believed that nothing but how scans fit has to confirm: a search
-    /// that was needed had an answer, and odometry was not interrupted.
-    pub(super) fn is_checked(&self) -> bool {
-        self.place.is_some() && !self.unchecked && !self.interrupted
-    }
-
-    /// Sees whether a search that was needed has an answer, or another one has.
-    pub(super) fn search_ended(&mut self, was_needed: bool, has_answer: bool) {
-        self.unchecked = !has_answer && (self.unchecked || was_needed);
-    }
-
-    /// Whether a place is believed, and the last scan fits there.
-    pub(super) fn is_sound(&self) -> bool {
-        self.place.is_some() && !self.fits_badly
-    }
-
     /// Sees how the last scan fits at the place that is believed.
     pub(super) fn look_at(&mut self, places: &Places) {
         let place = self.place.and_then(|id| places.get(id));
@@ -193,6 +50,7 @@ impl Belief {
         let state = match self.place {
             Some(_)
                 if self.is_checked()
+                    && !self.taken_over
                     && !self.fits_badly
                     && self.lead >= MIN_LEAD
                     && !self.may_have_crossed(places.all()) =>
@@ -203,11 +61,7 @@ impl Belief {
             None if self.was_unique => TrackState::Lost,
             None => TrackState::Searching,
         };
-        if state != self.state {
-            self.state = state;
-            self.since_ns = self.stamp_ns;
-            self.since_m = 0.0;
-        }
+        self.enter(state);
         self.reason = self.reason(places);
     }
 
@@ -245,8 +99,7 @@ impl Belief {
         let Some(best) = places.first() else {
             return false;
         };
-        self.rivals(places)
-            .any(|place| place.map != best.map && (place.crossed || best.crossed))
+        self.rivals(places).any(|place| place.is_across(best))
     }
 
     fn judge(&mut self, places: &Places) {
@@ -260,15 +113,17 @@ impl Belief {
         if let Some(id) = self.place
             && id != best.id
         {
-            let is_near = |place: &Place| {
-                place.is_within((best.map, best.pose), NEAR_M, f64::INFINITY)
-                    || (place.map != best.map && (place.crossed || best.crossed))
-            };
-            match places.get(id).is_some_and(is_near) {
-                true => (self.place, self.doubt) = (Some(best.id), None),
-                false => self.lose(TrackReason::AnotherPlace),
+            let is_near =
+                |place: &&Place| place.is_within((best.map, best.pose), NEAR_M, f64::INFINITY);
+            match places.get(id) {
+                Some(place) if is_near(&place) || place.is_across(best) => {
+                    (self.place, self.doubt) = (Some(best.id), None);
+                    self.taken_over |= place.map != best.map;
+                }
+                _ => self.lose(TrackReason::AnotherPlace),
             }
         }
+        self.taken_over &= !self.is_unique(best);
         if self.place.is_some() {
             let config = &self.config;
             let least =
@@ -305,7 +160,7 @@ impl Belief {
     }
 
     fn lose(&mut self, why: TrackReason) {
-        self.place = None;
+        (self.place, self.taken_over) = (None, false);
         self.lost_by = why;
     }
 
@@ -323,14 +178,29 @@ impl Belief {
     }
 
     /// What is to be said; places that are not believed have gone `since_key` since the
-    /// last key scan.
-    pub(super) fn report(&self, places: &Places, since_key: &DrivenPath) -> Report {
+    /// last key scan, and the one that is believed `unseen` since a scan that saw something,
+    /// where the last one did not.
+    pub(super) fn report(
+        &self,
+        places: &Places,
+        since_key: &DrivenPath,
+        unseen: Option<&DrivenPath>,
+    ) -> Report {
         let believed = self.place.and_then(|id| places.get(id));
         let place = believed.or(places.all().first());
-        let pose = place.map(|place| match believed {
-            Some(_) => place.pose,
-            None => place.pose.then(since_key.step),
+        let covariance = match (believed, place) {
+            (Some(believed), _) if self.state == TrackState::Unique => believed.covariance,
+            (_, Some(place)) => spread(places.all(), place),
+            (_, None) => Matrix3::zeros(),
+        };
+        let at = place.map(|place| match (believed, unseen) {
+            (Some(_), None) => (place.pose, covariance),
+            (Some(_), Some(path)) => {
+                path.predict((place.pose, covariance), self.config.odometry_error)
+            }
+            (None, _) => (place.pose.then(since_key.step), covariance),
         });
+        let is_blind = unseen.is_some() && self.state == TrackState::Doubtful;
         let best = places.all().first();
         let on_map = |other: &&Place| best.is_some_and(|best| best.map == other.map);
         let distances = self.rivals(places.all()).skip(1).filter(on_map);
@@ -342,14 +212,10 @@ impl Belief {
             state: self.state,
             reason: self.reason,
             map: place.map_or(0, |place| place.map),
-            pose,
-            covariance: match (believed, place) {
-                (Some(believed), _) if self.state == TrackState::Unique => believed.covariance,
-                (_, Some(place)) => spread(places.all(), place),
-                (_, None) => Matrix3::zeros(),
-            },
+            pose: at.map(|(pose, _)| pose),
+            covariance: at.map_or(covariance, |(_, covariance)| covariance),
             probability: probability(self.lead),
-            score: place.map_or(0.0, |place| place.last),
+            score: place.filter(|_| !is_blind).map_or(0.0, |place| place.last),
             lead: self.lead,
             rivals: self.rivals(places.all()).count() as u32,
             maps: self.maps(places.all()),

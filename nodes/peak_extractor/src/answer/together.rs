@@ -66,6 +66,7 @@ pub(super) fn on_several<'w>(
     let votes = VotesHeader {
         maps: header.maps,
         engine_ns: header.engine_ns,
+        searched: header.searched,
         ..*best_map
     };
     let of = (&map_ids[..], &beams[..]);

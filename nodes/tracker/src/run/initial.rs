@@ -86,7 +86,8 @@ impl Node {
         let Some(Initial { base, is_believed }) = self.initial.take() else {
             return false;
         };
-        let map = self.current_map();
+        // Whoever said it has seen that one.
+        let map = self.shown_map();
         self.asked = None;
         if !is_believed {
             self.expect_base((map, base.0), base.1, INITIAL_LEAD);

@@ -9,6 +9,7 @@ use transport::{TransportError, with_causes};
 use super::{Node, REMEMBERED_LEAD};
 use crate::TrackerError;
 use crate::memory::Remembered;
+use crate::message::Tracked;
 use crate::world::Worlds;
 
 impl Node {
@@ -74,14 +75,18 @@ impl Node {
             .filter(|last| last.report.state == TrackState::Unique);
         self.tracker = self.nothing_known();
         self.asked = None;
-        // A map that is served alone replaces the one before; of a set, it is the same one.
-        let number = |map_id| match self.served {
+        // A map that is served alone replaces the one before; of a set, it is the same one, or
+        // what has become of it.
+        let number = |last: &Tracked| match self.served {
             Some(Served::Map(_)) => Some(0),
-            _ => self.worlds.number(map_id),
+            _ => {
+                let same = self.worlds.number(last.map_id);
+                same.or_else(|| self.worlds.number_of_name(last.map_name))
+            }
         };
         let believed = believed.and_then(|last| {
             let covariance = Covariance(last.report.covariance);
-            Some(((number(last.map_id)?, last.report.pose?), covariance))
+            Some(((number(&last)?, last.report.pose?), covariance))
         });
         if let Some((at, covariance)) = believed {
             self.tracker.expect(at, covariance, REMEMBERED_LEAD);
@@ -114,6 +119,12 @@ impl Node {
     pub(super) fn current_map(&self) -> u32 {
         let last = self.last.and_then(|last| self.worlds.number(last.map_id));
         last.unwrap_or(0)
+    }
+
+    /// The number of the map that people see: of a set, that which is shown.
+    pub(super) fn shown_map(&self) -> u32 {
+        let shown = self.shown.and_then(|map_id| self.worlds.number(map_id));
+        shown.unwrap_or_else(|| self.current_map())
     }
 
     pub(super) fn expect_base(

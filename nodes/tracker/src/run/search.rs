@@ -49,8 +49,8 @@ impl Node {
     ) -> Result<bool, TrackerError> {
         let has_come = self.answers.of(of).is_some();
         if !has_come && Searchers::now(inputs, &self.outputs).any_new_since(&self.searchers) {
-            // The answer to this may be that the scan is not known any more: then the next
-            // one is searched.
+            // The answer to this may be that the scan is not known any more: that counts as no
+            // search, and the next key scan is searched.
             self.ask(inputs, of)?;
             self.is_silent = false;
             let since = Since::now(self.looks);

@@ -3,18 +3,17 @@
 use messages::Transition;
 
 use super::{Best, Place, Places, SAME_M, SAME_RADIANS};
-use crate::tracking::seen::Seen;
+use crate::tracking::belief::Belief;
 use crate::tracking::transition::other_side;
-use crate::tracking::verdict::Belief;
 
 impl Places {
     /// Where the place that is believed, or else leads, lies in a transition, the robot may be
     /// on its other side just as well: what scans said before says nothing of that, and what
-    /// this one says counts alone.
+    /// this one says counts alone. So it stays, however badly scans before fitted there.
     pub(super) fn add_across(
         &mut self,
-        (seen, transitions): (&[Seen<'_>], &[Transition]),
-        best: Best,
+        transitions: &[Transition],
+        best: Best<'_>,
         belief: &Belief,
     ) {
         let leading = self
@@ -32,22 +31,39 @@ impl Places {
             other_side(transition, (here.map, here.pose), here.covariance)
         });
         for (map, predicted) in sides {
-            let fitted = seen[map as usize].settle(predicted);
-            let log_weight = here.log_weight - self.against(best, fitted.score);
+            let fitted = best.seen[map as usize].settle(predicted);
+            let log_weight = here.log_weight - self.against(best, (map, fitted.score));
             let at = (map, fitted.pose);
             let mut kept = self.kept.iter_mut();
             match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
                 Some(place) => {
-                    place.crossed = true;
+                    place.crossed_from = Some(here.map);
+                    place.bad = 0;
                     place.log_weight = place.log_weight.max(log_weight);
                 }
                 None => {
                     let id = self.new_id();
                     self.kept.push(Place {
-                        crossed: true,
+                        crossed_from: Some(here.map),
                         ..Place::born(id, (map, &fitted), log_weight)
                     });
                 }
+            }
+        }
+    }
+
+    /// Where the best leads over all places on other maps, it is decided whether the robot went
+    /// through a transition, and none of the places is the other side of another any more. They
+    /// are in order.
+    pub(super) fn decide_crossing(&mut self) {
+        let Some(best) = self.kept.first().copied() else {
+            return;
+        };
+        let near = best.log_weight - self.config.sure_lead;
+        let is_open = |place: &Place| place.map != best.map && place.log_weight > near;
+        if !self.kept.iter().any(is_open) {
+            for place in &mut self.kept {
+                place.crossed_from = None;
             }
         }
     }

@@ -2,11 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Best, GATE, NEAR_M, Place, Places, SAME_M, SAME_RADIANS};
+use super::{Best, GATE, Place, Places, SAME_M, SAME_RADIANS};
+use crate::tracking::belief::Belief;
 use crate::tracking::driven_path::DrivenPath;
+use crate::tracking::limits::NEAR_M;
 use crate::tracking::place::Candidate;
 use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
-use crate::tracking::verdict::Belief;
 
 /// What a search adds to the deviations of a prediction in the gate: half its cell and
 /// heading, and the steps of its fit.
@@ -91,7 +92,7 @@ impl Places {
     /// Adds the candidates that are at no place that is kept.
     pub(super) fn add_new(
         &mut self,
-        best: Best,
+        best: Best<'_>,
         belief: &Belief,
         (fits_badly, unknown_s): (bool, Option<f64>),
     ) {
@@ -118,7 +119,7 @@ impl Places {
                 true => far.min(self.config.newborn_lag_near),
                 false => far,
             };
-            let log_weight = -self.against(best, found.score) - lag;
+            let log_weight = -self.against(best, (map, found.score)) - lag;
             let id = self.new_id();
             self.kept.push(Place::born(id, (map, &found), log_weight));
         }

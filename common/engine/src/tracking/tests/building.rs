@@ -74,7 +74,7 @@ impl Building {
         self.ends_of(&self.ranges(pose))
     }
 
-    fn ends_of(&self, ranges: &[f32]) -> Ends {
+    pub(super) fn ends_of(&self, ranges: &[f32]) -> Ends {
         Ends::new(&self.scan(ranges), &self.space, &BeamConfig::default()).unwrap()
     }
 

@@ -3,8 +3,9 @@
 use geometry::Covariance;
 use nalgebra::Matrix3;
 
+use crate::tracking::limits::FARTHEST_BEHIND;
 use crate::tracking::place::Place;
-use crate::tracking::places::{FARTHEST_BEHIND, Places};
+use crate::tracking::places::Places;
 
 /// Places so near each other are not distinguished by the verdict.
 const DISTINCT_M: f64 = 1.0;

@@ -1,0 +1,156 @@
+//! The node as a process: scans, odometry and what searches find go in, poses come out.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod world;
+
+use std::time::Duration;
+
+use messages::{InitialPoseKind, TrackState};
+use transport::testing::Isolated;
+
+use world::{Drawn, HALL, Step, World, ids, searched, with_a_box};
+
+#[test]
+fn a_pose_that_nobody_searched_for_is_not_unique() {
+    let isolated = Isolated::new("refused");
+    let drawn = Drawn {
+        name: "",
+        rows: HALL.into(),
+    };
+    let world = World::of_map(&isolated, &drawn);
+    let start = world.pose_at(6);
+    let hint = format!("{},{},0", start.x, start.y);
+    let node = world.start(&["--initial-pose", &hint]);
+    let id = drawn.header().map_id;
+    // The scan was refused, or another map was searched.
+    for number in 0..8 {
+        let of = [0, id ^ 1][number % 2];
+        let Step {
+            pose, was_asked, ..
+        } = world.step(6 + 2 * number, of, None);
+        assert!(was_asked && !pose.is_unique(), "{number}: {pose:?}");
+    }
+    // What finds nothing is a search all the same.
+    let states = [22, 24, 26].map(|x| world.step(x, id, None).pose.state);
+    assert_eq!(
+        states.last(),
+        Some(&(TrackState::Unique as u32)),
+        "{states:?}"
+    );
+    node.stop();
+}
+
+/// Two floors that look alike.
+fn floors() -> Vec<Drawn> {
+    let floor = |name| Drawn {
+        name,
+        rows: HALL.into(),
+    };
+    vec![floor("ground"), floor("first")]
+}
+
+/// The same after somebody has edited the one with this number.
+fn edited(number: usize) -> Vec<Drawn> {
+    let mut floors = floors();
+    floors[number].rows = with_a_box(&HALL);
+    floors
+}
+
+#[test]
+fn what_was_found_on_the_set_before_makes_no_pose_unique() {
+    let isolated = Isolated::new("old-set");
+    let world = World::of_set(&isolated, &floors());
+    let node = world.start(&[]);
+    let before = searched(&floors());
+    let ground = ids(&floors())[0];
+    let states = [6, 8, 10, 12].map(|x| world.step(x, before, Some(ground)).pose.state);
+    assert_eq!(
+        states.last(),
+        Some(&(TrackState::Unique as u32)),
+        "{states:?}"
+    );
+    world.serve_set(&edited(1));
+    // The search goes on on the maps before until all are prepared.
+    for x in [14, 16, 18, 20, 22] {
+        let Step {
+            pose, was_asked, ..
+        } = world.step(x, before, Some(ground));
+        assert!(was_asked && !pose.is_unique(), "{x}: {pose:?}");
+    }
+    let now = searched(&edited(1));
+    let states = [24, 26, 28].map(|x| world.step(x, now, Some(ground)).pose.state);
+    assert_eq!(
+        states.last(),
+        Some(&(TrackState::Unique as u32)),
+        "{states:?}"
+    );
+    node.stop();
+}
+
+#[test]
+fn what_is_said_of_the_pose_is_about_the_map_that_is_shown() {
+    let isolated = Isolated::new("shown");
+    let world = World::of_set(&isolated, &floors());
+    let node = world.start(&[]);
+    let searched = searched(&floors());
+    let [ground, first] = ids(&floors())[..] else {
+        unreachable!("there are two floors");
+    };
+    // The other floor leads, and has not for long enough to be shown.
+    let pose = world.step(6, searched, Some(first)).pose;
+    assert_eq!((pose.map_id, pose.is_unique()), (first, false));
+    world.say(InitialPoseKind::Believed, 8);
+    let pose = world.step(8, searched, None).pose;
+    assert_eq!((pose.map_id, pose.is_unique()), (ground, true));
+    world.serve_map(&floors()[1]);
+    world.say(InitialPoseKind::Believed, 10);
+    let pose = world.step(10, searched, None).pose;
+    assert_eq!((pose.map_id, pose.is_unique()), (first, true));
+    node.stop();
+}
+
+#[test]
+fn a_robot_without_a_place_stays_on_its_map() {
+    let isolated = Isolated::new("no-place");
+    let world = World::of_set(&isolated, &floors());
+    let node = world.start(&[]);
+    let first = ids(&floors())[1];
+    let pose = world.step(6, searched(&floors()), Some(first)).pose;
+    assert_eq!((pose.map_id, pose.is_unique()), (first, false));
+    world.serve_set(&edited(0));
+    let pose = world.step(8, 0, None).pose;
+    assert_eq!((pose.map_id, pose.pose_known), (first, 0));
+    node.stop();
+}
+
+#[test]
+fn a_pose_on_a_floor_that_was_edited_is_tried_and_the_old_one_goes_out_no_more() {
+    let isolated = Isolated::new("edited");
+    let world = World::of_set(&isolated, &floors());
+    let node = world.start(&[]);
+    world.serve_map(&floors()[1]);
+    world.say(InitialPoseKind::Believed, 6);
+    let pose = world.step(6, searched(&floors()), None).pose;
+    assert!(pose.is_unique());
+    /// Of a second, in which the robot goes on by half of a step.
+    const HALF: i64 = 500_000_000;
+    let pause = || std::thread::sleep(Duration::from_millis(50));
+    // Odometry carries the pose on.
+    pause();
+    world.send_odometry(7, HALF);
+    pause();
+    assert!(!world.step(8, 0, None).carried.is_empty());
+    world.serve_set(&edited(1));
+    pause();
+    world.send_odometry(9, HALF);
+    pause();
+    let Step { pose, carried, .. } = world.step(10, 0, None);
+    assert!(carried.is_empty(), "{carried:?}");
+    let first = ids(&edited(1))[1];
+    assert_eq!((pose.map_id, pose.pose_known), (first, 1));
+    assert!(!pose.is_unique());
+    node.stop();
+}

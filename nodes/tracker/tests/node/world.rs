@@ -1,0 +1,302 @@
+//! Drawn maps, and the node's neighbours: who serves maps and sends scans and odometry, and who
+//! answers what is to be searched.
+
+use std::cell::Cell;
+use std::f64::consts::PI;
+use std::time::Duration;
+
+use bytemuck::Zeroable;
+use engine::grid::{CellRules, Grid};
+use engine::reference;
+use engine::space::Space;
+use geometry::{Covariance, Pose};
+use messages::{
+    FrameName, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, MapHeader, MapName,
+    MapSet, Odometry, PoseHeader, ScanHeader, Stamp, searched_id, topic,
+};
+use transport::testing::{Isolated, NodeProcess, wait_until_ready};
+use transport::{Flow, Graph, Publisher, Subscriber, TransportError, monotonic_ns};
+
+/// No two places of it look alike.
+pub(crate) const HALL: [&str; 14] = [
+    "########################################",
+    "#......................................#",
+    "##.....##...........................#..#",
+    "#.......#..............................#",
+    "#...................####...............#",
+    "#...................#..#...............#",
+    "##..................####..............##",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "##............................##.......#",
+    "#......###.....................#......##",
+    "#......................................#",
+    "########################################",
+];
+const CELL_M: f64 = 0.25;
+/// The robot drives along this row, counted from below.
+const ROW: usize = 6;
+
+/// A map that is drawn so.
+pub(crate) struct Drawn {
+    pub(crate) name: &'static str,
+    pub(crate) rows: Vec<&'static str>,
+}
+
+/// The same rows with a box in a corner.
+pub(crate) fn with_a_box(rows: &[&'static str]) -> Vec<&'static str> {
+    let mut rows = rows.to_vec();
+    rows[1] = "#....................................###";
+    rows
+}
+
+impl Drawn {
+    fn cells(&self) -> Vec<u8> {
+        let cells = self.rows.iter().rev().flat_map(|row| row.bytes());
+        cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
+    }
+
+    pub(crate) fn header(&self) -> MapHeader {
+        let mut header = MapHeader {
+            width: self.rows[0].len() as u32,
+            height: self.rows.len() as u32,
+            resolution_m: CELL_M,
+            name: MapName::new(self.name),
+            ..MapHeader::default()
+        };
+        header.map_id = header.id_of(&self.cells());
+        header
+    }
+}
+
+/// Ids of maps.
+pub(crate) fn ids(maps: &[Drawn]) -> Vec<u64> {
+    maps.iter().map(|map| map.header().map_id).collect()
+}
+
+/// What a search on all of them has for its id.
+pub(crate) fn searched(maps: &[Drawn]) -> u64 {
+    searched_id(ids(maps))
+}
+
+/// What came of a scan.
+pub(crate) struct Step {
+    /// Of the scan.
+    pub(crate) pose: PoseHeader,
+    /// Poses before it that odometry carried on.
+    pub(crate) carried: Vec<PoseHeader>,
+    /// Whether a search of it was asked for.
+    pub(crate) was_asked: bool,
+}
+
+/// The node's neighbours.
+pub(crate) struct World {
+    sets: Option<Publisher<topic::Maps>>,
+    maps: Publisher<topic::Map>,
+    scans: Publisher<topic::Scan>,
+    odometry: Publisher<topic::OdometryTopic>,
+    hypotheses: Publisher<topic::Hypotheses>,
+    initial_poses: Publisher<topic::InitialPoseTopic>,
+    poses: Subscriber<topic::Tracked>,
+    requests: Subscriber<topic::Attention>,
+    counter: Cell<u64>,
+    graph: Graph,
+}
+
+impl World {
+    fn new(isolated: &Isolated, is_set: bool) -> Self {
+        let graph = isolated.join("test");
+        World {
+            sets: is_set.then(|| graph.publisher().unwrap()),
+            maps: graph.publisher().unwrap(),
+            scans: graph.publisher().unwrap(),
+            odometry: graph.publisher().unwrap(),
+            hypotheses: graph.publisher().unwrap(),
+            initial_poses: graph.publisher().unwrap(),
+            poses: graph.subscriber().unwrap(),
+            requests: graph.subscriber().unwrap(),
+            counter: Cell::new(1),
+            graph,
+        }
+    }
+
+    /// A map that is served alone.
+    pub(crate) fn of_map(isolated: &Isolated, map: &Drawn) -> Self {
+        let world = World::new(isolated, false);
+        world.serve_map(map);
+        world
+    }
+
+    /// A set, of which the first map is shown.
+    pub(crate) fn of_set(isolated: &Isolated, maps: &[Drawn]) -> Self {
+        let world = World::new(isolated, true);
+        world.serve_set(maps);
+        world.serve_map(&maps[0]);
+        world
+    }
+
+    pub(crate) fn serve_map(&self, map: &Drawn) {
+        let cells = map.cells();
+        let mut loan = self.maps.loan(cells.len()).unwrap();
+        *loan.header_mut() = map.header();
+        loan.items_mut().copy_from_slice(&cells);
+        loan.send().unwrap();
+    }
+
+    pub(crate) fn serve_set(&self, maps: &[Drawn]) {
+        let cells: Vec<Vec<u8>> = maps.iter().map(Drawn::cells).collect();
+        let headers = maps.iter().map(Drawn::header);
+        let set = MapSet {
+            maps: headers.zip(cells.iter().map(|cells| &cells[..])).collect(),
+            transitions: Vec::new(),
+        };
+        let mut loan = self.sets.as_ref().unwrap().loan(set.bytes()).unwrap();
+        let header = set.write(Stamp::default(), loan.items_mut());
+        *loan.header_mut() = header;
+        loan.send().unwrap();
+    }
+
+    pub(crate) fn start(&self, arguments: &[&str]) -> NodeProcess {
+        let node = NodeProcess::start(env!("CARGO_BIN_EXE_tracker"), &self.graph, arguments);
+        wait_until_ready(&self.graph, "tracker");
+        node
+    }
+
+    /// Where the robot is in this column.
+    pub(crate) fn pose_at(&self, x: usize) -> Pose {
+        let metres = |cell: usize| CELL_M * (cell as f64 + 0.5);
+        Pose::new(metres(x), metres(ROW), 0.0)
+    }
+
+    /// Says where the robot is: in this column.
+    pub(crate) fn say(&self, kind: InitialPoseKind, x: usize) {
+        let mut loan = self.initial_poses.loan(0).unwrap();
+        *loan.header_mut() = InitialPose {
+            kind: kind as u64,
+            map_from_base: self.pose_at(x).into(),
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.05).to_rows(),
+            ..InitialPose::zeroed()
+        };
+        loan.send().unwrap();
+    }
+
+    /// So long after the last scan; a second later comes the next one.
+    fn stamp(&self, later_ns: i64) -> Stamp {
+        Stamp {
+            measured_ns: 1_000_000_000 * self.counter.get() as i64 + later_ns,
+            entered_ns: monotonic_ns(),
+            counter: self.counter.get(),
+        }
+    }
+
+    /// Sends odometry: the robot is in this column so long after the last scan.
+    pub(crate) fn send_odometry(&self, x: usize, later_ns: i64) {
+        let mut loan = self.odometry.loan(0).unwrap();
+        *loan.header_mut() = Odometry {
+            stamp: self.stamp(later_ns),
+            odom_from_child: self.pose_at(x).into(),
+            frame: FrameName::new("odom"),
+            child_frame: FrameName::new("base_link"),
+            ..Odometry::zeroed()
+        };
+        loan.send().unwrap();
+    }
+
+    fn send_scan(&self, x: usize) -> Stamp {
+        let ranges = ranges(x);
+        let stamp = self.stamp(0);
+        let mut loan = self.scans.loan(ranges.len()).unwrap();
+        *loan.header_mut() = ScanHeader {
+            stamp,
+            angle_min: -PI,
+            angle_increment: 1f64.to_radians(),
+            range_max_m: 30.0,
+            frame: FrameName::new("laser"),
+            ..ScanHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&ranges);
+        loan.send().unwrap();
+        stamp
+    }
+
+    /// Sends odometry and the scan in a column. What is to be searched is answered: this was
+    /// searched, and the robot found where it is on a map with this id, or nowhere.
+    pub(crate) fn step(&self, x: usize, searched: u64, found_on: Option<u64>) -> Step {
+        self.counter.set(self.counter.get() + 1);
+        self.send_odometry(x, 0);
+        let scan = self.send_scan(x);
+        let (mut pose, mut carried, mut was_asked) = (None, Vec::new(), false);
+        let inputs: [&dyn transport::Input; 2] = [&self.poses, &self.requests];
+        let done = self.graph.run(&inputs, Duration::from_millis(20), |_| {
+            while let Some(request) = self.requests.receive()? {
+                if request.header().stamp == scan {
+                    was_asked = true;
+                    self.answer(scan, searched, found_on.map(|map_id| (x, map_id)))?;
+                }
+            }
+            while let Some(sample) = self.poses.receive()? {
+                let header = *sample.header();
+                match header.from_scan == 1 && header.stamp == scan {
+                    true => pose = Some(header),
+                    false => carried.push(header),
+                }
+            }
+            Ok::<_, TransportError>(match pose {
+                Some(_) => Flow::Stop,
+                None => Flow::Continue,
+            })
+        });
+        done.unwrap();
+        Step {
+            pose: pose.unwrap(),
+            carried,
+            was_asked,
+        }
+    }
+
+    fn answer(
+        &self,
+        stamp: Stamp,
+        searched: u64,
+        found: Option<(usize, u64)>,
+    ) -> Result<(), TransportError> {
+        let found = found.map(|(x, map_id)| Hypothesis {
+            map_from_laser: self.pose_at(x).into(),
+            map_from_base: self.pose_at(x).into(),
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.02).to_rows(),
+            intensity: 100,
+            map_id,
+            ..Hypothesis::zeroed()
+        });
+        let mut loan = self.hypotheses.loan(found.iter().len())?;
+        *loan.header_mut() = HypothesesHeader {
+            stamp,
+            searched,
+            map_id: found.map_or(0, |found| found.map_id),
+            ..HypothesesHeader::zeroed()
+        };
+        for (item, found) in loan.items_mut().iter_mut().zip(found) {
+            *item = found;
+        }
+        loan.send()
+    }
+}
+
+/// What a laser with a beam a degree all around reads in the hall.
+fn ranges(x: usize) -> Vec<f32> {
+    let hall = Drawn {
+        name: "",
+        rows: HALL.into(),
+    };
+    let (width, height) = (HALL[0].len(), HALL.len());
+    let grid = Grid::new(width, height, &hall.cells(), CellRules::default()).unwrap();
+    let space = Space::new(360, CELL_M, width, height).unwrap();
+    let beams = (0..360).map(|beam| {
+        let direction = space.directions.get((180 + beam) % 360);
+        reference::range(&grid, x as i64, ROW as i64, direction).map_or(f32::INFINITY, |steps| {
+            (f64::from(steps) / direction.steps_per_cell * CELL_M) as f32
+        })
+    });
+    beams.collect()
+}
