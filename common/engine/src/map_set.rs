@@ -142,7 +142,7 @@ impl MapSet {
         scan: Observation<'_>,
         together: Together<'_>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<()>, EngineError> {
+    ) -> Result<Option<usize>, EngineError> {
         let maps = &mut workspace.maps;
         maps.resize_with(self.locators.len(), locator::Workspace::default);
         let localizers = self.locators.iter().map(Locator::localizer);
