@@ -11,7 +11,7 @@ use index_cache::{IndexCache, Kept, Prepared};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 use twox_hash::XxHash3_64;
 
-use crate::AccumulatorError;
+use crate::{AccumulatorError, Subject};
 
 /// What a localizer is made from: equal ones make equal localizers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,8 +113,8 @@ impl Job {
 
     /// The map.
     #[must_use]
-    pub fn map_id(&self) -> u64 {
-        self.map.map_id
+    pub fn subject(&self) -> Subject {
+        Subject::map(&self.map)
     }
 
     /// Makes the localizer, which takes from milliseconds to seconds, unless what takes
