@@ -9,7 +9,8 @@
 //! The search is one over all maps: as soon as a good pose is known on one of them, blocks of
 //! the others are compared with its votes, so that ten maps cost far less than ten searches.
 //! Votes are compared as shares of what is possible on each map; ties go to the map that is
-//! named first.
+//! named first. All maps are judged by the same beams, up to the diagonal of the largest: one
+//! that is too long for a map fits nothing there.
 
 use crate::EngineError;
 use crate::fit::Ends;
@@ -61,8 +62,23 @@ impl MapSet {
     /// If there is none.
     #[must_use]
     pub fn new(locators: Vec<Locator>) -> Self {
+        MapSet::part(locators, 0.0)
+    }
+
+    /// A part of a set whose largest map has a diagonal of so many metres, for others search
+    /// the rest.
+    ///
+    /// # Panics
+    /// If it has no map.
+    #[must_use]
+    pub fn part(locators: Vec<Locator>, reach_m: f64) -> Self {
         assert!(!locators.is_empty(), "a set of maps has at least one");
-        MapSet { locators }
+        let longest = locators.iter().map(Locator::longest_m);
+        let reach_m = longest.fold(reach_m, f64::max);
+        let locators = locators.into_iter();
+        MapSet {
+            locators: locators.map(|map| map.reaching(reach_m)).collect(),
+        }
     }
 
     /// The maps, in the order by which ties are decided.
@@ -232,8 +248,9 @@ mod tests {
             prop_assume!(locators.len() > 1);
             let cut = cut.min(locators.len() - 1);
             let mut workspace = Workspace::default();
+            let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
             let mut ask = |locators: &[Locator]| {
-                let set = MapSet::new(locators.to_vec());
+                let set = MapSet::part(locators.to_vec(), reach_m);
                 let found = set.locate_unless(&mut workspace, &scan.scan(), None, &|| false);
                 let found = found.unwrap().unwrap();
                 (found.places.clone(), found.found.clone())
@@ -270,8 +287,9 @@ mod tests {
             prop_assume!(locators.len() > 1);
             let cut = cut.min(locators.len() - 1);
             let mut workspace = Workspace::default();
+            let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
             let mut ask = |locators: &[Locator], lead: &Lead| {
-                let set = MapSet::new(locators.to_vec());
+                let set = MapSet::part(locators.to_vec(), reach_m);
                 let together = Together { lead: Some(lead), ..Together::default() };
                 let found = set.locate_beside(&mut workspace, &scan.scan(), together, &|| false);
                 found.unwrap().unwrap().found.clone()

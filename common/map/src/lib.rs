@@ -9,6 +9,7 @@
 
 mod bmp;
 mod description;
+mod diagonal;
 mod error;
 mod grid;
 mod keys;
@@ -23,6 +24,7 @@ mod save;
 mod set;
 
 pub use description::Mode;
+pub use diagonal::diagonal_m;
 pub use error::MapError;
 pub use grid::{
     MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,

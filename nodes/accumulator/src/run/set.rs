@@ -1,5 +1,6 @@
 //! A set of maps that came and can be used.
 
+use engine::space;
 use messages::{MapSet, topic};
 use transport::Sample;
 
@@ -36,9 +37,10 @@ impl Set {
         let header = self.sample.header();
         let set = MapSet::split(header, self.sample.items());
         let set = set.map_err(|error| (Subject::Set(header.set_id), error.into()))?;
+        let reach_m = space::reach_m(set.maps.iter().map(|(map, _)| map));
         let maps = set.maps.iter();
         let jobs = maps.map(|(map, cells)| {
-            Job::in_set(map, cells).map_err(|error| (Subject::map(map), error))
+            Job::in_set(map, cells, reach_m).map_err(|error| (Subject::map(map), error))
         });
         jobs.collect()
     }

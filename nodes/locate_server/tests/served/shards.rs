@@ -60,7 +60,7 @@ fn whole() -> Locator {
         SearchedMap::new(named, &map, Default::default(), Default::default()).unwrap()
     });
     let names = MAPS.map(str::to_owned).into();
-    Locator::of_set(maps.collect(), (Shard::WHOLE, names))
+    Locator::of_set(maps.collect(), (Shard::WHOLE, names), 0.0)
 }
 
 #[test]
