@@ -95,8 +95,8 @@ impl Chosen {
     /// Divides the scan's arc evenly into at most `max_beams` sectors and takes
     /// from each the returned reading whose bearing lies nearest to the heading
     /// grid; of equally near ones that nearest to the sector's middle, then the
-    /// first. A sector is silent where nothing returned, or from farther than the
-    /// map reaches: nothing in it explains such a reading.
+    /// first. A sector is silent where nothing returned, or from farther than any map
+    /// reaches: nothing explains such a reading.
     ///
     /// `end_of` is where a beam ends, seen from the target frame: its bearing
     /// and how far it is.
@@ -120,7 +120,7 @@ impl Chosen {
             );
             let middle = (start + end - 1) as f64 / 2.0;
             let candidates = (start..end).filter_map(|i| {
-                let seen = end_of(i).filter(|&(_, reading_m)| reading_m <= space.longest_m)?;
+                let seen = end_of(i).filter(|&(_, reading_m)| reading_m <= space.reach_m)?;
                 let weight = weight(seen.1 * arc, config.beam_arc_m);
                 let beam = Beam::new(i, seen, turn, weight, space);
                 Some((beam, (i as f64 - middle).abs()))
@@ -151,7 +151,7 @@ impl Chosen {
         for carried in scans {
             let (_, arc) = thinned(&carried.scan, config);
             for i in 0..carried.scan.beams() {
-                let end = carried.end(i).filter(|&(_, m)| m <= space.longest_m);
+                let end = carried.end(i).filter(|&(_, m)| m <= space.reach_m);
                 let Some((angle, distance_m)) = end else {
                     let direction = carried.laser(i).yaw + carried.scan.bearing(i);
                     let sector = &mut self.sectors[sector_of(direction)];

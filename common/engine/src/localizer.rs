@@ -88,7 +88,7 @@ pub struct Outcome {
     /// The votes of the best pose; where several maps are searched and another one has it,
     /// the least number that is as good here.
     pub lead: u16,
-    /// Beams that voted.
+    /// Beams that voted: those that are no longer than the map.
     pub beams_used: u32,
     /// Beams whose reading says nothing.
     pub beams_silent: u32,
@@ -190,6 +190,15 @@ impl Localizer {
         match &self.method {
             Method::Search(index) => index.limits(),
             Method::Field(_, limits) => limits,
+        }
+    }
+
+    /// The same where beams count up to this length, see [`Space::reaching`].
+    #[must_use]
+    pub fn reaching(self, reach_m: f64) -> Self {
+        Localizer {
+            space: self.space.reaching(reach_m),
+            ..self
         }
     }
 

@@ -179,6 +179,21 @@ impl Locator {
         })
     }
 
+    /// The same where beams count up to this length, see [`Space::reaching`].
+    #[must_use]
+    pub fn reaching(self, reach_m: f64) -> Self {
+        Locator {
+            localizer: self.localizer.reaching(reach_m),
+            space: self.space.reaching(reach_m),
+            ..self
+        }
+    }
+
+    /// The map's diagonal, metres.
+    pub(crate) fn longest_m(&self) -> f64 {
+        self.space.longest_m
+    }
+
     /// The places at which a scan may have been taken; the locator must be prepared for
     /// unknown headings.
     ///

@@ -9,7 +9,8 @@
 //! The search is one over all maps: as soon as a good pose is known on one of them, blocks of
 //! the others are compared with its votes, so that ten maps cost far less than ten searches.
 //! Votes are compared as shares of what is possible on each map; ties go to the map that is
-//! named first.
+//! named first. All maps are judged by the same beams, up to the diagonal of the largest: one
+//! that is too long for a map fits nothing there.
 
 use crate::EngineError;
 use crate::fit::Ends;
@@ -61,8 +62,23 @@ impl MapSet {
     /// If there is none.
     #[must_use]
     pub fn new(locators: Vec<Locator>) -> Self {
+        MapSet::part(locators, 0.0)
+    }
+
+    /// A part of a set whose largest map has a diagonal of so many metres, for others search
+    /// the rest.
+    ///
+    /// # Panics
+    /// If it has no map.
+    #[must_use]
+    pub fn part(locators: Vec<Locator>, reach_m: f64) -> Self {
         assert!(!locators.is_empty(), "a set of maps has at least one");
-        MapSet { locators }
+        let longest = locators.iter().map(Locator::longest_m);
+        let reach_m = longest.fold(reach_m, f64::max);
+        let locators = locators.into_iter();
+        MapSet {
+            locators: locators.map(|map| map.reaching(reach_m)).collect(),
+        }
     }
 
     /// The maps, in the order by which ties are decided.
@@ -144,7 +160,7 @@ impl MapSet {
         scan: Observation<'_>,
         together: Together<'_>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<()>, EngineError> {
+    ) -> Result<Option<usize>, EngineError> {
         let maps = &mut workspace.maps;
         maps.resize_with(self.locators.len(), locator::Workspace::default);
         let localizers = self.locators.iter().map(Locator::localizer);

@@ -141,7 +141,12 @@ impl ScanProgram {
         self.bearing_rounding = 0.0;
         for i in 0..self.chosen.beams.len() {
             let beam = self.chosen.beams[i];
-            self.push(&beam, f64::from(full_vote) * beam.weight, space, config);
+            let peak = f64::from(full_vote) * beam.weight;
+            self.highest_possible += peak.round() as u32;
+            // A longer one ends on no pose's ray, and only on other maps.
+            if beam.reading_m <= space.longest_m {
+                self.push(&beam, peak, space, config);
+            }
         }
         Ok(())
     }
@@ -162,7 +167,6 @@ impl ScanProgram {
             });
         }
         self.bearings.push(beam.bearing);
-        self.highest_possible += peak.round() as u32;
         self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
     }
 
@@ -183,7 +187,7 @@ impl ScanProgram {
         self.bearing_rounding = of.bearing_rounding;
     }
 
-    /// How many beams vote; the paper's m.
+    /// How many beams vote, which are no longer than the grid; the paper's m.
     #[must_use]
     pub fn beams(&self) -> usize {
         self.bearings.len()
@@ -211,7 +215,13 @@ impl ScanProgram {
         profile.first().map_or(0, |&peak| u16::from(peak))
     }
 
-    /// What a pose would have if every beam agreed fully; at most 65535.
+    /// The most votes of all beams together that may end on the grid.
+    pub(crate) fn most_votes(&self) -> u32 {
+        (0..self.beams()).map(|i| u32::from(self.peak(i))).sum()
+    }
+
+    /// What a pose would have if every beam agreed fully, those that are too long for the
+    /// grid included; at most 65535.
     #[must_use]
     pub fn highest_possible(&self) -> u32 {
         self.highest_possible

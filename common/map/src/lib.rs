@@ -10,6 +10,7 @@
 mod bmp;
 mod claim;
 mod description;
+mod diagonal;
 mod error;
 mod grid;
 mod keys;
@@ -24,6 +25,7 @@ mod rules;
 mod save;
 mod set;
 
+pub use diagonal::diagonal_m;
 pub use error::MapError;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;

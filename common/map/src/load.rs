@@ -58,14 +58,7 @@ fn load_from(
     let text = read_text(yaml)?;
     let description = Description::parse(&text, yaml)?;
     description.unknown.iter().for_each(note);
-    let (line, column) = description.image_named_at;
-    let bytes = read_image(&description.image, limit, |source| MapError::Image {
-        image: description.image.clone(),
-        yaml: yaml.to_owned(),
-        line,
-        column,
-        source,
-    })?;
+    let bytes = read_image(&description.image, limit, unreadable(&description, yaml))?;
     let raster = kind::decode(&bytes, &description.image)?;
     drop(bytes);
     let grid = OccupancyGrid::from_parts(
@@ -77,6 +70,18 @@ fn load_from(
     )?;
     limit.check_grid(&grid)?;
     Ok(grid)
+}
+
+/// What there is to say where the image that a description names cannot be read.
+pub(crate) fn unreadable(description: &Description, yaml: &Path) -> impl Fn(io::Error) -> MapError {
+    let (line, column) = description.image_named_at;
+    move |source| MapError::Image {
+        image: description.image.clone(),
+        yaml: yaml.to_owned(),
+        line,
+        column,
+        source,
+    }
 }
 
 /// The image that the description at `yaml` names, which need not be there.
@@ -127,17 +132,7 @@ fn read_image(
     limit: MemoryLimit,
     unreadable: impl Fn(io::Error) -> MapError,
 ) -> Result<Vec<u8>, MapError> {
-    // Whoever opens a pipe that nobody writes to waits for ever.
-    if !fs::metadata(path).map_err(&unreadable)?.is_file() {
-        let problem = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-        return Err(unreadable(problem));
-    }
-    let mut file = File::open(path).map_err(&unreadable)?;
-    let mut bytes = Vec::new();
-    (&mut file)
-        .take(HEAD_BYTES)
-        .read_to_end(&mut bytes)
-        .map_err(&unreadable)?;
+    let (file, mut bytes) = open_image(path, &unreadable)?;
     let claim = kind::claim(&bytes, path)?;
     limit.check(claim.sides)?;
     let allowed = claim.most_bytes.min(MAX_IMAGE_BYTES);
@@ -154,6 +149,25 @@ fn read_image(
         });
     }
     Ok(bytes)
+}
+
+/// An image whose head was read.
+pub(crate) fn open_image(
+    path: &Path,
+    unreadable: impl Fn(io::Error) -> MapError,
+) -> Result<(File, Vec<u8>), MapError> {
+    // Whoever opens a pipe that nobody writes to waits for ever.
+    if !fs::metadata(path).map_err(&unreadable)?.is_file() {
+        let problem = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
+        return Err(unreadable(problem));
+    }
+    let mut file = File::open(path).map_err(&unreadable)?;
+    let mut head = Vec::new();
+    (&mut file)
+        .take(HEAD_BYTES)
+        .read_to_end(&mut head)
+        .map_err(&unreadable)?;
+    Ok((file, head))
 }
 
 fn read_file(

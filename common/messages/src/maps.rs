@@ -78,6 +78,23 @@ impl<'a> MapSet<'a> {
     /// If it has another size than its parts, a map is not the one that its id says, or a
     /// transition is not one.
     pub fn read(header: &MapsHeader, items: &'a [u8]) -> Result<Self, InvalidMapSet> {
+        let set = MapSet::split(header, items)?;
+        for (map, cells) in &set.maps {
+            map.check_id(cells).map_err(InvalidMapSet::MapId)?;
+        }
+        let mut transitions = set.transitions.iter();
+        match transitions.position(|transition| !transition.is_between(set.maps.len())) {
+            Some(number) => Err(InvalidMapSet::Transition { number }),
+            None => Ok(set),
+        }
+    }
+
+    /// The maps of a message that was read before: whether they are what they say is not
+    /// looked at again.
+    ///
+    /// # Errors
+    /// If it has another size than its parts.
+    pub fn split(header: &MapsHeader, items: &'a [u8]) -> Result<Self, InvalidMapSet> {
         let wrong_size = InvalidMapSet::Size { found: items.len() };
         let (maps, transitions) = (header.maps as usize, header.transitions as usize);
         let split = |items: &'a [u8], bytes: Option<usize>| {
@@ -94,7 +111,6 @@ impl<'a> MapSet<'a> {
             let map: MapHeader = bytemuck::pod_read_unaligned(bytes);
             let area = (map.width as usize).checked_mul(map.height as usize);
             let (cells, after) = split(rest, area)?;
-            map.check_id(cells).map_err(InvalidMapSet::MapId)?;
             set.maps.push((map, cells));
             rest = after;
         }
@@ -104,13 +120,9 @@ impl<'a> MapSet<'a> {
         if set.maps.is_empty() {
             return Err(InvalidMapSet::Empty);
         }
-        for (number, bytes) in between.chunks_exact(TRANSITION).enumerate() {
-            let transition: Transition = bytemuck::pod_read_unaligned(bytes);
-            if !transition.is_between(maps) {
-                return Err(InvalidMapSet::Transition { number });
-            }
-            set.transitions.push(transition);
-        }
+        let between = between.chunks_exact(TRANSITION);
+        set.transitions
+            .extend(between.map(bytemuck::pod_read_unaligned::<Transition>));
         Ok(set)
     }
 

@@ -48,14 +48,7 @@ pub fn ask(
         heading,
         ..Together::default()
     };
-    if Localizer::search_together(searched, scan, together, stop)?.is_none() {
-        return Ok(None);
-    }
-    let shares = workspaces.iter().map(|w| w.outcome().best_share());
-    let numbered = shares.enumerate();
-    // Of equal ones the first leads.
-    let leading = numbered.reduce(|a, b| if b.1.compare(a.1).is_gt() { b } else { a });
-    Ok(leading.map(|(number, _)| number))
+    Localizer::search_together(searched, scan, together, stop)
 }
 
 /// What to send about a scan to which the engine replied within `engine_ns`.

@@ -75,3 +75,10 @@ pub enum AccumulatorError {
     #[error(transparent)]
     Transport(#[from] TransportError),
 }
+
+impl AccumulatorError {
+    /// Whether no pose of the map is left where poses are to be searched.
+    pub(crate) fn leaves_no_pose(&self) -> bool {
+        matches!(self, AccumulatorError::Engine(EngineError::NoCellWithin))
+    }
+}

@@ -16,7 +16,9 @@ mod pace;
 pub mod preparation;
 mod run;
 pub mod sonar;
+mod subject;
 
 pub use config::Config;
 pub use error::AccumulatorError;
 pub use run::run;
+pub use subject::Subject;

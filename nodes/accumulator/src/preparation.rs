@@ -11,7 +11,7 @@ use index_cache::{IndexCache, Kept, Prepared};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 use twox_hash::XxHash3_64;
 
-use crate::AccumulatorError;
+use crate::{AccumulatorError, Subject};
 
 /// What a localizer is made from: equal ones make equal localizers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,19 +73,27 @@ pub struct Job {
     occupancy: Vec<u8>,
     rules: CellRules,
     boundary: Option<Vec<BoundaryCell>>,
+    /// Up to which length beams count, where that is more than the map's own.
+    reach_m: f64,
 }
 
 impl Job {
-    /// Takes a map of a set, whose boundary is extracted here: topic `boundary` has one map's.
+    /// Takes a map of a set on which beams count up to this length, metres. Its boundary is
+    /// extracted here: topic `boundary` has one map's.
     ///
     /// # Errors
     /// If the map has impossible rules.
-    pub fn in_set(map: &MapHeader, occupancy: &[u8]) -> Result<Self, AccumulatorError> {
+    pub fn in_set(
+        map: &MapHeader,
+        occupancy: &[u8],
+        reach_m: f64,
+    ) -> Result<Self, AccumulatorError> {
         Ok(Job {
             map: *map,
             occupancy: occupancy.to_vec(),
             rules: CellRules::of(map)?,
             boundary: None,
+            reach_m,
         })
     }
 
@@ -108,13 +116,14 @@ impl Job {
             occupancy: occupancy.to_vec(),
             rules: CellRules::of(map)?,
             boundary: Some(boundary.to_vec()),
+            reach_m: 0.0,
         })
     }
 
     /// The map.
     #[must_use]
-    pub fn map_id(&self) -> u64 {
-        self.map.map_id
+    pub fn subject(&self) -> Subject {
+        Subject::map(&self.map)
     }
 
     /// Makes the localizer, which takes from milliseconds to seconds, unless what takes
@@ -143,8 +152,8 @@ impl Job {
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
             map_id: self.map.map_id,
-            localizer,
-            space,
+            localizer: localizer.reaching(self.reach_m),
+            space: space.reaching(self.reach_m),
         };
         Ok((map, kept))
     }

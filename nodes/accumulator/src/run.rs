@@ -2,6 +2,7 @@
 
 mod inputs;
 mod outputs;
+mod set;
 mod supply;
 
 use std::collections::BTreeMap;

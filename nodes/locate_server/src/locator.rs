@@ -84,13 +84,19 @@ impl Locator {
         Ok(Locator::of_set(
             vec![map],
             (Shard::WHOLE, vec![String::new()]),
+            0.0,
         ))
     }
 
     /// Searches maps together, of which there is at least one. They are that part of a set
-    /// whose maps have these names.
+    /// whose maps have these names, and of which the maps of other shards have diagonals of so
+    /// many metres at most.
     #[must_use]
-    pub fn of_set(maps: Vec<SearchedMap>, part_of: (Shard, Vec<String>)) -> Self {
+    pub fn of_set(
+        maps: Vec<SearchedMap>,
+        part_of: (Shard, Vec<String>),
+        others_reach_m: f64,
+    ) -> Self {
         let held = maps.iter().map(|map| (map.number, map.id)).collect();
         let (ids, locators): (_, Vec<_>) = maps
             .into_iter()
@@ -100,7 +106,7 @@ impl Locator {
             maps: ids,
             held,
             part_of,
-            set: MapSet::new(locators),
+            set: MapSet::part(locators, others_reach_m),
         }
     }
 

@@ -73,8 +73,13 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
         let map = SearchedMap::new((number, name), &grid, config.cells, how.clone());
         maps.push(map.map_err(|source| LocateError::UnusableMap { path: yaml, source })?);
     }
+    let mut others_reach_m: f64 = 0.0;
+    for yaml in shard.others(&files) {
+        let diagonal_m = map::diagonal_m(yaml).map_err(|source| failed(yaml, source))?;
+        others_reach_m = others_reach_m.max(diagonal_m);
+    }
     let names = files.into_iter().map(|file| file.name).collect();
-    Ok(Locator::of_set(maps, (shard, names)))
+    Ok(Locator::of_set(maps, (shard, names), others_reach_m))
 }
 
 /// What stands on the network, as long as this lives.

@@ -5,6 +5,7 @@
 //! are. What it answers is a [`Part`], which the caller merges with the others'.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 use engine::map_set::Located;
@@ -93,6 +94,13 @@ impl Shard {
             }),
             false => Ok(held),
         }
+    }
+
+    /// The descriptions of the maps that other shards hold.
+    pub(crate) fn others(self, files: &[MapFile]) -> impl Iterator<Item = &Path> {
+        let others = files.iter().enumerate();
+        let others = others.filter(move |(number, _)| !self.holds(*number));
+        others.map(|(_, file)| file.yaml.as_path())
     }
 }
 

@@ -37,9 +37,9 @@ struct OnMap {
     space: Option<(Extent, Space)>,
 }
 
-/// What a space is made for: headings a turn, a cell's side in metres, and cells
-/// along x and y.
-type Extent = (u32, f64, usize, usize);
+/// What a space is made for: headings a turn, a cell's side and the reach in metres, and
+/// cells along x and y.
+type Extent = (u32, (f64, f64), usize, usize);
 
 /// What there is to say about a scan.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,7 +148,8 @@ impl OnMap {
             }
             let scan = scans.get(header.stamp)?;
             let sides = (map.width as usize, map.height as usize);
-            let extent = (header.headings, resolution_m, sides.0, sides.1);
+            let lengths_m = (resolution_m, map.reach_m);
+            let extent = (header.headings, lengths_m, sides.0, sides.1);
             Ok(ends.find(&scan, kept_or_made(space, extent)?, beams)?)
         };
         self.peaks.judge(input, &map.distance_field, config, take)
@@ -158,8 +159,8 @@ impl OnMap {
 /// The space of the scan before, where it is that of this scan, too.
 fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&Space, EngineError> {
     if kept.as_ref().is_none_or(|(of, _)| *of != extent) {
-        let (headings, resolution_m, width, height) = extent;
-        let made = Space::new(headings, resolution_m, width, height)?;
+        let (headings, (resolution_m, reach_m), width, height) = extent;
+        let made = Space::new(headings, resolution_m, width, height)?.reaching(reach_m);
         *kept = Some((extent, made));
     }
     let (_, space) = kept.as_ref().expect("it was made");

@@ -40,13 +40,8 @@ pub fn check<'a>(
     votes: &'a [Vote],
     maps: &'a Maps,
 ) -> Result<Option<Checked<'a>>, PeakError> {
-    let outcome = header.outcome;
-    match SearchOutcome::from_code(outcome) {
-        None => return Err(PeakError::Outcome { found: outcome }),
-        Some(SearchOutcome::NoVotes | SearchOutcome::Refused | SearchOutcome::NotAsked) => {
-            return Ok(None);
-        }
-        Some(SearchOutcome::Found) => {}
+    if outcome(header)? != SearchOutcome::Found {
+        return Ok(None);
     }
     if header.best == 0 {
         return Err(contradicts(header, votes));
@@ -66,6 +61,7 @@ pub fn check_on_map<'a>(
     maps: &'a Maps,
     lead: VoteShare,
 ) -> Result<Checked<'a>, PeakError> {
+    outcome(header)?;
     let map = maps.get(header.map_id)?;
     check_header(header, votes)?;
     let pooling = pooling(header)?;
@@ -88,6 +84,12 @@ pub fn check_on_map<'a>(
     };
     let beams = beams(header)?;
     Ok(Checked { input, map, beams })
+}
+
+/// How the search ended.
+fn outcome(header: &VotesHeader) -> Result<SearchOutcome, PeakError> {
+    let found = header.outcome;
+    SearchOutcome::from_code(found).ok_or(PeakError::Outcome { found })
 }
 
 /// Where the laser sits on the robot, if the header knows.

@@ -6,6 +6,7 @@
 use engine::EngineError;
 use engine::fit::DistanceField;
 use engine::grid::{CellRules, GridFrame};
+use engine::space;
 use messages::{MapHeader, MapSet};
 
 use crate::PeakError;
@@ -23,6 +24,8 @@ pub struct Map {
     pub frame: GridFrame,
     /// Distances to obstacles, by the rules for its cells.
     pub distance_field: DistanceField,
+    /// Up to which length beams count, where that is more than the map's own, metres.
+    pub reach_m: f64,
 }
 
 /// What is searched, and what was before: a map each, or a set of maps.
@@ -33,7 +36,7 @@ pub struct Maps {
 }
 
 impl Map {
-    fn new(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
+    fn new(header: &MapHeader, occupancy: &[u8], reach_m: f64) -> Result<Self, EngineError> {
         let frame = GridFrame::of(header)?;
         let sides = (header.width as usize, header.height as usize);
         Ok(Map {
@@ -42,6 +45,7 @@ impl Map {
             height: header.height,
             frame,
             distance_field: DistanceField::new(frame, sides, occupancy, CellRules::of(header)?)?,
+            reach_m,
         })
     }
 }
@@ -53,7 +57,7 @@ impl Maps {
     /// If the grid's sides, resolution, origin or rules are out of range, or the
     /// number of cells is not what the sides say.
     pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
-        self.replace(vec![Map::new(header, occupancy)?]);
+        self.replace(vec![Map::new(header, occupancy, 0.0)?]);
         Ok(())
     }
 
@@ -62,8 +66,9 @@ impl Maps {
     /// # Errors
     /// As of one map.
     pub fn receive_set(&mut self, set: &MapSet<'_>) -> Result<(), EngineError> {
+        let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter();
-        let maps = maps.map(|(header, occupancy)| Map::new(header, occupancy));
+        let maps = maps.map(|(header, occupancy)| Map::new(header, occupancy, reach_m));
         self.replace(maps.collect::<Result<_, _>>()?);
         Ok(())
     }

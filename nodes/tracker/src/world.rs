@@ -5,7 +5,7 @@ use engine::beams::BeamConfig;
 use engine::fit::{DistanceField, Ends, FitConfig};
 use engine::grid::{CellRules, GridFrame};
 use engine::observation::Observation;
-use engine::space::Space;
+use engine::space::{self, Space};
 use engine::tracking::Seen;
 use messages::{MapHeader, MapName, MapSet, Transition, searched_id};
 
@@ -35,14 +35,15 @@ pub(crate) struct Worlds {
 }
 
 impl World {
-    fn new(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
+    /// Beams count up to this length, metres, where that is more than the map's own.
+    fn new(header: &MapHeader, occupancy: &[u8], reach_m: f64) -> Result<Self, EngineError> {
         let (frame, rules) = (GridFrame::of(header)?, CellRules::of(header)?);
         let (width, height) = (header.width as usize, header.height as usize);
         Ok(World {
             map_id: header.map_id,
             name: header.name,
             distance_field: DistanceField::new(frame, (width, height), occupancy, rules)?,
-            space: Space::new(HEADINGS, frame.resolution_m, width, height)?,
+            space: Space::new(HEADINGS, frame.resolution_m, width, height)?.reaching(reach_m),
             ends: Ends::default(),
         })
     }
@@ -56,7 +57,7 @@ impl Worlds {
     /// cells is not what the sides say.
     pub(crate) fn of_map(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
         Ok(Worlds {
-            maps: vec![World::new(header, occupancy)?],
+            maps: vec![World::new(header, occupancy, 0.0)?],
             transitions: Vec::new(),
         })
     }
@@ -66,8 +67,9 @@ impl Worlds {
     /// # Errors
     /// As of one map; with its id.
     pub(crate) fn of_set(set: &MapSet<'_>) -> Result<Self, (u64, EngineError)> {
+        let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter().map(|(header, occupancy)| {
-            World::new(header, occupancy).map_err(|error| (header.map_id, error))
+            World::new(header, occupancy, reach_m).map_err(|error| (header.map_id, error))
         });
         Ok(Worlds {
             maps: maps.collect::<Result<_, _>>()?,
@@ -125,7 +127,7 @@ impl Worlds {
         Ok(())
     }
 
-    /// The scan on each map.
+    /// The scan on each map; all have the same beams.
     pub(crate) fn seen<'a>(&'a self, fit: &'a FitConfig) -> Vec<Seen<'a>> {
         let seen = self.maps.iter().map(|map| Seen {
             distance_field: &map.distance_field,
@@ -133,5 +135,65 @@ impl Worlds {
             fit,
         });
         seen.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::fit::GridPose;
+    use engine::scan::Scan;
+
+    use super::*;
+
+    /// A bare room of so many cells a side, each 0.1 m.
+    fn room(side: u32) -> (MapHeader, Vec<u8>) {
+        let is_wall = |i: u32| i == 0 || i == side - 1;
+        let cells =
+            (0..side * side).map(|i| 100 * u8::from(is_wall(i % side) || is_wall(i / side)));
+        let cells: Vec<u8> = cells.collect();
+        let mut header = MapHeader {
+            width: side,
+            height: side,
+            resolution_m: 0.1,
+            ..MapHeader::default()
+        };
+        header.map_id = header.id_of(&cells);
+        (header, cells)
+    }
+
+    #[test]
+    fn readings_that_a_map_is_too_small_for_count_on_it() {
+        let (small, large) = (room(40), room(400));
+        let set = MapSet {
+            maps: vec![(small.0, &small.1[..]), (large.0, &large.1)],
+            transitions: Vec::new(),
+        };
+        let mut worlds = Worlds::of_set(&set).unwrap();
+        let ranges = [15.0; 30];
+        let scan = Scan {
+            angle_min: -0.3,
+            angle_increment: 0.02,
+            range_min_m: 0.1,
+            range_max_m: 40.0,
+            ranges: &ranges,
+        };
+        worlds
+            .find_ends((&scan).into(), &BeamConfig::default())
+            .unwrap();
+        let fit = FitConfig::default();
+        let seen = worlds.seen(&fit);
+        assert_eq!(
+            seen[0].ends.beams(),
+            30,
+            "by the first map scans are judged blank"
+        );
+        assert_eq!(seen[1].ends.beams(), 30);
+        let score = |map: usize, x: f64| {
+            let (at, y) = (&seen[map], 20.5);
+            let pose = GridPose { x, y, heading: 0.0 };
+            at.distance_field.score(at.ends, pose, &fit)
+        };
+        assert!(score(0, 20.5) < 0.1, "{}", score(0, 20.5));
+        assert!(score(1, 249.5) > 0.3, "{}", score(1, 249.5));
     }
 }

@@ -1,11 +1,13 @@
 //! Several maps that are searched together.
 
+use std::cmp::Ordering;
+
 use super::{Localizer, Workspace};
 use crate::EngineError;
 use crate::instruction_set::InstructionSet;
 use crate::observation::Observation;
 use crate::search::{Lead, SearchIndex, Searched};
-use crate::votes::least_close;
+use crate::votes::{VoteShare, least_close};
 
 /// What is known beside the scan.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,8 +20,9 @@ pub struct Together<'a> {
 
 impl Localizer {
     /// Searches maps together, each in a workspace of its own, with the settings of the first:
-    /// of each map the poses that come near the best one of all. `None` if `stop` said so
-    /// before the end.
+    /// of each map the poses that come near the best one of all. The number of the map that
+    /// has the best pose, of equally good ones the first; `None` if `stop` said so before the
+    /// end.
     ///
     /// Votes are compared as shares of the highest possible on each map, without rounding.
     ///
@@ -33,7 +36,7 @@ impl Localizer {
         scan: Observation<'_>,
         together: Together<'_>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<()>, EngineError> {
+    ) -> Result<Option<usize>, EngineError> {
         let own = Lead::default();
         let best = together.lead.unwrap_or(&own);
         let found = match together.heading {
@@ -46,8 +49,13 @@ impl Localizer {
         let shares = maps
             .iter()
             .map(|(_, workspace)| workspace.outcome.best_share());
-        let shares = shares.chain([best.share()]);
-        let lead = shares.max_by(|a, b| a.compare(*b)).expect("a share");
+        let greater = |a: (usize, VoteShare), b: (usize, VoteShare)| match b.1.compare(a.1) {
+            Ordering::Greater => b,
+            _ => a,
+        };
+        let (leading, share) = shares.enumerate().reduce(greater).expect("a map");
+        // Others may have a better pose on their maps.
+        let (_, lead) = greater((leading, share), (leading, best.share()));
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
             outcome.lead = lead.on(outcome.highest_possible as u16);
@@ -57,7 +65,7 @@ impl Localizer {
                 outcome.found.confine((outcome.lead, floor), Some(least));
             }
         }
-        Ok(Some(()))
+        Ok(Some(leading))
     }
 }
 

@@ -77,8 +77,9 @@ proptest! {
         prop_assume!(locators.len() > 1);
         let cut = cut.min(locators.len() - 1);
         let mut workspace = Workspace::default();
+        let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
         let mut ask = |locators: &[Locator]| {
-            let set = MapSet::new(locators.to_vec());
+            let set = MapSet::part(locators.to_vec(), reach_m);
             // As shards do, so that a single map is one of several, too.
             let lead = Lead::default();
             let together = Together { lead: Some(&lead), ..Together::default() };
@@ -132,8 +133,9 @@ proptest! {
         prop_assume!(locators.len() > 1);
         let cut = cut.min(locators.len() - 1);
         let mut workspace = Workspace::default();
+        let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
         let mut ask = |locators: &[Locator], lead: &Lead, stop: &dyn Fn() -> bool| {
-            let set = MapSet::new(locators.to_vec());
+            let set = MapSet::part(locators.to_vec(), reach_m);
             let together = Together { lead: Some(lead), ..Together::default() };
             let found = set.locate_beside(&mut workspace, &scan.scan(), together, stop);
             found.unwrap().unwrap().found.clone()

@@ -6,13 +6,14 @@ use std::time::Instant;
 use engine::limits::Region;
 use engine::localizer::{LocalizerConfig, Prior};
 use index_cache::{CachePlace, IndexCache, Kept};
-use messages::{Corner, MapSet, NodeState, topic};
+use messages::{Corner, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use super::inputs::Inputs;
+use super::set::Set;
 use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
-use crate::{AccumulatorError, Config};
+use crate::{AccumulatorError, Config, Subject};
 
 /// What has come, what is wanted of it, and what is being prepared: one map, or all maps of a
 /// set, at a time, always for what came last.
@@ -20,15 +21,13 @@ pub(super) struct Supply {
     config: LocalizerConfig,
     /// Where poses are searched unless somebody requests otherwise.
     configured: Option<Region>,
-    /// Counts the regions that were region_changed for.
-    requests: u64,
     prior: Prior,
     /// Where prepared maps are kept.
     cache: Option<IndexCache>,
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
     /// Where there is one, it is searched, and the map above is that of it which is shown.
-    set: Option<Sample<topic::Maps>>,
+    set: Option<Set>,
     /// To be prepared, once nothing else is.
     wanted: Option<Order>,
     under_way: Option<UnderWay>,
@@ -36,8 +35,13 @@ pub(super) struct Supply {
     handed_out: Option<Order>,
 }
 
-/// What to prepare, and the number of the request for a region that it is to heed.
-type Order = (Vec<Key>, u64);
+/// What to prepare.
+#[derive(Debug, Clone, PartialEq)]
+struct Order {
+    keys: Vec<Key>,
+    /// Where poses are searched.
+    region: Option<Region>,
+}
 
 struct UnderWay {
     order: Order,
@@ -45,8 +49,11 @@ struct UnderWay {
     work: Background<Prepared>,
 }
 
-/// All maps that were ordered, or the id of the one that cannot be used.
-type Prepared = Result<Vec<(PreparedMap, Kept)>, (u64, AccumulatorError)>;
+/// All maps that were ordered and have poses, or the one that cannot be used.
+type Prepared = Result<Vec<(PreparedMap, Kept)>, Refused>;
+
+/// What cannot be used, and why.
+type Refused = (Subject, AccumulatorError);
 
 impl Supply {
     pub(super) fn new(config: &Config) -> Self {
@@ -57,7 +64,6 @@ impl Supply {
         });
         Supply {
             configured: config.localizer.limits.region.clone(),
-            requests: 0,
             config: config.localizer(),
             prior: config.prior(),
             cache,
@@ -97,24 +103,22 @@ impl Supply {
         let came = came.into_iter().map(u64::from).sum();
         health.count_received(came);
         if let Some(set) = set {
-            match MapSet::read(set.header(), set.items()) {
-                Ok(_) => self.set = Some(set),
-                Err(error) => refuse(0, &error.into(), health)?,
+            match Set::read(set) {
+                Ok(set) => self.set = Some(set),
+                Err(refused) => refuse(&refused, health)?,
             }
-        }
-        if self.set.is_some() || inputs.sets.has_publishers() {
-            // The map that is shown is one of those, or will be.
-            return Ok(came > 0);
-        }
-        match map.as_ref().map(|map| map.header().check_id(map.items())) {
-            Some(Err(error)) => {
-                let map_id = error.found;
-                refuse(map_id, &error.into(), health)?;
-            }
-            Some(Ok(())) => self.map = map,
-            None => {}
         }
         self.boundary = boundary.or(self.boundary.take());
+        // Where sets are sent, it is the one of their maps that is shown.
+        if let Some(map) = map.filter(|_| !inputs.sets.has_publishers()) {
+            match map.header().check_id(map.items()) {
+                Ok(()) => {
+                    self.map = Some(map);
+                    self.set = None;
+                }
+                Err(error) => refuse(&(Subject::map(map.header()), error.into()), health)?,
+            }
+        }
         Ok(came > 0)
     }
 
@@ -134,13 +138,10 @@ impl Supply {
                 let region = region.or_else(|| self.configured.clone());
                 let is_new = region != self.config.limits.region;
                 self.config.limits.region = region;
-                self.requests += u64::from(is_new);
                 Ok(is_new)
             }
             Err(problem) => {
-                tracing::warn!("search region rejected: {problem}");
-                health.count_refused(1);
-                health.error(&format!("search region rejected: {problem}"))?;
+                refuse_region(&problem, health)?;
                 Ok(false)
             }
         }
@@ -151,45 +152,40 @@ impl Supply {
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
         match self.keys() {
-            Ok(keys) => self.wanted = keys.map(|keys| (keys, self.requests)),
-            Err((map_id, error)) => refuse(map_id, &error, health)?,
+            Ok(keys) => {
+                let region = self.config.limits.region.clone();
+                self.wanted = keys.map(|keys| Order { keys, region });
+            }
+            Err(refused) => refuse(&refused, health)?,
         }
         Ok(())
     }
 
-    fn keys(&self) -> Result<Option<Vec<Key>>, (u64, AccumulatorError)> {
+    fn keys(&self) -> Result<Option<Vec<Key>>, Refused> {
         if let Some(set) = &self.set {
-            let set = MapSet::read(set.header(), set.items()).map_err(|e| (0, e.into()))?;
-            let keys = set
-                .maps
-                .iter()
-                .map(|(map, _)| Key::in_set(map).map_err(|error| (map.map_id, error)));
-            return keys.collect::<Result<_, _>>().map(Some);
+            return Ok(Some(set.keys.clone()));
         }
         let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
             return Ok(None);
         };
         let key = Key::of(map.header(), (boundary.header(), boundary.items()));
-        let key = key.map_err(|error| (map.header().map_id, error))?;
+        let key = key.map_err(|error| (Subject::map(map.header()), error))?;
         Ok(key.map(|key| vec![key]))
     }
 
     /// What to do for what is wanted.
-    fn jobs(&self) -> Result<Vec<Job>, (u64, AccumulatorError)> {
+    fn jobs(&self) -> Result<Vec<Job>, Refused> {
         if let Some(set) = &self.set {
-            let set = MapSet::read(set.header(), set.items()).map_err(|e| (0, e.into()))?;
-            let jobs = set
-                .maps
-                .iter()
-                .map(|(map, cells)| Job::in_set(map, cells).map_err(|error| (map.map_id, error)));
-            return jobs.collect();
+            return set.jobs();
         }
         let (Some(map), Some(boundary)) = (&self.map, &self.boundary) else {
             return Ok(Vec::new());
         };
         let (boundary, cells) = (boundary.header(), boundary.items());
         let job = Job::new(map.header(), map.items(), boundary, cells);
-        Ok(vec![job.map_err(|error| (map.header().map_id, error))?])
+        Ok(vec![
+            job.map_err(|error| (Subject::map(map.header()), error))?,
+        ])
     }
 
     fn finish(
@@ -202,14 +198,14 @@ impl Supply {
         else {
             return Ok(None);
         };
-        let map_id = order.0.first().map_or(0, |key| key.map_id);
+        let map_id = order.keys.first().map_or(0, |key| key.map_id);
         let outcome = work
             .finish()
             .map_err(|reason| AccumulatorError::PreparationDied { map_id, reason })?;
         let all = match outcome {
             Ok(all) => all,
-            Err((map_id, error)) => {
-                refuse(map_id, &error, health)?;
+            Err(refused) => {
+                self.refuse_order(&order, &refused, health)?;
                 return Ok(None);
             }
         };
@@ -232,6 +228,29 @@ impl Supply {
         Ok(Some(maps))
     }
 
+    /// Where a region leaves no pose of maps that are searched elsewhere, the region is
+    /// refused, not the maps.
+    fn refuse_order(
+        &mut self,
+        order: &Order,
+        refused: &Refused,
+        health: &mut Health,
+    ) -> Result<(), TransportError> {
+        let before = match &self.handed_out {
+            Some(order) => &order.region,
+            None => &self.configured,
+        };
+        if !refused.1.leaves_no_pose() || order.region == *before {
+            return refuse(refused, health);
+        }
+        refuse_region(&with_causes(&refused.1), health)?;
+        if self.config.limits.region == order.region {
+            self.config.limits.region = before.clone();
+            self.consider(health)?;
+        }
+        Ok(())
+    }
+
     fn start(&mut self, health: &mut Health) -> Result<(), AccumulatorError> {
         if self.under_way.is_some() {
             return Ok(());
@@ -245,23 +264,16 @@ impl Supply {
         }
         let jobs = match self.jobs() {
             Ok(jobs) => jobs,
-            Err((map_id, error)) => return Ok(refuse(map_id, &error, health)?),
+            Err(refused) => return Ok(refuse(&refused, health)?),
         };
         if self.handed_out.is_none() {
             // Scans are not answered before; with another map, they are meanwhile.
             health.state(NodeState::Busy)?;
         }
         let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
-        let prepare = move || {
-            let prepared = jobs.into_iter().map(|job| {
-                let map_id = job.map_id();
-                let prepared = job.prepare(config.clone(), prior, cache.as_ref());
-                prepared.map_err(|error| (map_id, error))
-            });
-            prepared.collect()
-        };
+        let prepare = move || prepare(jobs, &config, prior, cache.as_ref());
         let work = Background::start("prepare map", prepare);
-        let map_id = order.0.first().map_or(0, |key| key.map_id);
+        let map_id = order.keys.first().map_or(0, |key| key.map_id);
         self.under_way = Some(UnderWay {
             order,
             since: Instant::now(),
@@ -294,13 +306,43 @@ fn keep(kept: Kept) {
     }
 }
 
+/// Prepares maps, without those of a set in which no pose is left.
+fn prepare(
+    jobs: Vec<Job>,
+    config: &LocalizerConfig,
+    prior: Prior,
+    cache: Option<&IndexCache>,
+) -> Prepared {
+    let mut all = Vec::with_capacity(jobs.len());
+    let mut left_out = None;
+    for job in jobs {
+        let subject = job.subject();
+        match job.prepare(config.clone(), prior, cache) {
+            Ok(prepared) => all.push(prepared),
+            Err(error) if error.leaves_no_pose() => {
+                tracing::info!("{subject} is not searched: {error}");
+                left_out = Some((subject, error));
+            }
+            Err(error) => return Err((subject, error)),
+        }
+    }
+    match left_out {
+        Some(refused) if all.is_empty() => Err(refused),
+        _ => Ok(all),
+    }
+}
+
+/// Poses are searched where they were before.
+fn refuse_region(problem: &str, health: &mut Health) -> Result<(), TransportError> {
+    let problem = format!("search region rejected: {problem}");
+    tracing::warn!("{problem}");
+    health.count_refused(1);
+    health.error(&problem)
+}
+
 /// Scans are answered as before.
-fn refuse(
-    map_id: u64,
-    error: &AccumulatorError,
-    health: &mut Health,
-) -> Result<(), TransportError> {
-    let problem = format!("map {map_id:016x} rejected: {}", with_causes(error));
+fn refuse((subject, error): &Refused, health: &mut Health) -> Result<(), TransportError> {
+    let problem = format!("{subject} rejected: {}", with_causes(error));
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;

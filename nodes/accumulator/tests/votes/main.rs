@@ -2,4 +2,5 @@
 
 mod known_heading;
 mod node;
+mod sets;
 mod world;

@@ -16,7 +16,7 @@ use transport::testing::{Isolated, wait_for, wait_for_health};
 use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
 
 /// The same room after somebody has moved the pillar and opened a door.
-const CHANGED: [&str; 9] = [
+pub(crate) const CHANGED: [&str; 9] = [
     "################",
     "#..............#",
     "#...##.........#",
@@ -308,7 +308,7 @@ fn a_map_that_is_taken_back_is_in_use_again() {
 }
 
 /// Corners of a box of the grid, in cells, as somebody requests for them.
-fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
+pub(crate) fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
     let corner = |&(x, y): &(f64, f64)| {
         let side = FRAME.resolution_m;
         let (x, y) = FRAME.map_from_grid.transform(x * side, y * side);

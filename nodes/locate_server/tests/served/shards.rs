@@ -31,7 +31,7 @@ fn shard(tag: &str, set: &tempfile::TempDir, shard: &str) -> Server {
 fn shard_with(tag: &str, set: &tempfile::TempDir, shard: &str, options: &[&str]) -> Server {
     let set = set.path().to_str().unwrap();
     let common = ["--maps", set, "--name", "malaga", "--shard", shard];
-    Server::of(tag, &[&common, &["--workers", "1"], options].concat())
+    Server::of(tag, &[&common[..], &["--workers", "1"], options].concat())
 }
 
 /// Every so many-th scan of a recording.
@@ -56,7 +56,7 @@ fn whole() -> Locator {
         SearchedMap::new(named, &map, Default::default(), Default::default()).unwrap()
     });
     let names = MAPS.map(str::to_owned).into();
-    Locator::of_set(maps.collect(), (Shard::WHOLE, names))
+    Locator::of_set(maps.collect(), (Shard::WHOLE, names), 0.0)
 }
 
 #[test]

@@ -23,7 +23,8 @@ pub(super) fn on_several<'w>(
     let parts = by_map
         .iter()
         .fold(0, |all: u64, on_map| all.saturating_add(on_map.total));
-    if by_map.is_empty() || parts != votes.len() as u64 {
+    let maps_agree = by_map.len() as u64 == header.maps;
+    if by_map.is_empty() || !maps_agree || parts != votes.len() as u64 {
         return Err(PeakError::Parts {
             maps: by_map.len(),
             parts,
@@ -71,4 +72,160 @@ pub(super) fn on_several<'w>(
     };
     let of = (&map_ids[..], &beams[..]);
     Ok(said(&votes, &merged.places, of, (base_from_laser, frame)))
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use engine::peaks::Score;
+    use messages::{Hypothesis, MapHeader, MapSet, SearchOutcome, Stamp, Verdict};
+
+    use super::super::answer;
+    use super::*;
+
+    const STAMP: Stamp = Stamp {
+        measured_ns: 1,
+        entered_ns: 2,
+        counter: 3,
+    };
+
+    /// Two maps of a set, 7 and 8.
+    fn maps() -> Maps {
+        let map = |map_id| MapHeader {
+            map_id,
+            width: 30,
+            height: 20,
+            resolution_m: 1.0,
+            ..MapHeader::default()
+        };
+        let cells = [0; 30 * 20];
+        let set = MapSet {
+            maps: vec![(map(7), &cells[..]), (map(8), &cells)],
+            transitions: Vec::new(),
+        };
+        let mut maps = Maps::default();
+        maps.receive_set(&set).unwrap();
+        maps
+    }
+
+    fn vote(x: u16, intensity: u16) -> Vote {
+        Vote {
+            x,
+            y: 5,
+            heading: 0,
+            intensity,
+        }
+    }
+
+    /// What there is to say of so many votes on a map, of which the best has these.
+    fn on_map(map_id: u64, total: u64, best: u32) -> VotesHeader {
+        let outcome = match best {
+            0 => SearchOutcome::NoVotes,
+            _ => SearchOutcome::Found,
+        };
+        VotesHeader {
+            stamp: STAMP,
+            map_id,
+            total,
+            outcome: outcome as u32,
+            headings: 360,
+            certified_floor: best / 2,
+            best,
+            highest_possible: 125,
+            max_beams: 180,
+            pooling: 1,
+            beam_arc_m: 0.2,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    /// What is made of votes of which the parts say on which map they are; the first leads.
+    fn said(
+        parts: &[VotesHeader],
+        votes: &[Vote],
+    ) -> Result<(Verdict, Vec<Hypothesis>), PeakError> {
+        let mut scans = Scans::default();
+        scans.take_by_map(STAMP, parts);
+        said_after(&scans, parts, votes)
+    }
+
+    fn said_after(
+        scans: &Scans,
+        parts: &[VotesHeader],
+        votes: &[Vote],
+    ) -> Result<(Verdict, Vec<Hypothesis>), PeakError> {
+        let header = VotesHeader {
+            maps: parts.len() as u64,
+            total: votes.len() as u64,
+            ..parts[0]
+        };
+        let by_votes = PeakConfig {
+            score: Score::Votes,
+            ..PeakConfig::default()
+        };
+        let mut workspace = Workspace::default();
+        let answer = answer(&header, votes, (&maps(), scans), &by_votes, &mut workspace)?;
+        let verdict = Verdict::from_code(answer.header.verdict).unwrap();
+        Ok((verdict, answer.hypotheses().collect()))
+    }
+
+    #[track_caller]
+    fn refused(parts: &[VotesHeader], votes: &[Vote], expected: &str) {
+        let error = said(parts, votes).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+
+    #[test]
+    fn votes_are_those_of_the_maps_one_after_the_other() {
+        let parts = [on_map(7, 2, 100), on_map(8, 1, 75)];
+        let votes = [vote(10, 100), vote(20, 60), vote(3, 75)];
+        let (verdict, found) = said(&parts, &votes).unwrap();
+        assert_eq!(verdict, Verdict::Unique);
+        let found: Vec<_> = found.iter().map(|h| (h.map_id, h.intensity)).collect();
+        assert_eq!(found, [(7, 100), (8, 75), (7, 60)]);
+        let even = [on_map(7, 1, 100), on_map(8, 1, 99)];
+        let (verdict, _) = said(&even, &[vote(10, 100), vote(3, 99)]).unwrap();
+        assert_eq!(verdict, Verdict::Ambiguous, "on another map");
+    }
+
+    #[test]
+    fn where_no_map_has_votes_there_are_no_hypotheses() {
+        let parts = [on_map(7, 0, 0), on_map(8, 0, 0)];
+        let (verdict, found) = said(&parts, &[]).unwrap();
+        assert_eq!((verdict, found.len()), (Verdict::NoScan, 0));
+    }
+
+    #[test]
+    fn which_votes_are_on_which_map_has_to_be_known_and_to_hold() {
+        let (parts, votes) = ([on_map(7, 1, 100)], [vote(10, 100)]);
+        let unknown = said_after(&Scans::default(), &parts, &votes);
+        assert!(matches!(unknown, Err(PeakError::UnknownParts)));
+        refused(&[on_map(7, 2, 100)], &votes, "1 maps have 2 votes");
+        refused(
+            &[on_map(7, 1, 100), on_map(8, u64::MAX, 75)],
+            &votes,
+            "2 maps have 18446744073709551615 votes",
+        );
+        let mut scans = Scans::default();
+        scans.take_by_map(STAMP, &[on_map(7, 1, 100), on_map(8, 0, 0)]);
+        let fewer = said_after(&scans, &parts, &votes);
+        assert!(matches!(fewer, Err(PeakError::Parts { maps: 2, .. })));
+        scans.take_by_map(STAMP, &[]);
+        let none = said_after(&scans, &parts, &[]);
+        assert!(matches!(none, Err(PeakError::Parts { maps: 0, .. })));
+    }
+
+    #[test]
+    fn each_part_is_checked() {
+        let votes = [vote(10, 100), vote(3, 75)];
+        let check = |change: fn(&mut VotesHeader), expected: &str| {
+            let mut parts = [on_map(7, 1, 100), on_map(8, 1, 75)];
+            change(&mut parts[1]);
+            refused(&parts, &votes, expected);
+        };
+        check(|part| part.map_id = 9, "of map 0000000000000009");
+        check(|part| part.outcome = 4, "outcome is 4");
+        check(|part| part.best = 74, "best is 74 of 125");
+        check(|part| part.headings = 0, "headings is 0");
+    }
 }

@@ -131,7 +131,8 @@ impl BeamSampling {
             return Some((some * 3 / 4) as u16);
         }
         let floor = EXPECTED_BEST * f64::from(all) * task.config.floor_share;
-        let least = (floor as u32).saturating_sub(all - some);
+        let rest = program.most_votes() - some;
+        let least = (floor as u32).saturating_sub(rest);
         // In clutter most poses have about half of the votes.
         (least > some / 2).then_some(least as u16)
     }
@@ -215,7 +216,7 @@ impl<'a> SamplingThread<'a> {
     fn count_sampled(&mut self) -> Option<()> {
         // What the beams give at most that are not in the sample.
         let sampled = self.sampling.sample.highest_possible();
-        let rest = (self.program.highest_possible() - sampled) as u16;
+        let rest = (self.program.most_votes() - sampled) as u16;
         let rest = self.sampling.least.map_or(u16::MAX, |_| rest);
         let most = self.most_counts();
         let mut start = 0;

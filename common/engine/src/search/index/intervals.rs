@@ -7,6 +7,7 @@
 mod build;
 mod pool;
 mod strip;
+mod strip_blocks;
 mod transpose;
 mod unpack;
 mod wide;

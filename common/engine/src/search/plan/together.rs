@@ -131,8 +131,13 @@ mod tests {
             floor_share in 0.3..=1.0f64, candidates in 0u32..9, max_votes in prop_oneof![Just(65_536u32), 1u32..40],
         ) {
             // Cells of other sizes, so that other numbers of votes are possible.
-            let worlds: Vec<_> = worlds.into_iter().map(|(grid, eights, scale)| {
-                let space = Space::new(8 * eights, 0.1 * scale, grid.width(), grid.height()).unwrap();
+            let space = |(grid, eights, scale): &(Grid, u32, f64)| {
+                Space::new(8 * eights, 0.1 * scale, grid.width(), grid.height()).unwrap()
+            };
+            let reach_m = worlds.iter().map(|world| space(world).longest_m).fold(0.0, f64::max);
+            let worlds: Vec<_> = worlds.into_iter().map(|world| {
+                // Beams count on each that are too long for some.
+                let (space, grid) = (space(&world).reaching(reach_m), world.0);
                 let (index, program) = (SearchIndex::new(&grid, &space), scan.program(&space));
                 (index, grid, program, space)
             }).collect();

@@ -11,6 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::pool::pool;
 use super::strip::{Row, RowLayout, StripMasks};
+use super::strip_blocks::StripBlocks;
 use super::transpose::{TILE, WORD, transpose};
 use super::wide::{Noting, WideView};
 use super::{PACKED, SIDE};
@@ -213,46 +214,6 @@ fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_
     }
 }
 
-/// The blocks of a strip.
-pub(super) struct StripBlocks<'a> {
-    ids: &'a BlockIds,
-    /// The first one, and how much farther each next one is.
-    places: (usize, usize),
-    /// A bit for each that is wanted.
-    wanted: Vec<u64>,
-}
-
-impl<'a> StripBlocks<'a> {
-    fn new(ids: &'a BlockIds, places: (usize, usize), blocks: usize) -> Self {
-        let holds = |block: usize| u64::from(ids.holds(places.0 + block * places.1));
-        let word = |first: usize| {
-            let tile = first..blocks.min(first + TILE);
-            tile.fold(0, |word, block| word | holds(block) << (block - first))
-        };
-        StripBlocks {
-            ids,
-            places,
-            wanted: (0..blocks).step_by(TILE).map(word).collect(),
-        }
-    }
-
-    /// Which are wanted of `count` from `start` on, which are a part of a tile.
-    #[inline(always)]
-    pub(super) fn wanted(&self, start: usize, count: usize) -> u64 {
-        let word = self
-            .wanted
-            .get(start / TILE)
-            .map_or(0, |word| word >> (start % TILE));
-        word & (u64::MAX >> (TILE - count))
-    }
-
-    /// The number of a wanted one.
-    #[inline(always)]
-    pub(super) fn id(&self, block: usize) -> usize {
-        self.ids.before(self.places.0 + block * self.places.1)
-    }
-}
-
 /// The packed intervals of a strip, direction by direction.
 struct Planes {
     /// Directions of a turn.
@@ -301,7 +262,7 @@ impl Planes {
     #[inline(always)]
     fn write(&mut self, part: &Part, strip: usize, blocks: &StripBlocks<'_>, bands: &[Band<'_>]) {
         let bytes = PACKED * self.directions;
-        for tile in 0..blocks.wanted.len() {
+        for tile in 0..blocks.tiles() {
             let start = tile * TILE;
             let wanted = blocks.wanted(start, TILE);
             if wanted == 0 {

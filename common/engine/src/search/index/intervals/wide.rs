@@ -4,7 +4,7 @@
 //! hold what lies between, too; so where they are wide the bins are noted one by one, for
 //! the sets that are made of the intervals. Searches do not need that any more.
 
-use super::build::StripBlocks;
+use super::strip_blocks::StripBlocks;
 use crate::program::NO_RANGE;
 use crate::search::index::bits;
 use crate::search::index::steps::BinSteps;

@@ -1,0 +1,47 @@
+//! A set of maps that came and can be used.
+
+use engine::space;
+use messages::{MapSet, topic};
+use transport::Sample;
+
+use crate::preparation::{Job, Key};
+use crate::{AccumulatorError, Subject};
+
+/// A set of maps, which was checked when it came.
+pub(super) struct Set {
+    sample: Sample<topic::Maps>,
+    /// Of its maps, in order.
+    pub(super) keys: Vec<Key>,
+}
+
+impl Set {
+    /// Takes a set that came.
+    ///
+    /// # Errors
+    /// If it is none, or a map has impossible rules.
+    pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, (Subject, AccumulatorError)> {
+        let set = MapSet::read(sample.header(), sample.items());
+        let set = set.map_err(|error| (Subject::Set(sample.header().set_id), error.into()))?;
+        let maps = set.maps.iter();
+        let keys =
+            maps.map(|(map, _)| Key::in_set(map).map_err(|error| (Subject::map(map), error)));
+        let keys = keys.collect::<Result<_, _>>()?;
+        Ok(Set { sample, keys })
+    }
+
+    /// What to do to search it.
+    ///
+    /// # Errors
+    /// None, of a set that was read.
+    pub(super) fn jobs(&self) -> Result<Vec<Job>, (Subject, AccumulatorError)> {
+        let header = self.sample.header();
+        let set = MapSet::split(header, self.sample.items());
+        let set = set.map_err(|error| (Subject::Set(header.set_id), error.into()))?;
+        let reach_m = space::reach_m(set.maps.iter().map(|(map, _)| map));
+        let maps = set.maps.iter();
+        let jobs = maps.map(|(map, cells)| {
+            Job::in_set(map, cells, reach_m).map_err(|error| (Subject::map(map), error))
+        });
+        jobs.collect()
+    }
+}

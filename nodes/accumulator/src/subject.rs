@@ -1,0 +1,62 @@
+//! What a message to people is about: a map or a set of maps.
+
+use std::fmt;
+
+use messages::{MapHeader, MapName};
+
+/// A map, by its name where it has one, or a set of maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// A map.
+    Map {
+        /// Its id.
+        map_id: u64,
+        /// Empty of a map that is served alone.
+        name: MapName,
+    },
+    /// All maps of a set, by its id.
+    Set(u64),
+}
+
+impl Subject {
+    /// The map of a message.
+    #[must_use]
+    pub fn map(header: &MapHeader) -> Self {
+        Subject::Map {
+            map_id: header.map_id,
+            name: header.name,
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Subject::Set(set_id) => write!(f, "set of maps {set_id:016x}"),
+            Subject::Map { map_id, name } => match name.as_str() {
+                "" => write!(f, "map {map_id:016x}"),
+                name => write!(f, "map {name} ({map_id:016x})"),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_of_a_set_is_called_by_its_name() {
+        let map = |name| {
+            let header = MapHeader {
+                map_id: 0x1f,
+                name: MapName::new(name),
+                ..MapHeader::default()
+            };
+            Subject::map(&header).to_string()
+        };
+        assert_eq!(map("ground"), "map ground (000000000000001f)");
+        assert_eq!(map(""), "map 000000000000001f");
+        assert_eq!(Subject::Set(1).to_string(), "set of maps 0000000000000001");
+    }
+}
