@@ -44,6 +44,14 @@ fn transition(at: [Pose; 2], size_m: [f64; 2]) -> Transition {
     }
 }
 
+/// The straight walls of these floors are no drawing's.
+fn measured() -> FitConfig {
+    FitConfig {
+        drawn_doubt: 0.0,
+        ..FitConfig::default()
+    }
+}
+
 /// The maps of a set, by their numbers.
 struct Floors(Vec<Building>);
 
@@ -65,7 +73,7 @@ impl Floors {
 
     /// Gives a tracker a scan.
     fn see(&self, tracker: &mut Tracker, ranges: &[f32], moved: Option<Pose>) {
-        let (ends, fit) = (self.0[0].ends_of(ranges), FitConfig::default());
+        let (ends, fit) = (self.0[0].ends_of(ranges), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
         let need = tracker.begin(&seen, 1, moved);
         let found = (need == Need::ThisScan).then(|| {
@@ -81,7 +89,7 @@ impl Floors {
 
     /// Starts a tracker at a pose of the first floor that is believed.
     fn start_at(&self, tracker: &mut Tracker, pose: Pose) {
-        let (ends, fit) = (self.0[0].ends(pose), FitConfig::default());
+        let (ends, fit) = (self.0[0].ends(pose), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
         let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
         tracker.start_at(&seen, (0, pose), covariance);
