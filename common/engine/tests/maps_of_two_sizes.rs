@@ -11,7 +11,6 @@ use engine::locator::{Locator, LocatorConfig, OccupancyView};
 use engine::map_set::{MapSet, Workspace};
 use engine::scan::Scan;
 use geometry::Pose;
-use messages::Verdict;
 
 const CELL_M: f64 = 0.1;
 
@@ -114,7 +113,6 @@ fn what_a_closet_is_too_small_for_speaks_against_it() {
                 best.map_from_laser.is_within(pose, 0.15, 0.03),
                 "{best:?} {pose:?}"
             );
-            assert_eq!(found.places.verdict, Verdict::Unique);
         }
     }
 }
