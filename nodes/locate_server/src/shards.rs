@@ -244,10 +244,8 @@ mod tests {
         let config = PeakConfig::default();
         let part = |(number, (lead, beside)): (u16, _)| {
             let shard = Shard { number, of: 2 };
-            let part = Part {
-                beside,
-                ..part_of(shard, lead)
-            };
+            let mut part = part_of(shard, lead);
+            part.beside = beside;
             let found = part.found(shard, config.score).unwrap();
             (part, found)
         };
