@@ -4,6 +4,11 @@ use std::fmt;
 
 use messages::{MapHeader, MapName};
 
+use crate::AccumulatorError;
+
+/// What was refused, and why. The error is large, and rare.
+pub(crate) type Refused = (Subject, Box<AccumulatorError>);
+
 /// A map, by its name where it has one, or a set of maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
@@ -26,6 +31,12 @@ impl Subject {
             map_id: header.map_id,
             name: header.name,
         }
+    }
+
+    /// That it is refused for an error.
+    #[must_use]
+    pub(crate) fn refused(self, error: impl Into<AccumulatorError>) -> Refused {
+        (self, Box::new(error.into()))
     }
 }
 

@@ -215,11 +215,10 @@ mod tests {
             parts in vec((0u16..=100, 0.0..0.3f64, vec((0.0..1.0f64, 0u16..=100), 0..4)), 1..4),
             by_votes: bool,
         ) {
-            let part = |(map, (lead, needed, mut places)): (u32, (u16, f64, Vec<(f64, u16)>))| {
+            let parts: Vec<Found> = (0..).zip(parts).map(|(map, (lead, needed, mut places))| {
                 places.sort_by(|a, b| b.0.total_cmp(&a.0));
                 found(map, lead, needed, &places)
-            };
-            let parts: Vec<Found> = (0..).zip(parts).map(part).collect();
+            }).collect();
             let score = if by_votes { Score::Votes } else { Score::Fit };
             let config = PeakConfig { score, ..PeakConfig::default() };
             let merged = merge(&parts, &config);

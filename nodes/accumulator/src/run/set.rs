@@ -5,7 +5,7 @@ use messages::{MapSet, topic};
 use transport::Sample;
 
 use crate::preparation::{Job, Key};
-use crate::{AccumulatorError, Subject};
+use crate::subject::{Refused, Subject};
 
 /// A set of maps, which was checked when it came.
 pub(super) struct Set {
@@ -19,12 +19,12 @@ impl Set {
     ///
     /// # Errors
     /// If it is none, or a map has impossible rules.
-    pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, (Subject, AccumulatorError)> {
+    pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, Refused> {
         let set = MapSet::read(sample.header(), sample.items());
-        let set = set.map_err(|error| (Subject::Set(sample.header().set_id), error.into()))?;
+        let set = set.map_err(|error| Subject::Set(sample.header().set_id).refused(error))?;
         let maps = set.maps.iter();
         let keys =
-            maps.map(|(map, _)| Key::in_set(map).map_err(|error| (Subject::map(map), error)));
+            maps.map(|(map, _)| Key::in_set(map).map_err(|error| Subject::map(map).refused(error)));
         let keys = keys.collect::<Result<_, _>>()?;
         Ok(Set { sample, keys })
     }
@@ -33,14 +33,14 @@ impl Set {
     ///
     /// # Errors
     /// None, of a set that was read.
-    pub(super) fn jobs(&self) -> Result<Vec<Job>, (Subject, AccumulatorError)> {
+    pub(super) fn jobs(&self) -> Result<Vec<Job>, Refused> {
         let header = self.sample.header();
         let set = MapSet::split(header, self.sample.items());
-        let set = set.map_err(|error| (Subject::Set(header.set_id), error.into()))?;
+        let set = set.map_err(|error| Subject::Set(header.set_id).refused(error))?;
         let reach_m = space::reach_m(set.maps.iter().map(|(map, _)| map));
         let maps = set.maps.iter();
         let jobs = maps.map(|(map, cells)| {
-            Job::in_set(map, cells, reach_m).map_err(|error| (Subject::map(map), error))
+            Job::in_set(map, cells, reach_m).map_err(|error| Subject::map(map).refused(error))
         });
         jobs.collect()
     }

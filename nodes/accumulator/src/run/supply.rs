@@ -13,7 +13,8 @@ use super::inputs::Inputs;
 use super::set::Set;
 use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
-use crate::{AccumulatorError, Config, Subject};
+use crate::subject::{Refused, Subject};
+use crate::{AccumulatorError, Config};
 
 /// What has come, what is wanted of it, and what is being prepared: one map, or all maps of a
 /// set, at a time, always for what came last.
@@ -51,9 +52,6 @@ struct UnderWay {
 
 /// All maps that were ordered and have poses, or the one that cannot be used.
 type Prepared = Result<Vec<(PreparedMap, Kept)>, Refused>;
-
-/// What cannot be used, and why.
-type Refused = (Subject, AccumulatorError);
 
 impl Supply {
     pub(super) fn new(config: &Config) -> Self {
@@ -116,7 +114,7 @@ impl Supply {
                     self.map = Some(map);
                     self.set = None;
                 }
-                Err(error) => refuse(&(Subject::map(map.header()), error.into()), health)?,
+                Err(error) => refuse(&Subject::map(map.header()).refused(error), health)?,
             }
         }
         Ok(came > 0)
@@ -169,7 +167,7 @@ impl Supply {
             return Ok(None);
         };
         let key = Key::of(map.header(), (boundary.header(), boundary.items()));
-        let key = key.map_err(|error| (Subject::map(map.header()), error))?;
+        let key = key.map_err(|error| Subject::map(map.header()).refused(error))?;
         Ok(key.map(|key| vec![key]))
     }
 
@@ -183,9 +181,9 @@ impl Supply {
         };
         let (boundary, cells) = (boundary.header(), boundary.items());
         let job = Job::new(map.header(), map.items(), boundary, cells);
-        Ok(vec![
-            job.map_err(|error| (Subject::map(map.header()), error))?,
-        ])
+        Ok(vec![job.map_err(|error| {
+            Subject::map(map.header()).refused(error)
+        })?])
     }
 
     fn finish(
@@ -243,7 +241,7 @@ impl Supply {
         if !refused.1.leaves_no_pose() || order.region == *before {
             return refuse(refused, health);
         }
-        refuse_region(&with_causes(&refused.1), health)?;
+        refuse_region(&with_causes(&*refused.1), health)?;
         if self.config.limits.region == order.region {
             self.config.limits.region = before.clone();
             self.consider(health)?;
@@ -321,9 +319,9 @@ fn prepare(
             Ok(prepared) => all.push(prepared),
             Err(error) if error.leaves_no_pose() => {
                 tracing::info!("{subject} is not searched: {error}");
-                left_out = Some((subject, error));
+                left_out = Some(subject.refused(error));
             }
-            Err(error) => return Err((subject, error)),
+            Err(error) => return Err(subject.refused(error)),
         }
     }
     match left_out {
@@ -342,7 +340,7 @@ fn refuse_region(problem: &str, health: &mut Health) -> Result<(), TransportErro
 
 /// Scans are answered as before.
 fn refuse((subject, error): &Refused, health: &mut Health) -> Result<(), TransportError> {
-    let problem = format!("{subject} rejected: {}", with_causes(error));
+    let problem = format!("{subject} rejected: {}", with_causes(&**error));
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;
