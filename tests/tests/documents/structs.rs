@@ -223,7 +223,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`region`", &[("common/dashboard/src/view.rs", "Region")]),
     (
         "`abilities`",
-        &[("common/dashboard/src/robot.rs", "Abilities")],
+        &[("common/dashboard/src/view.rs", "Abilities")],
     ),
     ("`field`", &[("common/dashboard/src/view/field.rs", "Head")]),
 ];

@@ -236,7 +236,9 @@ fn a_server_that_is_asked_again_is_told_again_what_the_others_have() {
     let set = list();
     let server = shard("tells", &set, "1/2");
     // One that says that it has the other shard, and has none.
-    let other = session(&[], &[server.endpoint()]);
+    let isolated = Isolated::new("standin");
+    let there = endpoint(&isolated);
+    let other = session(std::slice::from_ref(&there), &[]);
     let (said, told) = unbounded();
     let _leads = other
         .declare_subscriber("backcast/locate/malaga.2-of-2/lead")
@@ -247,7 +249,7 @@ fn a_server_that_is_asked_again_is_told_again_what_the_others_have() {
     let me = other.zid();
     let token = format!("backcast/locate/malaga.2-of-2/{me}/ff/ff/1");
     let _token = other.liveliness().declare_token(token).wait().unwrap();
-    let session = caller(&[&server]);
+    let session = session(&[], &[server.endpoint(), there]);
     let scan = &scans_of("malaga_courtyard", 40)[0];
     std::thread::scope(|scope| {
         let asking = scope.spawn(|| ask_all(&session, scan, TIMEOUT));
