@@ -170,13 +170,28 @@ impl Live {
             kill(pid, Signal::SIGSTOP).unwrap();
         }
         kill(self.launcher(), Signal::SIGKILL).unwrap();
-        for (_, pid) in nodes {
-            kill(pid, Signal::SIGKILL).unwrap();
+        for (_, pid) in &nodes {
+            kill(*pid, Signal::SIGKILL).unwrap();
         }
-        // Their ends of the pipes are closed when they have ended.
         let _ = self.log.take().unwrap().join().unwrap();
         self.launcher.wait().unwrap();
+        // They are no children of ours, and hold their locks until all of their threads have ended.
+        while !nodes.iter().all(|(_, pid)| has_ended(*pid)) {
+            std::thread::yield_now();
+        }
     }
+}
+
+/// Whether no thread of a process runs any more: they are gone, or wait to be reaped.
+fn has_ended(pid: Pid) -> bool {
+    let Ok(threads) = std::fs::read_dir(format!("/proc/{pid}/task")) else {
+        return true;
+    };
+    threads.flatten().all(|thread| {
+        // The state follows the name, which is in brackets.
+        let stat = std::fs::read_to_string(thread.path().join("stat"));
+        stat.map_or(true, |stat| stat.contains(") Z ") || stat.contains(") X "))
+    })
 }
 
 impl Drop for Live {
