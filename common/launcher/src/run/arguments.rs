@@ -112,15 +112,11 @@ pub fn add_to_list(node: &mut Node, option: &str, word: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::testing::parsed;
 
     fn node(args: &str) -> Node {
         let text = format!("nodes:\n  - {{id: r, path: bin/replayer, args: \"{args}\"}}\n");
-        let topics = dataflow::Topics {
-            names: &[],
-            shared: &[],
-            several: &[],
-        };
-        dataflow::parse(&text, &topics).unwrap().nodes.remove(0)
+        parsed(&text).nodes.remove(0)
     }
 
     #[test]
@@ -141,12 +137,7 @@ mod tests {
     fn a_page_names_its_robot_as_the_graph_unless_it_has_a_name() {
         let text = "nodes: [{id: p, path: bin/monitor}, {id: q, path: monitor, args: --robot r7},
             {id: a, path: bin/accumulator}]";
-        let topics = dataflow::Topics {
-            names: &[],
-            shared: &[],
-            several: &[],
-        };
-        let mut dataflow = dataflow::parse(text, &topics).unwrap();
+        let mut dataflow = parsed(text);
         name_robot(&mut dataflow, "hall");
         let args: Vec<_> = dataflow.nodes.iter().map(|node| &node.args[..]).collect();
         assert_eq!(args[0], ["--robot=hall"]);

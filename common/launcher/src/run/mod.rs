@@ -26,6 +26,8 @@ pub mod replay;
 mod report;
 mod summary;
 pub mod supervision;
+#[cfg(test)]
+mod testing;
 pub mod tracker;
 mod tracking;
 mod watch;

@@ -112,21 +112,13 @@ fn argument(option: &str, value: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::testing::parsed;
 
     const GRAPH: &str = "nodes:
   - {id: r, path: bin/replayer, outputs: [scan], args: --wait-for a, build: cargo build --package replayer}
   - {id: a, path: bin/accumulator, build: cargo build --package replayer}
   - {id: o, path: bin/other, build: make}
 ";
-
-    fn graph(text: &str) -> Dataflow {
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
-        dataflow::parse(text, &topics).unwrap()
-    }
 
     fn options(record: &Path) -> RecordOptions {
         RecordOptions {
@@ -137,7 +129,7 @@ mod tests {
 
     #[test]
     fn the_recorder_joins_the_others_and_sources_wait_for_it() {
-        let mut dataflow = graph(GRAPH);
+        let mut dataflow = parsed(GRAPH);
         let folder = tempfile::TempDir::new().unwrap();
         let options = RecordOptions {
             split_time: Some("10m".to_owned()),
@@ -169,7 +161,7 @@ mod tests {
         let existing = folder.path().join("r.mcap");
         std::fs::write(&existing, "").unwrap();
         let refused = |options: &RecordOptions, text: &str| {
-            let mut dataflow = graph(text);
+            let mut dataflow = parsed(text);
             let outcome = add(options, &mut dataflow, Path::new("g.yaml"), folder.path());
             outcome.unwrap_err().to_string()
         };

@@ -87,15 +87,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn parsed(text: &str) -> Dataflow {
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
-        dataflow::parse(text, &topics).unwrap()
-    }
+    use crate::run::testing::parsed;
 
     #[test]
     fn a_laser_gives_way_to_a_replayer() {

@@ -192,6 +192,7 @@ pub fn is_over(nodes: impl Iterator<Item = (bool, bool)>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::testing::parsed;
 
     /// The restarts of a node, and a clock.
     struct Course {
@@ -334,16 +335,11 @@ mod tests {
 
     #[test]
     fn sources_are_recognized_by_what_they_send() {
-        let topics = dataflow::Topics {
-            names: messages::topic::NAMES,
-            shared: &[],
-            several: &[],
-        };
         let text = "nodes:
   - {id: a, path: x, outputs: [odometry]}
   - {id: b, path: x, outputs: [map]}
 ";
-        let nodes = dataflow::parse(text, &topics).unwrap().nodes;
+        let nodes = parsed(text).nodes;
         assert!(is_source(&nodes[0]));
         assert!(!is_source(&nodes[1]));
     }

@@ -39,13 +39,13 @@ fn what_names_no_image_is_no_map_of_a_folder() {
         ("params.yaml", "/**:\n  ros__parameters: {image: 1}\n"),
         ("play.yml", "- hosts: all\n"),
     ];
-    let told = |folder: &tempfile::TempDir| {
+    let noted = |folder: &tempfile::TempDir| {
         let mut lines = Vec::new();
         let set = set_of_noting(folder.path(), |line| lines.push(line.to_owned()));
         lines.sort();
         (set, lines)
     };
-    let (set, lines) = told(&folder(&others));
+    let (set, lines) = noted(&folder(&others));
     let error = set.unwrap_err().to_string();
     assert!(error.contains("there are no maps: allowed are"), "{error}");
     assert!(error.contains("of 3 YAML files, as "), "{error}");
@@ -59,7 +59,7 @@ fn what_names_no_image_is_no_map_of_a_folder() {
         ("d.yaml", "imag"),
         ("e/map.yaml", "resolution: 1\n"),
     ];
-    let (set, lines) = told(&folder(&[&others[..], &maps[..]].concat()));
+    let (set, lines) = noted(&folder(&[&others[..], &maps[..]].concat()));
     assert_eq!(names(&set.unwrap().maps), ["a", "b", "c", "d", "e"]);
     assert_eq!(lines.len(), 3);
     let said = "dataflow.yaml has no key image: it is taken for no map and left out";

@@ -10,7 +10,7 @@ use messages::{
     HealthHeader, MapHeader, MapName, MapSet, NodeState, Pose2, Stamp, Vote, VotesHeader, topic,
 };
 use transport::Publisher;
-use transport::testing::{Isolated, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for_health};
 
 use crate::node::{CHANGED, request};
 use crate::world::{FRAME, ROOM, World, id, map_header, occupancy, ranges};
@@ -76,14 +76,20 @@ fn is_of_building(votes: &VotesHeader, poses: &[Vote]) -> bool {
     votes.maps == 2 && votes.map_id == floor_header(BUILDING[0]).map_id && best == Some((12, 6))
 }
 
+/// The node, ready with the building that it was sent.
+fn start(world: &World) -> (Publisher<topic::Maps>, NodeProcess) {
+    let sets = world.graph.publisher().unwrap();
+    publish_set(&sets, &BUILDING, |_| {});
+    let node = world.start(&[]);
+    world.wait_until(NodeState::Ready);
+    (sets, node)
+}
+
 #[test]
 fn a_map_that_is_served_alone_ends_the_set() {
     let isolated = Isolated::new("alone");
     let world = World::new(&isolated);
-    let sets = world.graph.publisher::<topic::Maps>().unwrap();
-    publish_set(&sets, &BUILDING, |_| {});
-    let node = world.start(&[]);
-    world.wait_until(NodeState::Ready);
+    let (sets, node) = start(&world);
     ask_until(&world, is_of_building);
     // It is the map of the set that is shown.
     world.publish_map(&ROOM);
@@ -108,11 +114,8 @@ fn a_map_that_is_served_alone_ends_the_set() {
 fn a_region_on_one_map_leaves_out_the_others() {
     let isolated = Isolated::new("one");
     let world = World::new(&isolated);
-    let sets = world.graph.publisher::<topic::Maps>().unwrap();
     let regions = world.graph.publisher::<topic::Region>().unwrap();
-    publish_set(&sets, &BUILDING, |_| {});
-    let node = world.start(&[]);
-    world.wait_until(NodeState::Ready);
+    let (sets, node) = start(&world);
     request(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
     let ground = floor_header(BUILDING[0]).map_id;
     let is_within = |votes: &VotesHeader, poses: &[Vote]| {
@@ -146,11 +149,8 @@ fn a_region_on_one_map_leaves_out_the_others() {
 fn a_set_that_is_refused_leaves_the_one_before_in_use() {
     let isolated = Isolated::new("rule");
     let world = World::new(&isolated);
-    let sets = world.graph.publisher::<topic::Maps>().unwrap();
     let regions = world.graph.publisher::<topic::Region>().unwrap();
-    publish_set(&sets, &BUILDING, |_| {});
-    let node = world.start(&[]);
-    world.wait_until(NodeState::Ready);
+    let (sets, node) = start(&world);
     publish_set(&sets, &BUILDING, |map| {
         map.occupied_from = match map.name.as_str() {
             "first" => 0,

@@ -218,8 +218,8 @@ fn a_shard_leaves_out_what_has_too_few_votes_beside_what_it_is_told() {
     assert!(low(&alone) > 0 && alone.beside != (1, 1), "{alone:?}");
     // A pose with all votes that are possible, of another shard. Where a question has the number
     // of another one, it is beside what is known of that.
-    let told = postcard::to_allocvec(&((7u64, 2u64), (1u16, 1u16))).unwrap();
-    tell(told);
+    let lead = postcard::to_allocvec(&((7u64, 2u64), (1u16, 1u16))).unwrap();
+    tell(lead);
     for _ in 0..2 {
         let part = ask_part(&session, (7, 2), scan);
         assert_eq!((low(&part), part.beside), (0, (1, 1)));
@@ -239,7 +239,7 @@ fn a_server_that_is_asked_again_is_told_again_what_the_others_have() {
     let isolated = Isolated::new("standin");
     let there = endpoint(&isolated);
     let other = session(std::slice::from_ref(&there), &[]);
-    let (said, told) = unbounded();
+    let (said, leads) = unbounded();
     let _leads = other
         .declare_subscriber("backcast/locate/malaga.2-of-2/lead")
         .callback(move |sample| said.send(sample.payload().to_bytes().into_owned()).unwrap())
@@ -254,10 +254,10 @@ fn a_server_that_is_asked_again_is_told_again_what_the_others_have() {
     std::thread::scope(|scope| {
         let asking = scope.spawn(|| ask_all(&session, scan, TIMEOUT));
         let first = kept.recv_timeout(TIMEOUT).unwrap();
-        let lead = told.recv_timeout(TIMEOUT).expect("the first shard has it");
+        let lead = leads.recv_timeout(TIMEOUT).expect("the first shard has it");
         // Another server would take over.
         drop(first);
-        let again = told.recv_timeout(TIMEOUT).expect("it is told again");
+        let again = leads.recv_timeout(TIMEOUT).expect("it is sent again");
         assert_eq!(again, lead);
         // All that are under way.
         while !asking.is_finished() {

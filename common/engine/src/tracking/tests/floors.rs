@@ -134,20 +134,25 @@ fn into_the_lift(floors: &Floors, tracker: &mut Tracker) -> Pose {
     pose
 }
 
-#[test]
-fn a_robot_that_takes_the_lift_is_found_on_the_other_floor() {
-    let floors = Floors::of(&[&UNLIKE, &ABOVE]);
-    let (mut tracker, pose) = in_the_lift(&floors);
+/// The robot goes up in the lift, in which it is here, and drives out: it is followed, and found.
+fn goes_up(floors: &Floors, tracker: &mut Tracker, pose: Pose) {
     // It stands while it goes up.
-    floors.step(&mut tracker, (1, pose), Some(Pose::IDENTITY));
-    let (end, states) = floors.drive(&mut tracker, (1, pose), (4, 6));
+    floors.step(tracker, (1, pose), Some(Pose::IDENTITY));
+    let (end, states) = floors.drive(tracker, (1, pose), (4, 6));
     assert!(!states.contains(&(TrackState::Unique, 0)), "{states:?}");
     assert!(
         states.iter().all(|(state, _)| state.is_believed()),
         "{states:?}"
     );
     assert_eq!(states.last(), Some(&(TrackState::Unique, 1)), "{states:?}");
-    assert!(is_at(&tracker, end), "{:?}", tracker.report());
+    assert!(is_at(tracker, end), "{:?}", tracker.report());
+}
+
+#[test]
+fn a_robot_that_takes_the_lift_is_found_on_the_other_floor() {
+    let floors = Floors::of(&[&UNLIKE, &ABOVE]);
+    let (mut tracker, pose) = in_the_lift(&floors);
+    goes_up(&floors, &mut tracker, pose);
 }
 
 #[test]
@@ -200,15 +205,7 @@ fn the_maps_of_a_transition_may_be_turned_and_shifted() {
     let lift = transition([LIFT, on_turned(LIFT, &ABOVE)], [SIDE_M; 2]);
     let mut tracker = Tracker::new(TrackingConfig::default()).with_transitions(vec![lift]);
     let pose = on_turned(into_the_lift(&floors, &mut tracker), &ABOVE);
-    floors.step(&mut tracker, (1, pose), Some(Pose::IDENTITY));
-    let (end, states) = floors.drive(&mut tracker, (1, pose), (4, 6));
-    assert!(!states.contains(&(TrackState::Unique, 0)), "{states:?}");
-    assert!(
-        states.iter().all(|(state, _)| state.is_believed()),
-        "{states:?}"
-    );
-    assert_eq!(states.last(), Some(&(TrackState::Unique, 1)), "{states:?}");
-    assert!(is_at(&tracker, end), "{:?}", tracker.report());
+    goes_up(&floors, &mut tracker, pose);
 }
 
 #[test]

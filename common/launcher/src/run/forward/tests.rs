@@ -2,6 +2,7 @@ use command_line::CommandError;
 
 use super::*;
 use crate::LauncherError;
+use crate::run::testing::parsed;
 
 fn graph(replayer_args: &str, inputs: &str) -> Dataflow {
     let text = format!(
@@ -10,12 +11,7 @@ fn graph(replayer_args: &str, inputs: &str) -> Dataflow {
   - {{id: a, path: bin/accumulator, args: --beams 9, inputs: {{{inputs}}}}}
 "
     );
-    let topics = dataflow::Topics {
-        names: messages::topic::NAMES,
-        shared: &[],
-        several: &[],
-    };
-    dataflow::parse(&text, &topics).unwrap()
+    parsed(&text)
 }
 
 fn applied(options: &Options, mut dataflow: Dataflow) -> Result<Vec<Vec<String>>, LauncherError> {
@@ -143,15 +139,6 @@ fn an_option_without_its_node_is_refused() {
     let said = error.to_string();
     assert!(said.contains("--loop is for the replayer"), "{said}");
     assert!(said.contains("its executables are accumulator"), "{said}");
-}
-
-fn parsed(text: &str) -> Dataflow {
-    let topics = dataflow::Topics {
-        names: messages::topic::NAMES,
-        shared: &[],
-        several: &[],
-    };
-    dataflow::parse(text, &topics).unwrap()
 }
 
 #[test]
