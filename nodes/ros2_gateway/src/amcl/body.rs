@@ -130,20 +130,22 @@ impl<'a> Body<'a> {
         if !parameters.is_on("initialize_at_saved_pose") {
             return None;
         }
-        let file = parameters.text("saved_pose_filepath");
-        match saved_pose::load(file, &self.map_frame) {
+        let path = parameters.saved_pose_file()?;
+        let file = path.display();
+        match saved_pose::load(path, &self.map_frame) {
             Ok(Some(pose)) => {
                 tracing::info!(
-                    file,
+                    %file,
                     "the saved pose is tried first, and a scan must confirm it"
                 );
                 Some(hint::of_parameters(pose))
             }
             Ok(None) => {
-                tracing::info!(file, "there is no saved pose: the whole map is searched");
+                tracing::info!(%file, "there is no saved pose: the whole map is searched");
                 None
             }
             Err(error) => {
+                let error = transport::with_causes(&error);
                 tracing::warn!("{error}; the whole map is searched");
                 None
             }

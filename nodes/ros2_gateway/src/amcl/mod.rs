@@ -49,6 +49,7 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
             tracing::warn!("{remark}");
         }
     }
+    check_saved_pose_file(&mut parameters)?;
     let config = applied(config, &parameters);
     let topics = Topics::of(&config)?;
     let domain = config.domain()?;
@@ -100,6 +101,25 @@ fn load(parameters: &mut Parameters, path: &Path, node: &str) -> Result<Vec<Stri
         reason: error.to_string(),
     })?;
     params_file::load(parameters, &text, &file, node)
+}
+
+/// Refuses a file of the saved pose that another user decides about. Where nobody has named
+/// a file, the pose is not saved then: another user who takes AMCL's default in `/tmp` does
+/// not keep the node from starting.
+fn check_saved_pose_file(parameters: &mut Parameters) -> Result<(), GatewayError> {
+    let checked = parameters.saved_pose_file().map(saved_pose::check);
+    match checked {
+        Some(Err(error)) if parameters.has_default_file() => {
+            parameters.clear_saved_pose_file();
+            tracing::warn!(
+                "{error}: the pose is not saved; {} names another file",
+                parameters::FILE
+            );
+            Ok(())
+        }
+        Some(checked) => checked,
+        None => Ok(()),
+    }
 }
 
 /// The options with what the parameters say. What was given as an option counts before

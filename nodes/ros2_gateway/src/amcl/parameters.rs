@@ -5,6 +5,7 @@
 mod declared;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use geometry::Pose;
 use ros::rcl_interfaces::{
@@ -13,6 +14,7 @@ use ros::rcl_interfaces::{
 };
 
 use crate::GatewayError;
+pub(crate) use declared::FILE;
 use declared::{ALL, Counts, Declared};
 
 /// What a parameter holds.
@@ -195,6 +197,23 @@ impl Parameters {
             Some(Value::Text(text)) => text,
             _ => "",
         }
+    }
+
+    /// The file of the saved pose; `None` where the pose is not saved.
+    pub(super) fn saved_pose_file(&self) -> Option<&Path> {
+        let file = self.text(FILE);
+        (!file.is_empty()).then(|| Path::new(file))
+    }
+
+    /// Whether the file of the saved pose is the default.
+    pub(super) fn has_default_file(&self) -> bool {
+        let default = declared(FILE).map(|declared| Value::from(declared.default));
+        self.0.get(FILE) == default.as_ref()
+    }
+
+    /// Does not save the pose.
+    pub(super) fn clear_saved_pose_file(&mut self) {
+        self.0.insert(FILE, Value::Text(String::new()));
     }
 
     pub(super) fn is_on(&self, name: &str) -> bool {

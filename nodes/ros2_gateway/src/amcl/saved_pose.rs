@@ -64,12 +64,23 @@ impl SavedPose {
     }
 }
 
-/// Writes the file in place of the one before: at once, so that it is whole at any time.
+/// Makes sure that the file can be named in the place where it is to be: by the parameter
+/// alone, and not by another user who puts a link there.
+///
+/// # Errors
+/// Names the folder, link or file that is not trusted.
+pub(super) fn check(file: &Path) -> Result<(), GatewayError> {
+    trusted_files::check_place(file).map_err(|error| refused(file, &transport::with_causes(&error)))
+}
+
+/// Replaces the file at once, so that it is whole at any time; only its owner can read it.
+/// A link in its place is replaced and not followed.
 pub(super) fn save(
-    file: &str,
+    file: &Path,
     map_frame: &str,
     (pose, measured_ns): (Pose, i64),
 ) -> Result<(), GatewayError> {
+    check(file)?;
     let Pose { x, y, yaw } = pose;
     let Time { sec, nanosec } = Time::from_ns(measured_ns).unwrap_or_default();
     let frame = serde_json::Value::from(map_frame);
@@ -77,7 +88,7 @@ pub(super) fn save(
         "timestamp: {sec}.{nanosec:09}\nframe_id: {frame}\nx: {x:?}\ny: {y:?}\nz: 0.0\n\
          yaw: {yaw:?}\n"
     );
-    let folder = match Path::new(file).parent() {
+    let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
@@ -87,47 +98,39 @@ pub(super) fn save(
         written.persist(file)?;
         Ok(())
     };
-    write().map_err(|error| refused(file, error.to_string()))
+    write().map_err(|error| refused(file, &error))
 }
 
 /// The pose in the file; `None` where there is no file.
 ///
 /// # Errors
-/// It cannot be read, holds no pose, or one in another frame than the map's.
-pub(super) fn load(file: &str, map_frame: &str) -> Result<Option<Pose>, GatewayError> {
-    let refuse = |reason: String| Err(refused(file, reason));
-    let text = match read(file) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return refuse(error.to_string()),
+/// It is not trusted, cannot be read, holds no pose, or one in another frame than the map's.
+pub(super) fn load(file: &Path, map_frame: &str) -> Result<Option<Pose>, GatewayError> {
+    let refuse = |reason: &dyn std::fmt::Display| Err(refused(file, reason));
+    let text = match trusted_files::read(file, MAX_BYTES) {
+        Ok(Some(text)) => text,
+        Ok(None) => return Ok(None),
+        Err(error) => return refuse(&transport::with_causes(&error)),
     };
     let kept: Kept = match serde_saphyr::from_str(&text) {
         Ok(kept) => kept,
-        Err(error) => return refuse(error.to_string()),
+        Err(error) => return refuse(&error),
     };
     let pose = Pose::new(kept.x, kept.y, kept.yaw);
     let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
     match kept.frame_id {
         Some(frame) if bare(&frame) != bare(map_frame) => {
-            refuse(format!("its frame is {frame:?}: allowed is {map_frame:?}"))
+            refuse(&format!("its frame is {frame:?}: allowed is {map_frame:?}"))
         }
-        _ if !pose.is_finite() => refuse(format!("its pose is {pose:?}: allowed are numbers")),
+        _ if !pose.is_finite() => refuse(&format!("its pose is {pose:?}: allowed are numbers")),
         _ => Ok(Some(pose)),
     }
 }
 
-fn read(file: &str) -> std::io::Result<String> {
-    use std::io::Read;
-    let mut text = String::new();
-    let opened = std::fs::File::open(file)?;
-    opened.take(MAX_BYTES).read_to_string(&mut text)?;
-    Ok(text)
-}
-
-fn refused(file: &str, reason: String) -> GatewayError {
+fn refused(file: &Path, reason: &dyn std::fmt::Display) -> GatewayError {
     GatewayError::SavedPose {
-        file: file.to_owned(),
-        reason,
+        file: file.display().to_string(),
+        reason: reason.to_string(),
     }
 }
 
@@ -177,7 +180,7 @@ mod tests {
     fn a_pose_comes_back_from_its_file_and_so_do_those_of_amcl() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("pose");
-        let file = path.to_str().unwrap();
+        let file = &*path;
         assert_eq!(load(file, "map").unwrap(), None, "there is no file");
         let pose = Pose::new(1.25, -2.5, 0.1 + 0.2);
         for _ in 0..2 {
@@ -205,8 +208,25 @@ mod tests {
         ] {
             std::fs::write(file, wrong).unwrap();
             let error = load(file, "map").unwrap_err().to_string();
-            assert!(error.contains(reason) && error.contains(file), "{error}");
+            assert!(error.contains(reason) && error.contains("pose"), "{error}");
         }
-        assert!(save("/nowhere/pose", "map", (pose, 0)).is_err());
+        assert!(save(Path::new("/nowhere/pose"), "map", (pose, 0)).is_err());
+    }
+
+    #[test]
+    fn what_stands_in_the_place_of_the_file_is_neither_read_nor_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, private) = (folder.path().join("pose"), folder.path().join("private"));
+        std::fs::write(&private, "x: 3.0\ny: 4.0\nyaw: 0.785\n").unwrap();
+        std::os::unix::fs::symlink(&private, &path).unwrap();
+        let pose = Pose::new(1.25, -2.5, 0.5);
+        assert!(save(&path, "map", (pose, 0)).is_err());
+        assert!(load(&path, "map").is_err());
+        assert!(std::fs::read_to_string(&private).unwrap().starts_with("x"));
+        std::fs::remove_file(&path).unwrap();
+        save(&path, "map", (pose, 0)).unwrap();
+        use std::os::unix::fs::PermissionsExt;
+        let mode = std::fs::metadata(&path).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
     }
 }

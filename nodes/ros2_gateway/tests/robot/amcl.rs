@@ -200,6 +200,24 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
         state: TrackState::Searching as u32,
         ..tracked(stamp(ms))
     };
+    // Who asks over the network names no file.
+    let private = folder.join("private");
+    std::fs::write(&private, "mine").unwrap();
+    let other = json!({ "name": "saved_pose_filepath",
+        "value": { "type": 4, "string_value": private.to_str().unwrap() } });
+    for service in ["set_parameters", "set_parameters_atomically"] {
+        let wanted = json!({ "parameters": [other] });
+        let answer = ask(robot, &format!("amcl/{service}"), &wanted);
+        let result = answer
+            .get("result")
+            .unwrap_or_else(|| &answer["results"][0]);
+        assert_eq!(result["successful"], false, "{answer}");
+        assert_ne!(result["reason"], "", "{answer}");
+    }
+    let names = json!({ "names": ["saved_pose_filepath"] });
+    let described = ask(robot, "amcl/describe_parameters", &names);
+    assert_eq!(described["descriptors"][0]["read_only"], true);
+
     // A tracker that has no pose needs it.
     send_pose(&poses, &searching(-100));
     let first = hint(graph, &hints);
@@ -253,7 +271,30 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
         text.starts_with("timestamp: 1700000000.200000000\nframe_id: \"map\"\n"),
         "{text}"
     );
+    assert_eq!(std::fs::read_to_string(&private).unwrap(), "mine");
     joined.stop();
+}
+
+/// A link that another user could have planted where the pose is to be saved ends the start.
+#[test]
+fn a_saved_pose_is_not_written_through_a_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let (private, link) = (folder.path().join("private"), folder.path().join("link"));
+    std::fs::write(&private, "mine").unwrap();
+    std::os::unix::fs::symlink(&private, &link).unwrap();
+    let file = format!("saved_pose_filepath: {}", link.display());
+    let file = parameters("ros-link.yaml", &[&file]);
+    let mut gateway = std::process::Command::new(env!("CARGO_BIN_EXE_ros2_gateway"));
+    gateway.args(["--as", "amcl", "--params-file"]).arg(file);
+    let isolated = Isolated::new("ros-link");
+    let output = gateway
+        .env("BACKCAST_GRAPH", isolated.name().as_str())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success(), "{said}");
+    assert!(said.contains(link.to_str().unwrap()), "{said}");
+    assert_eq!(std::fs::read_to_string(&private).unwrap(), "mine");
 }
 
 #[test]

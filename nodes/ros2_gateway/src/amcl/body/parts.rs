@@ -189,9 +189,9 @@ fn save(
     map_frame: &str,
     pose: (geometry::Pose, i64),
 ) -> Result<(), GatewayError> {
-    match parameters.text("saved_pose_filepath") {
-        "" => Ok(()),
-        file => saved_pose::save(file, map_frame, pose),
+    match parameters.saved_pose_file() {
+        None => Ok(()),
+        Some(file) => saved_pose::save(file, map_frame, pose),
     }
 }
 

@@ -51,6 +51,9 @@ const MOTION: &str = "how odometry errs is learned from scans, not set";
 const SENSOR: &str = "how scans are judged is set at the nodes of the graph (--help of each)";
 const EVERY_SCAN: &str = "every scan counts";
 
+/// The file of the saved pose: who may set parameters over the network names no files.
+pub(crate) const FILE: &str = "saved_pose_filepath";
+
 /// All of them.
 pub(super) const ALL: &[Declared] = &[
     never("alpha1", Double(0.2), MOTION),
@@ -164,8 +167,8 @@ pub(super) const ALL: &[Declared] = &[
         ),
         FINITE,
     ),
-    always(
-        "saved_pose_filepath",
+    start(
+        FILE,
         Text("/tmp/amcl_saved_pose"),
         "the file of the saved pose; empty for none",
     ),

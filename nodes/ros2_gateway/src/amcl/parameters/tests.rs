@@ -99,3 +99,31 @@ fn what_is_not_there_has_no_type() {
     assert_eq!(described.floating_point_range[0].to_value, 10.0);
     assert!(!described.read_only && parameters.describe("scan_topic").read_only);
 }
+
+/// Names of files, frames and topics do not come over the network.
+#[test]
+fn no_text_that_counts_changes_while_the_node_runs() {
+    let mut parameters = Parameters::default();
+    let other: ParameterValue = (&Value::Text("/home/robot/private".into())).into();
+    let texts = ALL
+        .iter()
+        .filter(|declared| matches!(declared.default, declared::Plain::Text(_)));
+    let counting: Vec<_> = texts
+        .filter(|declared| declared.counts != Counts::Never)
+        .collect();
+    assert!(counting.iter().any(|declared| declared.name == FILE));
+    for declared in counting {
+        let refused = parameters.set(declared.name, &other);
+        assert!(
+            !refused.successful && refused.reason.contains(declared.name),
+            "{refused:?}"
+        );
+        let both = [
+            ("tf_broadcast", &(&Value::Bool(false)).into()),
+            (declared.name, &other),
+        ];
+        assert!(!parameters.set_all(both.into_iter()).successful);
+        assert!(parameters.describe(declared.name).read_only);
+    }
+    assert_eq!(parameters.0, Parameters::default().0);
+}
