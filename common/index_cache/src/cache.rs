@@ -1,7 +1,5 @@
 //! From a map to a localizer, by way of a folder of files.
 
-use std::fs::File;
-use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -132,10 +130,9 @@ impl IndexCache {
         if !folder::is_there(&self.folder)? {
             return Ok(None);
         }
-        let mut file = match File::open(&path) {
-            Ok(file) => file,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(failed("open", &path)(error)),
+        // The folder may have been open to others before, and is no proof.
+        let Some(mut file) = trusted_files::open(&path)? else {
+            return Ok(None);
         };
         let bytes = file.metadata().map_err(failed("look at", &path))?.len();
         let index = file::read(&mut file, bytes, key, preparation);
@@ -151,12 +148,16 @@ impl IndexCache {
 
 #[cfg(test)]
 mod tests {
-    use std::fs::{read, read_dir, remove_dir_all, write};
+    use std::fs::{Permissions, copy, read, read_dir, remove_dir_all, remove_file};
+    use std::fs::{set_permissions, write};
+    use std::os::unix::fs::{PermissionsExt, chown, symlink};
 
     use engine::grid::{CellRules, GridFrame};
     use engine::limits::LimitsConfig;
     use engine::localizer::{LocalizerConfig, Prior};
     use engine::search::{SECTIONS, SectionError};
+    use nix::sys::stat::Mode;
+    use nix::unistd::{geteuid, mkfifo};
 
     use super::*;
     use crate::testing::{FRAME, SIDES, occupancy, preparation, preparation_with};
@@ -213,6 +214,42 @@ mod tests {
             ));
             prepared.kept.unsaved.unwrap().save().unwrap();
             assert_eq!(read(&path).unwrap(), sound);
+        }
+    }
+
+    /// By another user while the folder was open to all, or by accident.
+    #[test]
+    fn what_was_planted_is_not_read_but_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("new"), LIMIT);
+        prepare_and_save(&cache, 1);
+        let path = cache.path(preparation(1).key().unwrap());
+        let other = folder.path().join("other");
+        copy(&path, &other).unwrap();
+        let plant: [&dyn Fn(); 4] = [
+            &|| set_permissions(&path, Permissions::from_mode(0o666)).unwrap(),
+            &|| symlink(&other, &path).unwrap(),
+            &|| mkfifo(&path, Mode::S_IRWXU).unwrap(),
+            // Others than root can give files to nobody else.
+            &|| match geteuid().is_root() {
+                true => _ = copy(&other, &path).map(|_| chown(&path, Some(65534), None).unwrap()),
+                false => symlink("/etc/hostname", &path).unwrap(),
+            },
+        ];
+        for (i, plant) in plant.iter().enumerate() {
+            if i > 0 {
+                remove_file(&path).unwrap();
+            }
+            plant();
+            let kept = prepare(&cache, 1).kept;
+            assert!(!kept.is_read);
+            let problem = kept.problem.unwrap();
+            assert!(
+                matches!(problem, CacheError::Untrusted(_)),
+                "{i}: {problem}"
+            );
+            kept.unsaved.unwrap().save().unwrap();
+            assert!(prepare(&cache, 1).kept.is_read, "{i}");
         }
     }
 

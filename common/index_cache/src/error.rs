@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use engine::search::SectionError;
+use trusted_files::TrustError;
 
 /// Why an index could not be read or kept. The map is prepared without.
 #[derive(Debug, thiserror::Error)]
@@ -48,6 +49,9 @@ pub enum CacheError {
         /// What the system says.
         source: io::Error,
     },
+    /// Another user could have written a file.
+    #[error("the index is not read, and the map is prepared again")]
+    Untrusted(#[from] TrustError),
     /// A file is not what it should be.
     #[error("{path} cannot be used, and the map is prepared again")]
     Unusable {
