@@ -69,8 +69,8 @@ impl Graph {
             return Err(TransportError::NodeName { name });
         }
         descriptors::ensure()?;
-        let membership = Membership::of(graph);
-        root::prepare(&membership.root, root::current_user())?;
+        let root = root::prepare(root::current_user())?;
+        let membership = Membership::of(graph).in_folder(root);
         membership.refuse_foreign_files(root::current_user())?;
         let root_lock = root::keep_from_cleaning(&membership.root);
         let alive = alive::as_member(&membership)?;

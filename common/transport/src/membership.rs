@@ -43,6 +43,11 @@ impl Membership {
         }
     }
 
+    /// The same with this folder of the user.
+    pub(crate) fn in_folder(self, root: PathBuf) -> Self {
+        Membership { root, ..self }
+    }
+
     /// Refuses a name that another user has taken in shared memory, which is common to all.
     pub(crate) fn refuse_foreign_files(&self, user: u32) -> Result<(), TransportError> {
         for path in self.shared_files() {
@@ -90,7 +95,7 @@ impl Membership {
     /// The configuration for every node of the graph. Files of the host are not
     /// consulted: two members that read different ones would not meet.
     pub(crate) fn config(&self) -> Config {
-        // Both are made above of characters that are valid, and are short.
+        // Both are short, and made of characters that are valid.
         let root = IoxPath::new(self.root.as_os_str().as_encoded_bytes())
             .expect("the folder of a user is a valid path");
         let prefix =
@@ -149,6 +154,7 @@ pub(crate) fn graph_of_file(path: &Path, user: u32, end: &str) -> Option<GraphNa
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::root;
 
     #[test]
     fn a_file_shows_its_graph() {
@@ -180,7 +186,8 @@ mod tests {
     fn the_longest_socket_path_fits() {
         // A socket's file is named after a 128-bit number in decimal.
         let graph = GraphName::new(&"x".repeat(GraphName::CAPACITY)).unwrap();
-        let folder = path_for(u32::MAX);
+        let folder = Path::new("/").join("x".repeat(root::MAX_BYTES - 1));
+        assert!(path_for(u32::MAX).as_os_str().len() <= root::MAX_BYTES);
         let file = format!("{}{}.event", prefix(u32::MAX, &graph), u128::MAX);
         let longest = folder.join(file);
         // `sun_path` has 108 bytes, the last of which is zero.

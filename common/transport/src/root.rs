@@ -2,9 +2,11 @@
 //!
 //! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that it
 //! makes for whoever comes first; a second user is then locked out. So each
-//! user has their own folder, which is locked against the cleaning of /tmp. Nothing
-//! here decides for another user: a folder that is in the way is an error that says
-//! whose it is.
+//! user has their own folder, which is locked against the cleaning of /tmp. A name in /tmp
+//! can be taken by another user, so there are others: of all places in one order, the first
+//! where this user has the folder already is taken, else the first where it can be made. A
+//! service and a shell of the same user thereby find each other, whatever is in their
+//! environment.
 
 use std::fs::{DirBuilder, File, Permissions, symlink_metadata};
 use std::io::ErrorKind;
@@ -12,22 +14,113 @@ use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use nix::fcntl::{Flock, FlockArg};
+use nix::unistd::{Uid, User};
 
 use crate::TransportError;
+
+/// Name of the folder in one that is the user's own.
+const NAME: &str = "backcast";
+
+/// Longest path of the folder, bytes: a socket in it has a path of at most 107.
+pub(crate) const MAX_BYTES: usize = 27;
 
 /// The user that this process acts as.
 pub(crate) fn current_user() -> u32 {
     nix::unistd::geteuid().as_raw()
 }
 
-/// Where the graphs of `user` meet. Fixed, and not taken from the environment,
-/// so that a service and a shell of the same user find each other.
+/// Where the graphs of `user` meet, or would where there is no folder yet.
 pub(crate) fn path_for(user: u32) -> PathBuf {
-    PathBuf::from(format!("/tmp/backcast-{user}"))
+    let places = Places::of(user);
+    let found = places.all().find(|path| is_of(path, user));
+    found.unwrap_or_else(|| places.temporary.clone())
+}
+
+/// Makes sure that `user` has a folder that nobody else can use, and returns it.
+pub(crate) fn prepare(user: u32) -> Result<PathBuf, TransportError> {
+    Places::of(user).prepare()
+}
+
+/// The places where a user's folder may be.
+struct Places {
+    user: u32,
+    /// Those in `$XDG_RUNTIME_DIR` and `/run/user`, where these are the user's own.
+    own: Vec<PathBuf>,
+    /// The one in `/tmp`, which another user may have taken.
+    temporary: PathBuf,
+}
+
+impl Places {
+    fn of(user: u32) -> Self {
+        let variable = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
+        // Where it is on most systems, for a service that is not told.
+        let usual = PathBuf::from(format!("/run/user/{user}"));
+        Self::among(user, variable.into_iter().chain([usual]), Path::new("/tmp"))
+    }
+
+    fn among(user: u32, own: impl Iterator<Item = PathBuf>, temporary: &Path) -> Self {
+        let own = own.filter(|path| path.is_absolute() && is_private(path, user));
+        Places {
+            user,
+            own: own
+                .map(|path| path.join(NAME))
+                .filter(|path| is_short(path))
+                .collect(),
+            temporary: temporary.join(format!("{NAME}-{user}")),
+        }
+    }
+
+    /// All of them in their order; the last one is in the home folder, in which no other user
+    /// can make anything, and counts where it is the only one that is left.
+    fn all(&self) -> impl Iterator<Item = PathBuf> {
+        let user = self.user;
+        let home = move || {
+            let found = User::from_uid(Uid::from_raw(user)).ok()??;
+            let path = found.dir.join(format!(".{NAME}"));
+            (is_of(&found.dir, user) && is_short(&path)).then_some(path)
+        };
+        let fixed = self.own.iter().chain([&self.temporary]).cloned();
+        fixed.chain(std::iter::once_with(home).flatten())
+    }
+
+    fn prepare(&self) -> Result<PathBuf, TransportError> {
+        let user = self.user;
+        if let Some(path) = self.all().find(|path| is_of(path, user)) {
+            return make(&path, user).map(|()| path);
+        }
+        let mut failed = None;
+        for path in self.all() {
+            match make(&path, user) {
+                Ok(()) => return Ok(path),
+                // The one in /tmp says best what is in the way.
+                Err(error) if path == self.temporary => failed = Some(error),
+                Err(error) => failed = failed.or(Some(error)),
+            }
+        }
+        match failed {
+            Some(error) => Err(error),
+            None => make(&self.temporary, user).map(|()| self.temporary.clone()),
+        }
+    }
+}
+
+/// Whether a folder is there and `user` owns it; a link is none.
+fn is_of(path: &Path, user: u32) -> bool {
+    symlink_metadata(path).is_ok_and(|found| found.is_dir() && found.uid() == user)
+}
+
+/// Whether it is a folder that `user` alone can use.
+fn is_private(path: &Path, user: u32) -> bool {
+    let has_mode = |found: std::fs::Metadata| found.mode() & 0o777 == 0o700;
+    is_of(path, user) && symlink_metadata(path).is_ok_and(has_mode)
+}
+
+fn is_short(path: &Path) -> bool {
+    path.as_os_str().len() <= MAX_BYTES && path.to_str().is_some()
 }
 
 /// Makes sure that `path` is a folder of `user` that nobody else can use.
-pub(crate) fn prepare(path: &Path, user: u32) -> Result<(), TransportError> {
+fn make(path: &Path, user: u32) -> Result<(), TransportError> {
     let failed = |action| {
         move |source| TransportError::File {
             action,
@@ -87,10 +180,10 @@ mod tests {
     fn makes_a_private_folder_and_takes_it_again() {
         let parent = tempfile::tempdir().unwrap();
         let path = parent.path().join("mine");
-        prepare(&path, current_user()).unwrap();
+        make(&path, current_user()).unwrap();
         assert_eq!(mode(&path), 0o700);
         std::fs::set_permissions(&path, Permissions::from_mode(0o777)).unwrap();
-        prepare(&path, current_user()).unwrap();
+        make(&path, current_user()).unwrap();
         assert_eq!(mode(&path), 0o700);
     }
 
@@ -98,7 +191,7 @@ mod tests {
     fn names_the_owner_of_a_foreign_folder() {
         let folder = tempfile::tempdir().unwrap();
         let me = current_user();
-        let error = prepare(folder.path(), me + 1).unwrap_err();
+        let error = make(folder.path(), me + 1).unwrap_err();
         let text = error.to_string();
         assert!(
             matches!(error, TransportError::ForeignFolder { owner, user, .. } if owner == me && user == me + 1)
@@ -118,7 +211,7 @@ mod tests {
         let link = parent.path().join("link");
         std::os::unix::fs::symlink(parent.path(), &link).unwrap();
         for path in [file, link] {
-            let error = prepare(&path, current_user()).unwrap_err();
+            let error = make(&path, current_user()).unwrap_err();
             assert!(matches!(error, TransportError::NotAFolder { path: p, .. } if p == path));
         }
     }
@@ -127,10 +220,83 @@ mod tests {
     fn says_what_it_could_not_create() {
         let parent = tempfile::tempdir().unwrap();
         let path = parent.path().join("missing").join("mine");
-        let error = prepare(&path, current_user()).unwrap_err();
+        let error = make(&path, current_user()).unwrap_err();
         assert!(
             matches!(&error, TransportError::File { path: p, .. } if *p == path),
             "{error}"
         );
+    }
+
+    /// A world of its own: a folder for all, and one of the user alone.
+    fn places(folder: &Path, own: &Path) -> Places {
+        let own = [own.to_owned()].into_iter();
+        Places::among(current_user(), own, folder)
+    }
+
+    fn private(path: &Path) {
+        DirBuilder::new().mode(0o700).create(path).unwrap();
+    }
+
+    #[test]
+    fn the_folder_of_the_user_comes_first_unless_there_is_one_already() {
+        let world = tempfile::tempdir_in("/tmp").unwrap();
+        let own = world.path().join("o");
+        private(&own);
+        let (folder, own) = (world.path(), &*own);
+        let first = Places {
+            own: vec![own.join(NAME)],
+            ..places(folder, own)
+        };
+        assert_eq!(first.prepare().unwrap(), own.join(NAME));
+        assert_eq!(first.prepare().unwrap(), own.join(NAME));
+        std::fs::remove_dir(own.join(NAME)).unwrap();
+        // A service without the variable was there before.
+        make(&first.temporary, current_user()).unwrap();
+        assert_eq!(first.prepare().unwrap(), first.temporary);
+    }
+
+    #[test]
+    fn a_runtime_folder_that_others_can_use_or_that_is_too_long_is_passed_over() {
+        let world = tempfile::tempdir_in("/tmp").unwrap();
+        let short = tempfile::Builder::new()
+            .rand_bytes(4)
+            .prefix("b")
+            .tempdir_in("/tmp")
+            .unwrap();
+        std::fs::set_permissions(short.path(), Permissions::from_mode(0o700)).unwrap();
+        assert_eq!(
+            places(world.path(), short.path()).own,
+            [short.path().join(NAME)]
+        );
+        std::fs::set_permissions(short.path(), Permissions::from_mode(0o755)).unwrap();
+        let long = world.path().join("a-name-that-is-long");
+        private(&long);
+        for path in [
+            short.path(),
+            &long,
+            Path::new("relative"),
+            Path::new("/nowhere"),
+        ] {
+            assert_eq!(
+                places(world.path(), path).own,
+                [PathBuf::new(); 0],
+                "{}",
+                path.display()
+            );
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_taken_keeps_nobody_from_another_place() {
+        let world = tempfile::tempdir_in("/tmp").unwrap();
+        let own = world.path().join("o");
+        private(&own);
+        let places = Places {
+            own: vec![own.join(NAME)],
+            ..places(world.path(), &own)
+        };
+        std::os::unix::fs::symlink(world.path(), &places.temporary).unwrap();
+        assert_eq!(places.prepare().unwrap(), own.join(NAME));
+        assert!(symlink_metadata(&places.temporary).unwrap().is_symlink());
     }
 }

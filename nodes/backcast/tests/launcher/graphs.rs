@@ -44,6 +44,46 @@ fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
     assert!(said.contains("--graph"), "{said}");
 }
 
+/// What another user makes in `/tmp` keeps no graph from starting that has another place.
+#[test]
+fn a_folder_that_another_user_has_taken_is_passed_over() {
+    if !nix::unistd::geteuid().is_root() {
+        let test = "a_folder_that_another_user_has_taken_is_passed_over";
+        Need::Root.is_missing(test, "nobody else can act as two users");
+        return;
+    }
+    let user = 12_346;
+    let taken = format!("/tmp/backcast-{user}");
+    fs::create_dir(&taken).unwrap();
+    let folder = graph(&["id: a, args: -c true"]);
+    let own = tempfile::tempdir_in("/tmp").unwrap();
+    for path in [folder.path(), own.path()] {
+        let user = Some(nix::unistd::Uid::from_raw(user));
+        nix::unistd::chown(path, user, None).unwrap();
+    }
+    fs::set_permissions(
+        own.path(),
+        std::os::unix::fs::PermissionsExt::from_mode(0o700),
+    )
+    .unwrap();
+    let outputs = [own.path(), Path::new("/nowhere")].map(|own| {
+        let mut launcher = launcher(folder.path(), &["--graph", "test-taken"]);
+        launcher.env("XDG_RUNTIME_DIR", own).uid(user).output()
+    });
+    fs::remove_dir(taken).unwrap();
+    let [passed, refused] = outputs.map(|output| {
+        let output = output.unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    });
+    assert_eq!(passed.0, Some(0), "{}", passed.1);
+    assert!(own.path().join("backcast").is_dir());
+    assert_eq!(refused.0, Some(1), "{}", refused.1);
+    assert!(refused.1.contains("belongs to user 0"), "{}", refused.1);
+}
+
 #[test]
 fn others_have_no_rights_on_the_files_of_a_graph() {
     let name = "test-rights";
@@ -75,8 +115,8 @@ fn a_graph_whose_files_are_removed_is_started_again_as_a_whole() {
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
     assert_eq!(running.receive("source"), "up");
-    let root = format!("/tmp/backcast-{}", nix::unistd::geteuid());
-    remove_files_of(Path::new(&root), &format!("_{name}."));
+    let socket = transport::control_socket(&transport::GraphName::new(name).unwrap());
+    remove_files_of(socket.parent().unwrap(), &format!("_{name}."));
     assert_eq!(running.receive("source"), "up", "a second time");
     let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     std::io::Write::write_all(&mut writer, b"\n").unwrap();
