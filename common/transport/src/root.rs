@@ -277,9 +277,8 @@ mod tests {
             Path::new("relative"),
             Path::new("/nowhere"),
         ] {
-            assert_eq!(
-                places(world.path(), path).own,
-                [PathBuf::new(); 0],
+            assert!(
+                places(world.path(), path).own.is_empty(),
                 "{}",
                 path.display()
             );
