@@ -272,7 +272,10 @@ mod tests {
         assert!(until(&fast, 8) && !until(&fast, 9) && until(&fast, 0));
         assert!(!until(&fast, -1), "before the first");
         let slow = motion(&[0, 20, 40, 60].map(east));
-        assert!(until(&slow, 140) && !until(&slow, 141), "four of its periods");
+        assert!(
+            until(&slow, 140) && !until(&slow, 141),
+            "four of its periods"
+        );
         // One hole among samples is no period.
         let hole = motion(&[0, 1, 2, 90, 91, 92].map(east));
         assert!(!until(&hole, 98) && !until(&hole, 60) && until(&hole, 90));
