@@ -64,22 +64,24 @@ pub struct ByOdometry {
     pub odom_from_target: Pose,
     /// Of how many starts of the odometry it is.
     start: u32,
+    /// Whether the odometry has ever changed since that start.
+    has_moved: bool,
 }
 
 impl ByOdometry {
     /// How the target frame moved from one time to another; `None` where either is not known,
-    /// or the odometry began anew in between.
+    /// the odometry began anew in between, or it has never changed until then: so does one
+    /// that is dead, and whether the robot stands, scans say.
     #[must_use]
     pub fn between(before: Option<Self>, now: Option<Self>) -> Option<Pose> {
         now?.moved_since(&before?)
     }
 
-    /// How the target frame moved since another time; `None` where the odometry began
-    /// anew in between.
+    /// As [`ByOdometry::between`], of two that are known.
     #[must_use]
     pub fn moved_since(&self, before: &Self) -> Option<Pose> {
-        let is_of_one = self.start == before.start;
-        is_of_one.then(|| {
+        let says_motion = self.start == before.start && self.has_moved;
+        says_motion.then(|| {
             before
                 .odom_from_target
                 .inverse()
@@ -328,6 +330,7 @@ impl Joiner {
         Some(ByOdometry {
             odom_from_target: odom_from_child.then(self.child_from_target()),
             start: self.motion.starts(),
+            has_moved: self.motion.has_moved(stamp_ns),
         })
     }
 

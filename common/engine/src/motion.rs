@@ -16,6 +16,17 @@ const MAX_GAP_NS: i64 = 500_000_000;
 /// before: a scan of a slow laser (8 Hz), and what odometry may lag behind it.
 const MAX_BEYOND_NS: i64 = 250_000_000;
 
+/// After so many of its usual sample periods without a sample, odometry has ended; but
+/// not before so long, for stamps are irregular.
+const MISSED_SAMPLES: i64 = 4;
+const MIN_SILENCE_NS: i64 = 500_000_000;
+
+/// The usual period is the median of so many.
+const PERIODS: usize = 8;
+
+/// Poses differ by less than this from rounding alone, metres and radians.
+const ROUNDING: f64 = 1e-4;
+
 /// Samples that come this much earlier than the last are of a recording that was
 /// begun again; others that are late are left out.
 const BEGUN_ANEW_NS: i64 = 1_000_000_000;
@@ -36,6 +47,9 @@ pub struct Motion {
     samples: VecDeque<(i64, Pose)>,
     keep: usize,
     starts: u32,
+    /// The first sample since the start, and when another pose came for the first time.
+    first: Option<Pose>,
+    moved_ns: Option<i64>,
 }
 
 /// Where the frame was at some time.
@@ -55,6 +69,8 @@ impl Motion {
             samples: VecDeque::new(),
             keep: samples,
             starts: 0,
+            first: None,
+            moved_ns: None,
         }
     }
 
@@ -68,12 +84,17 @@ impl Motion {
             if self.begins_anew(newest, (stamp_ns, odom_from_child)) {
                 self.samples.clear();
                 self.starts += 1;
+                (self.first, self.moved_ns) = (None, None);
             } else if stamp_ns <= newest.0 {
                 return;
             }
         }
         if self.samples.len() >= self.keep {
             self.samples.pop_front();
+        }
+        let first = *self.first.get_or_insert(odom_from_child);
+        if !odom_from_child.is_within(first, ROUNDING, ROUNDING) {
+            self.moved_ns.get_or_insert(stamp_ns);
         }
         self.samples.push_back((stamp_ns, odom_from_child));
     }
@@ -112,36 +133,63 @@ impl Motion {
             .is_some_and(|newest| stamp_ns.saturating_sub(newest) <= MAX_GAP_NS)
     }
 
+    /// Whether any sample until a time differs from the first since the start: odometry
+    /// that has never changed may be dead, and says nothing of how the robot moves.
+    #[must_use]
+    pub fn has_moved(&self, stamp_ns: i64) -> bool {
+        self.moved_ns.is_some_and(|moved| moved <= stamp_ns)
+    }
+
     /// Whether the newest two samples differ by more than rounding: a tenth of a
     /// millimetre or of a milliradian.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         let mut newest = self.samples.iter().rev().map(|&(_, pose)| pose);
         match (newest.next(), newest.next()) {
-            (Some(last), Some(before)) => !last.is_within(before, 1e-4, 1e-4),
+            (Some(last), Some(before)) => !last.is_within(before, ROUNDING, ROUNDING),
             _ => false,
         }
     }
 
     /// Where the frame was at a time, by what was measured until then alone: what comes
     /// later changes nothing. The last twist is taken to go on for at most a quarter of a
-    /// second; beyond, the frame stays where it was. `None` before the first sample.
+    /// second; beyond, the frame stays where it was. `None` before the first sample, and
+    /// where samples have stopped coming: for half a second, and four usual periods.
     #[must_use]
     pub fn until(&self, stamp_ns: i64) -> Option<Pose> {
         let after = self
             .samples
             .partition_point(|&(stamp, _)| stamp <= stamp_ns);
         let &(end_ns, end) = self.samples.get(after.checked_sub(1)?)?;
+        let beyond_ns = stamp_ns.saturating_sub(end_ns);
+        if beyond_ns > MIN_SILENCE_NS.max(self.usual_period_ns(after) * MISSED_SAMPLES) {
+            return None;
+        }
         let start = after.checked_sub(2).and_then(|i| self.samples.get(i));
         let Some(&(start_ns, start)) = start else {
             return Some(end);
         };
-        let beyond_ns = stamp_ns - end_ns;
         if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
             return Some(end);
         }
         let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
         Some(start.towards(end, share))
+    }
+
+    /// The median of the last periods between the first `count` samples, nanoseconds; 0
+    /// where there is none.
+    fn usual_period_ns(&self, count: usize) -> i64 {
+        let first = count.saturating_sub(PERIODS + 1);
+        let stamps = || self.samples.range(first..count).map(|&(stamp, _)| stamp);
+        let mut periods = [0; PERIODS];
+        let mut found = 0;
+        for (before, after) in stamps().zip(stamps().skip(1)) {
+            periods[found] = after.saturating_sub(before);
+            found += 1;
+        }
+        let periods = &mut periods[..found];
+        periods.sort_unstable();
+        periods.get(found / 2).copied().unwrap_or(0)
     }
 
     /// Where the frame was at a time: on the arc of constant twist between the two
@@ -214,6 +262,37 @@ mod tests {
         assert!(single.at(3 * TENTH).is_some());
         assert_eq!(single.at(3 * TENTH + 1), None);
         assert_eq!(motion(&[]).at(0), None);
+    }
+
+    #[test]
+    fn odometry_that_has_stopped_is_unknown() {
+        let east = |tenth: i64| (tenth, Pose::new(tenth as f64 / 10.0, 0.0, 0.0));
+        let until = |motion: &Motion, tenth: i64| motion.until(tenth * TENTH).is_some();
+        let fast = motion(&[0, 1, 2, 3].map(east));
+        assert!(until(&fast, 8) && !until(&fast, 9) && until(&fast, 0));
+        assert!(!until(&fast, -1), "before the first");
+        let slow = motion(&[0, 20, 40, 60].map(east));
+        assert!(
+            until(&slow, 140) && !until(&slow, 141),
+            "four of its periods"
+        );
+        // One hole among samples is no period.
+        let hole = motion(&[0, 1, 2, 90, 91, 92].map(east));
+        assert!(!until(&hole, 98) && !until(&hole, 60) && until(&hole, 90));
+        let single = motion(&[east(0)]);
+        assert!(until(&single, 5) && !until(&single, 6));
+        let unstamped = motion(&[east(0), (0, Pose::new(1.0, 0.0, 0.0))]);
+        assert!(unstamped.until(i64::MAX).is_none());
+    }
+
+    #[test]
+    fn odometry_that_has_never_changed_is_recognized() {
+        let at = |x| Pose::new(x, 0.0, 0.0);
+        let mut motion = motion(&[(0, at(2.0)), (1, at(2.00001)), (2, at(2.1)), (3, at(2.1))]);
+        let known = [1, 2, 3].map(|tenth| motion.has_moved(tenth * TENTH));
+        assert_eq!(known, [false, true, true]);
+        motion.add(4 * TENTH, Pose::IDENTITY);
+        assert!(!motion.has_moved(4 * TENTH), "it began anew");
     }
 
     #[test]

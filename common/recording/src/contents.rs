@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use map::OccupancyGrid;
-use ros::{ConversionError, OccupancyGridMsg, RosMessage, TfMessage};
+use ros::{ConversionError, OccupancyGridMsg, RosMessage, TfMessage, TransformStamped};
 
 use crate::moving::MovingFrames;
 use crate::{
@@ -78,8 +78,9 @@ impl Recording {
     /// Where a laser sits on the robot, if the readable part says so on
     /// `/tf_static`, or on `/tf` by transforms that are always the same.
     ///
-    /// The base is `base_link`, else `base_footprint`, else `base`, with any
-    /// prefix that ends in a slash; chains of transforms are followed, and of
+    /// The base is the child frame of the odometry, or of `odom` on `/tf`; where that does
+    /// not bear the laser, it is `base_link`, else `base_footprint`, else `base`, with any
+    /// prefix that ends in a slash. Chains of transforms are followed, and of
     /// several for one frame the latest counts, as in tf2. A transform that is not
     /// sound is a note, unless the laser's place depends on it.
     ///
@@ -89,6 +90,9 @@ impl Recording {
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         let (mut tree, mut notes) = self.fixed_transforms()?;
         notes.extend(tree.notes());
+        if let Some(child) = self.moved_frame() {
+            tree.on_odometry(&child);
+        }
         if tree.base_from(laser).is_none() {
             if let Some((parent, child, error)) = tree.broken_below(laser) {
                 return Err(RecordingError::BrokenMount {
@@ -114,6 +118,48 @@ impl Recording {
         }
     }
 
+    /// The frame that odometry moves: that of its first message, else the first child of
+    /// `odom` on `/tf`.
+    fn moved_frame(&self) -> Option<String> {
+        match self.topic(Kind::Odometry) {
+            Ok(None) => self.moving_transforms().find_map(|message| {
+                let of_odom =
+                    |t: &&TransformStamped| t.header.frame_id.rsplit('/').next() == Some("odom");
+                let found = message.ok()?;
+                let found = found.transforms.iter().find(of_odom)?;
+                Some(found.child_frame_id.clone())
+            }),
+            Ok(Some(_)) => self
+                .on_topic(Kind::Odometry)
+                .ok()?
+                .find_map(|record| match record {
+                    Ok(Record {
+                        message: Message::Odometry(odometry),
+                        ..
+                    }) => Some(odometry.child_frame_id),
+                    _ => None,
+                }),
+            // Which one is meant, others ask.
+            Err(_) => None,
+        }
+    }
+
+    /// What stands on `/tf`; messages that do not decode are left out.
+    fn moving_transforms(&self) -> impl Iterator<Item = Result<TfMessage, RecordingError>> + '_ {
+        let is_meant = |channel: &Channel| {
+            let schema = channel.schema == TfMessage::SCHEMA && channel.encoding == "cdr";
+            schema && channel.topic.ends_with("/tf")
+        };
+        RawRecords::new(self, is_meant, None).filter_map(|record| {
+            let record = match record {
+                Ok(record) => record,
+                Err(error) => return Some(Err(error)),
+            };
+            let body = unpack::message(&record.body).ok()?;
+            ros::cdr::decode::<TfMessage>(&body).ok().map(Ok)
+        })
+    }
+
     /// What stands on `/tf_static`, and which messages there do not decode.
     fn fixed_transforms(&self) -> Result<(TransformTree, Vec<String>), RecordingError> {
         let (mut tree, mut notes) = (TransformTree::default(), Vec::new());
@@ -137,18 +183,9 @@ impl Recording {
         tree: &mut TransformTree,
         laser: &str,
     ) -> Result<Option<String>, RecordingError> {
-        let is_meant = |channel: &Channel| {
-            let schema = channel.schema == TfMessage::SCHEMA && channel.encoding == "cdr";
-            schema && channel.topic.ends_with("/tf")
-        };
         let mut frames = MovingFrames::default();
-        for record in RawRecords::new(self, is_meant, None) {
-            let record = record?;
-            let body = unpack::message(&record.body);
-            // Others than the laser's are in nobody's way.
-            if let Ok(message) = body.and_then(|body| ros::cdr::decode::<TfMessage>(&body)) {
-                message.transforms.iter().for_each(|t| frames.see(t));
-            }
+        for message in self.moving_transforms() {
+            message?.transforms.iter().for_each(|t| frames.see(t));
         }
         frames.add_still(tree);
         if tree.base_from(laser).is_some() {

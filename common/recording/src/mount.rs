@@ -6,7 +6,7 @@ use geometry::Pose;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use ros::{ConversionError, Mend, Transform, TransformStamped};
 
-/// The names of a robot's base, the one that is preferred first.
+/// The names of a robot's base where odometry names none, the one that is preferred first.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 
 /// How far a laser may be from level, or from upside down: at 10 degrees a wall
@@ -50,6 +50,8 @@ pub struct TransformTree {
     broken: BTreeMap<String, (String, ConversionError)>,
     /// By child: what was wrong with the transform that it has.
     mended: BTreeMap<String, Mend>,
+    /// The frame that odometry moves.
+    moved: Option<String>,
 }
 
 impl TransformTree {
@@ -111,10 +113,21 @@ impl TransformTree {
         None
     }
 
+    /// Takes note of the child frame of odometry; whether it is another than before.
+    pub fn on_odometry(&mut self, child: &str) -> bool {
+        let child = plain(child);
+        let is_new = !child.is_empty() && self.moved.as_deref() != Some(child);
+        if is_new {
+            self.moved = Some(child.to_owned());
+        }
+        is_new
+    }
+
     /// A copy without the notes.
     pub(crate) fn sound(&self) -> TransformTree {
         TransformTree {
             parents: self.parents.clone(),
+            moved: self.moved.clone(),
             ..TransformTree::default()
         }
     }
@@ -130,16 +143,31 @@ impl TransformTree {
         self.parents.len()
     }
 
-    /// The laser's place in the base frame that is preferred among those that
-    /// it is connected to.
+    /// The laser's place in the frame that odometry moves, if that bears the laser; else in
+    /// the one with a usual name of a base, or else in the first, if it is connected to it.
     #[must_use]
     pub fn base_from(&self, laser: &str) -> Option<Mount> {
-        let connected = self.connected_to(plain(laser));
-        let base = BASES.iter().find_map(|base| {
-            let is_base = |frame: &&String| frame.rsplit('/').next() == Some(base);
-            connected.keys().find(is_base)
-        })?;
+        let laser = plain(laser);
+        let connected = self.connected_to(laser);
+        let of_usual_name = || {
+            BASES.iter().find_map(|base| {
+                let is_base = |frame: &&String| frame.rsplit('/').next() == Some(base);
+                connected.keys().find(is_base)
+            })
+        };
+        let moved = self.moved.as_ref().filter(|frame| *frame != laser);
+        let bearing = moved.filter(|frame| self.bears(frame, laser));
+        let base = bearing.or_else(of_usual_name).or(moved)?;
         Some(mount(base, connected.get(base)?))
+    }
+
+    /// Whether a frame is above another one.
+    fn bears(&self, frame: &str, child: &str) -> bool {
+        let parent = |child: &str| self.parents.get(child).map(|(parent, _)| parent.as_str());
+        // Transforms may go round.
+        std::iter::successors(parent(child), |&above| parent(above))
+            .take(self.parents.len())
+            .any(|above| above == frame)
     }
 
     /// As [`TransformTree::base_from`], of the base frame with this name.

@@ -104,6 +104,9 @@ impl Frames {
     }
 
     pub(crate) fn on_odometry(&mut self, odometry: &Odometry) {
+        if self.fixed.on_odometry(odometry.child_frame.as_str()) {
+            self.mounts.clear();
+        }
         if self.odometry.len() == KEPT {
             self.odometry.pop_front();
         }

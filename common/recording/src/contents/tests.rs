@@ -170,11 +170,37 @@ fn a_transform_that_is_none_is_a_note_unless_the_laser_needs_it() {
     );
 }
 
+#[test]
+fn odometry_names_the_base_on_its_topic_and_on_tf() {
+    let laser = transform("chassis", "laser", 0.5, LEVEL);
+    let odometry = ros::Odometry {
+        child_frame_id: "chassis".to_owned(),
+        ..ros::Odometry::default()
+    };
+    let fixed = (crate::TF_STATIC, fixed(vec![laser.clone()]));
+    let with = recording(&[
+        fixed.clone(),
+        ("/odom", Message::Odometry(Box::new(odometry))),
+    ]);
+    let without = recording(&[fixed]);
+    let on_tf = on_tf_of("chassis", &[laser.clone(), laser]);
+    let base = |of: &Recording| of.mounted("laser").unwrap().mount.map(|m| m.base_frame);
+    let chassis = Some("chassis".to_owned());
+    assert_eq!(
+        [base(&with), base(&on_tf), base(&without)],
+        [chassis.clone(), chassis, None]
+    );
+}
+
 /// A recording with these transforms on /tf, each with odometry's own.
 fn on_tf(lasers: &[TransformStamped]) -> Recording {
+    on_tf_of("base_link", lasers)
+}
+
+fn on_tf_of(base: &str, lasers: &[TransformStamped]) -> Recording {
     let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
     for (time, laser) in (0..).zip(lasers) {
-        let odometry = transform("odom", "base_link", time as f64, LEVEL);
+        let odometry = transform("odom", base, time as f64, LEVEL);
         let message = TfMessage {
             transforms: vec![odometry, laser.clone()],
         };

@@ -76,6 +76,37 @@ fn a_base_beside_or_below_the_laser_is_found() {
 }
 
 #[test]
+fn the_base_is_what_odometry_moves_if_that_bears_the_laser() {
+    let mut named = tree(&[
+        transform("chassis", "base_link", (0.0, 0.0, 0.0), PI),
+        transform("base_link", "laser", (1.0, 0.0, 0.0), 0.0),
+        transform("base_link", "rear", (-1.0, 0.0, 0.0), 0.0),
+    ]);
+    let base = |tree: &TransformTree| tree.base_from("laser").unwrap();
+    assert_eq!(base(&named).base_frame, "base_link");
+    assert!(named.on_odometry("/chassis") && !named.on_odometry("chassis"));
+    assert_eq!(base(&named).base_frame, "chassis");
+    assert_near(base(&named).base_from_laser, Pose::new(-1.0, 0.0, PI));
+    // A laser is no base, and what the transforms do not name is none either.
+    for other in ["laser", "rear", "robot", ""] {
+        named.on_odometry(other);
+        assert_eq!(base(&named).base_frame, "base_link", "{other}");
+    }
+    let mut alone = tree(&[transform("plate", "chassis", (0.0, 0.0, 0.0), 0.0)]);
+    alone
+        .add(&transform("plate", "laser", (2.0, 0.0, 0.0), 0.0))
+        .unwrap();
+    assert_eq!(alone.base_from("laser"), None);
+    alone.on_odometry("chassis");
+    assert_near(base(&alone).base_from_laser, Pose::new(2.0, 0.0, 0.0));
+    let round =
+        [("a", "laser"), ("laser", "a")].map(|(a, b)| transform(a, b, (0.0, 0.0, 0.0), 0.0));
+    let mut round = tree(&round);
+    round.on_odometry("chassis");
+    assert_eq!(round.base_from("laser"), None);
+}
+
+#[test]
 fn the_latest_transform_counts_and_a_circle_ends() {
     let mut tree = tree(&[
         transform("base_link", "laser", (1.0, 0.0, 0.0), 0.0),

@@ -83,6 +83,17 @@ fn the_base_that_is_named_counts_where_it_is_connected() {
 }
 
 #[test]
+fn odometry_names_the_base() {
+    let mut frames = Frames::new(Vec::new());
+    let laser = fixed("chassis", "laser", 0.5, Quaternion::default());
+    frames.on_static_transforms(&laser).unwrap();
+    assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
+    frames.on_odometry(&odometry("chassis", 1.0));
+    let found = frames.base_from_laser(0, "laser").unwrap();
+    assert_eq!(found, Some(mounted(0.5)));
+}
+
+#[test]
 fn what_the_robot_moved_is_known_as_far_as_odometry_goes_back() {
     let mut frames = Frames::new(Vec::new());
     assert_eq!(frames.moved_since(5), None);
