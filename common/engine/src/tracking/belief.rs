@@ -6,6 +6,7 @@ use messages::{TrackReason, TrackState};
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
 use super::limits::FARTHEST_BEHIND;
+use super::verdict::MIN_KEYS;
 use super::place::{MEAN_OVER, Place};
 
 /// Scans fit badly at the place that is believed. What does so for long becomes the mean
@@ -53,13 +54,18 @@ pub(super) struct Belief {
     pub(super) taken_over: bool,
     /// The last search that was needed had no answer.
     pub(super) unchecked: bool,
+    /// Over the next place, and over "nowhere".
     pub(super) lead: f64,
+    pub(super) over_nowhere: f64,
     pub(super) bad_keys: u32,
     /// Key scans since it was not known how the robot moved.
     pub(super) connected_keys: u32,
     /// Whether odometry was interrupted, and not enough key scans have agreed since.
     pub(super) interrupted: bool,
-    pub(super) slipped: Option<f64>,
+    /// Whether the lead fell so far that it must be again what a start needs.
+    pub(super) doubted: bool,
+    /// Whether the laser and odometry disagree about how the robot moved to the last scan.
+    pub(super) disagree: bool,
     pub(super) lost_by: TrackReason,
     pub(super) state: TrackState,
     pub(super) reason: TrackReason,
@@ -79,10 +85,12 @@ impl Belief {
             taken_over: false,
             unchecked: false,
             lead: 0.0,
+            over_nowhere: 0.0,
             bad_keys: 0,
             connected_keys: 0,
             interrupted: false,
-            slipped: None,
+            doubted: false,
+            disagree: false,
             lost_by: TrackReason::PoorFit,
             state: TrackState::Searching,
             reason: TrackReason::NoScan,
@@ -100,18 +108,17 @@ impl Belief {
         self.place = Some(id);
         self.was_unique = true;
         self.doubt = None;
-        self.lead = FARTHEST_BEHIND;
+        (self.lead, self.over_nowhere) = (FARTHEST_BEHIND, FARTHEST_BEHIND);
     }
 
-    pub(super) fn slip(&mut self, id: u32, by: f64) {
-        self.believe(id);
-        self.slipped = Some(by);
+    /// A place is expected, which one scan may confirm.
+    pub(super) fn expect(&mut self) {
+        self.connected_keys = MIN_KEYS - 1;
     }
 
     /// Goes on to the next scan, to which the robot moved so; how many seconds after the one
     /// before it was measured, if there was one.
     pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> Option<f64> {
-        self.slipped = None;
         let is_first = self.since_ns == 0;
         if is_first {
             self.since_ns = stamp_ns;
@@ -129,7 +136,7 @@ impl Belief {
     pub(super) fn is_doubtful_at(&self, place: &Place) -> bool {
         let config = &self.config;
         let mean = self.doubt.map_or(place.mean, |doubt| doubt.mean_before);
-        place.last < config.doubt_score.max(mean - config.doubt_fall)
+        place.nowhere > 0.0 || place.last < config.doubt_score.max(mean - config.doubt_fall)
     }
 
     pub(super) fn is_doubtful(&self) -> bool {

@@ -32,6 +32,10 @@ const PER_METRE_M: f64 = 0.15;
 const PER_METRE: f64 = 3.5 * std::f64::consts::PI / 180.0;
 const PER_RADIAN: f64 = 0.15;
 
+/// A robot that stands does not move by more than this in all, metres and radians.
+const REST_M: f64 = 0.005;
+const REST_RADIANS: f64 = 0.1 * std::f64::consts::PI / 180.0;
+
 /// The same where a step is not known: what a robot may move between two scans.
 const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
@@ -53,6 +57,11 @@ impl DrivenPath {
         self.step.x.hypot(self.step.y) >= config.key_m
             || self.step.yaw.abs() >= config.key_deg.to_radians()
             || self.path_m > KEY_PATHS * config.key_m
+    }
+
+    /// Whether the robot stood: odometry moved by less than it rounds to.
+    pub(super) fn is_rest(&self) -> bool {
+        self.unknown_s.is_none() && self.path_m < REST_M && self.turned < REST_RADIANS
     }
 
     /// Where a pose and its covariance, in the map, are after the way, whose standard

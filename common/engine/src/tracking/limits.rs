@@ -8,6 +8,3 @@ pub(super) const MAX_NEW: usize = 12;
 
 /// A place so far behind the best is dropped, natural logarithm of odds.
 pub(super) const FARTHEST_BEHIND: f64 = 20.0;
-
-/// Where odometry slips, the robot is this near to where it should be, metres.
-pub(super) const NEAR_M: f64 = 1.5;

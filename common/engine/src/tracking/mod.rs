@@ -31,6 +31,7 @@ mod driven_path;
 mod limits;
 mod matching;
 mod method;
+mod nowhere;
 mod particles;
 mod place;
 mod places;
@@ -50,6 +51,7 @@ use belief::Belief;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
+use nowhere::is_blind;
 use messages::Transition;
 use places::Places;
 use transition::other_side;
@@ -145,6 +147,7 @@ impl Tracker {
     /// a search finds. It is not believed before scans confirm it.
     pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
         self.start_over();
+        self.belief.expect();
         self.expected = Some((at, covariance, lead));
     }
 
@@ -209,13 +212,21 @@ impl Tracker {
         }
         let path = std::mem::take(&mut self.since_scan);
         let was_doubtful = self.belief.is_doubtful();
+        let is_lost_sight = self.has_lost_sight(&path);
+        if is_interrupted || is_lost_sight {
+            self.places.forget();
+        }
+        if is_lost_sight {
+            self.belief.interrupt();
+        }
         if let Some(id) = self.belief.place() {
-            self.places.follow(id, seen, &path);
+            self.places.follow(id, seen, (&path, &self.since_key));
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
         let has_entered = self.has_entered();
-        let is_new = (is_suspicious && !was_doubtful) || is_interrupted || has_entered;
+        let is_new =
+            (is_suspicious && !was_doubtful) || is_interrupted || is_lost_sight || has_entered;
         self.is_key = self.is_far() || is_new || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
@@ -240,9 +251,22 @@ impl Tracker {
         !std::mem::replace(&mut self.is_in_transition, is_in) && is_in
     }
 
-    /// Whether the robot is far enough from the last key scan.
+    /// Whether the robot is far enough from the last key scan, by odometry or by where the
+    /// scans fit.
     fn is_far(&self) -> bool {
-        self.places.is_empty() || self.since_key.is_far(&self.config)
+        let believed = self.belief.place().and_then(|id| self.places.get(id));
+        self.places.is_empty()
+            || self.since_key.is_far(&self.config)
+            || believed.is_some_and(|place| place.novelty(&self.config) >= 1.0)
+    }
+
+    /// Whether odometry carried the believed place so far that it may be several.
+    fn has_lost_sight(&self, path: &DrivenPath) -> bool {
+        let believed = self.belief.place().and_then(|id| self.places.get(id));
+        believed.is_some_and(|place| {
+            let noise = self.config.odometry_error;
+            is_blind(&path.predict((place.pose, place.covariance), noise))
+        })
     }
 
     /// Is done with the scan, with what the search found that was needed; `None` where none

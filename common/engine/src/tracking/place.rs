@@ -101,9 +101,14 @@ pub(super) struct Place {
     pub last: f64,
     /// Key scans in a row that hardly fit there.
     pub bad: u32,
-    /// What it was found to be at this scan, and from where it was predicted.
+    /// Prediction for the last scan.
     pub predicted: (Pose, Matrix3<f64>),
+    /// Squared deviations of the last fit from that prediction.
     pub off: f64,
+    /// Pose and covariance at the last key scan.
+    pub at_key: (Pose, Matrix3<f64>),
+    /// Log odds of "nowhere" against this place by the last scan alone.
+    pub nowhere: f64,
 }
 
 /// A mean is over this many key scans.
@@ -124,6 +129,8 @@ impl Place {
             bad: 0,
             predicted: (found.pose, found.covariance),
             off: 0.0,
+            at_key: (found.pose, found.covariance),
+            nowhere: 0.0,
         }
     }
 
@@ -150,5 +157,6 @@ impl Place {
         let before = f64::from(self.age.min(MEAN_OVER));
         self.mean = (self.mean * before + self.last) / (before + 1.0);
         self.age += 1;
+        self.at_key = (self.pose, self.covariance);
     }
 }

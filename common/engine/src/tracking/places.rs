@@ -10,7 +10,8 @@ use nalgebra::Matrix3;
 use super::TrackingConfig;
 use super::belief::Belief;
 use super::driven_path::DrivenPath;
-use super::limits::{FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD, NEAR_M};
+use super::limits::{FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD};
+use super::nowhere::nowhere_by_score;
 use super::place::Place;
 use super::seen::{Fitted, Seen};
 use crate::peaks::{doubt_between, lead};
@@ -35,14 +36,6 @@ const MERGED_RADIANS: f64 = 5.0 * std::f64::consts::PI / 180.0;
 const JUNK_BEHIND: f64 = 0.4;
 const JUNK_SCORE: f64 = 0.35;
 const JUNK_SCANS: u32 = 2;
-
-/// Where odometry slips, the robot is turned by at most this; the more turned, the nearer it is
-/// to where it should be: a turn that was missed was one in place.
-const SLIP_RADIANS: f64 = 100.0 * std::f64::consts::PI / 180.0;
-
-/// There the scan has to fit nearly as well as the scans before.
-const SLIP_FALL: f64 = 0.15;
-const SLIP_BEHIND: f64 = 0.1;
 
 /// What a key scan is measured by.
 #[derive(Clone, Copy)]
@@ -80,9 +73,12 @@ pub(super) struct Places {
     is_known: Vec<bool>,
     next_id: u32,
     key_scans: u32,
+    /// Log weight of "nowhere"; that of the best place is subtracted at each key scan.
+    nowhere: f64,
     /// What a place is behind that the first search finds: something where a place was
-    /// expected beforehand.
+    /// expected beforehand, with this prediction.
     first_lag: f64,
+    expected: Option<(Pose, Matrix3<f64>)>,
 }
 
 impl Places {
@@ -94,7 +90,9 @@ impl Places {
             is_known: Vec::new(),
             next_id: 0,
             key_scans: 0,
+            nowhere: 0.0,
             first_lag: 0.0,
+            expected: None,
         }
     }
 
@@ -131,6 +129,7 @@ impl Places {
             ..Place::born(id, (map, &fitted), 0.0)
         }];
         self.key_scans = age;
+        self.nowhere = -FARTHEST_BEHIND;
         id
     }
 
@@ -150,6 +149,18 @@ impl Places {
             ..Place::born(id, (map, &fitted), 0.0)
         });
         self.first_lag = lead;
+        self.nowhere = -lead;
+        self.expected = Some(predicted);
+    }
+
+    /// Log weight of "nowhere", against which the best place has its own.
+    pub(super) fn nowhere(&self) -> f64 {
+        self.nowhere
+    }
+
+    /// Takes "nowhere" for as likely as the best place: the robot may have moved anywhere.
+    pub(super) fn forget(&mut self) {
+        self.nowhere = self.kept.first().map_or(0.0, |best| best.log_weight);
     }
 
     fn new_id(&mut self) -> u32 {
@@ -157,8 +168,15 @@ impl Places {
         self.next_id
     }
 
-    /// Moves one place by a way, and fits the scan there.
-    pub(super) fn follow(&mut self, id: u32, seen: &[Seen<'_>], path: &DrivenPath) {
+    /// Moves one place by a way, and fits the scan there; `since_key` is the way since the
+    /// last key scan. While the robot stands, scans that agree do not move it: their errors
+    /// are those of the first.
+    pub(super) fn follow(
+        &mut self,
+        id: u32,
+        seen: &[Seen<'_>],
+        (path, since_key): (&DrivenPath, &DrivenPath),
+    ) {
         let TrackingConfig {
             odometry_error,
             restart_fall,
@@ -174,7 +192,12 @@ impl Places {
             fitted = seen.settle_turned(predicted, fitted);
         }
         place.predicted = predicted;
+        let stays = since_key.is_rest() && fitted.off < GATE;
         place.set(&fitted);
+        if stays {
+            (place.pose, place.covariance) = place.at_key;
+        }
+        place.judge(since_key, &self.config);
     }
 
     /// Weighs all places by a key scan, and those that were taken with them; those
@@ -193,6 +216,9 @@ impl Places {
             }
         }
         self.snap();
+        for place in &mut self.kept {
+            place.judge(path, &self.config);
+        }
         let (map, score) = self.best_score();
         let best = Best { score, map, seen };
         let fits_badly = belief
@@ -200,11 +226,7 @@ impl Places {
             .and_then(|id| self.get(id))
             .is_some_and(|p| belief.is_doubtful_at(p));
         self.count(best);
-        let born = self.kept.len();
         self.add_new(best, belief, (fits_badly, path.unknown_s));
-        if fits_badly {
-            self.follow_slip(best, born, belief);
-        }
         self.add_across(transitions, best, belief);
         self.candidates.clear();
         self.key_scans += 1;
@@ -239,33 +261,16 @@ impl Places {
             place.bad = if is_bad { place.bad + 1 } else { 0 };
             place.grow();
         }
-    }
-
-    /// Where the scan fits badly at the place that is believed, and well beside it,
-    /// odometry has slipped, and the robot is there.
-    fn follow_slip(&mut self, best: Best<'_>, born: usize, belief: &mut Belief) {
-        let Some(tracked) = belief.place().and_then(|id| self.get(id)).copied() else {
-            return;
-        };
-        let least = self
-            .config
-            .least_mean
-            .max(tracked.mean - SLIP_FALL)
-            .max(best.score - SLIP_BEHIND);
-        let scan_cap = self.config.scan_cap;
-        let is_slip = |place: &&mut Place| {
-            let pose = tracked.predicted.0;
-            let turned = pose.angle_to(place.pose) / SLIP_RADIANS;
-            let is_near = pose.distance_to(place.pose) / NEAR_M + turned <= 1.0;
-            place.map == tracked.map && place.last >= least && is_near
-        };
-        let beside = self.kept[born..].iter_mut().filter(is_slip);
-        if let Some(place) = beside.reduce(|a, b| if b.last > a.last { b } else { a }) {
-            place.log_weight = place.log_weight.max(tracked.log_weight + scan_cap);
-            place.age = tracked.age;
-            place.crossed_from = tracked.crossed_from;
-            place.mean = 0.9 * tracked.mean + 0.1 * place.last;
-            belief.slip(place.id, tracked.predicted.0.angle_to(place.pose));
+        let first = self.kept.iter().reduce(|a, b| match b.log_weight > a.log_weight {
+            true => b,
+            false => a,
+        });
+        // At the first look, the places are those that the search finds.
+        let nowhere = first.map_or(nowhere_by_score(best.score), |first| first.nowhere);
+        let cap = self.config.scan_cap;
+        self.nowhere += -top + nowhere.clamp(-cap, cap);
+        if let Some(first) = first {
+            self.nowhere = self.nowhere.max(first.log_weight - FARTHEST_BEHIND);
         }
     }
 

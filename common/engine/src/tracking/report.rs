@@ -31,8 +31,6 @@ pub struct Report {
     pub maps: u32,
     /// How far the nearest and the farthest of the others on its map lie from it, metres.
     pub apart_m: (f64, f64),
-    /// By how much odometry was wrong, where that is the reason, radians.
-    pub jumped: f64,
     /// When the state began, nanoseconds.
     pub since_ns: i64,
     /// Metres gone since.
@@ -57,7 +55,6 @@ impl Report {
             rivals: 0,
             maps: 0,
             apart_m: (0.0, 0.0),
-            jumped: 0.0,
             since_ns: 0,
             since_m: 0.0,
         }
@@ -92,9 +89,7 @@ impl Report {
             (TrackReason::TooEarly, _) => format!("one place leads, {fit}, {since}"),
             (TrackReason::PoorFit, TrackState::Lost) => format!("lost: {fit}"),
             (TrackReason::PoorFit, _) => format!("only {fit}, {since}"),
-            (TrackReason::OdometryJump, _) => {
-                format!("odometry jumped by {:.0}°, {fit}", self.jumped.to_degrees())
-            }
+            (TrackReason::OdometryJump, _) => format!("laser and odometry disagree, {fit}"),
             (TrackReason::AnotherPlace, _) => format!("lost: scans fit better elsewhere, {since}"),
             (TrackReason::NoPlace, _) => "no place on the map fits".into(),
         }
@@ -123,10 +118,8 @@ impl Report {
             }
             TrackReason::PoorFit => "drive a few metres, or mark a region",
             TrackReason::NoPlace => "is it this map?",
-            TrackReason::NoScan
-            | TrackReason::NoMap
-            | TrackReason::OnePlace
-            | TrackReason::OdometryJump => "",
+            TrackReason::OdometryJump => "is the laser mirrored, frozen or covered?",
+            TrackReason::NoScan | TrackReason::NoMap | TrackReason::OnePlace => "",
         }
     }
 }
@@ -148,7 +141,6 @@ mod tests {
             rivals: 2,
             maps: 1,
             apart_m: (25.2, 25.2),
-            jumped: 80f64.to_radians(),
             since_ns: 0,
             since_m: 3.0,
         }
@@ -166,8 +158,8 @@ mod tests {
             "lost: fit 0.14: drive a few metres, or mark a region"
         );
         assert_eq!(
-            say(TrackState::Unique, TrackReason::OdometryJump),
-            "odometry jumped by 80°, fit 0.14"
+            say(TrackState::Doubtful, TrackReason::OdometryJump),
+            "laser and odometry disagree, fit 0.14: is the laser mirrored, frozen or covered?"
         );
         assert_eq!(
             say(TrackState::Unique, TrackReason::OnePlace),

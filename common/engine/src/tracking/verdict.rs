@@ -7,7 +7,6 @@ use nalgebra::Matrix3;
 
 use super::belief::{Belief, Doubt};
 use super::driven_path::DrivenPath;
-use super::limits::NEAR_M;
 use super::place::Place;
 use super::places::Places;
 use super::report::Report;
@@ -18,7 +17,7 @@ use apart::{is_elsewhere, lead, probability, spread};
 /// them where odometry was interrupted.
 pub(super) const MIN_KEYS: u32 = 3;
 
-/// A lead below this makes the pose doubtful.
+/// A lead below this makes the pose doubtful, until it is again what a start needs.
 const MIN_LEAD: f64 = 3.0;
 
 /// The last score may lie this much below `--least-mean` when a place becomes the only
@@ -35,10 +34,21 @@ impl Belief {
     pub(super) fn look_at(&mut self, places: &Places) {
         let place = self.place.and_then(|id| places.get(id));
         self.fits_badly = place.is_some_and(|place| self.is_doubtful_at(place));
+        self.disagree = place.is_some_and(|place| place.nowhere > 0.0 && self.fits(place));
         self.doubt = match place {
             Some(place) if self.fits_badly => self.doubt.or(Some(Doubt::new(place))),
             _ => None,
         };
+    }
+
+    /// Lead of the best place over the next hypothesis, "nowhere" included.
+    fn leads_by(&self) -> f64 {
+        self.lead.min(self.over_nowhere)
+    }
+
+    /// Whether a place is doubted for another reason than its score.
+    fn fits(&self, place: &Place) -> bool {
+        place.last >= self.config.least_mean
     }
 
     /// Sees what became of the places at a scan.
@@ -52,7 +62,7 @@ impl Belief {
                 if self.is_checked()
                     && !self.taken_over
                     && !self.fits_badly
-                    && self.lead >= MIN_LEAD
+                    && !self.doubted
                     && !self.may_have_crossed(places.all()) =>
             {
                 TrackState::Unique
@@ -68,8 +78,8 @@ impl Belief {
     fn reason(&self, places: &Places) -> TrackReason {
         let several = self.rivals(places.all()).count() > 1;
         match self.state {
-            TrackState::Unique if self.slipped.is_some() => TrackReason::OdometryJump,
             TrackState::Unique => TrackReason::OnePlace,
+            TrackState::Doubtful if self.disagree => TrackReason::OdometryJump,
             TrackState::Doubtful if self.fits_badly || self.unchecked => TrackReason::PoorFit,
             TrackState::Doubtful if several => TrackReason::SeveralPlaces,
             TrackState::Doubtful => TrackReason::TooEarly,
@@ -106,24 +116,30 @@ impl Belief {
         self.connected_keys += 1;
         self.interrupted &= self.connected_keys < MIN_KEYS;
         let Some(best) = places.all().first() else {
-            (self.place, self.lead) = (None, 0.0);
+            (self.place, self.lead, self.over_nowhere) = (None, 0.0, 0.0);
             return;
         };
         self.lead = lead(places);
+        self.over_nowhere = best.log_weight - places.nowhere();
         if let Some(id) = self.place
             && id != best.id
         {
-            let is_near =
-                |place: &&Place| place.is_within((best.map, best.pose), NEAR_M, f64::INFINITY);
             match places.get(id) {
-                Some(place) if is_near(&place) || place.is_across(best) => {
+                Some(place) if !is_elsewhere(place, best) || place.is_across(best) => {
                     (self.place, self.doubt) = (Some(best.id), None);
                     self.taken_over |= place.map != best.map;
                 }
                 _ => self.lose(TrackReason::AnotherPlace),
             }
         }
+        if self.place.is_some() && self.over_nowhere < 0.0 {
+            self.lose(match self.disagree {
+                true => TrackReason::OdometryJump,
+                false => TrackReason::PoorFit,
+            });
+        }
         self.taken_over &= !self.is_unique(best);
+        self.doubted = self.leads_by() < MIN_LEAD || (self.doubted && !self.is_unique(best));
         if self.place.is_some() {
             let config = &self.config;
             let least =
@@ -174,7 +190,9 @@ impl Belief {
     fn is_enough(&self, mean: f64) -> bool {
         let config = &self.config;
         let lack = (config.sure_mean - mean).max(0.0);
-        self.lead >= config.sure_lead + config.poor_fit_lead * lack && mean >= config.least_mean
+        self.lead >= config.sure_lead + config.poor_fit_lead * lack
+            && self.over_nowhere >= config.sure_lead
+            && mean >= config.least_mean
     }
 
     /// What is to be said; places that are not believed have gone `since_key` since the
@@ -214,16 +232,15 @@ impl Belief {
             map: place.map_or(0, |place| place.map),
             pose: at.map(|(pose, _)| pose),
             covariance: at.map_or(covariance, |(_, covariance)| covariance),
-            probability: probability(self.lead),
+            probability: probability(self.leads_by()),
             score: place.filter(|_| !is_blind).map_or(0.0, |place| place.last),
-            lead: self.lead,
+            lead: self.leads_by(),
             rivals: self.rivals(places.all()).count() as u32,
             maps: self.maps(places.all()),
             apart_m: match apart_m {
                 (near, far) if near <= far => (near, far),
                 _ => (0.0, 0.0),
             },
-            jumped: self.slipped.unwrap_or(0.0),
             since_ns: self.since_ns,
             since_m: self.since_m,
         }

@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Best, GATE, Place, Places, SAME_M, SAME_RADIANS};
 use crate::tracking::belief::Belief;
 use crate::tracking::driven_path::DrivenPath;
-use crate::tracking::limits::NEAR_M;
 use crate::tracking::place::Candidate;
 use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
 
@@ -19,8 +18,9 @@ const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Where it is not known how the robot moved to a scan, it is no farther than by this
-/// speed, metres a second, as far as where odometry slips.
+/// Where it is not known how the robot moved to a scan, it is no farther than this, metres,
+/// and than by this speed, metres a second.
+const NEAR_M: f64 = 1.5;
 const SPEED_M_S: f64 = 1.5;
 
 impl Places {
@@ -101,7 +101,7 @@ impl Places {
             .and_then(|id| self.get(id))
             .map(|p| (p.map, p.predicted.0));
         let is_first = self.key_scans == 0;
-        let near_m = NEAR_M + SPEED_M_S * unknown_s.unwrap_or(0.0);
+        let reach_m = unknown_s.map_or(0.0, |seconds| NEAR_M + SPEED_M_S * seconds);
         for i in 0..self.candidates.len() {
             if self.is_known[i] {
                 continue;
@@ -112,10 +112,15 @@ impl Places {
                 Some(_) if !fits_badly => self.config.newborn_lag_unique,
                 _ => self.config.newborn_lag,
             };
+            // A rival within the ellipse of a hint is as likely as the hint itself.
+            let is_rival = is_first && self.expected.is_some_and(|(pose, covariance)| {
+                squared_deviations(found.pose, pose, &information(&covariance)) < GATE
+            });
             let is_near = tracked.is_some_and(|(tracked_on, pose)| {
-                tracked_on == map && pose.distance_to(found.pose) <= near_m
+                tracked_on == map && pose.distance_to(found.pose) < reach_m
             });
             let lag = match is_near {
+                _ if is_rival => 0.0,
                 true => far.min(self.config.newborn_lag_near),
                 false => far,
             };

@@ -35,8 +35,8 @@ pub(super) fn is_elsewhere(place: &Place, best: &Place) -> bool {
     !place.is_within((best.map, best.pose), DISTINCT_M, DISTINCT_RADIANS)
 }
 
-/// By how much the best place leads over the next that lies elsewhere. A new one is
-/// not the next, unless the best is new itself, or all are of the first key scan.
+/// By how much the best place leads over the next that lies elsewhere. A new one is not the
+/// next, unless the best is new itself, or all are of the first key scan.
 pub(super) fn lead(places: &Places) -> f64 {
     let Some(best) = places.all().first() else {
         return 0.0;
