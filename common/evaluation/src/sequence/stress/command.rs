@@ -139,8 +139,9 @@ fn words(wrong: &Wrong) -> String {
         Some(start) => format!("started at scan {start}"),
         None => "followed from the truth".to_owned(),
     };
-    let off = match wrong.off_m.is_finite() {
-        true => format!("{:.1} m off", wrong.off_m),
+    let (off_m, off_deg) = wrong.off;
+    let off = match off_m.is_finite() {
+        true => format!("{off_m:.1} m and {off_deg:.0}° off"),
         false => "no pose is right".to_owned(),
     };
     format!("{start}, Unique and wrong at scan {}: {off}", wrong.scan)

@@ -15,5 +15,8 @@ mod trial;
 mod variants;
 mod world;
 
+#[cfg(test)]
+mod tests;
+
 pub(super) use command::evaluate;
 pub(super) use variants::Stress;

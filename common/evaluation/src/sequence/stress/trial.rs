@@ -36,8 +36,8 @@ pub(super) struct Wrong {
     /// The scan of the start; `None` while the drive was followed from the truth.
     pub(super) start: Option<usize>,
     pub(super) scan: usize,
-    /// Infinite where no pose is right.
-    pub(super) off_m: f64,
+    /// Metres and degrees; infinite where no pose is right.
+    pub(super) off: (f64, f64),
     /// What was said until then.
     pub(super) moments: Vec<Moment>,
     pub(super) said: Vec<Said>,
@@ -119,17 +119,18 @@ fn judge(
         false => follow::evaluate(world, moments, config, variant.puts_back())?,
     };
     let mut first_wrong = None;
-    if let Some(&(start, scan, off_m)) = starts.wrong.first() {
+    if let Some(&(start, scan, _)) = starts.wrong.first() {
         let mut run = Run::new(world, moments, config);
-        let said: Result<Vec<Said>, _> = (start..=scan)
-            .map(|i| run.take(i, moments[i].moved.filter(|_| i > start)))
-            .collect();
+        let mut said = Vec::new();
+        for i in start..=scan {
+            said.push(run.take(i, moments[i].moved.filter(|_| i > start))?);
+        }
         first_wrong = Some(Wrong {
             start: Some(start),
             scan,
-            off_m,
+            off: said.last().and_then(|said| said.off).unwrap_or_default(),
             moments: moments[start..=scan].to_vec(),
-            said: said?,
+            said,
         });
     } else if let Some(at) = followed.said.iter().position(|(_, said)| said.is_wrong()) {
         let until = &followed.said[..=at];
@@ -137,7 +138,7 @@ fn judge(
         first_wrong = Some(Wrong {
             start: None,
             scan,
-            off_m: said.off.map_or(0.0, |(m, _)| m),
+            off: said.off.unwrap_or_default(),
             moments: moments[first..=scan].to_vec(),
             said: until.iter().map(|&(_, said)| said).collect(),
         });
