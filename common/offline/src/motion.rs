@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use engine::EngineError;
 use engine::joined::{ByOdometry, JoinConfig, Joiner, MotionConfig, Seen};
+use messages::Odometry;
 use recording::{Kind, Recording, RecordingError};
 use ros::lasers;
 
@@ -15,6 +16,7 @@ use crate::OfflineError;
 /// The scans of a recording's lasers, brought to one time.
 pub(crate) struct Motion<'a> {
     recording: &'a Recording,
+    config: JoinConfig,
     joiner: Joiner,
     /// Whether the odometry was read, which only scans that take time need.
     is_read: bool,
@@ -35,7 +37,8 @@ impl<'a> Motion<'a> {
         };
         Motion {
             recording,
-            joiner: Joiner::keeping_all(config),
+            joiner: Joiner::keeping_all(config.clone()),
+            config,
             is_read: false,
             deskews: motion.deskew,
             notes: Vec::new(),
@@ -80,6 +83,13 @@ impl<'a> Motion<'a> {
             )),
         }
         Ok(())
+    }
+
+    /// Forgets all scans, and takes this odometry in place of the recorded one.
+    pub(crate) fn begin_again(&mut self, odometry: &[Odometry]) {
+        self.joiner = Joiner::keeping_all(self.config.clone());
+        odometry.iter().for_each(|one| self.joiner.on_odometry(one));
+        self.is_read = true;
     }
 
     /// Brings what was taken to the time of the scan.

@@ -102,6 +102,15 @@ impl Options {
         self.heading.check().map_err(OfflineError::Usage)
     }
 
+    /// The same options with this map.
+    #[must_use]
+    pub fn with_map(&self, file: &Path) -> Self {
+        Options {
+            map: vec![file.to_owned()],
+            ..self.clone()
+        }
+    }
+
     /// The map that is named, if one is; recordings to be searched are named, too,
     /// for the case that the two were swapped.
     ///

@@ -12,7 +12,7 @@ use engine::peaks::Target;
 use geometry::Pose;
 use index_cache::{CachePlace, IndexCache, Kept, Unsaved};
 use map::OccupancyGrid;
-use messages::UNKNOWN;
+use messages::{Odometry, UNKNOWN};
 use recording::{Recording, RecordingError};
 use transport::with_causes;
 
@@ -270,6 +270,22 @@ impl<'a> Session<'a> {
     /// The recording cannot be read.
     pub fn read_odometry(&mut self) -> Result<(), OfflineError> {
         Ok(self.motion.read_odometry()?)
+    }
+
+    /// Forgets all scans, and takes this odometry in place of the recorded one, for a
+    /// drive that is searched again with something changed.
+    pub fn begin_again(&mut self, odometry: &[Odometry]) {
+        self.motion.begin_again(odometry);
+    }
+
+    /// Where the target frame was by the odometry at a scan, which is taken and not
+    /// searched.
+    ///
+    /// # Errors
+    /// The scan cannot be one of the graph, or the recording cannot be read.
+    pub fn by_odometry(&mut self, scan: &TakenScan) -> Result<Option<ByOdometry>, OfflineError> {
+        self.motion.take(scan)?;
+        Ok(self.motion.by_odometry())
     }
 
     /// What the tracker takes of the scan that was asked for last.

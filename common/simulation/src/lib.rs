@@ -30,6 +30,7 @@ pub use drive::{Drive, Snapshot, Wheels};
 pub use error::SimulationError;
 pub use laser::LaserConfig;
 pub use noise::Noise;
+pub use obstacles::Obstacles;
 pub use odometry::OdometryConfig;
 pub use path::Path;
 pub use sonar::{SonarConfig, TRANSDUCERS_DEG};

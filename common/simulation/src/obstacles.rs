@@ -9,7 +9,7 @@ const OCCUPIED_FROM: u8 = 65;
 
 /// The obstacles of a map. Unknown cells are no obstacles.
 #[derive(Debug)]
-pub(crate) struct Obstacles {
+pub struct Obstacles {
     sides: [i64; 2],
     resolution_m: f64,
     map_from_grid: Pose,
@@ -59,7 +59,9 @@ impl Axis {
 }
 
 impl Obstacles {
-    pub(crate) fn of(map: &OccupancyGrid) -> Self {
+    /// The occupied cells of a map.
+    #[must_use]
+    pub fn of(map: &OccupancyGrid) -> Self {
         let is_occupied = |&cell: &u8| cell >= OCCUPIED_FROM && cell != UNKNOWN;
         Obstacles {
             sides: [map.width.into(), map.height.into()],
@@ -95,7 +97,8 @@ impl Obstacles {
     /// A walk from cell to cell (Amanatides and Woo, A Fast Voxel Traversal
     /// Algorithm for Ray Tracing, 1987); the range is to where the ray enters
     /// the square, up to rounding.
-    pub(crate) fn range(&self, x: f64, y: f64, angle: f64, reach_m: f64) -> Option<f64> {
+    #[must_use]
+    pub fn range(&self, x: f64, y: f64, angle: f64, reach_m: f64) -> Option<f64> {
         let [start_x, start_y] = self.cells(x, y);
         let (sin, cos) = (angle + self.grid_from_map.yaw).sin_cos();
         let (mut along_x, mut along_y) = (Axis::new(start_x, cos), Axis::new(start_y, sin));

@@ -131,6 +131,13 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
         &[("common/evaluation/src/sequence/figures.rs", "Figures")],
     ),
     (
+        "`backcast evaluate --sequence --stress --json`",
+        &[(
+            "common/evaluation/src/sequence/stress/figures.rs",
+            "Figures",
+        )],
+    ),
+    (
         "Of the single scan",
         &[("common/pose_table/src/line.rs", "Line")],
     ),

@@ -33,7 +33,7 @@ Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wr
 pub struct Config {
     /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or
     /// bags of rosbag2 (their folders, or .db3)
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "stress", value_name = "FILE")]
     bags: Vec<PathBuf>,
 
     /// Print JSON, an object a file
@@ -70,10 +70,16 @@ fn radius(text: &str) -> Result<f64, String> {
 /// written.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
+    let mut bags = config.bags.clone();
+    bags.splice(0..0, config.sequence.stressed_file());
+    if bags.is_empty() {
+        let usage = "--stress needs a recording".to_owned();
+        return Err(OfflineError::Usage(usage).into());
+    }
     let map = config.options.load_map(&config.bags)?;
     if config.sequence.sequence {
         let how = (&config.options, &config.sequence);
-        return sequence::evaluate(&config.bags, config.json, map.as_ref(), how);
+        return sequence::evaluate(&bags, config.json, map.as_ref(), how);
     }
     let table = Table::of(&config.bags);
     let mut code = ExitCode::SUCCESS;

@@ -12,7 +12,7 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
-use super::{SequenceOptions, course, drive, follow, jumps, outages, starts};
+use super::{SequenceOptions, course, drive, follow, jumps, outages, starts, stress};
 use crate::EvaluationError;
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on
@@ -26,11 +26,24 @@ pub(crate) fn evaluate(
     map: Option<&OccupancyGrid>,
     (options, sequence): (&Options, &SequenceOptions),
 ) -> Result<ExitCode, EvaluationError> {
+    if let Some(stress) = &sequence.stress {
+        let how = (options, sequence);
+        return stress::evaluate(bags, json, map, how, stress);
+    }
     let mut code = ExitCode::SUCCESS;
     for bag in bags {
         match one(bag, map, options, sequence) {
-            Ok(figures) if json => stdout::print(&format!("{}\n", figures.json()))?,
-            Ok(figures) => stdout::print(&figures.text())?,
+            Ok(figures) => {
+                let line = match json {
+                    true => format!("{}\n", figures.json()),
+                    false => figures.text(),
+                };
+                stdout::print(&line)?;
+                for missed in sequence.limits.missed(&figures.reached(), true) {
+                    say(&format!("{}: {missed}", bag.display()));
+                    code = ExitCode::FAILURE;
+                }
+            }
             Err(error) => {
                 say(&transport::with_causes(&error));
                 code = ExitCode::FAILURE;
@@ -65,7 +78,7 @@ fn one(
     show(&session, (&moments, &said), (options, sequence), bag)?;
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
-    let followed = follow::evaluate(world, &moments, config)?;
+    let followed = follow::evaluate(world, &moments, config, true)?;
     let chosen = jumps::choose(&moments, sequence.kidnaps);
     let jumps = jumps::evaluate(world, &moments, &chosen, config)?;
     let chosen = outages::choose(&moments, sequence.outages);

@@ -1,31 +1,36 @@
 //! A drive: everything the tracker takes of its scans, read and searched once.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use engine::fit::Ends;
 use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, Session, View};
+use offline::{Accepted, Session, TakenScan, View};
 use progress::Progress;
 use recording::GroundTruth;
 
 use super::SequenceOptions;
 use crate::EvaluationError;
 
-/// One scan of a drive.
+/// One scan of a drive. What a search cost to find is shared by copies.
+#[derive(Clone)]
 pub(super) struct Moment {
     pub(super) stamp_ns: i64,
     /// The first laser's true pose in the map, if that is known.
     pub(super) truth: Option<Pose>,
-    pub(super) view: View,
+    /// Whether no pose is right, as on another building's map.
+    pub(super) is_nowhere: bool,
+    pub(super) view: Arc<View>,
+    pub(super) by_odometry: Option<ByOdometry>,
     /// How the target frame moved since the moment before.
     pub(super) moved: Option<Pose>,
     /// Metres along the drive until here.
     pub(super) gone_m: f64,
     /// What a search finds.
-    pub(super) found: Vec<Candidate>,
+    pub(super) found: Arc<[Candidate]>,
     /// Milliseconds of computing that the search took.
     pub(super) search_ms: f64,
 }
@@ -38,6 +43,15 @@ impl Moment {
     /// The pose of the first laser where the tracker has the target frame.
     pub(super) fn laser(&self, map_from_target: Pose) -> Pose {
         self.view.target.laser(map_from_target)
+    }
+
+    /// Metres and degrees from the truth, where that is known.
+    pub(super) fn off(&self, pose: Pose) -> Option<(f64, f64)> {
+        if self.is_nowhere {
+            return Some((f64::INFINITY, 180.0));
+        }
+        let truth = self.truth?;
+        Some((pose.distance_to(truth), pose.angle_to(truth).to_degrees()))
     }
 }
 
@@ -57,40 +71,58 @@ pub(super) fn read(
     let mut number = 0;
     while let Some(scan) = session.scans.next() {
         let scan = scan?;
-        let reply = session.ask(&scan)?;
-        accepted.count(&reply);
-        let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
-        let hypotheses = reply.answer.map(|answer| {
-            let target = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
-            answer.places.places.iter().map(target).collect::<Vec<_>>()
-        });
+        let truth = truths.get(&scan.stamp_ns).map(|truth| truth.pose);
+        let truth = truth.filter(|_| !ignored.contains(&number));
+        number += 1;
+        moments.extend(search(session, &scan, truth, accepted)?);
         for note in session.take_notes() {
             progress.say(&note);
         }
         progress.step();
-        let truth = truths.get(&scan.stamp_ns).map(|truth| truth.pose);
-        let truth = truth.filter(|_| !ignored.contains(&number));
-        number += 1;
-        let Ok(hypotheses) = hypotheses else { continue };
-        let view = session.view(&scan)?;
-        let mut found = Vec::new();
-        Candidate::fill(
-            &mut found,
-            hypotheses.iter().map(|found| (0, found)),
-            view.target,
-        );
-        moments.push(Moment {
-            stamp_ns: scan.stamp_ns,
-            truth,
-            found,
-            search_ms,
-            moved: None,
-            gone_m: 0.0,
-            view,
-        });
     }
-    connect(&mut moments, options);
+    connect(
+        &mut moments,
+        (options.without_odometry, options.odometry_noise),
+    );
+    measure(&mut moments);
     Ok(moments)
+}
+
+/// Searches one scan; `None` where it is refused.
+///
+/// # Errors
+/// The clock fails.
+pub(super) fn search(
+    session: &mut Session<'_>,
+    scan: &TakenScan,
+    truth: Option<Pose>,
+    accepted: &mut Accepted,
+) -> Result<Option<Moment>, EvaluationError> {
+    let reply = session.ask(scan)?;
+    accepted.count(&reply);
+    let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
+    let hypotheses = reply.answer.map(|answer| {
+        let target = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
+        answer.places.places.iter().map(target).collect::<Vec<_>>()
+    });
+    let Ok(hypotheses) = hypotheses else {
+        return Ok(None);
+    };
+    let view = session.view(scan)?;
+    let mut found = Vec::new();
+    let hypotheses = hypotheses.iter().map(|found| (0, found));
+    Candidate::fill(&mut found, hypotheses, view.target);
+    Ok(Some(Moment {
+        stamp_ns: scan.stamp_ns,
+        truth,
+        is_nowhere: false,
+        found: found.into(),
+        search_ms,
+        by_odometry: view.by_odometry,
+        moved: None,
+        gone_m: 0.0,
+        view: Arc::new(view),
+    }))
 }
 
 /// Places of the first laser stay what they are; as messages, scores have 32 bits, as in
@@ -99,23 +131,34 @@ fn of_laser() -> Target {
     Target::of(None, false)
 }
 
-/// Fills in how the moments follow each other.
-fn connect(moments: &mut [Moment], options: &SequenceOptions) {
+/// Fills in how the target frame moved from each moment to the next: not at all known
+/// without odometry, else by it, with an error this many times as large.
+pub(super) fn connect(moments: &mut [Moment], (without_odometry, noise): (bool, f64)) {
     for i in 1..moments.len() {
-        let (before, now) = (&moments[i - 1], &moments[i]);
-        let by_odometry = ByOdometry::between(before.view.by_odometry, now.view.by_odometry);
-        let truly = before.truth.zip(now.truth).map(|(a, b)| {
-            let target = |laser| now.view.target.from_laser(laser);
-            target(a).inverse().then(target(b))
-        });
-        let step = by_odometry
-            .or(truly)
-            .map_or(0.0, |step| step.x.hypot(step.y));
-        let moved = by_odometry.filter(|_| !options.without_odometry);
-        let moved = moved.map(|step| worsened(step, truly, options.odometry_noise));
-        let gone_m = before.gone_m + step;
-        (moments[i].moved, moments[i].gone_m) = (moved, gone_m);
+        let (by_odometry, truly) = steps(&moments[i - 1], &moments[i]);
+        let moved = by_odometry.filter(|_| !without_odometry);
+        moments[i].moved = moved.map(|step| worsened(step, truly, noise));
     }
+}
+
+/// Fills in how far the robot went, by its odometry or else by the truth.
+pub(super) fn measure(moments: &mut [Moment]) {
+    for i in 1..moments.len() {
+        let (by_odometry, truly) = steps(&moments[i - 1], &moments[i]);
+        let step = by_odometry.or(truly);
+        let gone = step.map_or(0.0, |step| step.x.hypot(step.y));
+        moments[i].gone_m = moments[i - 1].gone_m + gone;
+    }
+}
+
+/// From a moment to the next, by the odometry and by the truth.
+fn steps(before: &Moment, now: &Moment) -> (Option<Pose>, Option<Pose>) {
+    let truly = before.truth.zip(now.truth).map(|(a, b)| {
+        let target = |laser| now.view.target.from_laser(laser);
+        target(a).inverse().then(target(b))
+    });
+    let by_odometry = ByOdometry::between(before.by_odometry, now.by_odometry);
+    (by_odometry, truly)
 }
 
 /// A step whose error is this many times as large.

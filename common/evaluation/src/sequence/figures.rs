@@ -6,6 +6,7 @@ use statistics::Distribution;
 use super::errors::{Errors, Spread};
 use super::follow::Followed;
 use super::jumps::Jumps;
+use super::limits::Reached;
 use super::outages::Outages;
 use super::starts::Starts;
 
@@ -17,6 +18,8 @@ pub(super) struct Figures {
     pub(super) right: After,
     pub(super) not_yet: After,
     pub(super) wrong_starts: u64,
+    /// Scans that were Unique and wrong, after all starts and while followed.
+    pub(super) wrong_scans: u64,
     pub(super) losses: usize,
     pub(super) rms_m: Option<f64>,
     pub(super) rms_deg: Option<f64>,
@@ -99,6 +102,7 @@ impl Figures {
             right: after(starts.right, starts.judged),
             not_yet: after(starts.not_yet, starts.judged),
             wrong_starts: starts.wrong.len() as u64,
+            wrong_scans: starts.tally.with(followed.tally).wrong,
             losses: followed.losses.len(),
             rms_m: followed.rms_m,
             rms_deg: followed.rms_deg,
@@ -117,6 +121,16 @@ impl Figures {
             searched_share: share(starts.searches, starts.scans),
             cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),
             cpu_ms_searching: Times::of(searching_ms),
+        }
+    }
+
+    /// What limits are for.
+    pub(super) fn reached(&self) -> Reached {
+        Reached {
+            wrong_starts: self.wrong_starts,
+            wrong_scans: self.wrong_scans,
+            losses: self.losses as u64,
+            rms_m: self.rms_m,
         }
     }
 

@@ -5,7 +5,7 @@ use geometry::Covariance;
 use offline::World;
 
 use super::drive::Moment;
-use super::run::{Run, Said};
+use super::run::{Run, Said, Tally};
 use crate::EvaluationError;
 
 /// Off by more than this for this many truths in a row, metres and degrees, the robot is
@@ -18,6 +18,7 @@ const LOSS_TRUTHS: u32 = 3;
 pub(super) struct Followed {
     /// Of each moment from the first truth on.
     pub(super) said: Vec<(usize, Said)>,
+    pub(super) tally: Tally,
     /// Where it was lost.
     pub(super) losses: Vec<usize>,
     pub(super) rms_m: Option<f64>,
@@ -32,11 +33,13 @@ pub(super) struct Followed {
     pub(super) tracking_ms: Vec<f64>,
 }
 
-/// Follows the drive.
+/// Follows the drive. A robot that is lost is put back to the truth, or is left to find
+/// itself again, and then no loss is counted.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     config: FollowConfig,
+    puts_back: bool,
 ) -> Result<Followed, EvaluationError> {
     let mut all = Followed::default();
     let first = moments.iter().position(|moment| moment.truth.is_some());
@@ -54,8 +57,10 @@ pub(super) fn evaluate(
             Some(false) => 0,
             None => off_for,
         };
+        all.tally.add(moment, &said);
         all.said.push((index, said));
-        if off_for == LOSS_TRUTHS
+        if puts_back
+            && off_for == LOSS_TRUTHS
             && let Some(truth) = moment.truth
         {
             all.losses.push(index);

@@ -10,10 +10,12 @@ mod figures;
 mod follow;
 mod interruption;
 mod jumps;
+mod limits;
 mod options;
 mod outages;
 mod run;
 mod starts;
+mod stress;
 
 pub(crate) use command::evaluate;
 pub(crate) use options::SequenceOptions;

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use engine::tracking::FollowConfig;
 
+use super::limits::SequenceLimits;
+use super::stress::Stress;
+
 /// Further options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sequences")]
@@ -46,8 +49,36 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
 
+    /// Evaluate variants of each drive in place of the drive: map, scans, odometry or motion
+    /// are changed in memory. Names with commas between them, or of the groups map, laser,
+    /// odometry and motion
+    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = "all", requires = "sequence", conflicts_with_all = ["without_odometry", "odometry_noise"])]
+    pub stress: Option<Stress>,
+
+    /// Seed of the variants
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "stress")]
+    pub seed: u64,
+
+    /// The map of another building, a YAML file or a recording, for the variant map-other
+    /// [default: in the next recording]
+    #[arg(long, value_name = "FILE", requires = "stress")]
+    pub other_map: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub limits: SequenceLimits,
+
     #[command(flatten)]
     pub follow: FollowConfig,
+}
+
+impl SequenceOptions {
+    /// The recording that stands where the list of `--stress` may stand.
+    pub(crate) fn stressed_file(&self) -> Option<PathBuf> {
+        match &self.stress {
+            Some(Stress::AllOf(file)) => Some(file.clone()),
+            _ => None,
+        }
+    }
 }
 
 fn parse_factor(text: &str) -> Result<f64, String> {

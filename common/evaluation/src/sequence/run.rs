@@ -30,6 +30,33 @@ pub(super) struct Said {
     pub(super) off: Option<(f64, f64)>,
 }
 
+/// Scans whose truth is known.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    pub(super) scans: u64,
+    /// Those of them that were Unique, and those of these that were wrong.
+    pub(super) unique: u64,
+    pub(super) wrong: u64,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, moment: &Moment, said: &Said) {
+        let is_judged = moment.is_nowhere || moment.truth.is_some();
+        self.scans += u64::from(is_judged);
+        self.unique += u64::from(is_judged && said.is_unique());
+        self.wrong += u64::from(said.is_wrong());
+    }
+
+    /// Of both.
+    pub(super) fn with(self, other: Self) -> Self {
+        Tally {
+            scans: self.scans + other.scans,
+            unique: self.unique + other.unique,
+            wrong: self.wrong + other.wrong,
+        }
+    }
+}
+
 /// Off by more than this, metres and degrees, is wrong; off by less than the other is
 /// right.
 pub(super) const WRONG: (f64, f64) = (1.0, 25.0);
@@ -136,9 +163,7 @@ impl<'a> Run<'a> {
         }
         let report = self.tracker.report();
         let pose = report.pose.map(|pose| moment.laser(pose));
-        let off = pose
-            .zip(moment.truth)
-            .map(|(pose, truth)| (pose.distance_to(truth), pose.angle_to(truth).to_degrees()));
+        let off = pose.and_then(|pose| moment.off(pose));
         Ok(Said { report, pose, off })
     }
 }

@@ -4,7 +4,7 @@ use engine::tracking::{FollowConfig, MIN_BEAMS};
 use offline::World;
 
 use super::drive::Moment;
-use super::run::{Run, Said};
+use super::run::{Run, Said, Tally};
 use crate::EvaluationError;
 
 /// Metres after which a start is judged.
@@ -28,6 +28,7 @@ pub(super) struct Starts {
     /// Starts with a pose that was Unique and wrong at any time: the scan of the start,
     /// that of the first such pose, and how far it was off, metres.
     pub(super) wrong: Vec<(usize, usize, f64)>,
+    pub(super) tally: Tally,
     pub(super) scans: u64,
     pub(super) searches: u64,
 }
@@ -69,6 +70,7 @@ pub(super) fn evaluate(
             }
             let moved = moments[index].moved.filter(|_| index > start);
             let said = run.take(index, moved)?;
+            all.tally.add(&moments[index], &said);
             if said.is_wrong() && !is_wrong {
                 is_wrong = true;
                 all.wrong

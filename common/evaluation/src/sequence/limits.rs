@@ -1,0 +1,101 @@
+//! What the figures of a drive must reach, for whoever lets a build fail by them. Pure.
+
+/// What each drive, and each variant of it, must reach; nothing by default.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Requirements of sequences: exit code 1 if a drive misses one")]
+pub(crate) struct SequenceLimits {
+    /// Most starts that are Unique and wrong at any time
+    #[arg(long, value_name = "COUNT", requires = "sequence")]
+    max_wrong_starts: Option<u64>,
+
+    /// Most scans that are Unique and wrong, after all starts and while followed
+    #[arg(long, value_name = "COUNT", requires = "sequence")]
+    max_wrong_scans: Option<u64>,
+
+    /// Most losses while the drive is followed
+    #[arg(long, value_name = "COUNT", requires = "sequence")]
+    max_losses: Option<u64>,
+
+    /// Largest root mean square of the distance from the truth while the drive is
+    /// followed, centimetres
+    #[arg(long, value_name = "CM", requires = "sequence", value_parser = above_zero)]
+    max_rms_cm: Option<f64>,
+}
+
+/// What a drive reached.
+pub(super) struct Reached {
+    pub(super) wrong_starts: u64,
+    pub(super) wrong_scans: u64,
+    pub(super) losses: u64,
+    pub(super) rms_m: Option<f64>,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|n: &f64| n.is_finite() && *n > 0.0);
+    number.ok_or_else(|| "allowed are numbers above 0".to_owned())
+}
+
+impl SequenceLimits {
+    /// What the drive misses, a sentence each. An RMS that is needed and not known is
+    /// missed too.
+    pub(super) fn missed(&self, found: &Reached, needs_rms: bool) -> Vec<String> {
+        let counts = [
+            ("wrong-starts", found.wrong_starts, self.max_wrong_starts),
+            ("wrong-scans", found.wrong_scans, self.max_wrong_scans),
+            ("losses", found.losses, self.max_losses),
+        ];
+        let over = counts.into_iter().filter_map(|(name, count, most)| {
+            let most = most.filter(|&most| count > most)?;
+            Some(format!(
+                "{} are {count}, --max-{name} {most}",
+                name.replace('-', " ")
+            ))
+        });
+        let mut missed: Vec<String> = over.collect();
+        if let Some(most) = self.max_rms_cm
+            && needs_rms
+            && found.rms_m.is_none_or(|m| 100.0 * m > most)
+        {
+            let found = found
+                .rms_m
+                .map_or("not known".to_owned(), |m| format!("{:.1} cm", 100.0 * m));
+            missed.push(format!("the RMS is {found}, --max-rms-cm {most}"));
+        }
+        missed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_limit_is_missed_by_more_than_it_allows() {
+        let limits = SequenceLimits {
+            max_wrong_starts: Some(1),
+            max_wrong_scans: Some(10),
+            max_losses: Some(0),
+            max_rms_cm: Some(5.0),
+        };
+        let mut found = Reached {
+            wrong_starts: 1,
+            wrong_scans: 10,
+            losses: 0,
+            rms_m: Some(0.05),
+        };
+        assert!(limits.missed(&found, true).is_empty());
+        found = Reached {
+            wrong_starts: 2,
+            wrong_scans: 11,
+            losses: 1,
+            rms_m: None,
+        };
+        let missed = limits.missed(&found, true).join(";");
+        for option in ["wrong-starts 1", "wrong-scans 10", "losses 0", "rms-cm 5"] {
+            assert!(missed.contains(option), "{missed}");
+        }
+        assert_eq!(limits.missed(&found, false).len(), 3);
+        assert!(SequenceLimits::default().missed(&found, true).is_empty());
+    }
+}

@@ -1,0 +1,170 @@
+//! Goes through the variants of each drive, and prints.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use ::map::OccupancyGrid;
+use command_line::stdout;
+use offline::{Accepted, OfflineError, Options, Session, damage_of, map_in};
+use plots::{PlotError, draw_drive};
+use progress::{Progress, say};
+
+use super::super::limits::Reached;
+use super::super::{SequenceOptions, course, drive};
+use super::figures::Figures;
+use super::material::Material;
+use super::trial::{Recorded, Trial, Wrong};
+use super::variants::{Stress, Variant};
+use crate::EvaluationError;
+
+/// Evaluates the variants of one file after another. A file that cannot be evaluated is
+/// reported on standard error, and the next one follows.
+///
+/// # Errors
+/// The other map cannot be read, or output cannot be written.
+pub(in super::super) fn evaluate(
+    bags: &[PathBuf],
+    json: bool,
+    map: Option<&OccupancyGrid>,
+    (options, sequence): (&Options, &SequenceOptions),
+    stress: &Stress,
+) -> Result<ExitCode, EvaluationError> {
+    let variants = stress.variants();
+    let mut code = ExitCode::SUCCESS;
+    for (i, bag) in bags.iter().enumerate() {
+        let next = (bags.len() > 1).then(|| &bags[(i + 1) % bags.len()]);
+        let other = sequence.other_map.as_ref().or(next);
+        let other = other
+            .map(|file| options.with_map(file).load_map(&[]))
+            .transpose()?;
+        let maps = (map, other.flatten());
+        match one(
+            bag,
+            json,
+            (maps.0, maps.1.as_ref()),
+            (options, sequence),
+            &variants,
+        ) {
+            Ok(true) => {}
+            Ok(false) => code = ExitCode::FAILURE,
+            Err(error @ EvaluationError::Output(_)) => return Err(error),
+            Err(error) => {
+                say(&transport::with_causes(&error));
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+/// Whether the file misses no requirement.
+fn one(
+    bag: &Path,
+    json: bool,
+    (map, other_map): (Option<&OccupancyGrid>, Option<&OccupancyGrid>),
+    (options, sequence): (&Options, &SequenceOptions),
+    variants: &[&'static Variant],
+) -> Result<bool, EvaluationError> {
+    let recording = options.open(&[bag.to_owned()])?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        return Err(OfflineError::NoTruths { file: bag.into() }.into());
+    }
+    let map = map.cloned().map_or_else(|| map_in(&recording), Ok)?;
+    let ignored = sequence.ignore_truth.iter().copied().collect();
+    let mut session = Session::open(&recording, options, Some(&map))?;
+    let known = (&truths, &ignored);
+    let mut material = Material::read(&recording, &mut session, map.clone(), known)?;
+    let name = bag.display().to_string();
+    let progress = Progress::new(&name, (variants.len() * material.steps.len()) as u64);
+    let mut accepted = Accepted::default();
+    let mut moments = material.search(&mut session, (&progress, &mut accepted))?;
+    accepted.check(bag)?;
+    drive::measure(&mut moments);
+    material.measure(&moments);
+    let recorded = Recorded {
+        recording: &recording,
+        options,
+        material: &material,
+        moments: &moments,
+        progress: &progress,
+    };
+    let mut is_reached = true;
+    if !json {
+        stdout::print(&format!("{name}\n{}", Figures::header()))?;
+    }
+    for variant in variants {
+        let means = variant.means(sequence.seed, other_map);
+        let how = (sequence.starts, sequence.follow);
+        let trial = match recorded.judge(&mut session, variant, means, how)? {
+            Ok(trial) => trial,
+            Err(reason) => {
+                progress.say(&format!("{name}: {} is left out: {reason}", variant.name));
+                continue;
+            }
+        };
+        let figures = Figures::new((name.clone(), variant.name), &trial.starts, &trial.followed);
+        let line = match json {
+            true => format!("{}\n", figures.json()),
+            false => figures.row(),
+        };
+        stdout::print(&line)?;
+        if let Some(wrong) = &trial.first_wrong {
+            progress.say(&format!("{name}: {}: {}", variant.name, words(wrong)));
+            if let Some(folder) = &sequence.pictures {
+                picture(folder, (bag, variant.name), (&trial, wrong), options)?;
+            }
+        }
+        let reached = Reached {
+            wrong_starts: figures.wrong_starts,
+            wrong_scans: figures.wrong_scans,
+            losses: figures.losses,
+            rms_m: figures.rms_m,
+        };
+        // On a map where no pose is right there is nothing to follow.
+        let needs_rms = !trial.followed.said.is_empty();
+        for missed in sequence.limits.missed(&reached, needs_rms) {
+            progress.say(&format!("{name}: {}: {missed}", variant.name));
+            is_reached = false;
+        }
+    }
+    Ok(is_reached)
+}
+
+fn words(wrong: &Wrong) -> String {
+    let start = match wrong.start {
+        Some(start) => format!("started at scan {start}"),
+        None => "followed from the truth".to_owned(),
+    };
+    let (off_m, off_deg) = wrong.off;
+    let off = match off_m.is_finite() {
+        true => format!("{off_m:.1} m and {off_deg:.0}° off"),
+        false => "no pose is right".to_owned(),
+    };
+    format!("{start}, Unique and wrong at scan {}: {off}", wrong.scan)
+}
+
+/// Draws the drive until the first wrong moment.
+fn picture(
+    folder: &Path,
+    (bag, variant): (&Path, &str),
+    (trial, wrong): (&Trial, &Wrong),
+    options: &Options,
+) -> Result<(), EvaluationError> {
+    let name = bag.file_stem().unwrap_or_default().to_string_lossy();
+    let stops = course::stops(&wrong.moments, &wrong.said);
+    let title = format!("{name}, {variant}");
+    let scene = draw_drive(
+        &trial.map,
+        options.engine.cells,
+        &stops,
+        (title, words(wrong)),
+    )?;
+    let file = folder.join(format!("{name}_{variant}.png"));
+    let picture = drawing::to_png(&scene).map_err(PlotError::from)?;
+    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })?;
+    Ok(())
+}

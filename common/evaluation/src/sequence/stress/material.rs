@@ -1,0 +1,151 @@
+//! A drive in memory, before it is searched. Variants change a copy of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use ::map::OccupancyGrid;
+use geometry::Pose;
+use messages::Odometry;
+use offline::{Accepted, Session, TakenScan, each_odometry};
+use progress::Progress;
+use recording::{GroundTruth, Kind, Recording};
+
+use super::super::drive::{self, Moment};
+use crate::EvaluationError;
+
+/// A map, and all that a robot measured on it.
+#[derive(Clone)]
+pub(super) struct Material {
+    pub(super) map: OccupancyGrid,
+    pub(super) steps: Vec<Step>,
+    pub(super) odometry: Vec<Odometry>,
+    /// Whether no pose is right.
+    pub(super) is_nowhere: bool,
+    /// Starts lie within so many metres of the drive's beginning.
+    pub(super) starts_until_m: f64,
+}
+
+/// A scan and where it was taken.
+#[derive(Clone)]
+pub(super) struct Step {
+    pub(super) scan: TakenScan,
+    pub(super) truth: Option<Pose>,
+    /// The truth, or between those before and after it.
+    pub(super) map_from_laser: Pose,
+    /// Metres along the drive until here.
+    pub(super) gone_m: f64,
+}
+
+impl Material {
+    /// Reads a recording, and the scans of its session, on a map.
+    ///
+    /// # Errors
+    /// The recording cannot be read.
+    pub(super) fn read(
+        recording: &Recording,
+        session: &mut Session<'_>,
+        map: OccupancyGrid,
+        (truths, ignored): (&BTreeMap<i64, GroundTruth>, &BTreeSet<u64>),
+    ) -> Result<Self, EvaluationError> {
+        let mut odometry = Vec::new();
+        // As a session does: where several channels could be meant, none is.
+        if let Ok(Some(topic)) = recording.topic(Kind::Odometry) {
+            each_odometry(recording, &topic, |one| odometry.push(*one))?;
+        }
+        let mut steps = Vec::new();
+        for (number, scan) in (0..).zip(session.scans.by_ref()) {
+            let scan = scan?;
+            let truth = truths.get(&scan.stamp_ns).map(|truth| truth.pose);
+            steps.push(Step {
+                truth: truth.filter(|_| !ignored.contains(&number)),
+                map_from_laser: between(truths, scan.stamp_ns),
+                gone_m: 0.0,
+                scan,
+            });
+        }
+        Ok(Material {
+            map,
+            steps,
+            odometry,
+            is_nowhere: false,
+            starts_until_m: f64::INFINITY,
+        })
+    }
+
+    /// Searches all scans.
+    ///
+    /// # Errors
+    /// The clock fails.
+    pub(super) fn search(
+        &self,
+        session: &mut Session<'_>,
+        (progress, accepted): (&Progress, &mut Accepted),
+    ) -> Result<Vec<Moment>, EvaluationError> {
+        session.begin_again(&self.odometry);
+        let mut moments = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            let moment = drive::search(session, &step.scan, step.truth, accepted)?;
+            moments.extend(moment.map(|moment| Moment {
+                gone_m: step.gone_m,
+                is_nowhere: self.is_nowhere,
+                ..moment
+            }));
+            for note in session.take_notes() {
+                progress.say(&note);
+            }
+            progress.step();
+        }
+        drive::connect(&mut moments, (false, 1.0));
+        Ok(moments)
+    }
+
+    /// Moments that were searched before, with this odometry.
+    ///
+    /// # Errors
+    /// The recording cannot be read.
+    pub(super) fn with_odometry(
+        &self,
+        session: &mut Session<'_>,
+        moments: &[Moment],
+    ) -> Result<Vec<Moment>, EvaluationError> {
+        session.begin_again(&self.odometry);
+        let mut moments = moments.to_vec();
+        let mut left = moments.iter_mut().peekable();
+        for step in &self.steps {
+            let by_odometry = session.by_odometry(&step.scan)?;
+            // A scan that was refused has no moment.
+            if let Some(moment) = left.next_if(|moment| moment.stamp_ns == step.scan.stamp_ns) {
+                moment.by_odometry = by_odometry;
+            }
+        }
+        drive::connect(&mut moments, (false, 1.0));
+        Ok(moments)
+    }
+
+    /// Notes how far the robot had gone at each scan.
+    pub(super) fn measure(&mut self, moments: &[Moment]) {
+        for step in &mut self.steps {
+            let stamp_ns = step.scan.stamp_ns;
+            let after = moments.partition_point(|moment| moment.stamp_ns <= stamp_ns);
+            step.gone_m = after.checked_sub(1).map_or(0.0, |i| moments[i].gone_m);
+        }
+    }
+
+    /// Metres from the first scan to the last.
+    pub(super) fn length_m(&self) -> f64 {
+        self.steps.last().map_or(0.0, |last| last.gone_m)
+    }
+}
+
+/// The true pose at a time, between those that are known.
+fn between(truths: &BTreeMap<i64, GroundTruth>, stamp_ns: i64) -> Pose {
+    let before = truths.range(..=stamp_ns).next_back();
+    let after = truths.range(stamp_ns..).next();
+    match (before, after) {
+        (Some((from_ns, from)), Some((to_ns, to))) if to_ns > from_ns => {
+            let share = (stamp_ns - from_ns) as f64 / (to_ns - from_ns) as f64;
+            from.pose.towards(to.pose, share)
+        }
+        (Some((_, truth)), _) | (None, Some((_, truth))) => truth.pose,
+        (None, None) => Pose::IDENTITY,
+    }
+}

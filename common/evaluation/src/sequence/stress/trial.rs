@@ -1,0 +1,152 @@
+//! One variant of a drive, made and judged.
+
+use engine::tracking::FollowConfig;
+use offline::{Accepted, Options, Session, World};
+use progress::Progress;
+use recording::Recording;
+
+use super::super::drive::Moment;
+use super::super::follow::{self, Followed};
+use super::super::run::{Run, Said};
+use super::super::starts::{self, Starts};
+use super::material::Material;
+use super::variants::{Change, Means, Variant, Way};
+use crate::EvaluationError;
+
+/// A drive that has been read and searched as it was recorded.
+pub(super) struct Recorded<'a> {
+    pub(super) recording: &'a Recording,
+    pub(super) options: &'a Options,
+    pub(super) material: &'a Material,
+    pub(super) moments: &'a [Moment],
+    pub(super) progress: &'a Progress,
+}
+
+/// A variant as it was judged.
+pub(super) struct Trial {
+    pub(super) starts: Starts,
+    pub(super) followed: Followed,
+    pub(super) first_wrong: Option<Wrong>,
+    /// The map that was searched.
+    pub(super) map: ::map::OccupancyGrid,
+}
+
+/// The first moment that was Unique and wrong.
+pub(super) struct Wrong {
+    /// The scan of the start; `None` while the drive was followed from the truth.
+    pub(super) start: Option<usize>,
+    pub(super) scan: usize,
+    /// Metres and degrees; infinite where no pose is right.
+    pub(super) off: (f64, f64),
+    /// What was said until then.
+    pub(super) moments: Vec<Moment>,
+    pub(super) said: Vec<Said>,
+}
+
+impl Recorded<'_> {
+    /// Makes a variant and judges it; or why it says nothing.
+    ///
+    /// # Errors
+    /// The changed map cannot be used, or the clock fails.
+    pub(super) fn judge(
+        &self,
+        session: &mut Session<'_>,
+        variant: &Variant,
+        mut means: Means<'_>,
+        (count, config): (u32, FollowConfig),
+    ) -> Result<Change<Trial>, EvaluationError> {
+        let mut material = self.material.clone();
+        let mut moments = self.moments.to_vec();
+        let changed = match variant.way {
+            Way::Undisturbed => Ok(()),
+            Way::Drive(change) => change(&mut material, &mut means),
+            Way::Odometry(change) => {
+                change(&mut material.odometry);
+                moments = material.with_odometry(session, &moments)?;
+                Ok(())
+            }
+            Way::Moments(change) => change(&mut moments),
+        };
+        if let Err(reason) = changed {
+            return Ok(Err(reason));
+        }
+        if !matches!(variant.way, Way::Drive(_)) {
+            return judge(
+                session.world()?,
+                variant,
+                (&material, &moments),
+                (count, config),
+            )
+            .map(Ok);
+        }
+        let mut accepted = Accepted::default();
+        let how = (self.progress, &mut accepted);
+        if material.map == self.material.map {
+            moments = material.search(session, how)?;
+            return judge(
+                session.world()?,
+                variant,
+                (&material, &moments),
+                (count, config),
+            )
+            .map(Ok);
+        }
+        let map = material.map.clone();
+        let mut session = Session::open(self.recording, self.options, Some(&map))?;
+        moments = material.search(&mut session, how)?;
+        judge(
+            session.world()?,
+            variant,
+            (&material, &moments),
+            (count, config),
+        )
+        .map(Ok)
+    }
+}
+
+fn judge(
+    world: &World,
+    variant: &Variant,
+    (material, moments): (&Material, &[Moment]),
+    (count, config): (u32, FollowConfig),
+) -> Result<Trial, EvaluationError> {
+    let within = moments.partition_point(|moment| moment.gone_m <= material.starts_until_m);
+    let chosen = starts::choose(&moments[..within], count);
+    let starts = starts::evaluate(world, moments, &chosen, config)?;
+    let followed = match material.is_nowhere {
+        // There is no truth to begin with.
+        true => Followed::default(),
+        false => follow::evaluate(world, moments, config, variant.puts_back())?,
+    };
+    let mut first_wrong = None;
+    if let Some(&(start, scan, _)) = starts.wrong.first() {
+        let mut run = Run::new(world, moments, config);
+        let mut said = Vec::new();
+        for i in start..=scan {
+            said.push(run.take(i, moments[i].moved.filter(|_| i > start))?);
+        }
+        first_wrong = Some(Wrong {
+            start: Some(start),
+            scan,
+            off: said.last().and_then(|said| said.off).unwrap_or_default(),
+            moments: moments[start..=scan].to_vec(),
+            said,
+        });
+    } else if let Some(at) = followed.said.iter().position(|(_, said)| said.is_wrong()) {
+        let until = &followed.said[..=at];
+        let (first, (scan, said)) = (until[0].0, until[at]);
+        first_wrong = Some(Wrong {
+            start: None,
+            scan,
+            off: said.off.unwrap_or_default(),
+            moments: moments[first..=scan].to_vec(),
+            said: until.iter().map(|&(_, said)| said).collect(),
+        });
+    }
+    Ok(Trial {
+        starts,
+        followed,
+        first_wrong,
+        map: material.map.clone(),
+    })
+}
