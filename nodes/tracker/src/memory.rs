@@ -5,8 +5,12 @@ use std::path::{Path, PathBuf};
 
 use geometry::{Covariance, Pose};
 use serde::{Deserialize, Serialize};
+use transport::with_causes;
 
 use crate::TrackerError;
+
+/// Most bytes of a file: a pose takes some hundred.
+const MAX_BYTES: u64 = 64 * 1024;
 
 /// A pose that was believed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,12 +41,11 @@ impl Memory {
     /// What is remembered; `None` where there is no file yet.
     ///
     /// # Errors
-    /// The file cannot be read, or holds no pose.
+    /// The file cannot be read, could have been changed by another user, or holds no pose.
     pub(crate) fn load(&self) -> Result<Option<Remembered>, TrackerError> {
-        let text = match std::fs::read_to_string(&self.file) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(self.refuse(&error)),
+        let text = trusted_files::read(&self.file, MAX_BYTES);
+        let Some(text) = text.map_err(|error| self.refuse(&with_causes(&error)))? else {
+            return Ok(None);
         };
         let found: Remembered = serde_json::from_str(&text).map_err(|error| self.refuse(&error))?;
         let is_sound = found.map_from_base.is_finite()

@@ -6,8 +6,8 @@ use messages::{TrackReason, TrackState};
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
 use super::limits::FARTHEST_BEHIND;
-use super::verdict::MIN_KEYS;
 use super::place::{MEAN_OVER, Place};
+use super::verdict::MIN_KEYS;
 
 /// Scans fit badly at the place that is believed. What does so for long becomes the mean
 /// there, and would be taken for good: what they are measured by is the mean before.

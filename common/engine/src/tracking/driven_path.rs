@@ -52,6 +52,19 @@ impl DrivenPath {
         self.turned += step.yaw.abs();
     }
 
+    /// Goes on by another way.
+    pub(super) fn extend(mut self, by: &DrivenPath) -> Self {
+        self.step = self.step.then(by.step);
+        self.path_m += by.path_m;
+        self.turned += by.turned;
+        self.unknown_s = self
+            .unknown_s
+            .into_iter()
+            .chain(by.unknown_s)
+            .reduce(f64::max);
+        self
+    }
+
     /// Whether it is long enough for the next key scan.
     pub(super) fn is_far(&self, config: &TrackingConfig) -> bool {
         self.step.x.hypot(self.step.y) >= config.key_m

@@ -51,8 +51,8 @@ use belief::Belief;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
-use nowhere::is_blind;
 use messages::Transition;
+use nowhere::is_blind;
 use places::Places;
 use transition::other_side;
 
@@ -257,7 +257,7 @@ impl Tracker {
         let believed = self.belief.place().and_then(|id| self.places.get(id));
         self.places.is_empty()
             || self.since_key.is_far(&self.config)
-            || believed.is_some_and(|place| place.novelty(&self.config) >= 1.0)
+            || believed.is_some_and(|place| place.novelty >= 1.0)
     }
 
     /// Whether odometry carried the believed place so far that it may be several.

@@ -34,28 +34,25 @@ pub(super) fn nowhere_by_score(score: f64) -> f64 {
 }
 
 impl Place {
-    /// Judges the last fit by its score and by how the place moved since its last key scan,
-    /// along which odometry went `path`. A scan that the robot sees from where it saw the one
-    /// before brings nothing new for the place.
+    /// Judges the last fit by its score and by how the place moved since its anchor, along
+    /// which odometry went `path` since the last key scan. A scan that the robot sees from
+    /// where it saw the one before brings nothing new for the place.
     pub(super) fn judge(&mut self, path: &DrivenPath, config: &TrackingConfig) {
-        let (expected, covariance) = path.predict(self.at_key, config.odometry_error);
-        let known = information(&covariance);
-        let off = squared_deviations(self.pose, expected, &known);
-        let by_scan = nowhere_by_score(self.last);
-        let by_scan = match by_scan < 0.0 {
-            true => by_scan * self.novelty(config),
-            false => by_scan,
-        };
-        let by_odometry = 0.5 * (off - EVEN_DEVIATION);
-        self.nowhere = by_scan.max(by_odometry);
-    }
-
-    /// Share of the way to the next key scan that the place moved on the map, 0..=1.
-    pub(super) fn novelty(&self, config: &TrackingConfig) -> f64 {
-        let from = self.at_key.0;
+        self.since_anchor = self.until_key.extend(path);
+        let (expected, covariance) = self
+            .since_anchor
+            .predict(self.anchor, config.odometry_error);
+        let off = squared_deviations(self.pose, expected, &information(&covariance));
+        let from = self.anchor.0;
         let metres = from.distance_to(self.pose) / config.key_m.max(1e-9);
         let turned = from.angle_to(self.pose) / config.key_deg.to_radians().max(1e-9);
-        metres.hypot(turned).min(1.0)
+        self.novelty = metres.hypot(turned).min(1.0);
+        let by_scan = nowhere_by_score(self.last);
+        let by_scan = match by_scan < 0.0 {
+            true => by_scan * self.novelty,
+            false => by_scan,
+        };
+        self.nowhere = by_scan.max(0.5 * (off - EVEN_DEVIATION));
     }
 }
 

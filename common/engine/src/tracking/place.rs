@@ -6,6 +6,7 @@ use geometry::{Covariance, Pose};
 use messages::Hypothesis;
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
+use super::driven_path::DrivenPath;
 use super::limits::MAX;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::Target;
@@ -105,11 +106,20 @@ pub(super) struct Place {
     pub predicted: (Pose, Matrix3<f64>),
     /// Squared deviations of the last fit from that prediction.
     pub off: f64,
-    /// Pose and covariance at the last key scan.
-    pub at_key: (Pose, Matrix3<f64>),
+    /// Pose and covariance from which the place is compared with odometry, and the way since.
+    pub anchor: (Pose, Matrix3<f64>),
+    pub since_anchor: DrivenPath,
+    /// The same way until the last key scan.
+    pub until_key: DrivenPath,
+    /// Share of the way to the next key scan that the place moved on the map since the
+    /// anchor, 0..=1.
+    pub novelty: f64,
     /// Log odds of "nowhere" against this place by the last scan alone.
     pub nowhere: f64,
 }
+
+/// Novelty of a place that moved.
+const MOVED: f64 = 0.5;
 
 /// A mean is over this many key scans.
 pub(super) const MEAN_OVER: u32 = 8;
@@ -129,7 +139,10 @@ impl Place {
             bad: 0,
             predicted: (found.pose, found.covariance),
             off: 0.0,
-            at_key: (found.pose, found.covariance),
+            anchor: (found.pose, found.covariance),
+            since_anchor: DrivenPath::default(),
+            until_key: DrivenPath::default(),
+            novelty: 0.0,
             nowhere: 0.0,
         }
     }
@@ -157,6 +170,11 @@ impl Place {
         let before = f64::from(self.age.min(MEAN_OVER));
         self.mean = (self.mean * before + self.last) / (before + 1.0);
         self.age += 1;
-        self.at_key = (self.pose, self.covariance);
+        // A place that did not move goes on being compared from where it was.
+        self.until_key = self.since_anchor;
+        if self.novelty >= MOVED {
+            self.anchor = (self.pose, self.covariance);
+            self.until_key = DrivenPath::default();
+        }
     }
 }

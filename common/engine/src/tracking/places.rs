@@ -192,10 +192,10 @@ impl Places {
             fitted = seen.settle_turned(predicted, fitted);
         }
         place.predicted = predicted;
-        let stays = since_key.is_rest() && fitted.off < GATE;
+        let before = place.pose;
         place.set(&fitted);
-        if stays {
-            (place.pose, place.covariance) = place.at_key;
+        if since_key.is_rest() && fitted.off < GATE {
+            place.pose = before;
         }
         place.judge(since_key, &self.config);
     }
@@ -261,14 +261,20 @@ impl Places {
             place.bad = if is_bad { place.bad + 1 } else { 0 };
             place.grow();
         }
-        let first = self.kept.iter().reduce(|a, b| match b.log_weight > a.log_weight {
-            true => b,
-            false => a,
+        let first = self
+            .kept
+            .iter()
+            .reduce(|a, b| match b.log_weight > a.log_weight {
+                true => b,
+                false => a,
+            });
+        // At the first look, the places are those that the search finds. What odometry says
+        // against the best place is in its log odds already.
+        let (nowhere, off) = first.map_or((nowhere_by_score(best.score), 0.0), |first| {
+            (first.nowhere, first.off.min(GATE))
         });
-        // At the first look, the places are those that the search finds.
-        let nowhere = first.map_or(nowhere_by_score(best.score), |first| first.nowhere);
         let cap = self.config.scan_cap;
-        self.nowhere += -top + nowhere.clamp(-cap, cap);
+        self.nowhere += -top + nowhere.clamp(-cap, cap) - 0.25 * off;
         if let Some(first) = first {
             self.nowhere = self.nowhere.max(first.log_weight - FARTHEST_BEHIND);
         }

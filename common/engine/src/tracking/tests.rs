@@ -225,8 +225,63 @@ fn what_odometry_misses_is_followed() {
     // A turn of 20° that the wheels do not report.
     let turned = at.then(Pose::new(0.3, 0.0, 0.35));
     building.step(&mut tracker, turned, Some(Pose::new(0.3, 0.0, 0.0)));
-    assert!(is_at(&tracker, turned), "{:?}", tracker.report());
+    let report = tracker.report();
+    assert!(is_at(&tracker, turned), "{report:?}");
+    assert_eq!(
+        (report.state, report.reason),
+        (TrackState::Doubtful, TrackReason::OdometryJump)
+    );
+    building.drive(&mut tracker, turned, 2);
     assert_eq!(tracker.report().state, TrackState::Unique);
+}
+
+#[test]
+fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_lost() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let at = building.drive(&mut tracker, START, 8);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    let step = Some(Pose::new(0.1, 0.0, 0.0));
+    let states: Vec<TrackState> = (0..60)
+        .map(|_| {
+            building.step(&mut tracker, at, step);
+            tracker.report().state
+        })
+        .collect();
+    // A metre is more than odometry errs by, and what is wrong from there on is wrong for long.
+    assert!(
+        states[10..]
+            .iter()
+            .all(|state| *state != TrackState::Unique),
+        "{states:?}"
+    );
+    assert!(states.contains(&TrackState::Lost), "{states:?}");
+    assert_eq!(tracker.report().reason, TrackReason::OdometryJump);
+}
+
+#[test]
+fn a_robot_that_stands_keeps_its_pose() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let at = building.drive(&mut tracker, START, 8);
+    let pose = tracker.report().pose;
+    for i in 0..100 {
+        let mut ranges = building.ranges(at);
+        for (beam, range) in ranges.iter_mut().enumerate() {
+            // Errors of up to 3 cm, other ones at each scan.
+            *range += 0.03 * ((beam * 7 + i * 13) as f32).sin();
+        }
+        let ends = building.ends_of(&ranges);
+        let fit = FitConfig::default();
+        let seen = building.seen(&ends, &fit);
+        tracker.begin(&[seen], 1, Some(Pose::IDENTITY));
+        tracker.finish(&[seen], None);
+    }
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    let moved = pose.zip(tracker.report().pose).unwrap();
+    assert!(moved.0.is_within(moved.1, 0.02, 0.005), "{moved:?}");
 }
 
 #[test]

@@ -113,9 +113,10 @@ impl Places {
                 _ => self.config.newborn_lag,
             };
             // A rival within the ellipse of a hint is as likely as the hint itself.
-            let is_rival = is_first && self.expected.is_some_and(|(pose, covariance)| {
-                squared_deviations(found.pose, pose, &information(&covariance)) < GATE
-            });
+            let is_rival = is_first
+                && self.expected.is_some_and(|(pose, covariance)| {
+                    squared_deviations(found.pose, pose, &information(&covariance)) < GATE
+                });
             let is_near = tracked.is_some_and(|(tracked_on, pose)| {
                 tracked_on == map && pose.distance_to(found.pose) < reach_m
             });

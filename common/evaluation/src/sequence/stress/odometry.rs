@@ -21,7 +21,7 @@ pub(super) fn end(odometry: &mut Vec<Odometry>) {
 }
 
 /// Gives the same pose from mid-drive on.
-pub(super) fn freeze(odometry: &mut Vec<Odometry>) {
+pub(super) fn freeze(odometry: &mut [Odometry]) {
     let from = middle(odometry);
     let Some(last) = odometry.get(from).copied() else {
         return;
@@ -39,12 +39,12 @@ pub(super) fn zero(odometry: &mut Vec<Odometry>) {
 }
 
 /// Turns by a tenth too much.
-pub(super) fn turn_more(odometry: &mut Vec<Odometry>) {
+pub(super) fn turn_more(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(step.x, step.y, 1.1 * step.yaw));
 }
 
 /// Takes forwards for backwards.
-pub(super) fn reverse(odometry: &mut Vec<Odometry>) {
+pub(super) fn reverse(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(-step.x, step.y, step.yaw));
 }
 

@@ -122,8 +122,8 @@ fn judge(
     if let Some(&(start, scan, _)) = starts.wrong.first() {
         let mut run = Run::new(world, moments, config);
         let mut said = Vec::new();
-        for i in start..=scan {
-            said.push(run.take(i, moments[i].moved.filter(|_| i > start))?);
+        for (i, moment) in moments.iter().enumerate().take(scan + 1).skip(start) {
+            said.push(run.take(i, moment.moved.filter(|_| i > start))?);
         }
         first_wrong = Some(Wrong {
             start: Some(start),

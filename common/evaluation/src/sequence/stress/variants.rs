@@ -128,14 +128,14 @@ const LASER: &[Variant] = &[
 const ODOMETRY: &[Variant] = &[
     odometry("odometry-none", Vec::clear),
     odometry("odometry-ends", odometry::end),
-    odometry("odometry-frozen", odometry::freeze),
+    odometry("odometry-frozen", |all| odometry::freeze(all)),
     odometry("odometry-zero", odometry::zero),
     moments("odometry-twice", |moments| {
         connect(moments, (false, 2.0));
         Ok(())
     }),
-    odometry("odometry-yaw-10", odometry::turn_more),
-    odometry("odometry-backwards", odometry::reverse),
+    odometry("odometry-yaw-10", |all| odometry::turn_more(all)),
+    odometry("odometry-backwards", |all| odometry::reverse(all)),
     odometry("odometry-late", odometry::delay),
     odometry("odometry-other-frame", odometry::turn_frame),
 ];
