@@ -34,9 +34,9 @@ const TICK: Duration = Duration::from_millis(50);
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// Lead of a pose that was saved, or that an operator names, over what a search finds: as
-/// much as makes a place unique, where the scan confirms it.
-const EXPECTED_LEAD: f64 = 12.0;
+/// What was true when the robot was last on leads by this much over what a search finds:
+/// as much as one key scan says.
+const REMEMBERED_LEAD: f64 = 4.0;
 
 /// Follows the robot until the stop flag is set.
 ///

@@ -7,7 +7,6 @@ use super::TrackingConfig;
 use super::driven_path::DrivenPath;
 use super::limits::FARTHEST_BEHIND;
 use super::place::{MEAN_OVER, Place};
-use super::verdict::MIN_KEYS;
 
 /// Scans fit badly at the place that is believed. What does so for long becomes the mean
 /// there, and would be taken for good: what they are measured by is the mean before.
@@ -109,11 +108,6 @@ impl Belief {
         self.was_unique = true;
         self.doubt = None;
         (self.lead, self.over_nowhere) = (FARTHEST_BEHIND, FARTHEST_BEHIND);
-    }
-
-    /// A place is expected, which one scan may confirm.
-    pub(super) fn expect(&mut self) {
-        self.connected_keys = MIN_KEYS - 1;
     }
 
     /// Goes on to the next scan, to which the robot moved so; how many seconds after the one

@@ -147,7 +147,6 @@ impl Tracker {
     /// a search finds. It is not believed before scans confirm it.
     pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
         self.start_over();
-        self.belief.expect();
         self.expected = Some((at, covariance, lead));
     }
 
@@ -263,7 +262,8 @@ impl Tracker {
     /// Whether odometry carried the believed place so far that it may be several.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
         let believed = self.belief.place().and_then(|id| self.places.get(id));
-        believed.is_some_and(|place| {
+        let by_odometry = believed.filter(|_| path.unknown_s.is_none());
+        by_odometry.is_some_and(|place| {
             let noise = self.config.odometry_error;
             is_blind(&path.predict((place.pose, place.covariance), noise))
         })

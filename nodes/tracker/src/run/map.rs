@@ -6,7 +6,7 @@ use geometry::{Covariance, Pose};
 use messages::{MapHeader, MapSet, MapsHeader, NodeState, TrackState};
 use transport::{TransportError, with_causes};
 
-use super::{EXPECTED_LEAD, Node};
+use super::{Node, REMEMBERED_LEAD};
 use crate::TrackerError;
 use crate::memory::Remembered;
 use crate::message::Tracked;
@@ -89,7 +89,7 @@ impl Node {
             Some(((number(&last)?, last.report.pose?), covariance))
         });
         if let Some((at, covariance)) = believed {
-            self.tracker.expect(at, covariance, EXPECTED_LEAD);
+            self.tracker.expect(at, covariance, REMEMBERED_LEAD);
             return;
         }
         let Some(Remembered {
@@ -106,7 +106,7 @@ impl Node {
             && self.initial.is_none()
         {
             let covariance = Covariance::from_rows(covariance);
-            self.expect_base((number, map_from_base), covariance, EXPECTED_LEAD);
+            self.expect_base((number, map_from_base), covariance, REMEMBERED_LEAD);
         }
     }
 

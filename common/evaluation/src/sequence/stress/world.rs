@@ -5,7 +5,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use geometry::Pose;
 use offline::TakenScan;
 use rand::RngExt;
-use rand::seq::SliceRandom;
 use simulation::Obstacles;
 
 use super::material::Material;
@@ -16,6 +15,9 @@ use super::variants::{Change, Means};
 const RADIUS_M: f64 = 0.2;
 const STANDS_M: std::ops::Range<f64> = 0.7..3.0;
 const FROM_WAY_M: f64 = 0.5;
+
+/// Most places that are tried for people.
+const MAX_TRIES: u32 = 1000;
 
 /// Farther away a person hides next to nothing.
 const SEEN_M: f64 = 8.0;
@@ -92,29 +94,31 @@ fn seen_from(people: &[Place], at: Pose) -> Vec<Place> {
 pub(super) fn stand_people(it: &mut Material, means: &mut Means<'_>, share: f64) -> Change<()> {
     let mut people = Vec::new();
     // Scans that differ little need not all be looked at.
-    let every = it.steps.len().div_ceil(100);
-    let mut looked_at: Vec<usize> = (0..it.steps.len()).step_by(every.max(1)).collect();
-    for _ in 0..200 {
-        let mut hidden = 0.0;
-        for &i in &looked_at {
-            let step = &it.steps[i];
-            let seen = seen_from(&people, step.map_from_laser);
-            let here = hide(&mut step.scan.clone(), &seen);
-            hidden += here;
-            if here < share {
-                people.extend(person_near(it, means, i));
-            }
-        }
-        // What was added last is not counted, so that it is a little more at the end.
+    let every = it.steps.len().div_ceil(100).max(1);
+    let looked_at: Vec<usize> = (0..it.steps.len()).step_by(every).collect();
+    for _ in 0..MAX_TRIES {
+        let hidden: f64 = looked_at.iter().map(|&i| hidden_at(it, i, &people)).sum();
         if hidden >= 0.95 * share * looked_at.len() as f64 {
             break;
         }
-        looked_at.shuffle(&mut means.rng);
+        let i = looked_at[means.rng.random_range(0..looked_at.len())];
+        if hidden_at(it, i, &people) < share {
+            people.extend(person_near(it, means, i));
+        }
     }
     each(it, |scan, at| {
         hide(scan, &seen_from(&people, at));
     });
     Ok(())
+}
+
+/// The share of the beams of a scan that people hide.
+fn hidden_at(it: &Material, i: usize, people: &[Place]) -> f64 {
+    let step = &it.steps[i];
+    hide(
+        &mut step.scan.clone(),
+        &seen_from(people, step.map_from_laser),
+    )
 }
 
 /// A place that a scan sees to be free, off the way of the robot.
