@@ -71,7 +71,15 @@ fn one(
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
     let mut accepted = Accepted::default();
-    let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
+    let moments = drive::read(
+        &mut session,
+        &truths,
+        (
+            &sequence.ignore_truth,
+            (sequence.without_odometry, sequence.odometry_noise),
+        ),
+        (&progress, &mut accepted),
+    )?;
     accepted.check(bag)?;
     let (world, config) = (session.world()?, sequence.follow);
     let said = course::of(world, &moments, config)?;

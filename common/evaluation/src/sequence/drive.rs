@@ -12,7 +12,6 @@ use offline::{Accepted, Session, TakenScan, View};
 use progress::Progress;
 use recording::GroundTruth;
 
-use super::SequenceOptions;
 use crate::EvaluationError;
 
 /// One scan of a drive. What a search cost to find is shared by copies.
@@ -62,11 +61,11 @@ impl Moment {
 pub(super) fn read(
     session: &mut Session<'_>,
     truths: &BTreeMap<i64, GroundTruth>,
-    options: &SequenceOptions,
+    (ignore_truth, errors): (&[u64], (bool, f64)),
     (progress, accepted): (&Progress, &mut Accepted),
 ) -> Result<Vec<Moment>, EvaluationError> {
     session.read_odometry()?;
-    let ignored: BTreeSet<u64> = options.ignore_truth.iter().copied().collect();
+    let ignored: BTreeSet<u64> = ignore_truth.iter().copied().collect();
     let mut moments: Vec<Moment> = Vec::new();
     let mut number = 0;
     while let Some(scan) = session.scans.next() {
@@ -80,10 +79,7 @@ pub(super) fn read(
         }
         progress.step();
     }
-    connect(
-        &mut moments,
-        (options.without_odometry, options.odometry_noise),
-    );
+    connect(&mut moments, errors);
     measure(&mut moments);
     Ok(moments)
 }

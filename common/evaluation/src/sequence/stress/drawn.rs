@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ::map::OccupancyGrid;
 
 use super::map::{FREE, WALL, index, walls};
-use super::variants::Change;
+use super::material::Change;
 
 /// What stands by itself and is smaller than this is furniture, metres.
 const FURNITURE_M: f64 = 1.5;

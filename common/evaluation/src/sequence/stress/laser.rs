@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use ros::LaserScan;
 
 use super::material::Material;
-use super::variants::{Change, Means};
+use super::material::{Change, Means};
 
 /// A laser that is off by so much, metres to its left and degrees.
 const OFF: (f32, f32) = (0.05, 2.0);

@@ -5,7 +5,7 @@ use geometry::Pose;
 use rand::RngExt;
 
 use super::material::Material;
-use super::variants::{Change, Means};
+use super::material::{Change, Means};
 
 /// Occupancy from which a cell is a wall, per cent, and what is drawn.
 const WALL_FROM: u8 = 65;

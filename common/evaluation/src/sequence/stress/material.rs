@@ -7,10 +7,21 @@ use geometry::Pose;
 use messages::Odometry;
 use offline::{Accepted, Session, TakenScan, each_odometry};
 use progress::Progress;
+use rand::rngs::Xoshiro256PlusPlus;
 use recording::{GroundTruth, Kind, Recording};
 
 use super::super::drive::{self, Moment};
 use crate::EvaluationError;
+
+/// Random numbers and maps for a change.
+pub(super) struct Means<'a> {
+    pub(super) rng: Xoshiro256PlusPlus,
+    /// The map of another building.
+    pub(super) other_map: Option<&'a OccupancyGrid>,
+}
+
+/// Why a variant says nothing about a drive.
+pub(super) type Change<T> = Result<T, &'static str>;
 
 /// A map, and all that a robot measured on it.
 #[derive(Clone)]

@@ -7,8 +7,8 @@ use ros::Time;
 use super::super::drive::{Moment, connect};
 use super::laser::noise;
 use super::map::walls;
+use super::material::{Change, Means};
 use super::material::{Material, Step};
-use super::variants::{Change, Means};
 
 /// A robot that stands, scans and their noise, metres.
 const STANDS: usize = 1000;

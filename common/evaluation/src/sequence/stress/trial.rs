@@ -10,7 +10,8 @@ use super::super::follow::{self, Followed};
 use super::super::run::{Run, Said};
 use super::super::starts::{self, Starts};
 use super::material::Material;
-use super::variants::{Change, Means, Variant, Way};
+use super::material::{Change, Means};
+use super::variants::{Variant, Way};
 use crate::EvaluationError;
 
 /// A drive that has been read and searched as it was recorded.

@@ -10,18 +10,8 @@ use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::super::drive::{Moment, connect};
-use super::material::Material;
+use super::material::{Change, Material, Means};
 use super::{drawn, laser, map, motion, odometry, world};
-
-/// What a change may use.
-pub(super) struct Means<'a> {
-    pub(super) rng: Xoshiro256PlusPlus,
-    /// The map of another building.
-    pub(super) other_map: Option<&'a OccupancyGrid>,
-}
-
-/// Why a variant says nothing about a drive.
-pub(super) type Change<T> = Result<T, &'static str>;
 
 /// A drive with something changed.
 pub(super) struct Variant {

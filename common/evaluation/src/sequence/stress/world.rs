@@ -8,7 +8,7 @@ use rand::RngExt;
 use simulation::Obstacles;
 
 use super::material::Material;
-use super::variants::{Change, Means};
+use super::material::{Change, Means};
 
 /// A person who stands is a disc of this radius, so far from a laser; none is nearer to the
 /// robot's way.
