@@ -141,7 +141,7 @@ pub enum TrackReason {
     TooEarly = 4,
     /// The scan does not fit where the robot should be.
     PoorFit = 5,
-    /// Odometry jumped, and the scans do not confirm it.
+    /// Laser and odometry disagree about how the robot moved.
     OdometryJump = 6,
     /// Scans fit better at another place.
     AnotherPlace = 7,

@@ -53,6 +53,7 @@ use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
 use messages::Transition;
 use nowhere::is_blind;
+use place::Place;
 use places::Places;
 use transition::other_side;
 
@@ -238,11 +239,14 @@ impl Tracker {
         }
     }
 
+    fn believed(&self) -> Option<&Place> {
+        self.belief.place().and_then(|id| self.places.get(id))
+    }
+
     /// Whether the place that is believed has come to lie in a transition with this scan. The
     /// robot may stop there, and be on the other map before it drives on.
     fn has_entered(&mut self) -> bool {
-        let believed = self.belief.place().and_then(|id| self.places.get(id));
-        let is_in = believed.is_some_and(|place| {
+        let is_in = self.believed().is_some_and(|place| {
             let at = (place.map, place.pose);
             let mut transitions = self.transitions.iter();
             transitions.any(|transition| other_side(transition, at, place.covariance).is_some())
@@ -253,16 +257,14 @@ impl Tracker {
     /// Whether the robot is far enough from the last key scan, by odometry or by where the
     /// scans fit.
     fn is_far(&self) -> bool {
-        let believed = self.belief.place().and_then(|id| self.places.get(id));
         self.places.is_empty()
             || self.since_key.is_far(&self.config)
-            || believed.is_some_and(|place| place.novelty >= 1.0)
+            || self.believed().is_some_and(|place| place.novelty >= 1.0)
     }
 
     /// Whether odometry carried the believed place so far that it may be several.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
-        let believed = self.belief.place().and_then(|id| self.places.get(id));
-        let by_odometry = believed.filter(|_| path.unknown_s.is_none());
+        let by_odometry = self.believed().filter(|_| path.unknown_s.is_none());
         by_odometry.is_some_and(|place| {
             let noise = self.config.odometry_error;
             is_blind(&path.predict((place.pose, place.covariance), noise))

@@ -109,7 +109,7 @@ pub(super) struct Place {
     /// Pose and covariance from which the place is compared with odometry, and the way since.
     pub anchor: (Pose, Matrix3<f64>),
     pub since_anchor: DrivenPath,
-    /// The same way until the last key scan.
+    /// Way from the anchor to the last key scan.
     pub until_key: DrivenPath,
     /// Share of the way to the next key scan that the place moved on the map since the
     /// anchor, 0..=1.

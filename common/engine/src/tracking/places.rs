@@ -153,6 +153,12 @@ impl Places {
         self.expected = Some(predicted);
     }
 
+    /// The place with the most weight; they need not be in order.
+    fn leading(&self) -> Option<&Place> {
+        let places = self.kept.iter();
+        places.reduce(|a, b| if b.log_weight > a.log_weight { b } else { a })
+    }
+
     /// Log weight of "nowhere", against which the best place has its own.
     pub(super) fn nowhere(&self) -> f64 {
         self.nowhere
@@ -261,13 +267,7 @@ impl Places {
             place.bad = if is_bad { place.bad + 1 } else { 0 };
             place.grow();
         }
-        let first = self
-            .kept
-            .iter()
-            .reduce(|a, b| match b.log_weight > a.log_weight {
-                true => b,
-                false => a,
-            });
+        let first = self.leading().copied();
         // At the first look, the places are those that the search finds. What odometry says
         // against the best place is in its log odds already.
         let (nowhere, off) = first.map_or((nowhere_by_score(best.score), 0.0), |first| {

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use command_line::stdout;
 use map::OccupancyGrid;
-use offline::{Accepted, OfflineError, Options, Session, damage_of};
+use offline::{Accepted, Options, Session};
 use plots::{PlotError, draw_drive};
 use progress::{Progress, say};
 
@@ -59,14 +59,7 @@ fn one(
     options: &Options,
     sequence: &SequenceOptions,
 ) -> Result<Figures, EvaluationError> {
-    let recording = options.open(&[bag.to_owned()])?;
-    if let Some(damage) = damage_of(&recording) {
-        return Err(damage.into());
-    }
-    let truths = recording.ground_truths()?;
-    if truths.is_empty() {
-        return Err(OfflineError::NoTruths { file: bag.into() }.into());
-    }
+    let (recording, truths) = drive::open(bag, options)?;
     let mut session = Session::open(&recording, options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());

@@ -1,6 +1,7 @@
 //! A drive: everything the tracker takes of its scans, read and searched once.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::Arc;
 
 use engine::fit::Ends;
@@ -8,9 +9,9 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, Session, TakenScan, View};
+use offline::{Accepted, OfflineError, Options, Session, TakenScan, View, damage_of};
 use progress::Progress;
-use recording::GroundTruth;
+use recording::{GroundTruth, Recording};
 
 use crate::EvaluationError;
 
@@ -54,13 +55,32 @@ impl Moment {
     }
 }
 
+/// True poses by their stamps, nanoseconds.
+pub(super) type Truths = BTreeMap<i64, GroundTruth>;
+
+/// Opens an undamaged recording that has true poses.
+///
+/// # Errors
+/// It cannot be read, is damaged, or has no true pose.
+pub(super) fn open(bag: &Path, options: &Options) -> Result<(Recording, Truths), EvaluationError> {
+    let recording = options.open(&[bag.to_owned()])?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    match truths.is_empty() {
+        true => Err(OfflineError::NoTruths { file: bag.into() }.into()),
+        false => Ok((recording, truths)),
+    }
+}
+
 /// Searches all scans of a recording.
 ///
 /// # Errors
 /// The recording cannot be read, or holds no scan that can be used.
 pub(super) fn read(
     session: &mut Session<'_>,
-    truths: &BTreeMap<i64, GroundTruth>,
+    truths: &Truths,
     (ignore_truth, errors): (&[u64], (bool, f64)),
     (progress, accepted): (&Progress, &mut Accepted),
 ) -> Result<Vec<Moment>, EvaluationError> {

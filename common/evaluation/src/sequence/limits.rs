@@ -1,6 +1,6 @@
-//! What the figures of a drive must reach, for whoever lets a build fail by them. Pure.
+//! Requirements on the figures of a drive, by which a build fails. Pure.
 
-/// What each drive, and each variant of it, must reach; nothing by default.
+/// Requirements on each drive and each variant of it; none by default.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Requirements of sequences: exit code 1 if a drive misses one")]
 pub(crate) struct SequenceLimits {
@@ -22,7 +22,7 @@ pub(crate) struct SequenceLimits {
     max_rms_cm: Option<f64>,
 }
 
-/// What a drive reached.
+/// Figures of a drive that are compared with requirements.
 pub(super) struct Reached {
     pub(super) wrong_starts: u64,
     pub(super) wrong_scans: u64,
@@ -37,8 +37,8 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl SequenceLimits {
-    /// What the drive misses, a sentence each. An RMS that is needed and not known is
-    /// missed too.
+    /// Requirements that the drive misses, a sentence each. An RMS that is needed and not
+    /// known is missed too.
     pub(super) fn missed(&self, found: &Reached, needs_rms: bool) -> Vec<String> {
         let counts = [
             ("wrong-starts", found.wrong_starts, self.max_wrong_starts),

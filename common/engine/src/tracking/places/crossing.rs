@@ -16,15 +16,8 @@ impl Places {
         best: Best<'_>,
         belief: &Belief,
     ) {
-        let leading = self
-            .kept
-            .iter()
-            .reduce(|a, b| match b.log_weight > a.log_weight {
-                true => b,
-                false => a,
-            });
         let believed = belief.place().and_then(|id| self.get(id));
-        let Some(here) = believed.or(leading).copied() else {
+        let Some(here) = believed.or(self.leading()).copied() else {
             return;
         };
         let sides = transitions.iter().filter_map(|transition| {

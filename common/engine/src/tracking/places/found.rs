@@ -18,8 +18,7 @@ const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Where it is not known how the robot moved to a scan, it is no farther than this, metres,
-/// and than by this speed, metres a second.
+/// Reach of a robot along a step that is not known, metres, and metres a second in addition.
 const NEAR_M: f64 = 1.5;
 const SPEED_M_S: f64 = 1.5;
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use ::map::OccupancyGrid;
 use command_line::stdout;
-use offline::{Accepted, OfflineError, Options, Session, damage_of, map_in};
+use offline::{Accepted, Options, Session, map_in};
 use plots::{PlotError, draw_drive};
 use progress::{Progress, say};
 
@@ -65,14 +65,7 @@ fn one(
     (options, sequence): (&Options, &SequenceOptions),
     variants: &[&'static Variant],
 ) -> Result<bool, EvaluationError> {
-    let recording = options.open(&[bag.to_owned()])?;
-    if let Some(damage) = damage_of(&recording) {
-        return Err(damage.into());
-    }
-    let truths = recording.ground_truths()?;
-    if truths.is_empty() {
-        return Err(OfflineError::NoTruths { file: bag.into() }.into());
-    }
+    let (recording, truths) = drive::open(bag, options)?;
     let map = map.cloned().map_or_else(|| map_in(&recording), Ok)?;
     let ignored = sequence.ignore_truth.iter().copied().collect();
     let mut session = Session::open(&recording, options, Some(&map))?;

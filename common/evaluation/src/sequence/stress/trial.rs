@@ -71,37 +71,22 @@ impl Recorded<'_> {
         if let Err(reason) = changed {
             return Ok(Err(reason));
         }
+        let judge = |session: &Session<'_>, moments: &[Moment]| {
+            let drive = (&material, moments);
+            judge(session.world()?, variant, drive, (count, config)).map(Ok)
+        };
         if !matches!(variant.way, Way::Drive(_)) {
-            return judge(
-                session.world()?,
-                variant,
-                (&material, &moments),
-                (count, config),
-            )
-            .map(Ok);
+            return judge(session, &moments);
         }
         let mut accepted = Accepted::default();
         let how = (self.progress, &mut accepted);
         if material.map == self.material.map {
-            moments = material.search(session, how)?;
-            return judge(
-                session.world()?,
-                variant,
-                (&material, &moments),
-                (count, config),
-            )
-            .map(Ok);
+            let moments = material.search(session, how)?;
+            return judge(session, &moments);
         }
-        let map = material.map.clone();
-        let mut session = Session::open(self.recording, self.options, Some(&map))?;
-        moments = material.search(&mut session, how)?;
-        judge(
-            session.world()?,
-            variant,
-            (&material, &moments),
-            (count, config),
-        )
-        .map(Ok)
+        let mut session = Session::open(self.recording, self.options, Some(&material.map))?;
+        let moments = material.search(&mut session, how)?;
+        judge(&session, &moments)
     }
 }
 
