@@ -10,7 +10,9 @@ use ros::OccupancyGridMsg;
 use transport::with_causes;
 
 use super::delay::odometry_delay;
+use super::drive::Drive;
 use super::finding::Finding;
+use super::sensors;
 use super::survey::{Farthest, Seen, Survey};
 
 /// A gap is worth a note from this many usual distances on.
@@ -38,6 +40,7 @@ pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
         truths(recording, survey),
         order(recording),
         odometry_delay(recording),
+        Drive::of(recording).map_or_else(Vec::new, |drive| sensors::all(&drive)),
     ];
     let mut all: Vec<Finding> = checks.into_iter().flatten().collect();
     all.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
