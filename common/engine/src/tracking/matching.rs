@@ -10,7 +10,7 @@ use super::TrackingConfig;
 use super::driven_path::DrivenPath;
 use super::seen::Seen;
 use crate::EngineError;
-use crate::fit::{DistanceField, End, Ends};
+use crate::fit::{DistanceField, End, Ends, FitConfig};
 use crate::grid::{CellRules, GridFrame};
 
 /// A match with a lower score says nothing: two fifths of the beams see what the scan
@@ -26,7 +26,7 @@ const FARTHEST: f64 = 400.0;
 
 /// Matches scans to one before.
 #[derive(Debug, Clone, Default)]
-pub(super) struct ScanMatcher {
+pub struct ScanMatcher {
     /// The scan that others are matched to, as a map in whose origin it was taken.
     reference: Option<DistanceField>,
     /// From there to the last scan.
@@ -48,26 +48,35 @@ impl ScanMatcher {
             self.reference = None;
             return by_odometry;
         }
-        self.step(seen, config)
+        let resolution_m = seen.distance_field.frame.resolution_m;
+        self.step(seen.ends, (resolution_m, seen.fit), config)
     }
 
-    fn step(&mut self, seen: &Seen<'_>, config: &TrackingConfig) -> Option<Pose> {
-        let step = self.matched(seen);
+    /// How the target frame moved since the scan before, as the two match; `None` where
+    /// they do not, or there was none. The ends are in cells of this many metres.
+    pub fn step(
+        &mut self,
+        ends: &Ends,
+        (resolution_m, fit): (f64, &FitConfig),
+        config: &TrackingConfig,
+    ) -> Option<Pose> {
+        let step = self.matched(ends, fit);
         self.step = step.unwrap_or(Pose::IDENTITY);
         self.gone = self.gone.then(self.step);
         let is_near = self.gone.x.hypot(self.gone.y) < config.key_m
             && self.gone.yaw.abs() < config.key_deg.to_radians();
         if step.is_none() || !is_near {
-            self.reference = around(seen).ok();
+            self.reference = around(ends, resolution_m).ok();
             self.gone = Pose::IDENTITY;
         }
         step
     }
 
-    fn matched(&self, seen: &Seen<'_>) -> Option<Pose> {
+    fn matched(&self, ends: &Ends, fit: &FitConfig) -> Option<Pose> {
         let before = Seen {
             distance_field: self.reference.as_ref()?,
-            ..*seen
+            ends,
+            fit,
         };
         let unknown = DrivenPath {
             unknown_s: Some(0.0),
@@ -76,7 +85,7 @@ impl ScanMatcher {
         };
         let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
         // The others end off the map.
-        let near = near_share(seen.ends);
+        let near = near_share(ends);
         let mut fitted = before.settle(predicted);
         if fitted.score < SURE_SCORE * near {
             fitted = before.settle_turned(predicted, fitted);
@@ -86,11 +95,9 @@ impl ScanMatcher {
     }
 }
 
-/// The ends of a scan as a map, with cells as large as those of the map on which the scan
-/// is looked for.
-fn around(seen: &Seen<'_>) -> Result<DistanceField, EngineError> {
-    let resolution_m = seen.distance_field.frame.resolution_m;
-    let ends = || near_ends(seen.ends);
+/// The ends of a scan as a map, with cells of this many metres.
+fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> {
+    let ends = || near_ends(ends);
     let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
     let half = reach as usize + 2;
     let side = 2 * half;

@@ -41,6 +41,7 @@ mod transition;
 mod verdict;
 
 pub use config::TrackingConfig;
+pub use matching::ScanMatcher;
 pub use method::{FollowConfig, Follower};
 pub use particles::ParticleTracker;
 pub use place::Candidate;
@@ -50,7 +51,6 @@ pub use seen::Seen;
 use belief::Belief;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
-use matching::ScanMatcher;
 use messages::Transition;
 use nowhere::is_blind;
 use place::Place;
