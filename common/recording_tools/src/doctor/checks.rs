@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 
 use engine::grid::CellRules;
+use geometry::Pose;
 use map::OccupancyGrid;
 use offline::check_map;
-use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
+use recording::{GROUND_TRUTH, Kind, Mount, Mounted, Recording};
 use ros::OccupancyGridMsg;
 use transport::with_causes;
 
 use super::delay::odometry_delay;
-use super::drive::Drive;
+use super::drive::{Drive, is_far};
 use super::finding::Finding;
 use super::sensors;
 use super::survey::{Farthest, Seen, Survey};
@@ -24,6 +25,9 @@ const PILED_UP: f64 = 0.02;
 /// Share of silent readings from which a laser seems to look into nothing.
 const MOSTLY_SILENT: f64 = 0.9;
 
+/// A scan cannot take longer than so many of the steps to the next one.
+const MAX_STEPS: f64 = 2.0;
+
 /// Everything that is found, the worst first.
 pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let checks = [
@@ -36,10 +40,12 @@ pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
         stamps(survey),
         gaps(survey),
         scans(survey),
+        durations(survey),
+        units(survey),
         mended(survey),
         truths(recording, survey),
         order(recording),
-        odometry_delay(recording),
+        odometry_delay(recording, survey),
         Drive::of(recording).map_or_else(Vec::new, |drive| sensors::all(&drive)),
     ];
     let mut all: Vec<Finding> = checks.into_iter().flatten().collect();
@@ -148,6 +154,7 @@ fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     for laser in lasers {
         match recording.mounted(laser) {
             Ok(Mounted { mount, notes }) => {
+                found.extend(mount.as_ref().and_then(|mount| far_mount(laser, mount)));
                 let is_explained = notes.iter().any(|note| note.contains(laser.as_str()));
                 if mount.is_none() && !is_explained {
                     found.push(Finding::note(format!(
@@ -162,6 +169,17 @@ fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     }
     found.extend(said.into_iter().map(Finding::note));
     found
+}
+
+fn far_mount(laser: &str, mount: &Mount) -> Option<Finding> {
+    let metres = mount.base_from_laser.distance_to(Pose::IDENTITY);
+    is_far(mount.base_from_laser).then(|| {
+        let base = &mount.base_frame;
+        Finding::problem(format!(
+            "/tf_static puts {laser:?} {metres:.0} m from {base:?}: correct its translation, \
+             which is in metres"
+        ))
+    })
 }
 
 /// Whether frames are named, one to a channel, and poses share the map's.
@@ -238,12 +256,7 @@ fn stamps(survey: &Survey) -> Vec<Finding> {
 
 fn gaps(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
-        let steps = seen
-            .stamps_ns
-            .windows(2)
-            .map(|pair| pair[1].saturating_sub(pair[0]));
-        let mut steps: Vec<i64> = steps.filter(|step| *step > 0).collect();
-        steps.sort_unstable();
+        let steps = seen.steps_ns();
         let (usual, longest) = (*steps.get(steps.len() / 2)?, *steps.last()?);
         let gaps = steps
             .iter()
@@ -278,6 +291,37 @@ fn scans(survey: &Survey) -> Vec<Finding> {
         }
     }
     found
+}
+
+/// Whether a scan ends before the next ones come.
+fn durations(survey: &Survey) -> Vec<Finding> {
+    let finding = |(topic, seen): (&String, &Seen)| {
+        let (longest, step_s) = (seen.longest?, seen.usual_step_s()?);
+        let time_increment = longest.time_increment_s;
+        (longest.scan_s > MAX_STEPS * step_s).then(|| {
+            Finding::problem(format!(
+                "{topic}: with a time_increment of {time_increment:?} s a scan takes longer than \
+                 the {step_s:.2} s to the next: the driver must set it to the seconds from one \
+                 beam to the next, or to 0"
+            ))
+        })
+    };
+    survey.of_kind(Kind::Scan).filter_map(finding).collect()
+}
+
+/// Whether readings are in metres.
+fn units(survey: &Survey) -> Vec<Finding> {
+    let finding = |(topic, seen): (&String, &Seen)| {
+        let middle_m = seen.first_middle_m?;
+        (2 * seen.unreachable > seen.stamps_ns.len() as u64).then(|| {
+            Finding::problem(format!(
+                "{topic}: half of the readings are beyond {middle_m:.0} m: they are in \
+                 millimetres; the driver must divide ranges, range_min and range_max by 1000, for \
+                 those of a LaserScan are in metres"
+            ))
+        })
+    };
+    survey.of_kind(Kind::Scan).filter_map(finding).collect()
 }
 
 /// Whether many readings are exactly the farthest one: so some drivers say that

@@ -8,6 +8,7 @@ use offline::{Options, Session, each_odometry};
 use recording::{Kind, Recording};
 
 use super::finding::Finding;
+use super::survey::{Seen, Survey};
 use crate::RecordingToolsError;
 
 /// Scans that are located at most: a minute of a laser of 8 Hz, seconds of computing.
@@ -24,11 +25,19 @@ struct Line {
     options: Options,
 }
 
-/// Where scans take time, whether the odometry's stamps fit them.
-pub(super) fn odometry_delay(recording: &Recording) -> Vec<Finding> {
-    let found = estimate(recording).ok().flatten();
-    let note = found.filter(|delay_s| delay_s.abs() >= WORTH_A_NOTE_S).map(|delay_s| {
-        let way = if delay_s > 0.0 { "leads" } else { "lags behind" };
+/// Whether the odometry's stamps fit those of the scans.
+pub(super) fn odometry_delay(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+    let scans = survey.of_kind(Kind::Scan).map(|(_, seen)| seen);
+    let usual_period_s = scans
+        .filter_map(Seen::usual_step_s)
+        .fold(WORTH_A_NOTE_S, f64::max);
+    let found = estimate(recording, usual_period_s).ok().flatten();
+    let note = found.map(|delay_s| {
+        let way = if delay_s > 0.0 {
+            "leads"
+        } else {
+            "lags behind"
+        };
         Finding::note(format!(
             "odometry {way} the laser by about {:.2} s: --odometry-delay-s={delay_s:.2} makes up \
              for it",
@@ -38,11 +47,16 @@ pub(super) fn odometry_delay(recording: &Recording) -> Vec<Finding> {
     note.into_iter().collect()
 }
 
-/// What is to be added to the odometry's stamps, seconds, if the scans show it.
+/// What is to be added to the odometry's stamps, seconds, if the scans show it and it is
+/// worth a note. A scan that does not say how long it takes may be stamped at its start or
+/// at its end: from one scan to the next is then nothing unusual.
 ///
 /// # Errors
 /// The recording has no map, or cannot be read: that is said elsewhere.
-fn estimate(recording: &Recording) -> Result<Option<f64>, RecordingToolsError> {
+fn estimate(
+    recording: &Recording,
+    usual_period_s: f64,
+) -> Result<Option<f64>, RecordingToolsError> {
     let Some(topic) = recording.topic(Kind::Odometry)? else {
         return Ok(None);
     };
@@ -50,6 +64,7 @@ fn estimate(recording: &Recording) -> Result<Option<f64>, RecordingToolsError> {
     let mut session = Session::open(recording, &options, None)?;
     let mut sightings = Vec::new();
     let mut laser = None;
+    let mut worth_a_note_s = WORTH_A_NOTE_S;
     for _ in 0..MAX_SCANS {
         let Some(scan) = session.scans.next() else {
             break;
@@ -58,7 +73,7 @@ fn estimate(recording: &Recording) -> Result<Option<f64>, RecordingToolsError> {
             continue;
         };
         if scan.message.time_increment == 0.0 {
-            return Ok(None);
+            worth_a_note_s = usual_period_s;
         }
         let reply = session.ask(&scan)?;
         let Ok(answer) = reply.answer else {
@@ -84,5 +99,6 @@ fn estimate(recording: &Recording) -> Result<Option<f64>, RecordingToolsError> {
         }
         motion.add(odometry.stamp.measured_ns, odometry.odom_from_child.into());
     })?;
-    Ok(motion.delay_s(&sightings, child_from_laser))
+    let delay_s = motion.delay_s(&sightings, child_from_laser);
+    Ok(delay_s.filter(|delay_s| delay_s.abs() >= worth_a_note_s))
 }

@@ -1,46 +1,104 @@
-//! The scans of a laser and the odometry, as they are compared with each other.
+//! A drive by its odometry and by its scans, each of which is matched to the one before
+//! without a map.
 
-use std::collections::BTreeMap;
-
+use engine::beams::BeamConfig;
+use engine::fit::{Ends, FitConfig};
 use engine::motion::Motion;
 use engine::scan::Scan;
+use engine::space::Space;
+use engine::tracking::{ScanMatcher, TrackingConfig};
 use geometry::Pose;
 use offline::each_odometry;
 use recording::{Kind, Message, Recording};
 
-/// A scan: NaN where nothing was read.
-#[derive(Debug, Clone)]
-pub(super) struct Look {
-    pub(super) stamp_ns: i64,
-    pub(super) ranges: Vec<f32>,
-    /// From one beam to the next seen from above, radians: below zero for clockwise.
-    pub(super) increment: f64,
+/// Scans that are matched at most: minutes of a laser of 10 Hz, seconds of computing.
+const MAX_MATCHED: usize = 2000;
+
+/// Cells of a scan that others are matched to, metres, and how many a beam may cross
+/// along each axis.
+const CELL_M: f64 = 0.05;
+const CELLS: usize = 400;
+
+/// Bearings of beams are not rounded here: any number will do.
+const HEADINGS: u32 = 360;
+
+/// Fewest readings that say what a laser sees.
+const MIN_READINGS: usize = 30;
+
+/// A covered laser reads one range, give or take so many metres, in this share of its
+/// beams.
+const COVER_M: f32 = 0.03;
+const COVER_SHARE: f64 = 0.95;
+
+/// No laser sits farther from the base of its robot, metres.
+const FAR_MOUNT_M: f64 = 10.0;
+
+/// Whether a laser sits farther from the base than any does.
+pub(super) fn is_far(base_from_laser: Pose) -> bool {
+    base_from_laser.distance_to(Pose::IDENTITY) > FAR_MOUNT_M
 }
 
-/// A laser's scans, and how the robot moved by the odometry.
+/// What is kept of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    pub(super) stamp_ns: i64,
+    /// How the laser moved since the scan before, as the two match.
+    pub(super) step: Option<Pose>,
+    /// Whether all readings are those of the scan before, to the last bit.
+    pub(super) is_repeated: bool,
+    /// The range that all beams read, metres, if they do.
+    pub(super) only_range_m: Option<f32>,
+}
+
+/// The scans of a laser, and how the robot moved by the odometry.
 #[derive(Debug)]
 pub(super) struct Drive {
     pub(super) looks: Vec<Look>,
-    pub(super) odometry: Vec<i64>,
+    /// Stamps of the odometry, nanoseconds.
+    pub(super) odometry_ns: Vec<i64>,
     pub(super) motion: Motion,
+    /// Where the laser sits on what the odometry moves.
+    child_from_laser: Pose,
+    matcher: ScanMatcher,
+    space: Space,
+    /// Readings of the last scan.
+    readings: Vec<Option<u64>>,
+}
+
+/// A way along which both the scans and the odometry say how the laser moved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretch {
+    pub(super) by_scans: Pose,
+    pub(super) by_odometry: Pose,
 }
 
 impl Drive {
-    /// Reads the first laser's scans and the odometry; `None` where one is missing or
-    /// cannot be read, which other checks say.
-    pub(super) fn of(recording: &Recording) -> Option<Drive> {
-        let scans = recording.topic(Kind::Scan).ok()??;
-        let topic = recording.topic(Kind::Odometry).ok()??;
-        let mut drive = Drive {
+    pub(super) fn new(child_from_laser: Pose) -> Option<Self> {
+        Some(Drive {
             looks: Vec::new(),
-            odometry: Vec::new(),
+            odometry_ns: Vec::new(),
             motion: Motion::keeping(usize::MAX),
-        };
-        each_odometry(recording, &topic, |odometry| {
-            drive.add(odometry.stamp.measured_ns, odometry.odom_from_child.into());
+            child_from_laser,
+            matcher: ScanMatcher::default(),
+            space: Space::new(HEADINGS, CELL_M, CELLS, CELLS).ok()?,
+            readings: Vec::new(),
+        })
+    }
+
+    /// Reads the scans of the first laser and the odometry; `None` where one is missing or
+    /// cannot be read, which other checks say.
+    pub(super) fn of(recording: &Recording) -> Option<Self> {
+        let scans = recording.topic(Kind::Scan).ok()??;
+        let odometry = recording.topic(Kind::Odometry).ok()??;
+        let mut drive = Drive::new(Pose::IDENTITY)?;
+        let mut child = String::new();
+        each_odometry(recording, &odometry, |odometry| {
+            child = odometry.child_frame.as_str().to_owned();
+            let pose = odometry.odom_from_child.into();
+            drive.add_odometry(odometry.stamp.measured_ns, pose);
         })
         .ok()?;
-        let mut upside_down: BTreeMap<String, bool> = BTreeMap::new();
+        let mut mount = None;
         for record in recording.records_of(&[Kind::Scan]).flatten() {
             let Message::Scan(scan) = &record.message else {
                 continue;
@@ -48,40 +106,119 @@ impl Drive {
             if record.topic != scans {
                 continue;
             }
-            let frame = &scan.header.frame_id;
-            let is_over = *upside_down.entry(frame.clone()).or_insert_with(|| {
-                let mount = recording.base_from_laser(frame).ok().flatten();
-                mount.is_some_and(|mount| mount.upside_down)
+            let (base_from_laser, is_upside_down) = *mount.get_or_insert_with(|| {
+                let frame = &scan.header.frame_id;
+                let mounted = recording.mounted(frame).ok().and_then(|found| found.mount);
+                mounted.map_or((Pose::IDENTITY, false), |mount| {
+                    let moves_laser = *frame == child;
+                    let base_from_laser = if moves_laser {
+                        Pose::IDENTITY
+                    } else {
+                        mount.base_from_laser
+                    };
+                    (base_from_laser, mount.upside_down)
+                })
             });
-            let taken = Scan {
+            drive.child_from_laser = base_from_laser;
+            let as_measured = Scan {
                 angle_min: scan.angle_min.into(),
                 angle_increment: scan.angle_increment.into(),
                 range_min_m: scan.range_min,
                 range_max_m: scan.range_max,
                 ranges: &scan.ranges,
             };
-            let reading = |beam: usize| match taken.reading(beam) {
-                Some(_) => scan.ranges.get(beam).copied().unwrap_or(f32::NAN),
-                None => f32::NAN,
-            };
-            drive.looks.push(Look {
-                stamp_ns: scan.header.stamp.as_ns(),
-                ranges: (0..scan.ranges.len()).map(reading).collect(),
-                increment: taken.angle_increment * if is_over { -1.0 } else { 1.0 },
-            });
+            drive.add_scan(
+                scan.header.stamp.as_ns(),
+                as_measured.seen_from_above(is_upside_down),
+            );
         }
         Some(drive)
     }
 
-    /// Takes odometry.
-    pub(super) fn add(&mut self, stamp_ns: i64, odom_from_child: Pose) {
-        self.odometry.push(stamp_ns);
+    /// Whether the laser sits so far away that the smallest turn moves it sideways.
+    pub(super) fn has_far_mount(&self) -> bool {
+        is_far(self.child_from_laser)
+    }
+
+    pub(super) fn add_odometry(&mut self, stamp_ns: i64, odom_from_child: Pose) {
+        self.odometry_ns.push(stamp_ns);
         self.motion.add(stamp_ns, odom_from_child);
     }
 
-    /// How the robot moved between two scans by the odometry, if it says so.
-    pub(super) fn moved(&self, before: &Look, now: &Look) -> Option<Pose> {
-        let at = |look: &Look| self.motion.until(look.stamp_ns);
-        Some(at(before)?.inverse().then(at(now)?))
+    pub(super) fn add_scan(&mut self, stamp_ns: i64, scan: Scan<'_>) {
+        let readings = (0..scan.beams()).map(|beam| scan.reading(beam));
+        let bits: Vec<Option<u64>> = readings.clone().map(|r| r.map(f64::to_bits)).collect();
+        let mut read: Vec<f32> = readings.flatten().map(|range| range as f32).collect();
+        let step = self.matched(scan);
+        self.looks.push(Look {
+            stamp_ns,
+            step,
+            is_repeated: read.len() >= MIN_READINGS && bits == self.readings,
+            only_range_m: only_range(&mut read),
+        });
+        self.readings = bits;
     }
+
+    fn matched(&mut self, scan: Scan<'_>) -> Option<Pose> {
+        if self.looks.len() >= MAX_MATCHED {
+            return None;
+        }
+        let ends = Ends::new(&scan, &self.space, &BeamConfig::default()).ok()?;
+        let how = (CELL_M, &FitConfig::default());
+        self.matcher.step(&ends, how, &TrackingConfig::default())
+    }
+
+    /// How the laser moved from one scan to another by the odometry.
+    pub(super) fn moved(&self, from: &Look, to: &Look) -> Option<Pose> {
+        let at = |look: &Look| {
+            let odom_from_child = self.motion.until(look.stamp_ns)?;
+            Some(odom_from_child.then(self.child_from_laser))
+        };
+        Some(at(from)?.inverse().then(at(to)?))
+    }
+
+    /// Ways along which the laser moved so far, metres, or turned so far, radians, by the
+    /// odometry.
+    pub(super) fn stretches(&self, (metres, radians): (f64, f64)) -> Vec<Stretch> {
+        let (mut found, mut start) = (Vec::new(), None);
+        for look in &self.looks {
+            let from_start = start.and_then(|(first, by_scans): (&Look, Pose)| {
+                let by_odometry = self.moved(first, look)?;
+                let by_scans = by_scans.then(look.step?);
+                Some((
+                    first,
+                    Stretch {
+                        by_scans,
+                        by_odometry,
+                    },
+                ))
+            });
+            start = match from_start {
+                Some((first, stretch))
+                    if stretch
+                        .by_odometry
+                        .is_within(Pose::IDENTITY, metres, radians) =>
+                {
+                    Some((first, stretch.by_scans))
+                }
+                Some((_, stretch)) => {
+                    found.push(stretch);
+                    Some((look, Pose::IDENTITY))
+                }
+                None => Some((look, Pose::IDENTITY)),
+            };
+        }
+        found
+    }
+}
+
+/// The range that nearly all readings have.
+fn only_range(read: &mut [f32]) -> Option<f32> {
+    read.sort_unstable_by(f32::total_cmp);
+    let middle = *read.get(read.len() / 2)?;
+    let near = read
+        .iter()
+        .filter(|&&range| (range - middle).abs() <= COVER_M);
+    let is_only = near.count() as f64 >= COVER_SHARE * read.len() as f64;
+    (is_only && read.len() >= MIN_READINGS).then_some(middle)
 }

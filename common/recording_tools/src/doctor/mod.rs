@@ -1,8 +1,8 @@
 //! `backcast doctor`: what is wrong with a recording.
 //!
 //! `finding` is what can be said, `survey` gathers what is looked at in one
-//! pass over the messages, and `checks` judges it; `sensors` compares the laser with
-//! the odometry, as `drive` has them. Nothing is repaired.
+//! pass over the messages, and `checks` judges it; `drive` matches scans without a map,
+//! and `sensors` compares that with the odometry. Nothing is repaired.
 
 mod checks;
 mod command;
@@ -11,5 +11,7 @@ mod drive;
 mod finding;
 mod sensors;
 mod survey;
+#[cfg(test)]
+mod tests;
 
 pub use command::{Config, NOTES, run};

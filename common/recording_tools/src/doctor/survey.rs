@@ -25,6 +25,11 @@ pub(super) struct Seen {
     pub(super) readings: u64,
     pub(super) silent: u64,
     pub(super) farthest: Option<Farthest>,
+    /// Scans most of whose readings no laser reaches, and the middle one of the first.
+    pub(super) unreachable: u64,
+    pub(super) first_middle_m: Option<f32>,
+    /// The longest time from the first beam of a scan to its last.
+    pub(super) longest: Option<Duration>,
     /// Orientations that were mended, and what was wrong with the first.
     pub(super) mended: u64,
     pub(super) first_mend: Option<Mend>,
@@ -39,6 +44,21 @@ pub(super) struct Farthest {
     /// Of the first scan that has it.
     pub(super) range_max_m: f32,
 }
+
+/// How long a scan takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Duration {
+    pub(super) scan_s: f64,
+    /// From one beam to the next.
+    pub(super) time_increment_s: f32,
+}
+
+/// Lasers that scan seldom see half of their surroundings farther off than this, metres.
+const REACHABLE_M: f32 = 200.0;
+
+/// Fewest different readings of which the middle one says something: some drivers say by
+/// one large value that nothing came back.
+const MIN_READINGS: usize = 30;
 
 /// What was seen on all channels.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -97,6 +117,21 @@ impl Survey {
 }
 
 impl Seen {
+    /// Steps from one stamp to the next that rise, nanoseconds, the shortest first.
+    pub(super) fn steps_ns(&self) -> Vec<i64> {
+        let pairs = self.stamps_ns.windows(2);
+        let steps = pairs.map(|pair| pair[1].saturating_sub(pair[0]));
+        let mut steps: Vec<i64> = steps.filter(|step| *step > 0).collect();
+        steps.sort_unstable();
+        steps
+    }
+
+    /// The usual step, seconds.
+    pub(super) fn usual_step_s(&self) -> Option<f64> {
+        let steps = self.steps_ns();
+        Some(*steps.get(steps.len() / 2)? as f64 * 1e-9)
+    }
+
     fn header(&mut self, header: &Header) {
         self.stamps_ns.push(header.stamp.as_ns());
         if !self.frames.contains(&header.frame_id) {
@@ -128,9 +163,25 @@ impl Seen {
         for &range in scan.ranges.iter().filter(|range| range.is_finite()) {
             self.reach(range, scan.range_max);
         }
+        if let Some(middle_m) = middle(&scan.ranges).filter(|range| *range > REACHABLE_M) {
+            self.unreachable += 1;
+            self.first_middle_m.get_or_insert(middle_m);
+        }
+        self.duration(scan);
         if let Some(oddity) = oddity(scan) {
             self.odd_scans += 1;
             self.first_oddity.get_or_insert(oddity);
+        }
+    }
+
+    fn duration(&mut self, scan: &LaserScan) {
+        let time_increment_s = scan.time_increment;
+        let scan_s = f64::from(time_increment_s).abs() * scan.ranges.len() as f64;
+        if self.longest.is_none_or(|longest| scan_s > longest.scan_s) {
+            self.longest = Some(Duration {
+                scan_s,
+                time_increment_s,
+            });
         }
     }
 
@@ -147,6 +198,15 @@ impl Seen {
             }
         }
     }
+}
+
+/// The middle one of the different readings of a scan.
+fn middle(ranges: &[f32]) -> Option<f32> {
+    let mut read: Vec<f32> = ranges.iter().copied().filter(|r| r.is_finite()).collect();
+    read.sort_unstable_by(f32::total_cmp);
+    read.dedup();
+    let middle = *read.get(read.len() / 2)?;
+    (read.len() >= MIN_READINGS).then_some(middle)
 }
 
 /// As the engine takes it.
@@ -169,9 +229,16 @@ fn oddity(scan: &LaserScan) -> Option<String> {
         angle_min,
         angle_max,
         angle_increment,
+        time_increment,
         ranges,
         ..
     } = scan;
+    if !time_increment.is_finite() {
+        return Some(format!(
+            "time_increment is {time_increment}: the driver must set it to the seconds from one \
+             beam to the next, or to 0"
+        ));
+    }
     let beams = ranges.len();
     let last = angle_min + beams.saturating_sub(1) as f32 * angle_increment;
     // Some drivers say where the beam behind the last one would point. One that is

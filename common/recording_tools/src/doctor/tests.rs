@@ -1,0 +1,87 @@
+//! What is said of the corridor's recording with something wrong in it.
+
+use std::path::Path;
+
+use recording::write::{Packing, RecordingWriter};
+use recording::{Message, Recording};
+
+use super::checks;
+use super::finding::{Finding, Severity};
+use super::survey::Survey;
+
+const CORRIDOR: &str = "../../recordings/malaga_corridor/recording.mcap";
+
+fn findings(change: impl Fn(&mut Message)) -> Vec<Finding> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(CORRIDOR);
+    let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+    for record in Recording::open(&path).unwrap().records() {
+        let mut record = record.unwrap();
+        change(&mut record.message);
+        let (topic, time) = (&record.topic, record.log_time_ns);
+        writer.write(topic, time, &record.message).unwrap();
+    }
+    let bytes = writer.finish().unwrap().into_inner();
+    let changed = Recording::from_bytes("changed", bytes).unwrap();
+    checks::all(&changed, &Survey::of(&changed))
+}
+
+#[track_caller]
+fn check(words: &str, change: impl Fn(&mut Message)) {
+    let found = findings(change);
+    let is_problem = |finding: &Finding| {
+        finding.severity == Severity::Problem && finding.finding.contains(words)
+    };
+    assert!(
+        found.len() == 1 && found.iter().all(is_problem),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn the_corridor_is_sound() {
+    assert_eq!(findings(|_| ()), []);
+}
+
+#[test]
+fn readings_in_millimetres_are_named() {
+    check("they are in millimetres", |message| {
+        if let Message::Scan(scan) = message {
+            scan.range_max *= 1000.0;
+            scan.ranges.iter_mut().for_each(|range| *range *= 1000.0);
+        }
+    });
+}
+
+#[test]
+fn a_time_increment_that_cannot_be_is_named() {
+    for (seconds, words) in [
+        (1.0, "with a time_increment of 1.0 s"),
+        (1e30, "with a time_increment of 1e30 s"),
+        (f32::NAN, "time_increment is NaN"),
+    ] {
+        check(words, |message| {
+            if let Message::Scan(scan) = message {
+                scan.time_increment = seconds;
+            }
+        });
+    }
+}
+
+#[test]
+fn a_mount_that_is_turned_or_far_away_is_named() {
+    check(
+        "/tf_static puts \"laser\" 780 m from \"base_link\"",
+        |message| {
+            if let Message::StaticTransforms(message) = message {
+                message.transforms[0].transform.translation.x *= 1000.0;
+            }
+        },
+    );
+    check("degrees to the right of where its mount says", |message| {
+        if let Message::StaticTransforms(message) = message {
+            let half = std::f64::consts::FRAC_1_SQRT_2;
+            let rotation = &mut message.transforms[0].transform.rotation;
+            (rotation.z, rotation.w) = (half, half);
+        }
+    });
+}
