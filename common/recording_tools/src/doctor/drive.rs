@@ -22,13 +22,14 @@ const CELLS: usize = 400;
 /// Bearings of beams are not rounded here: any number will do.
 const HEADINGS: u32 = 360;
 
-/// Fewest readings that say what a laser sees.
+/// Fewest readings of a scan that does not come twice by chance.
 const MIN_READINGS: usize = 30;
 
 /// A covered laser reads one range, give or take so many metres, in this share of its
-/// beams.
+/// beams; in a field of so many radians at least, for a narrow one may see a flat wall.
 const COVER_M: f32 = 0.03;
 const COVER_SHARE: f64 = 0.95;
+const COVER_FIELD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// No laser sits farther from the base of its robot, metres.
 const FAR_MOUNT_M: f64 = 10.0;
@@ -106,20 +107,18 @@ impl Drive {
             if record.topic != scans {
                 continue;
             }
-            let (base_from_laser, is_upside_down) = *mount.get_or_insert_with(|| {
+            let (child_from_laser, is_upside_down) = *mount.get_or_insert_with(|| {
                 let frame = &scan.header.frame_id;
                 let mounted = recording.mounted(frame).ok().and_then(|found| found.mount);
                 mounted.map_or((Pose::IDENTITY, false), |mount| {
-                    let moves_laser = *frame == child;
-                    let base_from_laser = if moves_laser {
-                        Pose::IDENTITY
-                    } else {
-                        mount.base_from_laser
+                    let child_from_laser = match *frame == child {
+                        true => Pose::IDENTITY,
+                        false => mount.base_from_laser,
                     };
-                    (base_from_laser, mount.upside_down)
+                    (child_from_laser, mount.upside_down)
                 })
             });
-            drive.child_from_laser = base_from_laser;
+            drive.child_from_laser = child_from_laser;
             let as_measured = Scan {
                 angle_min: scan.angle_min.into(),
                 angle_increment: scan.angle_increment.into(),
@@ -154,7 +153,7 @@ impl Drive {
             stamp_ns,
             step,
             is_repeated: read.len() >= MIN_READINGS && bits == self.readings,
-            only_range_m: only_range(&mut read),
+            only_range_m: only_range(&mut read, scan.angle_increment.abs()),
         });
         self.readings = bits;
     }
@@ -180,45 +179,34 @@ impl Drive {
     /// Ways along which the laser moved so far, metres, or turned so far, radians, by the
     /// odometry.
     pub(super) fn stretches(&self, (metres, radians): (f64, f64)) -> Vec<Stretch> {
-        let (mut found, mut start) = (Vec::new(), None);
+        let mut found = Vec::new();
+        let Some(mut start) = self.looks.first() else {
+            return found;
+        };
+        let mut gone = Pose::IDENTITY;
         for look in &self.looks {
-            let from_start = start.and_then(|(first, by_scans): (&Look, Pose)| {
-                let by_odometry = self.moved(first, look)?;
-                let by_scans = by_scans.then(look.step?);
-                Some((
-                    first,
-                    Stretch {
-                        by_scans,
-                        by_odometry,
-                    },
-                ))
-            });
-            start = match from_start {
-                Some((first, stretch))
-                    if stretch
-                        .by_odometry
-                        .is_within(Pose::IDENTITY, metres, radians) =>
-                {
-                    Some((first, stretch.by_scans))
+            if let (Some(step), Some(by_odometry)) = (look.step, self.moved(start, look)) {
+                gone = gone.then(step);
+                if by_odometry.is_within(Pose::IDENTITY, metres, radians) {
+                    continue;
                 }
-                Some((_, stretch)) => {
-                    found.push(stretch);
-                    Some((look, Pose::IDENTITY))
-                }
-                None => Some((look, Pose::IDENTITY)),
-            };
+                found.push(Stretch {
+                    by_scans: gone,
+                    by_odometry,
+                });
+            }
+            (start, gone) = (look, Pose::IDENTITY);
         }
         found
     }
 }
 
-/// The range that nearly all readings have.
-fn only_range(read: &mut [f32]) -> Option<f32> {
+/// The range that nearly all readings have; from one beam to the next are so many radians.
+fn only_range(read: &mut [f32], increment: f64) -> Option<f32> {
     read.sort_unstable_by(f32::total_cmp);
     let middle = *read.get(read.len() / 2)?;
-    let near = read
-        .iter()
-        .filter(|&&range| (range - middle).abs() <= COVER_M);
-    let is_only = near.count() as f64 >= COVER_SHARE * read.len() as f64;
-    (is_only && read.len() >= MIN_READINGS).then_some(middle)
+    let is_near = |range: &&f32| (**range - middle).abs() <= COVER_M;
+    let near = read.iter().filter(is_near).count() as f64;
+    let is_wide = near * increment >= COVER_FIELD;
+    (is_wide && near >= COVER_SHARE * read.len() as f64).then_some(middle)
 }

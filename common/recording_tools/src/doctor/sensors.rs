@@ -108,8 +108,8 @@ fn never_moves(drive: &Drive) -> Option<Finding> {
     let metres: f64 = steps.iter().map(|step| step.x.hypot(step.y)).sum();
     (has_moved && !drive.motion.has_moved(i64::MAX)).then(|| {
         Finding::problem(format!(
-            "odometry never moves while the laser, by its scans, drives {metres:.1} m: check that its \
-             driver gets the counts of the wheels; until then the robot is followed by scans \
+            "odometry never moves while the laser, by its scans, drives {metres:.1} m: check that \
+             its driver gets the counts of the wheels; until then the robot is followed by scans \
              alone"
         ))
     })
@@ -142,13 +142,10 @@ fn moved_while(drive: &Drive, goes_on: fn(&Look, &Look) -> bool) -> Option<(usiz
     let mut runs = drive.looks.chunk_by(goes_on);
     runs.find_map(|run| {
         let from = run.first()?;
-        let poses = run.iter().filter_map(|look| drive.moved(from, look));
-        let is_still = |pose: &Pose| pose.is_within(Pose::IDENTITY, STRETCH.0, STRETCH.1);
-        let farthest = poses.filter(|pose| !is_still(pose)).last()?;
-        let (metres, degrees) = (
-            farthest.distance_to(Pose::IDENTITY),
-            farthest.yaw.to_degrees(),
-        );
+        let mut poses = run.iter().filter_map(|look| drive.moved(from, look));
+        let last = poses.rfind(|pose| !pose.is_within(Pose::IDENTITY, STRETCH.0, STRETCH.1))?;
+        let metres = last.distance_to(Pose::IDENTITY);
+        let degrees = last.yaw.to_degrees().abs();
         let moved = format!("{metres:.1} m and {degrees:.0} degrees");
         (run.len() >= MIN_COUNT).then_some((run.len(), moved))
     })
