@@ -64,11 +64,14 @@ impl Workspace {
             let found = &mut self.places;
             distance_field.classify(ends, grid_pose(&best), &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
-            let through = ends.share(&found.classes, BeamClass::Through);
+            let unmatched = [BeamClass::Through, BeamClass::Unknown]
+                .map(|class| ends.share(&found.classes, class))
+                .iter()
+                .sum();
             let resolution = distance_field.frame.resolution_m;
             let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
             let scan = (ends.effective_beams(), ends.effective_pieces(apart));
-            let needed = config.needed_lead((best.score, through), scan);
+            let needed = config.needed_lead((best.score, unmatched), scan);
             let left_out = lead(
                 best.score,
                 best.score - distance_field.left_out(best.score, &config.fit),

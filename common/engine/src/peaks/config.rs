@@ -63,11 +63,12 @@ pub struct PeakConfig {
     /// chance. A new piece begins where neighbouring readings jump.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share))]
     pub piece_doubt: f64,
-    /// Doubt because of beams that pass through obstacles at the best place: the score
-    /// that is compared with the sure score is lowered by this times their share,
-    /// 0..=1. It does not change which place is best, see `--through-penalty`: walls
-    /// that are seen at a flat angle are passed through at the true place, too.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.4, value_parser = parse_share))]
+    /// Doubt because of beams that pass through obstacles or end behind unknown space at
+    /// the best place: the score that is compared with the sure score is lowered by this
+    /// times their share, 0..=1. It does not change which place is best, see
+    /// `--through-penalty`: walls that are seen at a flat angle are passed through at the
+    /// true place, too.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.6, value_parser = parse_share))]
     pub through_doubt: f64,
     /// Number of beams that need no more than the minimum lead, 1..=1000: with fewer,
     /// scores vary more by chance, and the lead must be larger by the square root of
@@ -110,14 +111,14 @@ const SURE_PIECES: f64 = 6.0;
 
 impl PeakConfig {
     /// The lead at which a best place stands alone that has such a score, and where
-    /// such a share of the beams passes through obstacles; by this many beams that see
-    /// this many pieces.
+    /// such a share of the beams passes through obstacles or ends behind unknown space;
+    /// by this many beams that see this many pieces.
     pub(super) fn needed_lead(
         &self,
-        (score, through): (f64, f64),
+        (score, unmatched): (f64, f64),
         (beams, pieces): (f64, f64),
     ) -> f64 {
-        let trusted = score - self.through_doubt * through;
+        let trusted = score - self.through_doubt * unmatched;
         let sure = self.sure_score - self.piece_doubt * (pieces.max(1.0) / SURE_PIECES).ln();
         let lead = self.least_lead + (sure - trusted).max(0.0);
         // Scores are means over the beams.
@@ -156,7 +157,7 @@ impl Default for PeakConfig {
             least_lead: 0.09,
             sure_score: 0.74,
             piece_doubt: 0.14,
-            through_doubt: 0.4,
+            through_doubt: 0.6,
             sure_beams: 100,
             least_score: 0.60,
             lead_scale: 0.025,
@@ -187,8 +188,8 @@ mod tests {
         check((0.64, 0.0), (100.0, 6.0), 0.19);
         check((0.74, 0.0), (25.0, 6.0), 0.18);
         // A tenth of what passes through obstacles is spared by a good score.
-        check((0.78, 0.1), (100.0, 6.0), 0.09);
-        check((0.74, 0.5), (100.0, 6.0), 0.29);
+        check((0.80, 0.1), (100.0, 6.0), 0.09);
+        check((0.74, 0.5), (100.0, 6.0), 0.39);
         // A scan of one piece says less, one of many more.
         let pieces = |pieces: f64| 0.14 * (pieces / 6.0).ln();
         check((0.74, 0.0), (100.0, 1.0), 0.09 - pieces(1.0));
