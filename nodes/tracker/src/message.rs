@@ -38,20 +38,27 @@ impl Tracked {
     /// The message of the scan.
     #[must_use]
     pub(crate) fn header(&self) -> PoseHeader {
-        self.at(self.report.pose.unwrap_or_default(), self.stamp, true)
+        self.header_at(self.stamp, true)
     }
 
-    /// The message where odometry has carried the pose on since the scan; none where it
-    /// has begun anew.
+    /// The same where odometry, of which this is the newest, has carried the pose on since the
+    /// scan; none where it has begun anew. The frame of odometry keeps its place in the map.
     #[must_use]
-    pub(crate) fn carried(&self, newest: ByOdometry, stamp: Stamp) -> Option<PoseHeader> {
-        let (at, _) = self.by_odometry?;
+    pub(crate) fn carried(&self, newest: ByOdometry, odometry_error: f64) -> Option<Self> {
+        let (at, frame) = self.by_odometry?;
         let moved = newest.moved_since(&at)?;
-        Some(self.at(self.report.pose?.then(moved), stamp, false))
+        Some(Tracked {
+            report: self.report.carried(moved, odometry_error),
+            by_odometry: Some((newest, frame)),
+            ..*self
+        })
     }
 
-    fn at(&self, map_from_target: Pose, stamp: Stamp, from_scan: bool) -> PoseHeader {
+    /// The message at a stamp, of a scan or between scans.
+    #[must_use]
+    pub(crate) fn header_at(&self, stamp: Stamp, from_scan: bool) -> PoseHeader {
         let report = &self.report;
+        let map_from_target = report.pose.unwrap_or_default();
         let laser = self.target.laser(map_from_target);
         let base = self.target.base(map_from_target);
         let covariance = |of: Pose| {

@@ -34,10 +34,6 @@ const TICK: Duration = Duration::from_millis(50);
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// What was true when the robot was last on leads by this much over what a search finds:
-/// as much as one key scan says.
-const REMEMBERED_LEAD: f64 = 4.0;
-
 /// Follows the robot until the stop flag is set.
 ///
 /// # Errors
@@ -329,10 +325,13 @@ impl Node {
             return Ok(());
         };
         let newest = self.joiner.by_newest_odometry();
-        let Some(header) = newest.and_then(|newest| last.carried(newest, stamp)) else {
+        let error = self.config.follow.tracking.odometry_error;
+        let Some(carried) = newest.and_then(|newest| last.carried(newest, error)) else {
             return Ok(());
         };
-        self.send(header, &last.report.words())
+        let words = carried.report.words();
+        self.log(carried.report.state, &words);
+        self.send(carried.header_at(stamp, false), &words)
     }
 
     fn send_nothing(&mut self, scan: &ScanHeader, reason: TrackReason) -> Result<(), TrackerError> {

@@ -22,9 +22,6 @@ use crate::search::Search;
 use crate::settings::TrackerSettings;
 use crate::tracked::{Followed, TrackedPose};
 
-/// What is expected leads by so much over what a search finds, as in the graph.
-const EXPECTED_LEAD: f64 = 10.0;
-
 /// What a pose that is expected may err by where nothing else is said, metres and radians,
 /// as in the graph.
 const EXPECTED_ERROR: (f64, f64) = (0.5, 0.26);
@@ -247,7 +244,7 @@ impl Tracker {
         let target = Target::of(scan.base_from_laser, false);
         if let Some((base, covariance)) = expected.take() {
             let laser = target.from_base(base);
-            tracker.expect((0, laser), covariance.carried(base, laser), EXPECTED_LEAD);
+            tracker.expect((0, laser), covariance.carried(base, laser));
         }
         let now = joiner.by_odometry();
         let moved = ByOdometry::between(*before, now);

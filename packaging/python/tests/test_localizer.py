@@ -155,7 +155,7 @@ SETTINGS = [
     ({"threads": True}, TypeError, "threads is True, a bool; allowed: a number"),
     ({"threads": [1]}, TypeError, "threads is .*, a list; allowed: a number"),
     ({"beams": 5}, TypeError, "beams is no setting; allowed: occupied_from, free_to"),
-    ({"sure_lead": 5}, TypeError, "sure_lead is no setting"),
+    ({"doubt_fall": 5}, TypeError, "doubt_fall is no setting"),
     ({"region": (1, 2)}, ValueError, "region is .*; allowed: two corners"),
     ({"region": [(1, 2, 3), (4, 5)]}, ValueError, "region is .*; allowed: two corners"),
     ({"region": [(1, 2)]}, ValueError, "region: 1 corners; allowed are 2"),

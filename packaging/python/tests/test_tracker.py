@@ -199,7 +199,7 @@ def test_a_scan_that_is_refused_changes_nothing():
 
 
 def test_settings_of_the_tracker_are_read():
-    tracker = backcast.Tracker(hall_map(), sure_lead=100.0, scan_cap=0.1, deskew=False)
+    tracker = backcast.Tracker(hall_map(), sure=1.0, scan_cap=0.1, deskew=False)
     _, _, tracked = drive(tracker, 12)
     assert tracked.state == "Searching"
     with pytest.raises(ValueError, match="scan_cap: 101 is not within 0 to 100"):

@@ -48,7 +48,7 @@ result = localizer.locate([1.0, 2.0], 0.0, 0.1, mount=(0.1, 0.0, 0.0))
 if result.pose is not None:
     x, y, yaw = result.pose
     print(x + y + yaw, result.poses.shape)
-tracked = backcast.Tracker(map, sure_lead=10.0).update([1.0], 0.0, 0.1, 5)
+tracked = backcast.Tracker(map, sure=0.9).update([1.0], 0.0, 0.1, 5)
 print(tracked.pose)
 """
 
@@ -57,7 +57,7 @@ MISTAKES = {
     "taper": ('taper="box"', 'taper="round"'),
     "beams": ("max_beams=90", "beams=90"),
     "None": ("if result.pose is not None", "if True"),
-    "deskew": ("sure_lead=10.0", "deskew=3"),
+    "deskew": ("sure=0.9", "deskew=3"),
 }
 
 

@@ -81,20 +81,21 @@ fn a_tracker_that_starts_over_forgets_its_pose_and_finds_the_robot_again() {
 }
 
 #[test]
-fn a_pose_is_believed_at_once_only_where_that_is_said() {
+fn a_hint_is_believed_where_a_scan_confirms_it_and_what_is_said_to_be_believed_at_once() {
     let isolated = Isolated::new("believe");
     let robot = Robot::start(&isolated);
     let said = robot.graph.publisher().unwrap();
-    say(&said, InitialPoseKind::Hint, truth(&robot, 0));
+    let across = truth(&robot, 0).then(Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+    say(&said, InitialPoseKind::Hint, across);
     let pose = pose_of(&robot, 0);
     assert_eq!(pose.state, TrackState::Searching as u32);
-    say(&said, InitialPoseKind::Believed, truth(&robot, 1));
-    let pose = pose_of(&robot, 1);
-    assert!(pose.is_unique(), "{}", pose.state);
-    let (found, truth) = (Pose::from(pose.map_from_laser), truth(&robot, 1));
-    assert!(found.is_within(truth, 0.2, 0.05), "{found:?} {truth:?}");
-    // It goes on from there.
-    let pose = pose_of(&robot, 2);
-    assert!(pose.is_unique(), "{}", pose.state);
+    for (scan, kind) in [(1, InitialPoseKind::Hint), (2, InitialPoseKind::Believed)] {
+        let truth = truth(&robot, scan);
+        say(&said, kind, truth);
+        let pose = pose_of(&robot, scan);
+        assert!(pose.is_unique(), "{}", pose.state);
+        let found = Pose::from(pose.map_from_laser);
+        assert!(found.is_within(truth, 0.2, 0.05), "{found:?} {truth:?}");
+    }
     robot.stop();
 }

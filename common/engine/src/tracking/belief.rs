@@ -2,75 +2,41 @@
 
 use geometry::Pose;
 use messages::{TrackReason, TrackState};
+use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
-use super::limits::FARTHEST_BEHIND;
-use super::place::{MEAN_OVER, Place};
+use super::nowhere::is_blind;
+use super::place::Place;
+use super::places::Places;
+use super::posterior::{is_elsewhere, probability, rivals, spread};
+use super::report::Report;
 
-/// Scans fit badly at the place that is believed. What does so for long becomes the mean
-/// there, and would be taken for good: what they are measured by is the mean before.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Doubt {
-    mean_before: f64,
-    /// Scores at key scans since.
-    keys: u32,
-    sum: f64,
-}
+/// A pose that was unique stays so until the robot is elsewhere so many times as likely as a
+/// start allows.
+const KEPT: f64 = 5.0;
 
-impl Doubt {
-    pub(super) fn new(place: &Place) -> Self {
-        Doubt {
-            mean_before: place.mean,
-            keys: 0,
-            sum: 0.0,
-        }
-    }
-
-    pub(super) fn add(&mut self, place: &Place) {
-        self.keys += 1;
-        self.sum += place.last;
-    }
-
-    /// The mean of so many key scans that the map may have changed there.
-    pub(super) fn usual(&self) -> Option<f64> {
-        (self.keys >= MEAN_OVER).then(|| self.sum / f64::from(self.keys))
-    }
-}
-
-/// What is believed. The verdict judges it by the places that are kept.
+/// What is believed, by the places that are kept.
 #[derive(Debug, Clone)]
 pub(super) struct Belief {
-    pub(super) config: TrackingConfig,
+    config: TrackingConfig,
     /// The place that is believed.
-    pub(super) place: Option<u32>,
-    pub(super) was_unique: bool,
-    pub(super) fits_badly: bool,
-    /// Since scans fit badly there.
-    pub(super) doubt: Option<Doubt>,
-    /// Whether the robot is believed to have gone to another map, and the place there does not
-    /// yet lead as one must that is found at the start.
-    pub(super) taken_over: bool,
+    place: Option<u32>,
+    was_unique: bool,
+    /// Whether the robot is at that place as likely as it has to be.
+    is_sure: bool,
+    /// What the last scan says against that place.
+    doubt: Option<TrackReason>,
     /// The last search that was needed had no answer.
-    pub(super) unchecked: bool,
-    /// Over the next place, and over "nowhere".
-    pub(super) lead: f64,
-    pub(super) over_nowhere: f64,
-    pub(super) bad_keys: u32,
-    /// Key scans since it was not known how the robot moved.
-    pub(super) connected_keys: u32,
-    /// Whether odometry was interrupted, and not enough key scans have agreed since.
-    pub(super) interrupted: bool,
-    /// Whether the lead fell so far that it must be again what a start needs.
-    pub(super) doubted: bool,
-    /// Whether the laser and odometry disagree about how the robot moved to the last scan.
-    pub(super) disagree: bool,
-    pub(super) lost_by: TrackReason,
-    pub(super) state: TrackState,
-    pub(super) reason: TrackReason,
-    pub(super) stamp_ns: i64,
-    pub(super) since_ns: i64,
-    pub(super) since_m: f64,
+    unchecked: bool,
+    /// Of the best place.
+    probability: f64,
+    lost_by: TrackReason,
+    state: TrackState,
+    reason: TrackReason,
+    stamp_ns: i64,
+    since_ns: i64,
+    since_m: f64,
 }
 
 impl Belief {
@@ -79,17 +45,10 @@ impl Belief {
             config,
             place: None,
             was_unique: false,
-            fits_badly: false,
+            is_sure: false,
             doubt: None,
-            taken_over: false,
             unchecked: false,
-            lead: 0.0,
-            over_nowhere: 0.0,
-            bad_keys: 0,
-            connected_keys: 0,
-            interrupted: false,
-            doubted: false,
-            disagree: false,
+            probability: 0.0,
             lost_by: TrackReason::PoorFit,
             state: TrackState::Searching,
             reason: TrackReason::NoScan,
@@ -103,49 +62,41 @@ impl Belief {
         self.place
     }
 
+    /// Believes a place that somebody vouches for.
     pub(super) fn believe(&mut self, id: u32) {
         self.place = Some(id);
-        self.was_unique = true;
-        self.doubt = None;
-        (self.lead, self.over_nowhere) = (FARTHEST_BEHIND, FARTHEST_BEHIND);
+        (self.was_unique, self.is_sure) = (true, true);
     }
 
-    /// Goes on to the next scan, to which the robot moved so; how many seconds after the one
-    /// before it was measured, if there was one.
-    pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> Option<f64> {
+    /// Goes on with the place that the one that is believed has met, or with that one.
+    pub(super) fn follow(&mut self, place: Option<u32>) {
+        self.place = place;
+    }
+
+    /// Goes on to the next scan, to which the robot moved so; whether it is the first.
+    pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> bool {
         let is_first = self.since_ns == 0;
         if is_first {
             self.since_ns = stamp_ns;
         }
-        let later_ns = stamp_ns.saturating_sub(self.stamp_ns).max(0);
         self.stamp_ns = stamp_ns;
-        if moved.is_none() {
-            self.connected_keys = 0;
-        }
         self.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
-        (!is_first).then_some(later_ns as f64 / 1e9)
+        is_first
     }
 
-    /// Whether the last scan speaks against a place.
-    pub(super) fn is_doubtful_at(&self, place: &Place) -> bool {
-        let config = &self.config;
-        let mean = self.doubt.map_or(place.mean, |doubt| doubt.mean_before);
-        place.nowhere > 0.0 || place.last < config.doubt_score.max(mean - config.doubt_fall)
+    /// Sees how the last scan fits at the place that is believed. Whether that is doubted.
+    pub(super) fn look_at(&mut self, places: &Places) -> bool {
+        let place = self.place.and_then(|id| places.get(id));
+        self.doubt = place.and_then(|place| place.doubt);
+        self.doubt.is_some()
     }
 
     pub(super) fn is_doubtful(&self) -> bool {
-        self.place.is_some() && self.fits_badly
+        self.doubt.is_some()
     }
 
-    /// Odometry does not say how the robot moved to this scan, as it did before.
-    pub(super) fn interrupt(&mut self) {
-        self.interrupted = true;
-    }
-
-    /// Whether a place is believed that nothing but how scans fit has to confirm: a search
-    /// that was needed had an answer, and odometry was not interrupted.
-    pub(super) fn is_checked(&self) -> bool {
-        self.place.is_some() && !self.unchecked && !self.interrupted
+    pub(super) fn is_unique(&self) -> bool {
+        self.state == TrackState::Unique
     }
 
     /// Sees whether a search that was needed has an answer, or another one has.
@@ -153,26 +104,156 @@ impl Belief {
         self.unchecked = !has_answer && (self.unchecked || was_needed);
     }
 
-    /// Whether a place is believed, and the last scan fits there.
-    pub(super) fn is_sound(&self) -> bool {
-        self.place.is_some() && !self.fits_badly
-    }
-
-    /// The last scan saw nothing, and the robot has gone so since one that did: as far as to a
-    /// key scan, which has nothing to go by, odometry alone carries the pose.
-    pub(super) fn see_nothing(&mut self, since: &DrivenPath) {
-        let is_far = since.is_far(&self.config) || since.unknown_s.is_some();
-        if self.state == TrackState::Unique && (is_far || !self.is_checked()) {
+    /// The last scan saw nothing, and the robot has gone so since one that did: odometry alone
+    /// carries the pose, until it may be at more than one place.
+    pub(super) fn see_nothing(&mut self, places: &Places, since: &DrivenPath) {
+        let place = self.place.and_then(|id| places.get(id));
+        let is_lost_sight = place.is_some_and(|place| {
+            let from = (place.pose, place.covariance);
+            is_blind(&since.predict(from, self.config.odometry_error))
+        });
+        if self.is_unique() && is_lost_sight {
+            self.is_sure = false;
             self.enter(TrackState::Doubtful);
             self.reason = TrackReason::PoorFit;
         }
     }
 
-    pub(super) fn enter(&mut self, state: TrackState) {
+    fn enter(&mut self, state: TrackState) {
         if state != self.state {
             self.state = state;
             self.since_ns = self.stamp_ns;
             self.since_m = 0.0;
+        }
+    }
+
+    /// Sees what became of the places at a scan.
+    pub(super) fn conclude(&mut self, places: &Places, is_key: bool) {
+        self.probability = probability(places);
+        if is_key {
+            self.judge(places);
+        }
+        self.look_at(places);
+        let state = match self.place {
+            Some(_) if self.is_sure && self.doubt.is_none() => TrackState::Unique,
+            Some(_) => TrackState::Doubtful,
+            None if self.was_unique => TrackState::Lost,
+            None => TrackState::Searching,
+        };
+        self.enter(state);
+        self.reason = self.reason(places);
+    }
+
+    fn judge(&mut self, places: &Places) {
+        let Some(best) = places.all().first() else {
+            self.place = None;
+            return;
+        };
+        if let Some(id) = self.place {
+            let is_followed = places
+                .get(id)
+                .is_some_and(|place| !is_elsewhere(place, best) || place.is_across(best));
+            match () {
+                () if !is_followed => self.lose(TrackReason::AnotherPlace),
+                () if places.nowhere() > best.log_weight => {
+                    self.lose(best.doubt.unwrap_or(TrackReason::PoorFit));
+                }
+                () => self.place = Some(best.id),
+            }
+        }
+        let others = 1.0 - self.probability;
+        let most = 1.0 - self.config.sure;
+        self.is_sure = !self.unchecked
+            && best.doubt.is_none()
+            && (others <= most || (self.is_sure && others <= KEPT * most));
+        if self.place.is_none() && self.is_sure {
+            self.believe(best.id);
+        }
+    }
+
+    fn lose(&mut self, why: TrackReason) {
+        (self.place, self.is_sure) = (None, false);
+        self.lost_by = why;
+    }
+
+    /// The best place, and those elsewhere that keep it from being unique.
+    fn rivals<'a>(&self, places: &'a [Place]) -> impl Iterator<Item = &'a Place> {
+        rivals(places, 1.0 - self.config.sure)
+    }
+
+    fn reason(&self, places: &Places) -> TrackReason {
+        let several = self.rivals(places.all()).count() > 1;
+        match self.state {
+            TrackState::Unique => TrackReason::OnePlace,
+            TrackState::Doubtful if self.doubt.is_some() => {
+                self.doubt.unwrap_or(TrackReason::PoorFit)
+            }
+            TrackState::Doubtful if self.unchecked => TrackReason::PoorFit,
+            TrackState::Lost => self.lost_by,
+            TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
+            _ if several => TrackReason::SeveralPlaces,
+            _ => TrackReason::TooEarly,
+        }
+    }
+
+    /// On how many maps the best places lie.
+    fn maps(&self, places: &[Place]) -> u32 {
+        let mut maps: Vec<u32> = self.rivals(places).map(|place| place.map).collect();
+        maps.sort_unstable();
+        maps.dedup();
+        maps.len() as u32
+    }
+
+    /// What is to be said; places that are not believed have gone `since_key` since the
+    /// last key scan, and the one that is believed `unseen` since a scan that saw something,
+    /// where the last one did not.
+    pub(super) fn report(
+        &self,
+        places: &Places,
+        since_key: &DrivenPath,
+        unseen: Option<&DrivenPath>,
+    ) -> Report {
+        let believed = self.place.and_then(|id| places.get(id));
+        let place = believed.or(places.all().first());
+        let covariance = match (believed, place) {
+            (Some(believed), _) if self.is_unique() => believed.covariance,
+            (_, Some(place)) => spread(places.all(), place),
+            (_, None) => Matrix3::zeros(),
+        };
+        let at = place.map(|place| match (believed, unseen) {
+            (Some(_), None) => (place.pose, covariance),
+            (Some(_), Some(path)) => {
+                path.predict((place.pose, covariance), self.config.odometry_error)
+            }
+            (None, _) => (place.pose.then(since_key.step), covariance),
+        });
+        let is_blind = unseen.is_some() && self.state == TrackState::Doubtful;
+        let best = places.all().first();
+        let on_map = |other: &&Place| best.is_some_and(|best| best.map == other.map);
+        let distances = self.rivals(places.all()).skip(1).filter(on_map);
+        let distances = distances.filter_map(|other| Some(best?.pose.distance_to(other.pose)));
+        let apart_m = distances.fold((f64::INFINITY, 0.0f64), |(near, far), distance| {
+            (near.min(distance), far.max(distance))
+        });
+        Report {
+            state: self.state,
+            reason: self.reason,
+            map: place.map_or(0, |place| place.map),
+            pose: at.map(|(pose, _)| pose),
+            covariance: at.map_or(covariance, |(_, covariance)| covariance),
+            probability: self.probability,
+            score: place.filter(|_| !is_blind).map_or(0.0, |place| place.last),
+            lead: (self.probability / (1.0 - self.probability).max(1e-9))
+                .max(1e-9)
+                .ln(),
+            rivals: self.rivals(places.all()).count() as u32,
+            maps: self.maps(places.all()),
+            apart_m: match apart_m {
+                (near, far) if near <= far => (near, far),
+                _ => (0.0, 0.0),
+            },
+            since_ns: self.since_ns,
+            since_m: self.since_m,
         }
     }
 }

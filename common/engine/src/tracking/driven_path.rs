@@ -17,9 +17,8 @@ pub(super) struct DrivenPath {
     pub path_m: f64,
     /// Radians turned along it, to either side.
     pub turned: f64,
-    /// Where a step is not known: for how long odometry was interrupted, seconds. The robot is
-    /// then taken to have stood.
-    pub unknown_s: Option<f64>,
+    /// Whether a step is not known; the robot is then taken to have stood.
+    pub is_unknown: bool,
 }
 
 /// Standard deviations of odometry: at rest, for stamps that differ from the scans',
@@ -41,10 +40,10 @@ const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 impl DrivenPath {
-    /// Goes on by a step, if that is known; odometry was interrupted for so many seconds.
-    pub(super) fn add(&mut self, step: Option<Pose>, seconds: f64) {
+    /// Goes on by a step, if that is known.
+    pub(super) fn add(&mut self, step: Option<Pose>) {
         let Some(step) = step else {
-            self.unknown_s = Some(self.unknown_s.unwrap_or(0.0).max(seconds));
+            self.is_unknown = true;
             return;
         };
         self.step = self.step.then(step);
@@ -57,11 +56,7 @@ impl DrivenPath {
         self.step = self.step.then(by.step);
         self.path_m += by.path_m;
         self.turned += by.turned;
-        self.unknown_s = self
-            .unknown_s
-            .into_iter()
-            .chain(by.unknown_s)
-            .reduce(f64::max);
+        self.is_unknown |= by.is_unknown;
         self
     }
 
@@ -74,12 +69,24 @@ impl DrivenPath {
 
     /// Whether the robot stood: odometry moved by less than it rounds to.
     pub(super) fn is_rest(&self) -> bool {
-        self.unknown_s.is_none() && self.path_m < REST_M && self.turned < REST_RADIANS
+        !self.is_unknown && self.path_m < REST_M && self.turned < REST_RADIANS
     }
 
     /// Where a pose and its covariance, in the map, are after the way, whose standard
     /// deviations are scaled by `noise`.
     pub(super) fn predict(
+        &self,
+        (pose, covariance): (Pose, Matrix3<f64>),
+        noise: f64,
+    ) -> (Pose, Matrix3<f64>) {
+        let (predicted, carried) = self.carry((pose, covariance), noise);
+        let at_rest = [AT_REST_M, AT_REST_M, AT_REST].map(|d| (noise * d).powi(2));
+        (predicted, carried + Matrix3::from_diagonal(&at_rest.into()))
+    }
+
+    /// The same without what the stamps of odometry and of a scan differ by: as odometry alone
+    /// carries a pose on.
+    pub(super) fn carry(
         &self,
         (pose, covariance): (Pose, Matrix3<f64>),
         noise: f64,
@@ -92,10 +99,10 @@ impl DrivenPath {
     }
 
     fn error(&self, noise: f64) -> Matrix3<f64> {
-        let hole = if self.unknown_s.is_some() { 1.0 } else { 0.0 };
-        let squares = |deviations: [f64; 3]| deviations.iter().map(|d| (noise * d).powi(2)).sum();
-        let position: f64 = squares([AT_REST_M, PER_METRE_M * self.path_m, hole * UNKNOWN_M]);
-        let heading: f64 = squares([AT_REST, PER_RADIAN * self.turned, PER_METRE * self.path_m])
+        let hole = if self.is_unknown { 1.0 } else { 0.0 };
+        let squares = |deviations: [f64; 2]| deviations.iter().map(|d| (noise * d).powi(2)).sum();
+        let position: f64 = squares([PER_METRE_M * self.path_m, hole * UNKNOWN_M]);
+        let heading: f64 = squares([PER_RADIAN * self.turned, PER_METRE * self.path_m])
             + (hole * noise * UNKNOWN).powi(2);
         Matrix3::from_diagonal(&Vector3::new(position, position, heading))
     }

@@ -6,5 +6,13 @@ pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
 pub(super) const MAX_OLD: usize = 20;
 pub(super) const MAX_NEW: usize = 12;
 
+/// Natural logarithm of the odds against what can always happen between two key scans: the
+/// robot is carried away, or a sensor fails.
+pub(super) const SELDOM: f64 = 7.0;
+
+/// The same against something else than what an operator says, or than where the robot was when
+/// it was switched off.
+pub(super) const EXPECTED: f64 = 3.5;
+
 /// A place so far behind the best is dropped, natural logarithm of odds.
-pub(super) const FARTHEST_BEHIND: f64 = 20.0;
+pub(super) const FARTHEST_BEHIND: f64 = 12.0;

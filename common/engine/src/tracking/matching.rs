@@ -79,7 +79,7 @@ impl ScanMatcher {
             fit,
         };
         let unknown = DrivenPath {
-            unknown_s: Some(0.0),
+            is_unknown: true,
             step: self.step,
             ..DrivenPath::default()
         };

@@ -48,9 +48,9 @@ impl Follower {
     }
 
     /// See [`Tracker::expect`].
-    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
+    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
         match self {
-            Follower::Places(tracker) => tracker.expect(at, covariance, lead),
+            Follower::Places(tracker) => tracker.expect(at, covariance),
             Follower::Particles(tracker) => tracker.expect(at, covariance),
         }
     }

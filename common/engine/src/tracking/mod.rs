@@ -12,9 +12,10 @@
 //! search ─ candidates ─────────────────────────────────────────────┘
 //! ```
 //!
-//! What one key scan says is capped, for the errors of a map repeat from scan to scan:
-//! one place is the only one when several key scans agree on it. It decides by stamps
-//! and the order of calls alone, so that the same calls give the same poses.
+//! Beside the places there is "nowhere", a hypothesis like the others. What one key scan says is
+//! capped, for the errors of a map repeat from scan to scan: one place is the only one when
+//! its share of all weight is that of `--sure`, for which several key scans have to agree. It
+//! decides by stamps and the order of calls alone, so that the same calls give the same poses.
 //!
 //! Several maps are tracked on together: a place is on one of them, and the robot goes from one
 //! to another where a transition is, or where a search finds it there.
@@ -35,10 +36,10 @@ mod nowhere;
 mod particles;
 mod place;
 mod places;
+mod posterior;
 mod report;
 mod seen;
 mod transition;
-mod verdict;
 
 pub use config::TrackingConfig;
 pub use matching::ScanMatcher;
@@ -100,10 +101,8 @@ pub struct Tracker {
     /// Whether the place that is believed lies in a transition.
     is_in_transition: bool,
     needs_search: bool,
-    /// Whether odometry said how the robot moved to the last scan.
-    has_odometry: bool,
-    /// Where the robot should be at the next scan, and by how much that leads.
-    expected: Option<((u32, Pose), Covariance, f64)>,
+    /// Where the robot should be at the next scan.
+    expected: Option<((u32, Pose), Covariance)>,
 }
 
 impl Tracker {
@@ -125,7 +124,6 @@ impl Tracker {
             is_blank: false,
             is_in_transition: false,
             needs_search: false,
-            has_odometry: false,
             expected: None,
         }
     }
@@ -144,11 +142,11 @@ impl Tracker {
     }
 
     /// Forgets all but where the robot should be at the next scan, on the map of a number:
-    /// that place is tried first and leads by this much, natural logarithm of odds, over what
-    /// a search finds. It is not believed before scans confirm it.
-    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance, lead: f64) {
+    /// that place is tried first, and is likelier than what a search finds elsewhere. It is
+    /// believed as soon as a scan fits there, and none fits as well within that covariance.
+    pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
         self.start_over();
-        self.expected = Some((at, covariance, lead));
+        self.expected = Some((at, covariance));
     }
 
     /// Starts from a pose that is believed, on the map of a number, with its covariance.
@@ -182,30 +180,23 @@ impl Tracker {
             true => by_odometry,
             false => self.matcher.moved(&seen[0], by_odometry, &self.config),
         };
-        let later_s = self.belief.go_on(stamp_ns, moved);
-        // To a first scan, or that of a start, odometry has nothing to say.
-        let has_odometry = by_odometry.is_some() && later_s.is_some();
-        let had_odometry = std::mem::replace(&mut self.has_odometry, has_odometry);
-        let is_interrupted = had_odometry && by_odometry.is_none();
-        let seconds = later_s.filter(|_| is_interrupted).unwrap_or(0.0);
-        if is_interrupted {
-            self.belief.interrupt();
-        }
+        let is_first = self.belief.go_on(stamp_ns, moved);
+        // Before the first scan nothing moved.
+        let step = moved.or(is_first.then_some(Pose::IDENTITY));
         self.asks_ahead = false;
-        for path in [&mut self.since_key, &mut self.since_scan] {
-            path.add(moved, seconds);
-        }
+        self.since_key.add(step);
+        self.since_scan.add(step);
         let mut is_due = false;
         if let Some((path, left)) = &mut self.ahead {
-            path.add(moved, seconds);
+            path.add(step);
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
         if self.is_blank {
             return Need::Nothing;
         }
-        if let Some(((map, pose), covariance, lead)) = self.expected.take() {
-            self.places.expect(seen, (map, (pose, covariance.0)), lead);
+        if let Some(((map, pose), covariance)) = self.expected.take() {
+            self.places.expect(seen, (map, (pose, covariance.0)));
             self.since_key = DrivenPath::default();
             self.is_key = true;
             return Need::ThisScan;
@@ -213,24 +204,19 @@ impl Tracker {
         let path = std::mem::take(&mut self.since_scan);
         let was_doubtful = self.belief.is_doubtful();
         let is_lost_sight = self.has_lost_sight(&path);
-        if is_interrupted || is_lost_sight {
-            self.places.forget();
-        }
         if is_lost_sight {
-            self.belief.interrupt();
+            self.places.forget();
         }
         if let Some(id) = self.belief.place() {
             self.places.follow(id, seen, (&path, &self.since_key));
         }
-        self.belief.look_at(&self.places);
-        let is_suspicious = self.belief.is_doubtful();
+        let is_suspicious = self.belief.look_at(&self.places);
         let has_entered = self.has_entered();
-        let is_new =
-            (is_suspicious && !was_doubtful) || is_interrupted || is_lost_sight || has_entered;
+        let is_new = (is_suspicious && !was_doubtful) || is_lost_sight || has_entered;
         self.is_key = self.is_far() || is_new || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
-            () if is_suspicious || !self.belief.is_checked() => {
+            () if is_suspicious || is_lost_sight || !self.belief.is_unique() => {
                 self.ahead = None;
                 Need::ThisScan
             }
@@ -262,10 +248,11 @@ impl Tracker {
             || self.believed().is_some_and(|place| place.novelty >= 1.0)
     }
 
-    /// Whether odometry carried the believed place so far that it may be several.
+    /// Whether the best place moved so far, by odometry or in a way that is not known, that it
+    /// may be several.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
-        let by_odometry = self.believed().filter(|_| path.unknown_s.is_none());
-        by_odometry.is_some_and(|place| {
+        let best = self.believed().or(self.places.all().first());
+        best.is_some_and(|place| {
             let noise = self.config.odometry_error;
             is_blind(&path.predict((place.pose, place.covariance), noise))
         })
@@ -276,7 +263,7 @@ impl Tracker {
     /// has one, for the robot may be where nobody looked.
     pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
-            self.belief.see_nothing(&self.since_scan);
+            self.belief.see_nothing(&self.places, &self.since_scan);
             return;
         }
         if self.is_key {
@@ -292,13 +279,15 @@ impl Tracker {
             }
             self.belief.search_ended(self.needs_search, found.is_some());
             let seen = (seen, &self.transitions[..]);
-            self.places.weigh(seen, &path, &mut self.belief);
+            let mut believed = self.belief.place();
+            self.places.weigh(seen, &path, &mut believed);
+            self.belief.follow(believed);
             self.keys_since_search += 1;
         }
         self.belief.conclude(&self.places, self.is_key);
         self.asks_ahead = self.is_key
             && self.ahead.is_none()
-            && self.belief.is_sound()
+            && self.belief.is_unique()
             && self.keys_since_search >= CHECKED_EVERY;
         if self.asks_ahead {
             self.ahead = Some((DrivenPath::default(), COUNTS_AFTER));

@@ -10,7 +10,6 @@ use super::driven_path::DrivenPath;
 use super::matching::ScanMatcher;
 use super::report::Report;
 use super::seen::Seen;
-use super::verdict::MIN_KEYS;
 use super::{Candidate, MIN_BEAMS, Need, TrackingConfig};
 use crate::fit::GridPose;
 use crate::particles::{self, ParticleFilter, ParticlesConfig};
@@ -20,8 +19,13 @@ use crate::particles::{self, ParticleFilter, ParticlesConfig};
 const ONE_CLUSTER: f64 = 0.95;
 const MAX_SPREAD_M: f64 = 0.5;
 
-/// Key scans in a row that hardly fit before it starts again.
+/// Key scans in a row that agree on it, and the least score of the last.
+const MIN_KEYS: u32 = 3;
+const LEAST_SCORE: f64 = 0.6;
+
+/// Key scans in a row with a lower score before it starts again.
 const LOST_SCANS: u32 = 3;
+const LOST_SCORE: f64 = 0.5;
 
 /// Follows the robot by particles.
 #[derive(Debug, Clone)]
@@ -82,11 +86,11 @@ impl ParticleTracker {
         self.stamp_ns = stamp_ns;
         self.is_blank = seen[0].ends.beams() < MIN_BEAMS;
         if self.is_blank {
-            self.since_key.add(moved, 0.0);
+            self.since_key.add(moved);
             return Need::Nothing;
         }
         let moved = self.matcher.moved(&seen[0], moved, &self.config);
-        self.since_key.add(moved, 0.0);
+        self.since_key.add(moved);
         self.report.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
         if let Some(((map, pose), covariance)) = self.expected.take() {
             self.map = map;
@@ -154,18 +158,14 @@ impl ParticleTracker {
         self.report.rivals = if is_one { 1 } else { 2 };
         let at = GridPose::of(seen.distance_field.frame, pose);
         let score = seen.distance_field.score(seen.ends, at, seen.fit);
-        self.bad = if score < self.config.doubt_score {
-            self.bad + 1
-        } else {
-            0
-        };
+        self.bad = if score < LOST_SCORE { self.bad + 1 } else { 0 };
         self.report.score = score;
     }
 
     fn conclude(&mut self, seen: &Seen<'_>) {
         let was = self.report.state;
         let was_found = was != TrackState::Searching;
-        let is_sure = self.agreeing >= MIN_KEYS && self.report.score >= self.config.least_mean;
+        let is_sure = self.agreeing >= MIN_KEYS && self.report.score >= LEAST_SCORE;
         let (state, reason) = match () {
             () if self.bad >= LOST_SCANS && was_found => (TrackState::Lost, TrackReason::PoorFit),
             () if self.filter.is_none() => (TrackState::Searching, TrackReason::NoPlace),

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use geometry::{Covariance, Pose};
-use messages::Hypothesis;
+use messages::{Hypothesis, TrackReason};
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
 use super::driven_path::DrivenPath;
@@ -100,8 +100,6 @@ pub(super) struct Place {
     pub mean: f64,
     /// The score of the last scan.
     pub last: f64,
-    /// Key scans in a row that hardly fit there.
-    pub bad: u32,
     /// Prediction for the last scan.
     pub predicted: (Pose, Matrix3<f64>),
     /// Squared deviations of the last fit from that prediction.
@@ -114,15 +112,17 @@ pub(super) struct Place {
     /// Share of the way to the next key scan that the place moved on the map since the
     /// anchor, 0..=1.
     pub novelty: f64,
-    /// Log odds of "nowhere" against this place by the last scan alone.
+    /// Log odds of "nowhere" against this place by the last scan alone, and what speaks for it
+    /// where they are positive.
     pub nowhere: f64,
+    pub doubt: Option<TrackReason>,
 }
 
 /// Novelty of a place that moved.
 const MOVED: f64 = 0.5;
 
 /// A mean is over this many key scans.
-pub(super) const MEAN_OVER: u32 = 8;
+const MEAN_OVER: u32 = 8;
 
 impl Place {
     pub(super) fn born(id: u32, (map, found): (u32, &Fitted), log_weight: f64) -> Self {
@@ -136,7 +136,6 @@ impl Place {
             age: 1,
             mean: found.score,
             last: found.score,
-            bad: 0,
             predicted: (found.pose, found.covariance),
             off: 0.0,
             anchor: (found.pose, found.covariance),
@@ -144,6 +143,7 @@ impl Place {
             until_key: DrivenPath::default(),
             novelty: 0.0,
             nowhere: 0.0,
+            doubt: None,
         }
     }
 

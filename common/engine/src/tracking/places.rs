@@ -8,17 +8,20 @@ use messages::Transition;
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
-use super::belief::Belief;
 use super::driven_path::DrivenPath;
-use super::limits::{FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD};
-use super::nowhere::nowhere_by_score;
+use super::limits::{EXPECTED, FARTHEST_BEHIND, MAX, MAX_NEW, MAX_OLD, SELDOM};
+use super::nowhere::{explained, nowhere_by_score};
 use super::place::Place;
 use super::seen::{Fitted, Seen};
 use crate::peaks::{doubt_between, lead};
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
-/// factor of e, as for the single scan (`--lead-scale`).
-const LEAD_SCALE: f64 = 0.025;
+/// factor of e: six times that of a single scan (`--lead-scale`), for a map errs at the same
+/// place in each look.
+const LEAD_SCALE: f64 = 0.15;
+
+/// What a squared deviation from odometry says against a place.
+const BY_DEVIATION: f64 = 0.1;
 
 /// A candidate confirms a place whose prediction lies within four deviations.
 const GATE: f64 = 16.0;
@@ -30,12 +33,6 @@ const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
 /// Places that come so close are one.
 const MERGED_M: f64 = 0.25;
 const MERGED_RADIANS: f64 = 5.0 * std::f64::consts::PI / 180.0;
-
-/// A scan this far below the best, or below the least, does not fit at a place; after
-/// two such key scans it is dropped.
-const JUNK_BEHIND: f64 = 0.4;
-const JUNK_SCORE: f64 = 0.35;
-const JUNK_SCANS: u32 = 2;
 
 /// What a key scan is measured by.
 #[derive(Clone, Copy)]
@@ -75,9 +72,9 @@ pub(super) struct Places {
     key_scans: u32,
     /// Log weight of "nowhere"; that of the best place is subtracted at each key scan.
     nowhere: f64,
-    /// What a place is behind that the first search finds: something where a place was
-    /// expected beforehand, with this prediction.
-    first_lag: f64,
+    /// Whether a search found something since it was last known nothing of how the robot moved.
+    was_searched: bool,
+    /// Where the robot was expected before the first key scan.
     expected: Option<(Pose, Matrix3<f64>)>,
 }
 
@@ -91,18 +88,13 @@ impl Places {
             next_id: 0,
             key_scans: 0,
             nowhere: 0.0,
-            first_lag: 0.0,
+            was_searched: false,
             expected: None,
         }
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.kept.is_empty()
-    }
-
-    /// Key scans by which places were weighed.
-    pub(super) fn key_scans(&self) -> u32 {
-        self.key_scans
     }
 
     /// Best first.
@@ -122,24 +114,17 @@ impl Places {
     ) -> u32 {
         let fitted = seen[map as usize].settle(predicted);
         let id = self.new_id();
-        // Old enough to lead.
-        let age = 2;
-        self.kept = vec![Place {
-            age,
-            ..Place::born(id, (map, &fitted), 0.0)
-        }];
-        self.key_scans = age;
-        self.nowhere = -FARTHEST_BEHIND;
+        self.kept = vec![Place::born(id, (map, &fitted), 0.0)];
+        self.key_scans = 1;
+        self.nowhere = -SELDOM;
         id
     }
 
-    /// Keeps a place at which the robot is expected, ahead by `lead` of all that the
-    /// first search finds.
+    /// Keeps a place at which the robot is expected.
     pub(super) fn expect(
         &mut self,
         seen: &[Seen<'_>],
         (map, predicted): (u32, (Pose, Matrix3<f64>)),
-        lead: f64,
     ) {
         let seen = &seen[map as usize];
         let fitted = seen.settle_turned(predicted, seen.settle(predicted));
@@ -148,8 +133,8 @@ impl Places {
             predicted,
             ..Place::born(id, (map, &fitted), 0.0)
         });
-        self.first_lag = lead;
-        self.nowhere = -lead;
+        // What the search finds elsewhere starts as "nowhere" does.
+        self.nowhere = self.nowhere_by(fitted.score) - EXPECTED;
         self.expected = Some(predicted);
     }
 
@@ -167,6 +152,13 @@ impl Places {
     /// Takes "nowhere" for as likely as the best place: the robot may have moved anywhere.
     pub(super) fn forget(&mut self) {
         self.nowhere = self.kept.first().map_or(0.0, |best| best.log_weight);
+        self.was_searched = false;
+    }
+
+    /// What the first look at a place says of "nowhere", by its score.
+    fn nowhere_by(&self, score: f64) -> f64 {
+        let cap = self.config.scan_cap;
+        nowhere_by_score(score, score, &self.config).clamp(-cap, cap)
     }
 
     fn new_id(&mut self) -> u32 {
@@ -206,17 +198,17 @@ impl Places {
         place.judge(since_key, &self.config);
     }
 
-    /// Weighs all places by a key scan, and those that were taken with them; those
-    /// that are not believed have gone `path` since the last one.
+    /// Weighs all places by a key scan, and those that were taken with them. All but the one that
+    /// is believed have gone `path` since the last one; that one may meet another, and is it then.
     pub(super) fn weigh(
         &mut self,
         (seen, transitions): (&[Seen<'_>], &[Transition]),
         path: &DrivenPath,
-        belief: &mut Belief,
+        believed: &mut Option<u32>,
     ) {
         let noise = self.config.odometry_error;
         for place in &mut self.kept {
-            if belief.place() != Some(place.id) {
+            if *believed != Some(place.id) {
                 place.predicted = path.predict((place.pose, place.covariance), noise);
                 place.set(&seen[place.map as usize].settle(place.predicted));
             }
@@ -227,16 +219,12 @@ impl Places {
         }
         let (map, score) = self.best_score();
         let best = Best { score, map, seen };
-        let fits_badly = belief
-            .place()
-            .and_then(|id| self.get(id))
-            .is_some_and(|p| belief.is_doubtful_at(p));
         self.count(best);
-        self.add_new(best, belief, (fits_badly, path.unknown_s));
-        self.add_across(transitions, best, belief);
+        self.add_new(best);
+        self.add_across(transitions, best, *believed);
         self.candidates.clear();
         self.key_scans += 1;
-        self.tidy(belief);
+        self.tidy(believed);
     }
 
     /// The highest score of any place, and the map that it is on.
@@ -252,37 +240,34 @@ impl Places {
     /// may leave out says nothing.
     fn against(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
         let behind = lead(best.score, score + best.left_out(map)).max(0.0);
-        (behind / LEAD_SCALE).min(self.config.scan_cap)
+        let explained = explained(best.score).min(self.config.scan_cap);
+        (behind / LEAD_SCALE).min(explained)
     }
 
     fn count(&mut self, best: Best<'_>) {
         // They were put in order at the key scan before, and no weight has changed since.
         let top = self.kept.first().map_or(0.0, |best| best.log_weight);
+        let by_odometry = |place: &Place| BY_DEVIATION * place.off.min(GATE);
         for i in 0..self.kept.len() {
             let Place { map, last, .. } = self.kept[i];
             let against = self.against(best, (map, last));
             let place = &mut self.kept[i];
-            place.log_weight += -top - against - 0.25 * place.off.min(GATE);
-            let is_bad = place.last < JUNK_SCORE.max(best.score - JUNK_BEHIND);
-            place.bad = if is_bad { place.bad + 1 } else { 0 };
+            place.log_weight += -top - against - by_odometry(place);
             place.grow();
         }
-        let first = self.leading().copied();
-        // At the first look, the places are those that the search finds. What odometry says
-        // against the best place is in its log odds already.
-        let (nowhere, off) = first.map_or((nowhere_by_score(best.score), 0.0), |first| {
-            (first.nowhere, first.off.min(GATE))
-        });
         let cap = self.config.scan_cap;
-        self.nowhere += -top + nowhere.clamp(-cap, cap) - 0.25 * off;
+        let first = self.leading().copied();
+        self.nowhere -= top;
         if let Some(first) = first {
-            self.nowhere = self.nowhere.max(first.log_weight - FARTHEST_BEHIND);
+            // What odometry says against the best place is in its log odds already.
+            self.nowhere += first.nowhere.clamp(-cap, cap) - by_odometry(&first);
+            self.nowhere = self.nowhere.max(first.log_weight - SELDOM);
         }
     }
 
     /// Best first; drops what does not fit, lies too far behind, or has met another
     /// place, and what there is no room for.
-    fn tidy(&mut self, belief: &mut Belief) {
+    fn tidy(&mut self, believed: &mut Option<u32>) {
         // Ids grow: of equal places the older comes first.
         self.kept.sort_unstable_by(|a, b| {
             let by_weight = b.log_weight.total_cmp(&a.log_weight);
@@ -299,7 +284,7 @@ impl Places {
                 // At the first there are no others.
                 false => new == if self.key_scans > 1 { MAX_NEW } else { MAX },
             };
-            if place.bad >= JUNK_SCANS || is_full || place.log_weight < top - FARTHEST_BEHIND {
+            if is_full || place.log_weight < top - FARTHEST_BEHIND {
                 continue;
             }
             let met = self.kept[..count]
@@ -307,8 +292,8 @@ impl Places {
                 .find(|other| other.is_within((place.map, place.pose), MERGED_M, MERGED_RADIANS));
             if let Some(other) = met {
                 other.crossed_from = other.crossed_from.or(place.crossed_from);
-                if belief.place() == Some(place.id) {
-                    belief.believe(other.id);
+                if *believed == Some(place.id) {
+                    *believed = Some(other.id);
                 }
                 continue;
             }

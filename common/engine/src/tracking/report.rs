@@ -4,6 +4,9 @@ use geometry::Pose;
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
+use super::driven_path::DrivenPath;
+use super::nowhere::is_blind;
+
 /// Where the robot is, how sure that is, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
@@ -60,6 +63,31 @@ impl Report {
         }
     }
 
+    /// The same after odometry moved the robot by this step since the last scan, whose error is
+    /// scaled by `--odometry-error`: the covariance grows, and a unique pose is doubtful once it
+    /// may be at more than one place.
+    #[must_use]
+    pub fn carried(&self, step: Pose, odometry_error: f64) -> Self {
+        let Some(pose) = self.pose else {
+            return *self;
+        };
+        let mut path = DrivenPath::default();
+        path.add(Some(step));
+        let (pose, covariance) = path.carry((pose, self.covariance), odometry_error);
+        let is_lost_sight = self.state == TrackState::Unique && is_blind(&(pose, covariance));
+        let (state, reason) = match is_lost_sight {
+            true => (TrackState::Doubtful, TrackReason::NoScan),
+            false => (self.state, self.reason),
+        };
+        Report {
+            state,
+            reason,
+            pose: Some(pose),
+            covariance,
+            ..*self
+        }
+    }
+
     /// The reason in words, and what to do.
     #[must_use]
     pub fn words(&self) -> String {
@@ -80,6 +108,7 @@ impl Report {
         let fit = format!("fit {:.2}", self.score.clamp(0.0, 1.0));
         let since = format!("since {:.0} m", self.since_m);
         match (self.reason, self.state) {
+            (TrackReason::NoScan, TrackState::Doubtful) => "no scan for some metres".into(),
             (TrackReason::NoScan, _) => "waiting for the first scan".into(),
             (TrackReason::NoMap, _) => "waiting for a map".into(),
             (TrackReason::OnePlace, _) => format!("one place, {fit}, {since}"),
@@ -119,6 +148,9 @@ impl Report {
             TrackReason::PoorFit => "drive a few metres, or mark a region",
             TrackReason::NoPlace => "is it this map?",
             TrackReason::OdometryJump => "is the laser mirrored, frozen or covered?",
+            TrackReason::NoScan if self.state == TrackState::Doubtful => {
+                "is the laser running and connected?"
+            }
             TrackReason::NoScan | TrackReason::NoMap | TrackReason::OnePlace => "",
         }
     }
@@ -178,6 +210,27 @@ mod tests {
             let why = report.reason_in_words();
             assert_eq!(Report::split(&report.words()), (&*why, report.advice()));
         }
+    }
+
+    #[test]
+    fn without_scans_the_ellipse_grows_until_the_pose_is_doubtful() {
+        let at = Report {
+            pose: Some(Pose::new(1.0, 2.0, 0.0)),
+            covariance: Matrix3::identity() * 0.03f64.powi(2),
+            ..report(TrackState::Unique, TrackReason::OnePlace)
+        };
+        assert_eq!(at.carried(Pose::IDENTITY, 1.0).covariance, at.covariance);
+        let near = at.carried(Pose::new(1.0, 0.0, 0.0), 1.0);
+        assert_eq!(near.state, TrackState::Unique);
+        // 15 cm a metre, as the study of eight robots' odometry has it.
+        assert!((near.covariance[(0, 0)].sqrt() - 0.15f64.hypot(0.03)).abs() < 1e-9);
+        let far = at.carried(Pose::new(4.0, 0.0, 0.0), 1.0);
+        assert_eq!(far.pose, Some(Pose::new(5.0, 2.0, 0.0)));
+        assert_eq!(far.state, TrackState::Doubtful);
+        assert_eq!(
+            far.words(),
+            "no scan for some metres: is the laser running and connected?"
+        );
     }
 
     #[test]

@@ -6,10 +6,6 @@ use messages::{InitialPose, InitialPoseKind, TrackReason};
 use super::turn::Turn;
 use super::{Node, TrackerError};
 
-/// What an operator says leads by this much over what a search finds: as much as a place
-/// that was known before.
-const INITIAL_LEAD: f64 = 10.0;
-
 /// What an operator's pose on the command line may err by: standard deviations, metres
 /// and radians.
 const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
@@ -90,7 +86,7 @@ impl Node {
         let map = self.shown_map();
         self.asked = None;
         if !is_believed {
-            self.expect_base((map, base.0), base.1, INITIAL_LEAD);
+            self.expect_base((map, base.0), base.1);
             return false;
         }
         let target = self.target().from_base(base.0);

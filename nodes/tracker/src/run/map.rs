@@ -6,7 +6,7 @@ use geometry::{Covariance, Pose};
 use messages::{MapHeader, MapSet, MapsHeader, NodeState, TrackState};
 use transport::{TransportError, with_causes};
 
-use super::{Node, REMEMBERED_LEAD};
+use super::Node;
 use crate::TrackerError;
 use crate::memory::Remembered;
 use crate::message::Tracked;
@@ -89,7 +89,7 @@ impl Node {
             Some(((number(&last)?, last.report.pose?), covariance))
         });
         if let Some((at, covariance)) = believed {
-            self.tracker.expect(at, covariance, REMEMBERED_LEAD);
+            self.tracker.expect(at, covariance);
             return;
         }
         let Some(Remembered {
@@ -106,7 +106,7 @@ impl Node {
             && self.initial.is_none()
         {
             let covariance = Covariance::from_rows(covariance);
-            self.expect_base((number, map_from_base), covariance, REMEMBERED_LEAD);
+            self.expect_base((number, map_from_base), covariance);
         }
     }
 
@@ -127,15 +127,10 @@ impl Node {
         shown.unwrap_or_else(|| self.current_map())
     }
 
-    pub(super) fn expect_base(
-        &mut self,
-        (map, base): (u32, Pose),
-        covariance: Covariance,
-        lead: f64,
-    ) {
+    pub(super) fn expect_base(&mut self, (map, base): (u32, Pose), covariance: Covariance) {
         let target = self.target().from_base(base);
         let covariance = covariance.carried(base, target);
-        self.tracker.expect((map, target), covariance, lead);
+        self.tracker.expect((map, target), covariance);
     }
 
     pub(super) fn target(&self) -> Target {

@@ -212,39 +212,16 @@ class TrackerSettings(Settings, total=False):
     # Or turned so far, degrees, 0..=180. Default: 20.
     key_deg: float
 
-    # The most that one key scan says against a place, natural logarithm of odds, 0..=100.
-    # Default: 4.
+    # The most that one key scan says for or against a place, natural logarithm of odds, 0..=100:
+    # what no model explains happens this often. Default: 1.5.
     scan_cap: float
 
-    # The lead over the next place at which one is the only one, natural logarithm of odds,
-    # 0..=100. Three key scans at least have to agree on it. Default: 12.
-    sure_lead: float
-
-    # The mean score of the scans at a place that needs no more than this lead; what it lacks
-    # must be made up for by the lead, see poor_fit_lead. Default: 0.85.
-    sure_mean: float
-
-    # The lead that a lack of 1 in the mean score must be made up for by, 0..=100. Default: 20.
-    poor_fit_lead: float
-
-    # What a place is behind that is found later than the others, 0..=100. Default: 10.
-    newborn_lag: float
-
-    # The same while the pose is unique and fits. Default: 20.
-    newborn_lag_unique: float
-
-    # The same near the pose that is tracked. Default: 5.
-    newborn_lag_near: float
+    # Probability at which a place is the only one, 0..=1. Default: 0.98.
+    sure: float
 
     # By so much the score of a scan may fall below the mean of those before it before the pose
     # is doubted, 0..=1. Default: 0.25.
     doubt_fall: float
-
-    # A scan with a lower score makes the pose doubtful in any case, 0..=1. Default: 0.5.
-    doubt_score: float
-
-    # A mean score below this is never unique, 0..=1. Default: 0.6.
-    least_mean: float
 
     # When the score falls by so much below the mean, the fit is tried again from headings
     # around the prediction, 0..=1: odometry errs by tens of degrees at times. Default: 0.08.

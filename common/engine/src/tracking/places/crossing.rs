@@ -3,7 +3,6 @@
 use messages::Transition;
 
 use super::{Best, Place, Places, SAME_M, SAME_RADIANS};
-use crate::tracking::belief::Belief;
 use crate::tracking::transition::other_side;
 
 impl Places {
@@ -14,9 +13,9 @@ impl Places {
         &mut self,
         transitions: &[Transition],
         best: Best<'_>,
-        belief: &Belief,
+        believed: Option<u32>,
     ) {
-        let believed = belief.place().and_then(|id| self.get(id));
+        let believed = believed.and_then(|id| self.get(id));
         let Some(here) = believed.or(self.leading()).copied() else {
             return;
         };
@@ -31,7 +30,6 @@ impl Places {
             match kept.find(|place| place.is_within(at, SAME_M, SAME_RADIANS)) {
                 Some(place) => {
                     place.crossed_from = Some(here.map);
-                    place.bad = 0;
                     place.log_weight = place.log_weight.max(log_weight);
                 }
                 None => {
@@ -52,7 +50,7 @@ impl Places {
         let Some(best) = self.kept.first().copied() else {
             return;
         };
-        let near = best.log_weight - self.config.sure_lead;
+        let near = best.log_weight + (1.0 - self.config.sure).ln();
         let is_open = |place: &Place| place.map != best.map && place.log_weight > near;
         if !self.kept.iter().any(is_open) {
             for place in &mut self.kept {

@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Best, GATE, Place, Places, SAME_M, SAME_RADIANS};
-use crate::tracking::belief::Belief;
 use crate::tracking::driven_path::DrivenPath;
 use crate::tracking::place::Candidate;
 use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
@@ -18,9 +17,8 @@ const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Reach of a robot along a step that is not known, metres, and metres a second in addition.
-const NEAR_M: f64 = 1.5;
-const SPEED_M_S: f64 = 1.5;
+/// Natural logarithm of the odds against a place that earlier searches did not find.
+const LATE: f64 = 3.5;
 
 impl Places {
     /// Takes what a search found for the scan. Of places far behind, a search has a bound of the
@@ -88,45 +86,34 @@ impl Places {
             }));
     }
 
-    /// Adds the candidates that are at no place that is kept.
-    pub(super) fn add_new(
-        &mut self,
-        best: Best<'_>,
-        belief: &Belief,
-        (fits_badly, unknown_s): (bool, Option<f64>),
-    ) {
-        let tracked = belief
-            .place()
-            .and_then(|id| self.get(id))
-            .map(|p| (p.map, p.predicted.0));
-        let is_first = self.key_scans == 0;
-        let reach_m = unknown_s.map_or(0.0, |seconds| NEAR_M + SPEED_M_S * seconds);
+    /// Adds the candidates that are at no place that is kept. Each begins with the weight of
+    /// "nowhere", of which it was a part; but searches before did not find it, if there were any.
+    pub(super) fn add_new(&mut self, best: Best<'_>) {
+        let is_first = self.kept.is_empty();
+        let top = self.leading().map_or(0.0, |place| place.log_weight);
+        let newborn = match self.was_searched {
+            true => self.nowhere.min(top - LATE),
+            false => self.nowhere,
+        };
+        self.was_searched |= !self.candidates.is_empty();
+        let expected = self.expected.take();
         for i in 0..self.candidates.len() {
             if self.is_known[i] {
                 continue;
             }
             let (map, found) = self.candidates[i];
-            let far = match tracked {
-                _ if is_first => self.first_lag,
-                Some(_) if !fits_badly => self.config.newborn_lag_unique,
-                _ => self.config.newborn_lag,
-            };
             // A rival within the ellipse of a hint is as likely as the hint itself.
-            let is_rival = is_first
-                && self.expected.is_some_and(|(pose, covariance)| {
-                    squared_deviations(found.pose, pose, &information(&covariance)) < GATE
-                });
-            let is_near = tracked.is_some_and(|(tracked_on, pose)| {
-                tracked_on == map && pose.distance_to(found.pose) < reach_m
+            let is_rival = expected.is_some_and(|(pose, covariance)| {
+                squared_deviations(found.pose, pose, &information(&covariance)) < GATE
             });
-            let lag = match is_near {
-                _ if is_rival => 0.0,
-                true => far.min(self.config.newborn_lag_near),
-                false => far,
-            };
-            let log_weight = -self.against(best, (map, found.score)) - lag;
+            let before = if is_rival { 0.0 } else { newborn };
+            let log_weight = before - self.against(best, (map, found.score));
             let id = self.new_id();
             self.kept.push(Place::born(id, (map, &found), log_weight));
+        }
+        // The first look says of "nowhere" what a later one does.
+        if let Some(score) = self.leading().filter(|_| is_first).map(|place| place.last) {
+            self.nowhere += self.nowhere_by(score);
         }
     }
 }

@@ -122,6 +122,16 @@ impl Building {
         need
     }
 
+    /// A tracker that believes that the robot is here, where it is.
+    pub(super) fn believed(&self, truth: Pose) -> Tracker {
+        let (ends, fit) = (self.ends(truth), FitConfig::default());
+        let mut tracker = Tracker::new(TrackingConfig::default());
+        let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
+        tracker.start_at(&[self.seen(&ends, &fit)], (0, truth), covariance);
+        self.step(&mut tracker, truth, Some(Pose::IDENTITY));
+        tracker
+    }
+
     /// Drives straight on by steps of 0.3 m.
     pub(super) fn drive(&self, tracker: &mut Tracker, from: Pose, steps: usize) -> Pose {
         let step = Pose::new(0.3, 0.0, 0.0);

@@ -123,7 +123,7 @@ fn in_the_lift(floors: &Floors) -> (Tracker, Pose) {
 }
 
 fn into_the_lift(floors: &Floors, tracker: &mut Tracker) -> Pose {
-    floors.step(tracker, (0, START), None);
+    floors.start_at(tracker, START);
     let (pose, states) = floors.drive(tracker, (0, START), (8, 0));
     assert!(states.contains(&(TrackState::Unique, 0)), "{states:?}");
     let report = tracker.report();
