@@ -37,7 +37,7 @@ pub struct PoseHeader {
     pub base_covariance: [f64; 9],
     /// How likely the robot is there, 0..=1.
     pub probability: f64,
-    /// By how much the place leads over the next, in natural logarithms of odds.
+    /// Natural logarithm of the odds of that probability.
     pub lead: f64,
     /// How well the last scan fits the map there, at most 1.
     pub score: f64,

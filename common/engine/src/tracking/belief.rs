@@ -6,7 +6,6 @@ use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
-use super::nowhere::is_blind;
 use super::place::Place;
 use super::places::Places;
 use super::posterior::{is_elsewhere, probability, rivals, spread};
@@ -16,7 +15,7 @@ use super::report::Report;
 /// start allows.
 const KEPT: f64 = 5.0;
 
-/// What is believed, by the places that are kept.
+/// The tracker's belief: which of the places is the robot's, and how sure that is.
 #[derive(Debug, Clone)]
 pub(super) struct Belief {
     config: TrackingConfig,
@@ -25,11 +24,9 @@ pub(super) struct Belief {
     was_unique: bool,
     /// Whether the robot is at that place as likely as it has to be.
     is_sure: bool,
-    /// What the last scan says against that place.
-    doubt: Option<TrackReason>,
     /// The last search that was needed had no answer.
     unchecked: bool,
-    /// Of the best place.
+    /// Probability of the best place, 0..=1.
     probability: f64,
     lost_by: TrackReason,
     state: TrackState,
@@ -46,7 +43,6 @@ impl Belief {
             place: None,
             was_unique: false,
             is_sure: false,
-            doubt: None,
             unchecked: false,
             probability: 0.0,
             lost_by: TrackReason::PoorFit,
@@ -62,13 +58,13 @@ impl Belief {
         self.place
     }
 
-    /// Believes a place that somebody vouches for.
+    /// Takes a place for that of the robot.
     pub(super) fn believe(&mut self, id: u32) {
         self.place = Some(id);
         (self.was_unique, self.is_sure) = (true, true);
     }
 
-    /// Goes on with the place that the one that is believed has met, or with that one.
+    /// Follows the place that is believed, which may have become one with another.
     pub(super) fn follow(&mut self, place: Option<u32>) {
         self.place = place;
     }
@@ -84,15 +80,14 @@ impl Belief {
         is_first
     }
 
-    /// Sees how the last scan fits at the place that is believed. Whether that is doubted.
-    pub(super) fn look_at(&mut self, places: &Places) -> bool {
-        let place = self.place.and_then(|id| places.get(id));
-        self.doubt = place.and_then(|place| place.doubt);
-        self.doubt.is_some()
+    /// The place that is believed.
+    pub(super) fn of<'a>(&self, places: &'a Places) -> Option<&'a Place> {
+        self.place.and_then(|id| places.get(id))
     }
 
-    pub(super) fn is_doubtful(&self) -> bool {
-        self.doubt.is_some()
+    /// The reason for which the last scan speaks against the place that is believed.
+    pub(super) fn doubt(&self, places: &Places) -> Option<TrackReason> {
+        self.of(places).and_then(|place| place.doubt)
     }
 
     pub(super) fn is_unique(&self) -> bool {
@@ -107,12 +102,9 @@ impl Belief {
     /// The last scan saw nothing, and the robot has gone so since one that did: odometry alone
     /// carries the pose, until it may be at more than one place.
     pub(super) fn see_nothing(&mut self, places: &Places, since: &DrivenPath) {
-        let place = self.place.and_then(|id| places.get(id));
-        let is_lost_sight = place.is_some_and(|place| {
-            let from = (place.pose, place.covariance);
-            is_blind(&since.predict(from, self.config.odometry_error))
-        });
-        if self.is_unique() && is_lost_sight {
+        let noise = self.config.odometry_error;
+        let place = self.of(places);
+        if self.is_unique() && place.is_some_and(|place| place.is_blind_after(since, noise)) {
             self.is_sure = false;
             self.enter(TrackState::Doubtful);
             self.reason = TrackReason::PoorFit;
@@ -133,15 +125,18 @@ impl Belief {
         if is_key {
             self.judge(places);
         }
-        self.look_at(places);
+        let doubt = self.doubt(places);
         let state = match self.place {
-            Some(_) if self.is_sure && self.doubt.is_none() => TrackState::Unique,
+            Some(_) if self.is_sure && doubt.is_none() => TrackState::Unique,
             Some(_) => TrackState::Doubtful,
             None if self.was_unique => TrackState::Lost,
             None => TrackState::Searching,
         };
         self.enter(state);
-        self.reason = self.reason(places);
+        self.reason = match (state, doubt) {
+            (TrackState::Doubtful, Some(doubt)) => doubt,
+            _ => self.reason(places),
+        };
     }
 
     fn judge(&mut self, places: &Places) {
@@ -185,9 +180,6 @@ impl Belief {
         let several = self.rivals(places.all()).count() > 1;
         match self.state {
             TrackState::Unique => TrackReason::OnePlace,
-            TrackState::Doubtful if self.doubt.is_some() => {
-                self.doubt.unwrap_or(TrackReason::PoorFit)
-            }
             TrackState::Doubtful if self.unchecked => TrackReason::PoorFit,
             TrackState::Lost => self.lost_by,
             TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
@@ -204,7 +196,7 @@ impl Belief {
         maps.len() as u32
     }
 
-    /// What is to be said; places that are not believed have gone `since_key` since the
+    /// The report of the last scan; places that are not believed have gone `since_key` since the
     /// last key scan, and the one that is believed `unseen` since a scan that saw something,
     /// where the last one did not.
     pub(super) fn report(
@@ -213,7 +205,7 @@ impl Belief {
         since_key: &DrivenPath,
         unseen: Option<&DrivenPath>,
     ) -> Report {
-        let believed = self.place.and_then(|id| places.get(id));
+        let believed = self.of(places);
         let place = believed.or(places.all().first());
         let covariance = match (believed, place) {
             (Some(believed), _) if self.is_unique() => believed.covariance,

@@ -84,8 +84,8 @@ impl DrivenPath {
         (predicted, carried + Matrix3::from_diagonal(&at_rest.into()))
     }
 
-    /// The same without what the stamps of odometry and of a scan differ by: as odometry alone
-    /// carries a pose on.
+    /// Carries a pose and its covariance on by odometry alone, where no scan is compared: stamps
+    /// that differ add nothing.
     pub(super) fn carry(
         &self,
         (pose, covariance): (Pose, Matrix3<f64>),

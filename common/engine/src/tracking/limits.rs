@@ -10,8 +10,8 @@ pub(super) const MAX_NEW: usize = 12;
 /// robot is carried away, or a sensor fails.
 pub(super) const SELDOM: f64 = 7.0;
 
-/// The same against something else than what an operator says, or than where the robot was when
-/// it was switched off.
+/// Natural logarithm of the odds against an operator who is wrong, or a robot that was moved
+/// while it was switched off.
 pub(super) const EXPECTED: f64 = 3.5;
 
 /// A place so far behind the best is dropped, natural logarithm of odds.

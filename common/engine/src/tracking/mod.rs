@@ -53,7 +53,6 @@ use belief::Belief;
 use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use messages::Transition;
-use nowhere::is_blind;
 use place::Place;
 use places::Places;
 use transition::other_side;
@@ -101,7 +100,7 @@ pub struct Tracker {
     /// Whether the place that is believed lies in a transition.
     is_in_transition: bool,
     needs_search: bool,
-    /// Where the robot should be at the next scan.
+    /// Pose at which the robot is expected at the next scan, and on which map.
     expected: Option<((u32, Pose), Covariance)>,
 }
 
@@ -202,7 +201,7 @@ impl Tracker {
             return Need::ThisScan;
         }
         let path = std::mem::take(&mut self.since_scan);
-        let was_doubtful = self.belief.is_doubtful();
+        let was_doubtful = self.belief.doubt(&self.places).is_some();
         let is_lost_sight = self.has_lost_sight(&path);
         if is_lost_sight {
             self.places.forget();
@@ -210,7 +209,7 @@ impl Tracker {
         if let Some(id) = self.belief.place() {
             self.places.follow(id, seen, (&path, &self.since_key));
         }
-        let is_suspicious = self.belief.look_at(&self.places);
+        let is_suspicious = self.belief.doubt(&self.places).is_some();
         let has_entered = self.has_entered();
         let is_new = (is_suspicious && !was_doubtful) || is_lost_sight || has_entered;
         self.is_key = self.is_far() || is_new || is_due;
@@ -226,7 +225,7 @@ impl Tracker {
     }
 
     fn believed(&self) -> Option<&Place> {
-        self.belief.place().and_then(|id| self.places.get(id))
+        self.belief.of(&self.places)
     }
 
     /// Whether the place that is believed has come to lie in a transition with this scan. The
@@ -252,10 +251,7 @@ impl Tracker {
     /// may be several.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
         let best = self.believed().or(self.places.all().first());
-        best.is_some_and(|place| {
-            let noise = self.config.odometry_error;
-            is_blind(&path.predict((place.pose, place.covariance), noise))
-        })
+        best.is_some_and(|place| place.is_blind_after(path, self.config.odometry_error))
     }
 
     /// Is done with the scan, with what the search found that was needed; `None` where none

@@ -69,6 +69,11 @@ impl Place {
             () => Some(TrackReason::PoorFit),
         };
     }
+
+    /// Whether the robot, gone this way from here without a scan, may be at more than one place.
+    pub(super) fn is_blind_after(&self, path: &DrivenPath, noise: f64) -> bool {
+        is_blind(&path.predict((self.pose, self.covariance), noise))
+    }
 }
 
 /// Whether a prediction leaves more than one place possible.

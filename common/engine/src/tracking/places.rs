@@ -20,7 +20,7 @@ use crate::peaks::{doubt_between, lead};
 /// place in each look.
 const LEAD_SCALE: f64 = 0.15;
 
-/// What a squared deviation from odometry says against a place.
+/// Each squared deviation from odometry costs a place so much of its log weight.
 const BY_DEVIATION: f64 = 0.1;
 
 /// A candidate confirms a place whose prediction lies within four deviations.
@@ -72,7 +72,7 @@ pub(super) struct Places {
     key_scans: u32,
     /// Log weight of "nowhere"; that of the best place is subtracted at each key scan.
     nowhere: f64,
-    /// Whether a search found something since it was last known nothing of how the robot moved.
+    /// Whether a search has found something since the last step that is not known.
     was_searched: bool,
     /// Where the robot was expected before the first key scan.
     expected: Option<(Pose, Matrix3<f64>)>,

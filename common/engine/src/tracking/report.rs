@@ -26,7 +26,7 @@ pub struct Report {
     pub probability: f64,
     /// How well the last scan fits there, at most 1.
     pub score: f64,
-    /// By how much the place leads, natural logarithm of odds.
+    /// Natural logarithm of the odds of that probability.
     pub lead: f64,
     /// Places that come near the best, itself included.
     pub rivals: u32,

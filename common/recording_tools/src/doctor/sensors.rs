@@ -31,10 +31,6 @@ const MOVED: (f64, f64) = (1.0, 0.5);
 /// that skids differs by less.
 const TURNED_MOUNT: f64 = 0.5;
 
-/// Odometry that is silent so long, seconds, and so many of its periods, has ended.
-const SILENT_S: f64 = 0.5;
-const SILENT_PERIODS: f64 = 4.0;
-
 /// Everything that is found. What follows from a fault that is found is not said too.
 pub(super) fn all(drive: &Drive) -> Vec<Finding> {
     if drive.looks.len() < MIN_COUNT || drive.odometry_ns.is_empty() {
@@ -77,13 +73,7 @@ fn ended(drive: &Drive) -> Option<Finding> {
     let first = drive.looks.iter().map(|look| look.stamp_ns).min()?;
     let after = drive.looks.iter().filter(|look| look.stamp_ns > end);
     let silent_s = last.saturating_sub(end) as f64 / 1e9;
-    let steps = drive.odometry_ns.windows(2);
-    let mut periods: Vec<i64> = steps.map(|pair| pair[1].saturating_sub(pair[0])).collect();
-    periods.sort_unstable();
-    let usual_s = periods
-        .get(periods.len() / 2)
-        .map_or(0.0, |&ns| ns as f64 / 1e9);
-    let is_over = after.count() >= MIN_COUNT && silent_s > SILENT_S.max(SILENT_PERIODS * usual_s);
+    let is_over = after.count() >= MIN_COUNT && drive.motion.until(last).is_none();
     // Else the clocks differ.
     (is_over && end >= first).then(|| {
         let messages = drive.odometry_ns.len();

@@ -308,7 +308,7 @@ class TrackedPose:
         """How well the scan fits there, at most 1."""
     @property
     def lead(self) -> float:
-        """By how much the place leads over the next, natural logarithm of odds."""
+        """Natural logarithm of the odds of that probability."""
     @property
     def places(self) -> int:
         """Places that come near the best, itself included."""
