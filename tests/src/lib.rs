@@ -25,14 +25,22 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The folder of recordings of other robots, beside the project or beside a folder that
-/// it is in, where these are at hand.
+/// The folder of recordings of other robots, where these are at hand.
 #[must_use]
 pub fn evaluation_data() -> Option<PathBuf> {
+    beside_the_project("shared/data/evaluation")
+}
+
+/// The folder of recordings with something wrong, as users had them, where these are at hand.
+#[must_use]
+pub fn broken_recordings() -> Option<PathBuf> {
+    beside_the_project("shared/cases")
+}
+
+/// A folder beside the project, or beside a folder that it is in.
+fn beside_the_project(name: &str) -> Option<PathBuf> {
     let folders = root().canonicalize().unwrap();
-    let mut candidates = folders
-        .ancestors()
-        .map(|f| f.join("shared/data/evaluation"));
+    let mut candidates = folders.ancestors().map(|f| f.join(name));
     candidates.find(|folder| folder.is_dir())
 }
 

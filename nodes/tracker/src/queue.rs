@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp};
+use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp, Verdict};
 
 /// Scans and answers that are kept: two seconds of a fast laser.
 const KEPT: usize = 128;
@@ -44,6 +44,7 @@ pub(crate) struct Answer {
     of: Stamp,
     /// What was searched, as the header says it.
     pub(crate) searched: u64,
+    pub(crate) verdict: Option<Verdict>,
     pub(crate) found: Vec<Hypothesis>,
 }
 
@@ -72,6 +73,7 @@ impl Answers {
         self.kept.push_back(Answer {
             of,
             searched,
+            verdict: Verdict::from_code(header.verdict),
             found,
         });
     }

@@ -275,7 +275,8 @@ impl Node {
         let answer = answer.filter(|answer| answer.searched == worlds.searched());
         let known = answer.into_iter().flat_map(|answer| &answer.found);
         let known = known.filter_map(|found| Some((worlds.number(found.map_id)?, found)));
-        Candidate::fill(&mut self.candidates, known, target);
+        let verdict = answer.and_then(|answer| answer.verdict);
+        Candidate::fill(&mut self.candidates, verdict, known, target);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {

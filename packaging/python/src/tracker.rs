@@ -289,13 +289,15 @@ impl Tracker {
     /// What a search finds, as messages of the graph say it: their scores have 32 bits.
     fn candidates(&self, seen: Observation<'_>) -> PyResult<Vec<Candidate>> {
         let of_laser = Target::of(None, false);
-        let hypotheses: Vec<Hypothesis> = self.search.locate(seen, None, |found| {
+        let (verdict, hypotheses) = self.search.locate(seen, None, |found| {
             let places = found.places.places.iter();
-            places.map(|place| place.hypothesis(0, of_laser)).collect()
+            let hypotheses = places.map(|place| place.hypothesis(0, of_laser));
+            (found.places.verdict, hypotheses.collect::<Vec<Hypothesis>>())
         })?;
         let mut candidates = Vec::new();
         Candidate::fill(
             &mut candidates,
+            Some(verdict),
             hypotheses.iter().map(|found| (0, found)),
             of_laser,
         );

@@ -2,6 +2,7 @@
 //! are drawn, simulated and recorded.
 
 mod any_sensor;
+mod broken_recordings;
 mod corridor;
 mod evaluation;
 mod floors;

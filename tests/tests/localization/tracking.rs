@@ -56,12 +56,11 @@ fn by_tools(recording: &Path, map: &Path) -> Track {
 }
 
 /// The poses of all scans, from a graph that is fed at a rate.
-fn by_graph(
+pub(super) fn by_graph(
     tag: &str,
-    recording: &Path,
-    map: &Path,
-    rate: &str,
-    search: &str,
+    (recording, map): (&Path, &Path),
+    (rate, search): (&str, &str),
+    tracker: &[&str],
     scans: usize,
 ) -> Vec<PoseHeader> {
     let isolated = Isolated::new(tag);
@@ -75,7 +74,7 @@ fn by_graph(
         start("boundary_extractor", &[]),
         start("accumulator", &["--search", search]),
         start("peak_extractor", &[]),
-        start("tracker", &[]),
+        start("tracker", tracker),
     ];
     let recording = recording.to_str().unwrap();
     let wait = "accumulator,peak_extractor,tracker";
@@ -123,12 +122,12 @@ fn the_graph_and_the_tools_track_alike() {
     let world = World::of("malaga_corridor");
     let (recording, map) = (world.recording(), world.map());
     let expected = by_tools(&recording, &map);
-    let poses = by_graph("track-all", &recording, &map, "max", "all", 37);
+    let poses = by_graph("track-all", (&recording, &map), ("max", "all"), &[], 37);
     assert!(expected.len() > 25, "{}", expected.len());
     assert_eq!(track(&poses), expected);
     // With odometry, the map's frame is tied to the odometry's.
     assert!(poses.iter().all(|pose| pose.odom_known == 1));
-    let asked = by_graph("track-asked", &recording, &map, "4", "asked", 37);
+    let asked = by_graph("track-asked", (&recording, &map), ("4", "asked"), &[], 37);
     assert_eq!(track(&asked), expected);
 }
 
@@ -175,7 +174,7 @@ fn evo_finds_the_same_errors_of_a_trajectory() {
     }
 }
 
-fn figures(recording: &Path, options: &[&str]) -> Value {
+pub(super) fn figures(recording: &Path, options: &[&str]) -> Value {
     let mut command = executables::backcast();
     command.args(["evaluate", "--sequence", "--json"]);
     tests::json_of(command.args(options).arg(recording))

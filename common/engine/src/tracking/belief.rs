@@ -58,6 +58,11 @@ impl Belief {
         self.place
     }
 
+    /// Whether no place has been believed yet.
+    pub(super) fn knows_nothing(&self) -> bool {
+        self.place.is_none() && !self.was_unique
+    }
+
     /// Takes a place for that of the robot.
     pub(super) fn believe(&mut self, id: u32) {
         self.place = Some(id);

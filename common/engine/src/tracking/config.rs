@@ -3,11 +3,27 @@
 #[cfg(feature = "clap")]
 use crate::config::{parse, parse_degrees, parse_length, parse_share};
 
+/// When a tracker that knows nothing yet believes a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Start {
+    /// When several key scans agree: the robot has to drive or turn.
+    Confirm,
+    /// When the verdict on one scan is `Unique`: the robot may stand.
+    Believe,
+}
+
 /// What the tracker expects of odometry and of scans. docs/tracking.md explains what
 /// each setting is for and what becomes of the figures without it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct TrackingConfig {
+    /// When a tracker that knows nothing yet believes a place.
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "WHEN", default_value = "confirm")
+    )]
+    pub start: Start,
     /// How much odometry errs, against what is usual: a scale of its standard
     /// deviations, 0.1..=10.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor))]
@@ -50,6 +66,7 @@ fn parse_log(text: &str) -> Result<f64, String> {
 impl Default for TrackingConfig {
     fn default() -> Self {
         TrackingConfig {
+            start: Start::Confirm,
             odometry_error: 1.0,
             key_m: 0.4,
             key_deg: 20.0,

@@ -41,7 +41,7 @@ mod report;
 mod seen;
 mod transition;
 
-pub use config::TrackingConfig;
+pub use config::{Start, TrackingConfig};
 pub use matching::ScanMatcher;
 pub use method::{FollowConfig, Follower};
 pub use particles::ParticleTracker;
@@ -279,6 +279,10 @@ impl Tracker {
             self.places.weigh(seen, &path, &mut believed);
             self.belief.follow(believed);
             self.keys_since_search += 1;
+            if let Some(only) = found.and_then(|found| self.start(found)) {
+                let id = self.places.start_at(seen.0, (only.map, only.at()));
+                self.belief.believe(id);
+            }
         }
         self.belief.conclude(&self.places, self.is_key);
         self.asks_ahead = self.is_key
@@ -288,6 +292,12 @@ impl Tracker {
         if self.asks_ahead {
             self.ahead = Some((DrivenPath::default(), COUNTS_AFTER));
         }
+    }
+
+    /// The place at which a tracker that knows nothing yet starts by one scan alone.
+    fn start<'a>(&self, found: &'a [Candidate]) -> Option<&'a Candidate> {
+        let may = self.config.start == Start::Believe && self.belief.knows_nothing();
+        found.iter().find(|candidate| may && candidate.is_only)
     }
 
     /// Whether a search for the scan that was done with last is needed a few scans

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use geometry::{Covariance, Pose};
-use messages::{Hypothesis, TrackReason};
+use messages::{Hypothesis, TrackReason, Verdict};
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
 use super::driven_path::DrivenPath;
@@ -22,6 +22,8 @@ pub struct Candidate {
     pub covariance: Covariance,
     /// Of the pose that led there.
     pub votes: u64,
+    /// Whether the verdict on the scan alone is `Unique`, and this is its place.
+    pub is_only: bool,
 }
 
 /// Along what a scan does not constrain, a candidate is taken to be known as well as this,
@@ -37,19 +39,24 @@ impl Candidate {
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
             votes: hypothesis.intensity,
+            is_only: false,
         }
     }
 
-    /// Fills in those of the places that a search found, as messages say them, each with the
-    /// number of its map, for which the votes speak most: of many places, some fit a scan well
-    /// by chance, and with each there is one more to distinguish from the true one.
+    /// Fills in those of the places that a search found, best first as messages say them, each
+    /// with the number of its map, for which the votes speak most: of many places, some fit a
+    /// scan well by chance, and with each there is one more to distinguish from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
+        verdict: Option<Verdict>,
         found: impl Iterator<Item = (u32, &'a Hypothesis)>,
         target: Target,
     ) {
         candidates.clear();
         candidates.extend(found.map(|(map, hypothesis)| Candidate::of(map, hypothesis, target)));
+        if let Some(best) = candidates.first_mut() {
+            best.is_only = verdict == Some(Verdict::Unique);
+        }
         candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
         candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);

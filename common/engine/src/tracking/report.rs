@@ -140,12 +140,12 @@ impl Report {
                 "turn, or drive a few metres"
             }
             TrackReason::SeveralPlaces | TrackReason::TooEarly | TrackReason::AnotherPlace => {
-                "drive a few metres, or mark a region"
+                "drive a few metres or turn on the spot, or mark a region"
             }
             TrackReason::PoorFit if self.state == TrackState::Doubtful => {
                 "is the view blocked, or the map out of date?"
             }
-            TrackReason::PoorFit => "drive a few metres, or mark a region",
+            TrackReason::PoorFit => "drive a few metres or turn on the spot, or mark a region",
             TrackReason::NoPlace => "is it this map?",
             TrackReason::OdometryJump => "is the laser mirrored, frozen or covered?",
             TrackReason::NoScan if self.state == TrackState::Doubtful => {
@@ -183,11 +183,11 @@ mod tests {
         let say = |state, reason| report(state, reason).words();
         assert_eq!(
             say(TrackState::Searching, TrackReason::SeveralPlaces),
-            "2 places fit, 25 m apart, since 3 m: drive a few metres, or mark a region"
+            "2 places fit, 25 m apart, since 3 m: drive a few metres or turn on the spot, or mark a region"
         );
         assert_eq!(
             say(TrackState::Lost, TrackReason::PoorFit),
-            "lost: fit 0.14: drive a few metres, or mark a region"
+            "lost: fit 0.14: drive a few metres or turn on the spot, or mark a region"
         );
         assert_eq!(
             say(TrackState::Doubtful, TrackReason::OdometryJump),
@@ -242,7 +242,7 @@ mod tests {
         };
         assert_eq!(
             floors.words(),
-            "2 places fit, on 2 maps, since 3 m: drive a few metres, or mark a region"
+            "2 places fit, on 2 maps, since 3 m: drive a few metres or turn on the spot, or mark a region"
         );
     }
 

@@ -425,3 +425,28 @@ fn tracking_allocates_nothing() {
         assert_eq!(allocated.count_total, 0);
     }
 }
+
+#[test]
+fn a_robot_that_stands_is_found_by_one_scan_where_that_is_believed() {
+    let building = building(&UNLIKE);
+    let config = TrackingConfig {
+        start: Start::Believe,
+        ..TrackingConfig::default()
+    };
+    let mut tracker = Tracker::new(config);
+    building.step(&mut tracker, START, None);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert!(is_at(&tracker, START));
+}
+
+#[test]
+fn rooms_that_are_alike_are_believed_by_no_single_scan() {
+    let building = building(&ALIKE);
+    let config = TrackingConfig {
+        start: Start::Believe,
+        ..TrackingConfig::default()
+    };
+    let mut tracker = Tracker::new(config);
+    building.step(&mut tracker, START, None);
+    assert_eq!(tracker.report().state, TrackState::Searching);
+}

@@ -119,15 +119,19 @@ pub(super) fn search(
     let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
     let hypotheses = reply.answer.map(|answer| {
         let target = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
-        answer.places.places.iter().map(target).collect::<Vec<_>>()
+        let places = &answer.places;
+        (
+            places.verdict,
+            places.places.iter().map(target).collect::<Vec<_>>(),
+        )
     });
-    let Ok(hypotheses) = hypotheses else {
+    let Ok((verdict, hypotheses)) = hypotheses else {
         return Ok(None);
     };
     let view = session.view(scan)?;
     let mut found = Vec::new();
     let hypotheses = hypotheses.iter().map(|found| (0, found));
-    Candidate::fill(&mut found, hypotheses, view.target);
+    Candidate::fill(&mut found, Some(verdict), hypotheses, view.target);
     Ok(Some(Moment {
         stamp_ns: scan.stamp_ns,
         truth,

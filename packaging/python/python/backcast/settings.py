@@ -212,6 +212,11 @@ class TrackerSettings(Settings, total=False):
     # Or turned so far, degrees, 0..=180. Default: 20.
     key_deg: float
 
+    # When a tracker that knows nothing yet believes a place. "confirm": When several key scans
+    # agree: the robot has to drive or turn; "believe": When the verdict on one scan is `Unique`:
+    # the robot may stand. Default: "confirm".
+    start: Literal["confirm", "believe"]
+
     # The most that one key scan says for or against a place, natural logarithm of odds, 0..=100:
     # what no model explains happens this often. Default: 1.5.
     scan_cap: float

@@ -98,6 +98,7 @@ impl Building {
         let mut found = Vec::new();
         Candidate::fill(
             &mut found,
+            Some(places.verdict),
             hypotheses.iter().map(|found| (0, found)),
             target,
         );

@@ -45,6 +45,7 @@ fn a_drawn_map_may_be_right_where_a_measured_one_fits_better() {
             pose,
             covariance: Covariance::from_deviations(0.05, 0.05, 0.02),
             votes: 100,
+            is_only: false,
         });
         tracker.finish(&seen, Some(&found));
         let report = tracker.report();

@@ -1,0 +1,127 @@
+//! The tracker believes no wrong pose where odometry, laser or mount are not what they should
+//! be, and needs none of them more than it says.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use geometry::Pose;
+use messages::{PoseHeader, TrackState};
+use tests::needs::Need;
+
+use super::tracking::{by_graph, figures};
+
+/// A folder of such recordings.
+fn folder(test: &str, name: &str) -> Option<PathBuf> {
+    let found = tests::broken_recordings().map(|all| all.join(name));
+    if found.is_none() {
+        Need::Data.is_missing(test, "no folder shared/cases beside the project");
+    }
+    found
+}
+
+/// What a graph with a tracker says of each scan of a drive that holds its own map.
+fn poses(test: &str, drive: PathBuf, tracker: &[&str], scans: usize) -> Vec<PoseHeader> {
+    by_graph(test, (&drive, &drive), ("max", "all"), tracker, scans)
+}
+
+fn is_unique(pose: &PoseHeader) -> bool {
+    pose.state == TrackState::Unique as u32
+}
+
+#[test]
+fn no_start_is_wrong_where_a_sensor_is() {
+    let test = "no_start_is_wrong_where_a_sensor_is";
+    let Some(folder) = folder(test, "sure") else {
+        return;
+    };
+    let starts = ["--starts", "12", "--kidnaps", "0", "--outages", "0"];
+    let of = |name: &str| figures(&folder.join(format!("{name}.mcap")), &starts);
+    for name in [
+        "courtyard_odometry_stops",
+        "frozen_laser",
+        "covered_1.0",
+        "covered_0.5",
+        "base_called_chassis",
+    ] {
+        let found = of(name);
+        assert!(found["starts"].as_u64().unwrap() >= 1, "{name}: {found}");
+        assert_eq!(found["wrong_starts"], 0, "{name}: {found}");
+    }
+    // The name of the base changes nothing.
+    let controlled = ["base_called_chassis", "base_called_base_link_control"].map(of);
+    let right = controlled.map(|found| found["right"].clone());
+    assert_eq!(right[0], right[1]);
+    // Nobody can know that a laser is mirrored before it has turned; then nobody believes it.
+    let mirrored = of("upside_down_undeclared");
+    assert_eq!(mirrored["unique"], 0.0, "{mirrored}");
+}
+
+#[test]
+fn a_crowd_that_walks_along_does_not_carry_the_pose_away() {
+    let test = "a_crowd_that_walks_along_does_not_carry_the_pose_away";
+    let Some(folder) = folder(test, "sure") else {
+        return;
+    };
+    let text = std::fs::read(folder.join("crowd_walks_along.truth.json")).unwrap();
+    let truth: BTreeMap<i64, [f64; 3]> = serde_json::from_slice::<Vec<(i64, [f64; 3])>>(&text)
+        .unwrap()
+        .into_iter()
+        .collect();
+    let said = poses("crowd", folder.join("crowd_walks_along.mcap"), &[], 170);
+    let unique = said.iter().filter(|pose| is_unique(pose));
+    let mut count = 0;
+    for pose in unique {
+        let [x, y, yaw] = truth[&pose.stamp.measured_ns];
+        let found = Pose::from(pose.map_from_base);
+        let is_there = found.is_within(Pose::new(x, y, yaw), 1.0, 25f64.to_radians());
+        assert!(is_there, "{pose:?}");
+        count += 1;
+    }
+    assert!(count > 30, "{count}");
+}
+
+#[test]
+fn odometry_that_never_moves_is_none() {
+    let test = "odometry_that_never_moves_is_none";
+    let Some(folder) = folder(test, "life") else {
+        return;
+    };
+    for (tag, name) in [
+        ("odom-rests", "odometry_never_moves"),
+        ("odom-dies", "odometry_dies_at_start"),
+    ] {
+        let said = poses(tag, folder.join(format!("{name}.mcap")), &[], 170);
+        // By the scans alone it is known a metre or two after the start.
+        let first = said.iter().position(is_unique).unwrap();
+        assert!(first <= 15, "{name}: {first}");
+        let unique = said.iter().filter(|pose| is_unique(pose)).count();
+        assert!(unique >= 80, "{name}: {unique}");
+    }
+}
+
+#[test]
+fn a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed() {
+    let test = "a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed";
+    let Some(folder) = folder(test, "life") else {
+        return;
+    };
+    let drive = folder.join("stands_from_the_start.mcap");
+    let said = |tag: &str, tracker: &[&str]| poses(tag, drive.clone(), tracker, 300);
+    let unique = |said: &[PoseHeader]| said.iter().filter(|pose| is_unique(pose)).count();
+    let alone = said("stands", &[]);
+    assert_eq!(unique(&alone), 0);
+    let believed = said("stands-sure", &["--start", "believe"]);
+    assert!(unique(&believed) >= 299, "{}", unique(&believed));
+    let at = Pose::from(believed[0].map_from_base);
+    let text = |pose: Pose| format!("{},{},{}", pose.x, pose.y, pose.yaw.to_degrees());
+    let hinted = said("stands-hint", &["--initial-pose", &text(at)]);
+    assert!(unique(&hinted) >= 299, "{}", unique(&hinted));
+    // A hint that is wrong is not believed there.
+    let wrong = text(at.then(Pose::new(3.0, 2.0, 1.0)));
+    let misled = said("stands-misled", &["--initial-pose", &wrong]);
+    assert_eq!(unique(&misled), 0);
+}
