@@ -6,6 +6,7 @@
 pub mod baselines;
 pub mod counted;
 mod error;
+pub mod particles;
 pub mod scans;
 pub mod timing;
 pub mod worlds;

@@ -19,7 +19,7 @@
 //!
 //! Where a robot moves, or has several lasers, `joined` brings the scans to one time by
 //! odometry (`motion`), and what is searched is an `observation` of carried scans.
-//! Where the robot goes from the places that were found, `particles` follow it.
+//! Where the robot may be, `particles` draws poses for the start of a particle filter.
 //!
 //! A [`locator::Locator`] is all of it in one call: start there, its example compiles. A
 //! [`map_set::MapSet`] is the same for several maps at once.

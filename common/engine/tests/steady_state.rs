@@ -16,7 +16,6 @@ use engine::fit::{DistanceField, Ends};
 use engine::grid::{CellRules, GridFrame};
 use engine::instruction_set::InstructionSet;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
-use engine::particles::{OdometryNoise, ParticleFilter, ParticlesConfig, StartHeadings};
 use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::reference;
 use engine::scan::Scan;
@@ -243,27 +242,6 @@ fn the_second_stage_allocates_nothing() {
         workspace.by_votes(&input, &config);
     });
     assert!(candidates > 32, "there is something to sort: {candidates}");
-    assert_eq!(count, 0);
-}
-
-#[test]
-fn particles_allocate_nothing() {
-    let world = World::rooms();
-    let (localizer, distance_field) = (world.localizer(1, Prior::None), world.distance_field());
-    let config = ParticlesConfig::default();
-    let mut filter = ParticleFilter::uniform(&distance_field, StartHeadings::Any, config).unwrap();
-    let (mut ends, mut drawn) = (Ends::default(), 0);
-    let beams = &localizer.config().votes.beams;
-    let step = Pose::new(0.1, 0.0, 0.1);
-    let mut update = |scan: &Scan<'_>| {
-        ends.find(scan, localizer.space(), beams).unwrap();
-        filter.predict(step, &OdometryNoise::default());
-        filter.weigh(&distance_field, &ends);
-        drawn += usize::from(filter.resample());
-        assert!(filter.estimate().is_some());
-    };
-    let count = allocations(&world, &mut update);
-    assert!(drawn > 0, "some are drawn anew");
     assert_eq!(count, 0);
 }
 

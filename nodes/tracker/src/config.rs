@@ -6,7 +6,7 @@ use clap::Parser;
 use engine::beams::BeamConfig;
 use engine::fit::FitConfig;
 use engine::joined::JoinConfig;
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use geometry::Pose;
 
 /// Keeps the robot's pose over time, from scans, odometry and what searches find, and
@@ -16,7 +16,7 @@ use geometry::Pose;
 pub struct Config {
     /// How the robot is tracked.
     #[command(flatten)]
-    pub follow: FollowConfig,
+    pub tracking: TrackingConfig,
 
     /// Maximum number of poses per second, 0..=1000: between scans, odometry
     /// extrapolates the pose. 0 sends one per scan only.
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn settings_have_defaults_and_limits() {
         let config = parse("").unwrap();
-        assert_eq!(config.follow, FollowConfig::default());
+        assert_eq!(config.tracking, TrackingConfig::default());
         assert_eq!((config.rate, config.initial_pose), (50.0, None));
         let pose = parse("--initial-pose -1,2,90")
             .unwrap()

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::EngineError;
 use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT_MS, Role};
-use engine::tracking::{Candidate, Follower, Need};
+use engine::tracking::{Candidate, Need, Tracker};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -49,7 +49,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         worlds: Worlds::default(),
         served: None,
         shown: None,
-        tracker: Follower::new(&config.follow, &[]),
+        tracker: Tracker::new(config.tracking),
         scans: Scans::default(),
         answers: Answers::default(),
         turn: Turn::Idle,
@@ -86,7 +86,7 @@ struct Node {
     served: Option<Served>,
     /// The id of the map of a set that is shown.
     shown: Option<u64>,
-    tracker: Follower,
+    tracker: Tracker,
     scans: Scans,
     answers: Answers,
     /// What the scan whose turn it is waits for.
@@ -326,7 +326,7 @@ impl Node {
             return Ok(());
         };
         let newest = self.joiner.by_newest_odometry();
-        let error = self.config.follow.tracking.odometry_error;
+        let error = self.config.tracking.odometry_error;
         let Some(carried) = newest.and_then(|newest| last.carried(newest, error)) else {
             return Ok(());
         };

@@ -1,21 +1,20 @@
-//! Monte Carlo localization (the paper's [2]): the engine's particles all over the map,
+//! Monte Carlo localization (the paper's [2]): particles all over the map,
 //! weighed by the scan, drawn again by their weights and scattered a little, until they
 //! have gathered. The robot stands, so that the one scan is taken again and again.
 
-use engine::EngineError;
-use engine::fit::{DistanceField, Ends};
+use engine::fit::DistanceField;
 use engine::grid::{Cell, CellRules, GridFrame};
-use engine::particles::{
-    Candidate, Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig,
-    StartHeadings,
-};
+use engine::particles::Candidate;
 use engine::space::Space;
 use geometry::Pose;
-use messages::{Reading as Beam, UNKNOWN};
+use messages::{Reading, UNKNOWN};
 
 use super::Baseline;
 use super::best::Estimate;
 use super::reading::Readings;
+use crate::particles::{
+    Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
+};
 use crate::worlds::World;
 
 /// How many particles there are, and for how long.
@@ -119,23 +118,23 @@ impl MonteCarlo {
         readings: &Readings,
         candidates: &[Candidate],
     ) -> Option<Estimate> {
-        let ends = self.ends(readings).ok()?;
+        let readings = self.beams(readings);
         let (frame, config) = (self.distance_field.frame, self.config.particles);
         let filter = ParticleFilter::seeded(frame, candidates.iter().copied(), config).ok()?;
-        self.gather(&ends, filter, false)
+        self.gather(&readings, filter, false)
     }
 
     /// Where the particles gather.
     fn gather(
         &mut self,
-        ends: &Ends,
+        readings: &[Reading],
         mut filter: ParticleFilter,
         heading_is_known: bool,
     ) -> Option<Estimate> {
         self.effort = (0, 0);
         self.started_with = filter.particles().len();
         for update in 1..=self.config.most_updates {
-            filter.weigh(&self.distance_field, ends);
+            filter.weigh(&self.distance_field, readings);
             self.effort = (update, self.effort.1 + filter.particles().len());
             filter.resample();
             if spread_cells(filter.particles()) <= GATHERED_CELLS {
@@ -173,20 +172,16 @@ impl MonteCarlo {
         }
     }
 
-    fn ends(&self, readings: &Readings) -> Result<Ends, EngineError> {
-        let resolution_m = self.space.resolution_m;
+    /// Those that returned.
+    fn beams(&self, readings: &Readings) -> Vec<Reading> {
         let beams = readings.beams.iter().filter(|beam| beam.cells > 0.0);
-        let beams: Vec<Beam> = beams
-            .map(|beam| Beam {
-                bearing: beam.bearing as f64 * self.space.directions.spacing(),
-                range_m: beam.cells * resolution_m,
-                weight: 1.0,
-                ..Beam::default()
-            })
-            .collect();
-        let mut ends = Ends::default();
-        ends.take(&beams, resolution_m)?;
-        Ok(ends)
+        let reading = beams.map(|beam| Reading {
+            bearing: beam.bearing as f64 * self.space.directions.spacing(),
+            range_m: beam.cells * self.space.resolution_m,
+            weight: 1.0,
+            ..Reading::default()
+        });
+        reading.collect()
     }
 }
 
@@ -214,10 +209,10 @@ impl Baseline for MonteCarlo {
         }
         let spacing = self.space.directions.spacing();
         let headings: Vec<f64> = headings.iter().map(|&i| i as f64 * spacing).collect();
-        let ends = self.ends(readings).ok()?;
+        let readings = self.beams(readings);
         let (start, config) = (StartHeadings::OneOf(&headings), self.config.particles);
         let filter = ParticleFilter::uniform(&self.distance_field, start, config).ok()?;
-        self.gather(&ends, filter, headings.len() == 1)
+        self.gather(&readings, filter, headings.len() == 1)
     }
 
     fn bytes(&self) -> usize {

@@ -193,7 +193,8 @@ impl DistanceField {
     /// Distance of the cell at a point to the nearest occupied one, between the cells'
     /// centres: 0 in an occupied cell, 10⁶ where none is. `None` off the map.
     #[inline(always)]
-    pub(crate) fn cell_distance(&self, x: f64, y: f64) -> Option<f32> {
+    #[must_use]
+    pub fn cell_distance(&self, x: f64, y: f64) -> Option<f32> {
         self.index(x, y).map(|at| self.to_occupied[at])
     }
 
@@ -204,7 +205,7 @@ impl DistanceField {
     }
 
     /// The cells that are neither occupied nor unknown, row by row.
-    pub(crate) fn free_cells(&self) -> impl Iterator<Item = usize> {
+    pub fn free_cells(&self) -> impl Iterator<Item = usize> {
         let both = self.to_occupied.iter().zip(&self.to_unknown);
         let free = |(occupied, unknown): (&f32, &u8)| *occupied > 0.0 && *unknown > 0;
         both.enumerate()
@@ -213,7 +214,8 @@ impl DistanceField {
     }
 
     /// Cells along x.
-    pub(crate) fn width(&self) -> usize {
+    #[must_use]
+    pub fn width(&self) -> usize {
         self.width
     }
 

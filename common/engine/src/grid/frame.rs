@@ -52,7 +52,7 @@ impl GridFrame {
 
     /// Takes a difference of poses in cells and radians of the grid to metres and radians
     /// along the map's axes.
-    pub(crate) fn metres_from_cells(&self) -> Matrix3<f64> {
+    pub fn metres_from_cells(&self) -> Matrix3<f64> {
         let side = self.resolution_m;
         let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
         Rotation2::new(self.map_from_grid.yaw).to_homogeneous() * scale

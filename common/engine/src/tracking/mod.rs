@@ -31,9 +31,7 @@ mod config;
 mod driven_path;
 mod limits;
 mod matching;
-mod method;
 mod nowhere;
-mod particles;
 mod place;
 mod places;
 mod posterior;
@@ -43,8 +41,6 @@ mod transition;
 
 pub use config::{Start, TrackingConfig};
 pub use matching::ScanMatcher;
-pub use method::{FollowConfig, Follower};
-pub use particles::ParticleTracker;
 pub use place::Candidate;
 pub use report::Report;
 pub use seen::Seen;

@@ -44,25 +44,6 @@ pub struct Report {
 const SAME_SPOT_M: f64 = 1.0;
 
 impl Report {
-    /// Before the first scan.
-    pub(super) fn of_nothing() -> Self {
-        Report {
-            state: TrackState::Searching,
-            reason: TrackReason::NoScan,
-            map: 0,
-            pose: None,
-            covariance: Matrix3::zeros(),
-            probability: 0.0,
-            score: 0.0,
-            lead: 0.0,
-            rivals: 0,
-            maps: 0,
-            apart_m: (0.0, 0.0),
-            since_ns: 0,
-            since_m: 0.0,
-        }
-    }
-
     /// The same after odometry moved the robot by this step since the last scan, whose error is
     /// scaled by `--odometry-error`: the covariance grows, and a unique pose is doubtful once it
     /// may be at more than one place.

@@ -311,43 +311,6 @@ fn without_odometry_scans_show_how_the_robot_moved() {
 }
 
 #[test]
-fn particles_that_a_search_starts_find_the_robot_and_notice_when_it_is_carried_away() {
-    let building = building(&UNLIKE);
-    let config = FollowConfig {
-        particles: true,
-        ..FollowConfig::default()
-    };
-    let mut follower = Follower::new(&config, &[]);
-    let mut take = |pose: Pose, moved: Option<Pose>| {
-        let (ends, fit) = (building.ends(pose), FitConfig::default());
-        let seen = building.seen(&ends, &fit);
-        let need = follower.begin(&[seen], 1, moved);
-        let found = (need == Need::ThisScan).then(|| building.found(pose));
-        follower.finish(&[seen], found.as_deref());
-        follower.report()
-    };
-    let step = Pose::new(0.3, 0.0, 0.0);
-    assert_eq!(take(START, None).state, TrackState::Searching);
-    let mut at = START;
-    for _ in 0..9 {
-        at = at.then(step);
-        take(at, Some(step));
-    }
-    let report = take(at, Some(Pose::IDENTITY));
-    assert_eq!(report.state, TrackState::Unique, "{report:?}");
-    // Particles are good to about a cell and some degrees.
-    let pose = report.pose.unwrap();
-    assert!(pose.is_within(at, 0.2, 0.1), "{pose:?} at {at:?}");
-    let mut at = Pose::new(4.0, 1.9, PI);
-    let mut states = Vec::new();
-    for _ in 0..8 {
-        at = at.then(step);
-        states.push(take(at, Some(step)).state);
-    }
-    assert!(states.contains(&TrackState::Lost), "{states:?}");
-}
-
-#[test]
 fn while_the_pose_is_sure_few_scans_are_searched() {
     let building = building(&UNLIKE);
     let mut tracker = building.believed(START);

@@ -74,7 +74,7 @@ fn one(
         (&progress, &mut accepted),
     )?;
     accepted.check(bag)?;
-    let (world, config) = (session.world()?, sequence.follow);
+    let (world, config) = (session.world()?, sequence.tracking);
     let said = course::of(world, &moments, config)?;
     show(&session, (&moments, &said), (options, sequence), bag)?;
     let chosen = starts::choose(&moments, sequence.starts);

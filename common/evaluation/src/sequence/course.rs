@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use geometry::Pose;
 use offline::World;
 use plots::Stop;
@@ -21,7 +21,7 @@ use crate::EvaluationError;
 pub(super) fn of(
     world: &World,
     moments: &[Moment],
-    config: FollowConfig,
+    config: TrackingConfig,
 ) -> Result<Vec<Said>, EvaluationError> {
     let mut run = Run::new(world, moments, config);
     let indices = 0..moments.len();

@@ -1,6 +1,6 @@
 //! The tracker over a whole drive, from the truth.
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use geometry::Covariance;
 use offline::World;
 
@@ -38,7 +38,7 @@ pub(super) struct Followed {
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
-    config: FollowConfig,
+    config: TrackingConfig,
     puts_back: bool,
 ) -> Result<Followed, EvaluationError> {
     let mut all = Followed::default();

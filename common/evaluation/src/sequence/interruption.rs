@@ -1,6 +1,6 @@
 //! A robot that is followed, and of which is then not known how it moved.
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use geometry::Pose;
 use offline::World;
 
@@ -37,7 +37,7 @@ impl Interruption {
         &self,
         world: &World,
         moments: &[Moment],
-        config: FollowConfig,
+        config: TrackingConfig,
     ) -> Result<Option<Aftermath>, EvaluationError> {
         let Interruption { from, to, moved } = *self;
         let mut run = Run::new(world, moments, config);

@@ -1,7 +1,7 @@
 //! Kidnapping: a robot that is followed finds itself elsewhere, with odometry that
 //! says that it stood still.
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use geometry::Pose;
 use offline::World;
 
@@ -54,7 +54,7 @@ pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     chosen: &[(usize, usize)],
-    config: FollowConfig,
+    config: TrackingConfig,
 ) -> Result<Jumps, EvaluationError> {
     let mut all = Jumps::default();
     for &(from, to) in chosen {

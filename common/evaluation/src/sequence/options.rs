@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 
 use super::limits::SequenceLimits;
 use super::stress::Stress;
@@ -68,7 +68,7 @@ pub(crate) struct SequenceOptions {
     pub limits: SequenceLimits,
 
     #[command(flatten)]
-    pub follow: FollowConfig,
+    pub tracking: TrackingConfig,
 }
 
 impl SequenceOptions {

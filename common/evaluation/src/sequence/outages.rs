@@ -1,7 +1,7 @@
 //! Outages: a robot that is followed drives on while no data come, and counts its odometry
 //! from there.
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use offline::World;
 
 use super::drive::Moment;
@@ -43,7 +43,7 @@ pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     chosen: &[(usize, usize)],
-    config: FollowConfig,
+    config: TrackingConfig,
 ) -> Result<Outages, EvaluationError> {
     let mut all = Outages::default();
     for &(from, to) in chosen {

@@ -1,6 +1,6 @@
 //! The tracker on moments of a drive, one after the other.
 
-use engine::tracking::{Candidate, FollowConfig, Follower, Need, Report, Seen};
+use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
 use geometry::{Covariance, Pose};
 use messages::TrackState;
 use offline::{World, cpu};
@@ -12,7 +12,7 @@ use crate::EvaluationError;
 pub(super) struct Run<'a> {
     world: &'a World,
     moments: &'a [Moment],
-    tracker: Follower,
+    tracker: Tracker,
     /// Of the moment whose search counts later.
     asked: Option<usize>,
     /// Milliseconds of computing for each scan that was tracked without a search.
@@ -87,11 +87,11 @@ impl Said {
 }
 
 impl<'a> Run<'a> {
-    pub(super) fn new(world: &'a World, moments: &'a [Moment], config: FollowConfig) -> Self {
+    pub(super) fn new(world: &'a World, moments: &'a [Moment], config: TrackingConfig) -> Self {
         Run {
             world,
             moments,
-            tracker: Follower::new(&config, &[]),
+            tracker: Tracker::new(config),
             asked: None,
             tracking_ms: Vec::new(),
             searches: 0,

@@ -1,6 +1,6 @@
 //! The tracker started at many scans of a drive, with no guess.
 
-use engine::tracking::{FollowConfig, MIN_BEAMS};
+use engine::tracking::{MIN_BEAMS, TrackingConfig};
 use offline::World;
 
 use super::drive::Moment;
@@ -54,7 +54,7 @@ pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     chosen: &[usize],
-    config: FollowConfig,
+    config: TrackingConfig,
 ) -> Result<Starts, EvaluationError> {
     let mut all = Starts::default();
     for &start in chosen {

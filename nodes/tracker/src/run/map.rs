@@ -1,7 +1,7 @@
 //! The maps, and where the robot is expected on them.
 
 use engine::peaks::Target;
-use engine::tracking::Follower;
+use engine::tracking::Tracker;
 use geometry::{Covariance, Pose};
 use messages::{MapHeader, MapSet, MapsHeader, NodeState, TrackState};
 use transport::{TransportError, with_causes};
@@ -111,8 +111,8 @@ impl Node {
     }
 
     /// A tracker that knows the maps alone.
-    pub(super) fn nothing_known(&self) -> Follower {
-        Follower::new(&self.config.follow, &self.worlds.transitions)
+    pub(super) fn nothing_known(&self) -> Tracker {
+        Tracker::new(self.config.tracking).with_transitions(self.worlds.transitions.to_vec())
     }
 
     /// The number of the map on which the robot was last; that of the first before.

@@ -91,7 +91,7 @@ fn one(
     }
     for variant in variants {
         let means = variant.means(sequence.seed, other_map);
-        let how = (sequence.starts, sequence.follow);
+        let how = (sequence.starts, sequence.tracking);
         let trial = match recorded.judge(&mut session, variant, means, how)? {
             Ok(trial) => trial,
             Err(reason) => {

@@ -1,6 +1,6 @@
 //! One variant of a drive, made and judged.
 
-use engine::tracking::FollowConfig;
+use engine::tracking::TrackingConfig;
 use offline::{Accepted, Options, Session, World};
 use progress::Progress;
 use recording::Recording;
@@ -54,7 +54,7 @@ impl Recorded<'_> {
         session: &mut Session<'_>,
         variant: &Variant,
         mut means: Means<'_>,
-        (count, config): (u32, FollowConfig),
+        (count, config): (u32, TrackingConfig),
     ) -> Result<Change<Trial>, EvaluationError> {
         let mut material = self.material.clone();
         let mut moments = self.moments.to_vec();
@@ -94,7 +94,7 @@ fn judge(
     world: &World,
     variant: &Variant,
     (material, moments): (&Material, &[Moment]),
-    (count, config): (u32, FollowConfig),
+    (count, config): (u32, TrackingConfig),
 ) -> Result<Trial, EvaluationError> {
     let within = moments.partition_point(|moment| moment.gone_m <= material.starts_until_m);
     let chosen = starts::choose(&moments[..within], count);

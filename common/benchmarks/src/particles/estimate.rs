@@ -8,9 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::Particle;
 use super::kld::{Bin, Binning};
-use crate::fit::GridPose;
-use crate::grid::GridFrame;
-use crate::peaks::in_map;
+use engine::fit::GridPose;
+use engine::grid::GridFrame;
 
 /// Where the robot most likely is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,9 +79,10 @@ impl Clusters {
             return None;
         }
         let (pose, spread) = self.moments(particles, cluster);
+        let turn = frame.metres_from_cells();
         Some(Estimate {
             map_from_target: frame.map_from_cells(pose.x, pose.y, pose.heading),
-            covariance: in_map(frame, spread),
+            covariance: Covariance(turn * spread * turn.transpose()),
             share: weight / all,
         })
     }
@@ -185,8 +185,8 @@ fn neighbours(bin: Bin, headings: i32) -> impl Iterator<Item = Bin> {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use super::super::ParticlesConfig;
     use super::*;
-    use crate::particles::ParticlesConfig;
 
     /// On cells of 0.5 m, so that a bin is a cell.
     fn heaviest(particles: &[(f64, f64, f64, f64)]) -> Option<Estimate> {

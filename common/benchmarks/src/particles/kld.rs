@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::hash::{BuildHasherDefault, DefaultHasher};
 
 use super::ParticlesConfig;
-use crate::fit::GridPose;
+use engine::fit::GridPose;
 
 /// The standard normal quantile of 1 - δ = 99 %.
 const QUANTILE: f64 = 2.326_347_874;

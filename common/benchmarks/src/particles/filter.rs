@@ -1,21 +1,19 @@
 //! The filter: its particles, and what a start, a step and a scan do to them.
 
 use geometry::Pose;
+use messages::Reading;
 use rand::{RngExt, SeedableRng};
 
 use super::beams::Beams;
 use super::estimate::Clusters;
 use super::kld::{Binning, Enough};
-use super::seeds::Seeds;
 use super::sensor::Sensor;
 use super::start::Uniform;
-use super::{
-    Candidate, Estimate, OdometryNoise, Particle, ParticlesConfig, Rng, StartHeadings, motion,
-    resample,
-};
-use crate::EngineError;
-use crate::fit::{DistanceField, Ends, GridPose};
-use crate::grid::GridFrame;
+use super::{Estimate, OdometryNoise, Particle, ParticlesConfig, StartHeadings, motion, resample};
+use engine::EngineError;
+use engine::fit::{DistanceField, GridPose};
+use engine::grid::GridFrame;
+use engine::particles::{Candidate, Rng, Seeds};
 
 /// Particles are drawn again where their effective number falls below this share of
 /// them: each drawing loses some of what they say. Half is usual (for instance
@@ -136,10 +134,12 @@ impl ParticleFilter {
     }
 
     /// Multiplies the weights by the likelihood of a scan. `distance_field` is the map of the
-    /// start, and `ends` are in its cells; a scan without beams changes nothing.
-    pub fn weigh(&mut self, distance_field: &DistanceField, ends: &Ends) {
+    /// start, and the readings are those
+    /// of the target frame; a scan without any changes nothing.
+    pub fn weigh(&mut self, distance_field: &DistanceField, readings: &[Reading]) {
         debug_assert_eq!(self.frame, distance_field.frame);
-        self.beams.choose(ends, &self.config);
+        self.beams
+            .choose(readings, self.frame.resolution_m, &self.config);
         let mut most = f64::NEG_INFINITY;
         for particle in &mut self.particles {
             let scan = self

@@ -11,10 +11,9 @@
 use geometry::{Pose, wrap_angle};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{Particle, Rng};
-#[cfg(feature = "clap")]
-use crate::config::{parse, parse_length};
-use crate::fit::GridPose;
+use super::Particle;
+use engine::fit::GridPose;
+use engine::particles::Rng;
 
 /// How far a step errs: normal, along x, y and the heading independently.
 ///
@@ -22,29 +21,19 @@ use crate::fit::GridPose;
 /// particles that scatter too much are weighed down by the next scan, and those that
 /// scatter too little are not where the robot is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct OdometryNoise {
     /// Standard deviation after one metre: of x and y in metres and of the heading in
     /// radians, 0..=2. It grows with the square root of the distance.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_length))]
     pub particles_noise_per_metre: f64,
     /// Standard deviation of the heading after turning by one radian, radians, 0..=2.
     /// It grows with the square root of the angle.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_turn))]
     pub particles_noise_per_radian: f64,
     /// Standard deviation of x and y that each step adds at least, metres, 0..=2:
     /// copies of a particle spread even if the robot stands still. A fifth of a cell of
     /// 5 cm.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length))]
     pub particles_noise_least_m: f64,
     /// The same of the heading, degrees, 0..=180.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 0.2, value_parser = crate::config::parse_degrees))]
     pub particles_noise_least_deg: f64,
-}
-
-#[cfg(feature = "clap")]
-fn parse_turn(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=2.0, "radians")
 }
 
 impl Default for OdometryNoise {

@@ -1,15 +1,19 @@
-//! Where particles start that follow the votes: around each place that these name.
+//! Poses around the places of a search, with which a particle filter starts.
 
 use geometry::{Covariance, Pose, wrap_angle};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::Rng;
 use crate::EngineError;
 use crate::fit::GridPose;
 use crate::grid::GridFrame;
 use crate::peaks::Place;
+
+/// The generator of all random numbers; of those in `rand`, one whose numbers do not
+/// change with its versions.
+pub type Rng = Xoshiro256PlusPlus;
 
 /// A place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,10 +37,9 @@ impl From<&Place> for Candidate {
 }
 
 /// Draws `count` poses in the map around candidates, as a start for any particle filter:
-/// as often around each as it is likely, and spread by its covariance, as
-/// [`super::ParticleFilter::seeded`] does (the paper, section VI: "those places where
-/// particles need to be initialized"). All weigh the same. The frame is that of the map's
-/// cells; the same seed gives the same poses.
+/// as often around each as it is likely, and spread by its covariance (the paper, section
+/// VI: "those places where particles need to be initialized"). All weigh the same. The frame
+/// is that of the map's cells; the same seed gives the same poses.
 ///
 /// # Errors
 /// If there is no candidate of finite numbers.
@@ -58,7 +61,7 @@ const MIN_CELLS: f64 = 0.5;
 const MIN_DEG: f64 = 1.0;
 
 /// Draws poses around candidates, as often around each as it is likely.
-pub(super) struct Seeds {
+pub struct Seeds {
     seeds: Vec<Seed>,
     total: f64,
 }
@@ -74,7 +77,10 @@ impl Seeds {
     /// Candidates with numbers that are not finite are left out, and such with a weight
     /// below zero; if none weighs anything, as where votes alone judge them, all weigh
     /// the same.
-    pub(super) fn new(
+    ///
+    /// # Errors
+    /// If there is no candidate of finite numbers.
+    pub fn new(
         frame: GridFrame,
         candidates: impl IntoIterator<Item = Candidate>,
     ) -> Result<Self, EngineError> {
@@ -90,7 +96,8 @@ impl Seeds {
         Ok(Seeds { seeds, total })
     }
 
-    pub(super) fn draw(&self, rng: &mut Rng) -> GridPose {
+    /// A random pose, in cells of the grid.
+    pub fn draw(&self, rng: &mut Rng) -> GridPose {
         let mut left = self.total * rng.random::<f64>();
         let is_it = |seed: &&Seed| {
             left -= seed.weight;

@@ -3,14 +3,13 @@
 use std::f64::consts::TAU;
 
 use geometry::{Covariance, Pose};
+use messages::Reading;
 
+use super::drawn::distance_field;
 use super::*;
-use crate::EngineError;
-use crate::beams::BeamConfig;
-use crate::fit::drawn::distance_field;
-use crate::fit::{DistanceField, Ends};
-use crate::scan::Scan;
-use crate::space::Space;
+use engine::EngineError;
+use engine::fit::DistanceField;
+use engine::particles::Candidate;
 
 /// Two rooms and a corridor, 4 m long; no turn and no mirror makes it look alike.
 const WORLD: [&str; 20] = [
@@ -45,26 +44,29 @@ fn config() -> ParticlesConfig {
     }
 }
 
-/// The readings of a laser that sees all around, metres.
-fn scan(distance_field: &DistanceField, pose: Pose) -> Ends {
+/// The readings of a laser that sees all around.
+fn scan(distance_field: &DistanceField, pose: Pose) -> Vec<Reading> {
+    /// Cells between the points at which a ray looks for an obstacle.
+    const STEP: f64 = 0.05;
     let (x, y, heading) = distance_field.frame.cells_from_map(pose);
-    let range = |beam: i32| {
-        let (sin, cos) = (heading + f64::from(beam) * TAU / 120.0).sin_cos();
-        let hit = distance_field.cast_ray((x, y), (cos, sin), 1000.0);
-        hit.occupied.map_or(f32::INFINITY, |cells| {
-            (cells * distance_field.frame.resolution_m) as f32
-        })
+    let reading = |beam: i32| {
+        let bearing = f64::from(beam) * TAU / 120.0;
+        let (sin, cos) = (heading + bearing).sin_cos();
+        let is_free = |cells: &f64| {
+            let distance = distance_field.cell_distance(x + cells * cos, y + cells * sin);
+            distance.is_some_and(|distance| distance > 0.0)
+        };
+        let points = (0..).map(|i| f64::from(i) * STEP);
+        let cells = STEP * points.take_while(is_free).count() as f64;
+        Reading {
+            bearing,
+            range_m: cells * distance_field.frame.resolution_m,
+            weight: 1.0,
+            ..Reading::default()
+        }
     };
-    let ranges: Vec<f32> = (0..120).map(range).collect();
-    let scan = Scan {
-        angle_min: 0.0,
-        angle_increment: TAU / 120.0,
-        range_min_m: 0.0,
-        range_max_m: 30.0,
-        ranges: &ranges,
-    };
-    let space = Space::new(360, distance_field.frame.resolution_m, 40, 20).unwrap();
-    Ends::new(&scan, &space, &BeamConfig::default()).unwrap()
+    let returned = |reading: &Reading| reading.range_m > 0.0;
+    (0..120).map(reading).filter(returned).collect()
 }
 
 /// Drives an arc, scan by scan; the last estimate and the last true pose.
@@ -107,19 +109,13 @@ fn check_found((found, truth): (Estimate, Pose)) {
 #[test]
 fn from_anywhere_particles_gather_where_the_robot_is() {
     let distance_field = distance_field(&WORLD);
-    for model in [SensorModel::LikelihoodField, SensorModel::Beam] {
-        let config = ParticlesConfig {
-            particles_model: model,
-            ..config()
-        };
-        let mut filter =
-            ParticleFilter::uniform(&distance_field, StartHeadings::Any, config).unwrap();
-        let start = filter.particles().len();
-        assert!(start > 5000, "a bin for each 0.25 m² and 10°: {start}");
-        check_found(drive(&mut filter, &distance_field, 20));
-        let end = filter.particles().len();
-        assert!(end < 2000, "gathered particles are fewer: {end}");
-    }
+    let mut filter =
+        ParticleFilter::uniform(&distance_field, StartHeadings::Any, config()).unwrap();
+    let start = filter.particles().len();
+    assert!(start > 5000, "a bin for each 0.25 m² and 10°: {start}");
+    check_found(drive(&mut filter, &distance_field, 20));
+    let end = filter.particles().len();
+    assert!(end < 2000, "gathered particles are fewer: {end}");
 }
 
 #[test]
@@ -161,7 +157,7 @@ fn even_weights_are_not_drawn_again() {
         ParticleFilter::seeded(distance_field.frame, [candidate(TRUTH, 1.0)], config()).unwrap();
     let before = filter.particles().to_vec();
     assert!(!filter.resample());
-    filter.weigh(&distance_field, &Ends::default());
+    filter.weigh(&distance_field, &[]);
     filter.predict(Pose::new(f64::NAN, 0.0, 0.0), &OdometryNoise::default());
     assert_eq!(
         filter.particles(),

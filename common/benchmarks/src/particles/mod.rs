@@ -25,30 +25,24 @@
 
 mod beams;
 mod config;
+#[cfg(test)]
+mod drawn;
 mod estimate;
 mod filter;
 mod kld;
 mod motion;
 mod resample;
-mod seeds;
 mod sensor;
 mod start;
 #[cfg(test)]
 mod tests;
 
-use rand::rngs::Xoshiro256PlusPlus;
-
-use crate::fit::GridPose;
-pub use config::{ParticlesConfig, SensorModel};
+pub use config::ParticlesConfig;
+use engine::fit::GridPose;
 pub use estimate::Estimate;
 pub use filter::ParticleFilter;
 pub use motion::OdometryNoise;
-pub use seeds::{Candidate, draw};
 pub use start::StartHeadings;
-
-/// The generator of all random numbers; of those in `rand`, one whose numbers do not
-/// change with its versions.
-type Rng = Xoshiro256PlusPlus;
 
 /// A pose that the robot may have.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use geometry::wrap_angle;
 use rand::RngExt;
 
-use super::Rng;
-use crate::EngineError;
-use crate::fit::{DistanceField, GridPose};
+use engine::EngineError;
+use engine::fit::{DistanceField, GridPose};
+use engine::particles::Rng;
 
 /// The headings with which particles start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,8 +82,8 @@ fn one_of<'a, T>(items: &'a [T], rng: &mut Rng) -> &'a T {
 mod tests {
     use rand::SeedableRng;
 
+    use super::super::drawn::distance_field;
     use super::*;
-    use crate::fit::drawn::distance_field;
 
     #[test]
     fn particles_start_in_every_free_cell_and_in_no_other() {
