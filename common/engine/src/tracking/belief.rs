@@ -150,14 +150,17 @@ impl Belief {
             return;
         };
         if let Some(id) = self.place {
-            let is_followed = places
-                .get(id)
-                .is_some_and(|place| !is_elsewhere(place, best) || place.is_across(best));
+            let believed = places.get(id);
+            let is_followed =
+                believed.is_some_and(|place| !is_elsewhere(place, best) || place.is_across(best));
+            // A hint that leads is tried: the pose stays until that is decided.
+            let is_tried = !is_followed && best.is_expected && believed.is_some();
             match () {
-                () if !is_followed => self.lose(TrackReason::AnotherPlace),
+                () if !is_followed && !is_tried => self.lose(TrackReason::AnotherPlace),
                 () if places.nowhere() > best.log_weight => {
                     self.lose(best.doubt.unwrap_or(TrackReason::PoorFit));
                 }
+                () if is_tried => self.is_sure = false,
                 () => self.place = Some(best.id),
             }
         }
@@ -166,7 +169,7 @@ impl Belief {
         self.is_sure = !self.unchecked
             && best.doubt.is_none()
             && (others <= most || (self.is_sure && others <= KEPT * most));
-        if self.place.is_none() && self.is_sure {
+        if self.is_sure && self.place != Some(best.id) {
             self.believe(best.id);
         }
     }

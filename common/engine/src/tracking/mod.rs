@@ -50,7 +50,7 @@ use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use messages::Transition;
 use place::Place;
-use places::Places;
+use places::{Hint, Places};
 use transition::other_side;
 
 /// What is needed of a search before a scan is done with.
@@ -96,8 +96,11 @@ pub struct Tracker {
     /// Whether the place that is believed lies in a transition.
     is_in_transition: bool,
     needs_search: bool,
-    /// Pose at which the robot is expected at the next scan, and on which map.
-    expected: Option<((u32, Pose), Covariance)>,
+    /// Where the robot is expected at the next scan.
+    expected: Option<Hint>,
+    /// A hint that may be right, beside the place that is believed, and the way since it was
+    /// said: the next search decides.
+    tried: Option<(Hint, DrivenPath)>,
 }
 
 impl Tracker {
@@ -120,6 +123,7 @@ impl Tracker {
             is_in_transition: false,
             needs_search: false,
             expected: None,
+            tried: None,
         }
     }
 
@@ -136,12 +140,24 @@ impl Tracker {
         *self = Tracker::new(self.config).with_transitions(transitions);
     }
 
-    /// Forgets all but where the robot should be at the next scan, on the map of a number:
-    /// that place is tried first, and is likelier than what a search finds elsewhere. It is
-    /// believed as soon as a scan fits there, and none fits as well within that covariance.
+    /// Expects the robot at a pose, on the map of a number, at the next scan: it is believed as
+    /// soon as a scan fits there, and none fits as well within that covariance. Before, a pose
+    /// that is believed stays so; where there is none, all else is forgotten. A hint near the
+    /// pose that is believed, or near the hint that is tried, changes nothing.
     pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
-        self.start_over();
-        self.expected = Some((at, covariance));
+        let hint = Hint::new(at, covariance);
+        let is_near = |place: &Place| hint.is_near((place.map, place.pose));
+        if self.believed().is_some_and(is_near) {
+            (self.expected, self.tried) = (None, None);
+            return;
+        }
+        let leads = self.places.all().first();
+        let is_leading = leads.is_some_and(|place| place.is_expected && is_near(place));
+        let tried = self.tried.map(|(hint, _)| hint);
+        let mut under_way = self.expected.into_iter().chain(tried);
+        if !is_leading && !under_way.any(|other| hint.is_near((other.map, other.at.0))) {
+            self.expected = Some(hint);
+        }
     }
 
     /// Starts from a pose that is believed, on the map of a number, with its covariance.
@@ -163,6 +179,11 @@ impl Tracker {
     /// # Panics
     /// If there is no map.
     pub fn begin(&mut self, seen: &[Seen<'_>], stamp_ns: i64, moved: Option<Pose>) -> Need {
+        if self.expected.is_some() && self.belief.place().is_none() {
+            let expected = self.expected;
+            self.start_over();
+            self.expected = expected;
+        }
         let need = self.take_up(seen, stamp_ns, moved);
         self.needs_search = need == Need::ThisScan;
         need
@@ -187,11 +208,16 @@ impl Tracker {
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
+        if let Some((_, path)) = &mut self.tried {
+            path.add(step);
+        }
         if self.is_blank {
             return Need::Nothing;
         }
-        if let Some(((map, pose), covariance)) = self.expected.take() {
-            self.places.expect(seen, (map, (pose, covariance.0)));
+        if self.belief.place().is_none()
+            && let Some(hint) = self.expected.take()
+        {
+            self.places.expect(seen, hint);
             self.since_key = DrivenPath::default();
             self.is_key = true;
             return Need::ThisScan;
@@ -204,11 +230,16 @@ impl Tracker {
         }
         if let Some(id) = self.belief.place() {
             self.places.follow(id, seen, (&path, &self.since_key));
+            let hint = self.expected.take();
+            if let Some(hint) = hint.filter(|hint| self.places.may_be_at(hint, seen, id)) {
+                self.tried = Some((hint, DrivenPath::default()));
+            }
         }
         let is_suspicious = self.belief.doubt(&self.places).is_some();
         let has_entered = self.has_entered();
         let is_new = (is_suspicious && !was_doubtful) || is_lost_sight || has_entered;
-        self.is_key = self.is_far() || is_new || is_due;
+        let is_open = self.tried.is_some() && !self.belief.is_unique();
+        self.is_key = self.is_far() || is_new || is_due || is_open;
         match () {
             () if !self.is_key => Need::Nothing,
             () if is_suspicious || is_lost_sight || !self.belief.is_unique() => {
@@ -261,13 +292,19 @@ impl Tracker {
         if self.is_key {
             let path = std::mem::take(&mut self.since_key);
             let due = self.ahead.take_if(|(_, left)| *left == 0);
+            let was_searched = self.needs_search || due.is_some();
             match (due, found) {
                 (_, None) => {}
                 (Some((since, _)), Some(found)) => self.places.take_ahead(seen, &since, found),
                 (None, Some(found)) => self.places.take(seen, found),
             }
+            let tried = self.tried.take_if(|_| was_searched);
             if found.is_some() {
                 self.keys_since_search = 0;
+                if let (Some((hint, path)), Some(id)) = (tried, self.belief.place()) {
+                    let hint = hint.after(&path, self.config.odometry_error);
+                    self.places.expect_beside(hint, seen, id);
+                }
             }
             self.belief.search_ended(self.needs_search, found.is_some());
             let seen = (seen, &self.transitions[..]);
@@ -281,10 +318,9 @@ impl Tracker {
             }
         }
         self.belief.conclude(&self.places, self.is_key);
-        self.asks_ahead = self.is_key
-            && self.ahead.is_none()
-            && self.belief.is_unique()
-            && self.keys_since_search >= CHECKED_EVERY;
+        let is_due = self.is_key && self.keys_since_search >= CHECKED_EVERY;
+        self.asks_ahead =
+            self.ahead.is_none() && self.belief.is_unique() && (is_due || self.tried.is_some());
         if self.asks_ahead {
             self.ahead = Some((DrivenPath::default(), COUNTS_AFTER));
         }

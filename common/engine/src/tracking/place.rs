@@ -96,6 +96,8 @@ pub(super) struct Place {
     /// The map from which the robot may have come there by a transition, while it is not decided
     /// whether it did.
     pub crossed_from: Option<u32>,
+    /// Whether somebody has said that the robot is there.
+    pub is_expected: bool,
     pub pose: Pose,
     pub covariance: Matrix3<f64>,
     /// How much speaks for it, natural logarithm of odds; that of the best is
@@ -128,6 +130,10 @@ pub(super) struct Place {
 /// Novelty of a place that moved.
 const MOVED: f64 = 0.5;
 
+/// Places so near each other are one answer.
+const DISTINCT_M: f64 = 1.0;
+const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
+
 /// A mean is over this many key scans.
 const MEAN_OVER: u32 = 8;
 
@@ -137,6 +143,7 @@ impl Place {
             id,
             map,
             crossed_from: None,
+            is_expected: false,
             pose: found.pose,
             covariance: found.covariance,
             log_weight,
@@ -157,6 +164,11 @@ impl Place {
     /// Whether a pose of a map is so near, metres and radians.
     pub(super) fn is_within(&self, (map, pose): (u32, Pose), metres: f64, radians: f64) -> bool {
         self.map == map && self.pose.is_within(pose, metres, radians)
+    }
+
+    /// Whether a pose of a map is another answer.
+    pub(super) fn is_apart_from(&self, at: (u32, Pose)) -> bool {
+        !self.is_within(at, DISTINCT_M, DISTINCT_RADIANS)
     }
 
     /// Whether the robot may have gone from one of two places to the other by a transition.

@@ -2,6 +2,7 @@
 
 mod crossing;
 mod found;
+mod hint;
 
 use geometry::Pose;
 use messages::Transition;
@@ -14,6 +15,8 @@ use super::nowhere::{explained, nowhere_by_score};
 use super::place::Place;
 use super::seen::{Fitted, Seen};
 use crate::peaks::{doubt_between, lead};
+pub(super) use hint::Hint;
+use hint::WeighedHint;
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
 /// factor of e: six times that of a single scan (`--lead-scale`), for a map errs at the same
@@ -74,8 +77,8 @@ pub(super) struct Places {
     nowhere: f64,
     /// Whether a search has found something since the last step that is not known.
     was_searched: bool,
-    /// Where the robot was expected before the first key scan.
-    expected: Option<(Pose, Matrix3<f64>)>,
+    /// Where the robot is expected at the next key scan.
+    expected: Option<WeighedHint>,
 }
 
 impl Places {
@@ -120,22 +123,21 @@ impl Places {
         id
     }
 
-    /// Keeps a place at which the robot is expected.
-    pub(super) fn expect(
-        &mut self,
-        seen: &[Seen<'_>],
-        (map, predicted): (u32, (Pose, Matrix3<f64>)),
-    ) {
-        let seen = &seen[map as usize];
-        let fitted = seen.settle_turned(predicted, seen.settle(predicted));
+    /// Keeps a place at which the robot is expected, where no other is kept.
+    pub(super) fn expect(&mut self, seen: &[Seen<'_>], hint: Hint) {
+        let seen = &seen[hint.map as usize];
+        let fitted = seen.settle_turned(hint.at, seen.settle(hint.at));
         let id = self.new_id();
         self.kept.push(Place {
-            predicted,
-            ..Place::born(id, (map, &fitted), 0.0)
+            predicted: hint.at,
+            is_expected: true,
+            ..Place::born(id, (hint.map, &fitted), 0.0)
         });
         // What the search finds elsewhere starts as "nowhere" does.
         self.nowhere = self.nowhere_by(fitted.score) - EXPECTED;
-        self.expected = Some(predicted);
+        // A rival within the ellipse is as likely as the hint itself.
+        let log_weight = 0.0;
+        self.expected = Some(WeighedHint { hint, log_weight });
     }
 
     /// The place with the most weight; they need not be in order.
@@ -211,6 +213,8 @@ impl Places {
             if *believed != Some(place.id) {
                 place.predicted = path.predict((place.pose, place.covariance), noise);
                 place.set(&seen[place.map as usize].settle(place.predicted));
+            } else {
+                place.is_expected = false;
             }
         }
         self.snap();
@@ -238,10 +242,14 @@ impl Places {
 
     /// What a key scan says against a place with a score, on the map of a number. What the maps
     /// may leave out says nothing.
-    fn against(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
-        let behind = lead(best.score, score + best.left_out(map)).max(0.0);
+    fn against(&self, best: Best<'_>, at: (u32, f64)) -> f64 {
         let explained = explained(best.score).min(self.config.scan_cap);
-        (behind / LEAD_SCALE).min(explained)
+        self.behind(best, at).min(explained)
+    }
+
+    /// The same without the limit of a key scan.
+    fn behind(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
+        lead(best.score, score + best.left_out(map)).max(0.0) / LEAD_SCALE
     }
 
     fn count(&mut self, best: Best<'_>) {

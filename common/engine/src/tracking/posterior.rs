@@ -6,12 +6,8 @@ use nalgebra::Matrix3;
 use super::place::Place;
 use super::places::Places;
 
-/// Places so near each other are one answer.
-const DISTINCT_M: f64 = 1.0;
-const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
-
 pub(super) fn is_elsewhere(place: &Place, best: &Place) -> bool {
-    !place.is_within((best.map, best.pose), DISTINCT_M, DISTINCT_RADIANS)
+    place.is_apart_from((best.map, best.pose))
 }
 
 /// Probability that the robot is at the best place, 0..=1: the weight of all that lie there,

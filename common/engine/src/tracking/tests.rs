@@ -2,6 +2,7 @@ mod blind;
 mod building;
 mod drawn;
 mod floors;
+mod hints;
 
 use std::f64::consts::PI;
 
@@ -333,26 +334,6 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
     assert_eq!((asked, due), (3, 3));
     assert_eq!(tracker.report().state, TrackState::Unique);
     assert!(is_at(&tracker, at));
-}
-
-#[test]
-fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
-    let building = building(&ALIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
-    tracker.expect((0, START), Covariance::from_deviations(0.3, 0.3, 0.2));
-    building.step(&mut tracker, START, None);
-    assert_eq!(tracker.report().state, TrackState::Unique);
-    assert!(is_at(&tracker, START));
-    let mut wrong = Tracker::new(TrackingConfig::default());
-    wrong.expect(
-        (0, Pose::new(3.0, 0.3, 1.0)),
-        Covariance::from_deviations(0.1, 0.1, 0.1),
-    );
-    building.step(&mut wrong, START, None);
-    assert_eq!(wrong.report().state, TrackState::Searching);
-    building.drive(&mut wrong, START, 4);
-    // It is one of the two that look alike, or none is believed.
-    assert_ne!(wrong.report().state, TrackState::Unique);
 }
 
 #[test]

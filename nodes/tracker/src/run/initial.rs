@@ -84,11 +84,11 @@ impl Node {
         };
         // Whoever said it has seen that one.
         let map = self.shown_map();
-        self.asked = None;
         if !is_believed {
             self.expect_base((map, base.0), base.1);
             return false;
         }
+        self.asked = None;
         let target = self.target().from_base(base.0);
         let covariance = base.1.carried(base.0, target);
         let seen = self.worlds.seen(&self.config.fit);

@@ -154,3 +154,38 @@ fn a_pose_on_a_floor_that_was_edited_is_tried_and_the_old_one_goes_out_no_more()
     assert!(!pose.is_unique());
     node.stop();
 }
+
+#[test]
+fn hints_leave_the_pose_that_is_believed() {
+    let isolated = Isolated::new("hints");
+    let drawn = Drawn {
+        name: "",
+        rows: HALL.into(),
+    };
+    let world = World::of_map(&isolated, &drawn);
+    let node = world.start(&[]);
+    let id = drawn.header().map_id;
+    world.say(InitialPoseKind::Believed, 6);
+    assert!(world.step(6, id, Some(id)).pose.is_unique());
+    for x in (8..24).step_by(2) {
+        // Where the robot is, again and again, and elsewhere.
+        for _ in 0..5 {
+            world.say(InitialPoseKind::Hint, x);
+        }
+        let Step {
+            pose, was_asked, ..
+        } = world.step(x, id, Some(id));
+        assert!(pose.is_unique() && !was_asked, "{x}: {pose:?}");
+        for _ in 0..5 {
+            world.say(InitialPoseKind::Hint, x + 12);
+        }
+        let pose = world.step(x + 1, id, Some(id)).pose;
+        let (here, found) = (
+            world.pose_at(x + 1),
+            geometry::Pose::from(pose.map_from_base),
+        );
+        assert!(pose.is_believed(), "{x}: {pose:?}");
+        assert!(found.is_within(here, 0.2, 0.1), "{found:?} {here:?}");
+    }
+    node.stop();
+}

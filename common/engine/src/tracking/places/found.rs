@@ -102,14 +102,14 @@ impl Places {
                 continue;
             }
             let (map, found) = self.candidates[i];
-            // A rival within the ellipse of a hint is as likely as the hint itself.
-            let is_rival = expected.is_some_and(|(pose, covariance)| {
-                squared_deviations(found.pose, pose, &information(&covariance)) < GATE
-            });
-            let before = if is_rival { 0.0 } else { newborn };
+            let expected = expected.filter(|expected| expected.hint.holds((map, found.pose)));
+            let before = expected.map_or(newborn, |expected| expected.log_weight);
             let log_weight = before - self.against(best, (map, found.score));
             let id = self.new_id();
-            self.kept.push(Place::born(id, (map, &found), log_weight));
+            self.kept.push(Place {
+                is_expected: expected.is_some(),
+                ..Place::born(id, (map, &found), log_weight)
+            });
         }
         // The first look says of "nowhere" what a later one does.
         if let Some(score) = self.leading().filter(|_| is_first).map(|place| place.last) {
