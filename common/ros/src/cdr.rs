@@ -10,17 +10,11 @@ use byteorder::{BigEndian, LittleEndian};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Bytes that a writer may add to fill up the last four, whatever they are.
-const MAX_PADDING: usize = 3;
-
-/// Zeros that a writer may add to fill up the last eight: one that pads what it
-/// has aligned already adds all of them.
-const MAX_ZEROS: usize = 8;
-
 const BIG_ENDIAN: [u8; 2] = [0, 0];
 const LITTLE_ENDIAN: [u8; 2] = [0, 1];
 
-/// Decodes a message.
+/// Decodes a message. Bytes after its last field are not looked at, as ROS does not: writers pad
+/// what they write, and a later version of a type may have more fields.
 ///
 /// # Errors
 /// The reason why it is none.
@@ -41,14 +35,8 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
             ));
         }
     };
-    let (message, used) = result.map_err(|error| error.to_string())?;
-    let rest = body.get(used..).unwrap_or_default();
-    let are_zeros = rest.len() <= MAX_ZEROS && rest.iter().all(|byte| *byte == 0);
-    match rest.len() {
-        0..=MAX_PADDING => Ok(message),
-        _ if are_zeros => Ok(message),
-        left => Err(format!("{left} bytes are left over after its last field")),
-    }
+    let (message, _) = result.map_err(|error| error.to_string())?;
+    Ok(message)
 }
 
 /// Encodes a message, little-endian.
@@ -139,20 +127,17 @@ mod tests {
             reason(b"\0\x07\0\0"),
             "its representation is 00 07; allowed: plain CDR, 00 00 or 00 01"
         );
-        let mut long = scan_bytes(false);
-        long.extend([9; 3]);
-        assert_eq!(decode::<LaserScan>(&long).unwrap(), scan());
-        long.push(0);
-        assert_eq!(reason(&long), "4 bytes are left over after its last field");
-        long.truncate(scan_bytes(false).len());
-        for _ in 0..MAX_ZEROS {
-            long.push(0);
-            assert_eq!(decode::<LaserScan>(&long).unwrap(), scan());
-        }
-        long.push(0);
-        assert_eq!(reason(&long), "9 bytes are left over after its last field");
         for length in 4..scan_bytes(false).len() {
             assert!(decode::<LaserScan>(&scan_bytes(false)[..length]).is_err());
+        }
+    }
+
+    #[test]
+    fn bytes_after_the_last_field_do_not_matter() {
+        for more in [1, 3, 8, 500] {
+            let mut long = scan_bytes(false);
+            long.extend(vec![9; more]);
+            assert_eq!(decode::<LaserScan>(&long).unwrap(), scan());
         }
     }
 
