@@ -12,7 +12,7 @@ use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
 use crate::rmw_zenoh::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
-use crate::stamps::{in_map, stamp};
+use crate::stamps::{Forward, in_map, stamp};
 use crate::topics::Topics;
 
 /// Hypotheses that are less likely are no place to be: there are up to 64, and one of
@@ -27,6 +27,7 @@ pub(crate) struct Outgoing {
     /// None where the user does not want it.
     transforms: Option<Publisher<TfMessage>>,
     ahead_ns: i64,
+    forward: Forward,
     spread: Reach,
     /// Where the odometry's frame lies, by the last verdict that was Unique.
     map_from_odom: Option<(Pose, String)>,
@@ -49,6 +50,7 @@ impl Outgoing {
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             transforms: transforms.transpose()?,
             ahead_ns: (config.tf_ahead * 1e9) as i64,
+            forward: Forward::default(),
             spread: config.spread,
             map_from_odom: None,
             is_tracked: false,
@@ -174,6 +176,9 @@ impl Outgoing {
             return Ok(());
         };
         let at_ns = of.measured_ns.saturating_add(self.ahead_ns);
+        if !self.forward.admits(at_ns) {
+            return Ok(());
+        }
         transforms.send(&transform(at_ns, map_frame, odom, *pose)?)?;
         report.sent();
         Ok(())

@@ -22,9 +22,50 @@ pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     stamp.ok_or(GatewayError::Unstampable { stamp_ns })
 }
 
+/// A time that is set back by more is that of a clock that was set, or of a simulation that
+/// began anew, nanoseconds.
+const SET_BACK_NS: i64 = 2_000_000_000;
+
+/// Refuses times that do not come after the last one: who buffers transforms takes an older
+/// one for an error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Forward {
+    last_ns: i64,
+}
+
+impl Default for Forward {
+    fn default() -> Self {
+        Forward { last_ns: i64::MIN }
+    }
+}
+
+impl Forward {
+    /// Whether a time, nanoseconds, goes on from the last one, which it then is.
+    pub(crate) fn admits(&mut self, at_ns: i64) -> bool {
+        let behind_ns = self.last_ns.saturating_sub(at_ns);
+        let is_later = behind_ns < 0 || behind_ns > SET_BACK_NS;
+        if is_later {
+            self.last_ns = at_ns;
+        }
+        is_later
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_go_forward_unless_the_clock_was_set_back() {
+        let mut forward = Forward::default();
+        let ms = 1_000_000;
+        let times = [5000, 5050, 5040, 5050, 5051, 100, 150, 120].map(|time| time * ms);
+        let admitted = times.map(|at_ns| forward.admits(at_ns));
+        assert_eq!(
+            admitted,
+            [true, true, false, false, true, true, true, false]
+        );
+    }
 
     #[test]
     fn times_that_ros_cannot_say_are_refused() {

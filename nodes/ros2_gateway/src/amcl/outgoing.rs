@@ -15,7 +15,7 @@ use crate::GatewayError;
 use crate::diagnostics::Diagnostics;
 use crate::outgoing::transform;
 use crate::rmw_zenoh::{Member, Publisher};
-use crate::stamps::in_map;
+use crate::stamps::{Forward, in_map};
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 
@@ -27,6 +27,7 @@ pub(super) struct Outgoing {
     verdict: Verdict,
     pub(super) diagnostics: Diagnostics,
     standing: Standing,
+    forward: Forward,
     /// Whether the tracker believes a pose.
     is_believed: bool,
     /// Whether the tracker was asked to start over, and has not yet: what it believes is of
@@ -51,6 +52,7 @@ impl Outgoing {
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             verdict: Verdict::open(member, topics)?,
             standing: Standing::default(),
+            forward: Forward::default(),
             is_believed: false,
             is_outdated: false,
             uses_sim_time,
@@ -186,6 +188,9 @@ impl Outgoing {
         }
         let ahead_ns = (parameters.number("transform_tolerance") * 1e9) as i64;
         let at_ns = due.at_ns.saturating_add(ahead_ns);
+        if !self.forward.admits(at_ns) {
+            return Ok(());
+        }
         let sent = transform(at_ns, map_frame, due.odom, due.map_from_odom)
             .and_then(|transform| self.transforms.send(&transform));
         match sent {
