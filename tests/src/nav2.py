@@ -314,9 +314,8 @@ class Nav2(Robot):
         name = SERVICES[service][0]
         asked, answered = part_of(service, "Request"), part_of(service, "Response")
         message = build((Nodetype.NAME, asked), request)
-        key = topic_keyexpr(
-            DOMAIN, self.name(service), ros2_to_dds_type(name), service_hash(service)
-        )
+        type_hash = self.type_hash(service_hash(service))
+        key = topic_keyexpr(DOMAIN, self.name(service), ros2_to_dds_type(name), type_hash)
         self.sequence[service] = self.sequence.get(service, 0) + 1
         attachment = Attachment(self.sequence[service], time.time_ns(), b"0123456789abcdef")
         querier = self.session.declare_querier(

@@ -92,6 +92,7 @@ class Robot:
         self.namespace = namespace
         self.alive = []
         self.ids = 0
+        self.has_hashes = True
         self.sequence = {}
         self.publishers = {}
         self.recorded = {}
@@ -118,7 +119,14 @@ class Robot:
         self.alive.append(self.session.liveliness().declare_token(key))
 
     def endpoint(self, node, kind, topic, msgtype, type_hash, qos):
-        dds = ros2_to_dds_type(msgtype)
+    def know_no_hashes(self):
+        """From now on, its nodes are of ROS 2 Humble."""
+        self.has_hashes = False
+
+    def type_hash(self, type_hash):
+        return type_hash if self.has_hashes else "TypeHashNotSupported"
+
+        dds, type_hash = ros2_to_dds_type(msgtype), self.type_hash(type_hash)
         entity = EndpointEntity(
             node, self.next(), kind, self.name(topic), dds, type_hash, qos.encode()
         )

@@ -12,8 +12,6 @@ pub(crate) enum Publishing {
     OtherType,
     /// Somebody whose messages are of another version of the type.
     OtherVersion,
-    /// Somebody who does not say which version: a node of ROS 2 Humble.
-    NoVersion,
     /// Somebody whose messages are taken.
     Expected,
 }
@@ -40,7 +38,6 @@ impl Input<'_> {
             (Publishing::Nobody, 0) => "no publisher",
             (Publishing::OtherType, 0) => "a publisher of another type",
             (Publishing::OtherVersion, 0) => "a publisher with another version of the type",
-            (Publishing::NoVersion, 0) => "a publisher with no type hash (ROS 2 Humble)",
             (Publishing::Expected, 0) => "a publisher, and no message yet",
             (_, _) => "no message any more",
         };
@@ -140,7 +137,6 @@ mod tests {
         for (publishing, words) in [
             (Publishing::OtherType, "another type"),
             (Publishing::OtherVersion, "another version"),
-            (Publishing::NoVersion, "Humble"),
         ] {
             let mut waiting = Waiting::default();
             let scan = [input("/scan", publishing, 0)];

@@ -21,6 +21,9 @@ use crate::GatewayError;
 /// What all tokens begin with.
 const TOKENS: &str = "@ros2_lv";
 
+/// What ROS 2 Humble writes in the place of a type's hash.
+const NO_HASH: &str = "TypeHashNotSupported";
+
 /// Which messages a topic has for those who come late, in the words of ROS.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeping {
@@ -39,6 +42,13 @@ pub(super) struct TypeInfo {
     pub(super) name: String,
     /// As `RIHS01_` and 64 digits.
     pub(super) hash: String,
+}
+
+impl TypeInfo {
+    /// Whether a node of ROS 2 Humble, which knows no hashes, says so of its type.
+    pub(super) fn has_no_hash(&self) -> bool {
+        self.hash == NO_HASH
+    }
 }
 
 impl fmt::Display for TypeInfo {
@@ -81,6 +91,8 @@ pub(super) struct Endpoint {
     pub(super) key: String,
     pub(super) topic: String,
     /// By which others know who sends.
+    /// The key by which nodes of ROS 2 Humble have it.
+    pub(super) humble_key: String,
     pub(super) sender: [u8; 16],
     token: String,
 }
@@ -139,10 +151,12 @@ impl Member {
             "{TOKENS}/{domain}/{session}/0/{entity}/{kind}/%/{who}/{name}/{info}/{quality}"
         );
         Endpoint {
-            key: format!("{domain}/{}/{info}", topic.trim_matches('/')),
+            key: format!("{of_type}/{}", info.hash),
+            humble_key: format!("{of_type}/{NO_HASH}"),
             topic: topic.to_owned(),
             // As rmw_zenoh makes it: both halves, the lower one first.
             sender: XxHash3_128::oneshot(token.as_bytes()).to_le_bytes(),
+        let of_type = format!("{domain}/{}/{}", topic.trim_matches('/'), info.name);
             token,
         }
     }

@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use ros::RosMessage;
 use transport::wall_ns;
 use zenoh::Wait;
+use zenoh::bytes::ZBytes;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
@@ -18,7 +19,8 @@ use crate::GatewayError;
 /// Sends messages.
 pub(crate) struct Publisher<M> {
     endpoint: Endpoint,
-    sink: Sink,
+    /// For nodes that know the type's hash, and for those of ROS 2 Humble.
+    sinks: [Sink; 2],
     _token: LivelinessToken,
     sequence: i64,
     message: PhantomData<M>,
@@ -109,16 +111,16 @@ impl<M: RosMessage> Publisher<M> {
         member: &Member,
         topic: &str,
         quality: (Keeping, usize),
-        declare: impl FnOnce(String) -> zenoh::Result<Sink>,
+        declare: impl Fn(String) -> zenoh::Result<Sink>,
     ) -> Result<Self, GatewayError> {
         let info = description::of_message::<M>()?;
         let endpoint = member.endpoint(Kind::Publisher, topic, &info, quality);
-        let sink = declare(endpoint.key.clone());
-        let sink = sink.map_err(KeyError::when("publish", &endpoint.key))?;
+        let declared = |key: &String| declare(key.clone()).map_err(KeyError::when("publish", key));
+        let sinks = [declared(&endpoint.key)?, declared(&endpoint.humble_key)?];
         Ok(Publisher {
             _token: member.show(&endpoint)?,
             endpoint,
-            sink,
+            sinks,
             // As rmw_zenoh counts.
             sequence: 1,
             message: PhantomData,
@@ -136,11 +138,15 @@ impl<M: RosMessage> Publisher<M> {
             sender: self.endpoint.sender,
         };
         self.sequence += 1;
-        let attachment = attachment.encode();
-        let sent = match &self.sink {
-            Sink::Volatile(publisher) => publisher.put(bytes).attachment(attachment).wait(),
-            Sink::Kept(publisher) => publisher.put(bytes).attachment(attachment).wait(),
-        };
-        Ok(sent.map_err(KeyError::when("send on", &self.endpoint.key))?)
+        let (bytes, attachment) = (ZBytes::from(bytes), attachment.encode());
+        for sink in &self.sinks {
+            let (bytes, attachment) = (bytes.clone(), attachment.clone());
+            let sent = match sink {
+                Sink::Volatile(publisher) => publisher.put(bytes).attachment(attachment).wait(),
+                Sink::Kept(publisher) => publisher.put(bytes).attachment(attachment).wait(),
+            };
+            sent.map_err(KeyError::when("send on", &self.endpoint.key))?;
+        }
+        Ok(())
     }
 }

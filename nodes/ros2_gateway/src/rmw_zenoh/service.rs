@@ -25,9 +25,9 @@ const MAX_BYTES: usize = 64 << 10;
 /// Offers the service as long as it lives.
 pub(crate) struct Service<S> {
     topic: String,
-    key: String,
     calls: Arc<ArrayQueue<Query>>,
-    _queryable: Queryable<()>,
+    /// For clients that know the type's hash, and for those of ROS 2 Humble.
+    _queryables: [Queryable<()>; 2],
     _token: LivelinessToken,
     service: PhantomData<S>,
 }
@@ -39,26 +39,25 @@ impl<S: RosService> Service<S> {
         let quality = (Keeping::Reliable, 10);
         let endpoint = member.endpoint(Kind::Service, topic, &info, quality);
         let calls = Arc::new(ArrayQueue::new(MAX_WAITING));
-        let waker = graph.waker()?;
-        let put = {
-            let calls = Arc::clone(&calls);
-            move |call: Query| {
+        let offer = |key: &String| -> Result<_, GatewayError> {
+            let (calls, waker) = (Arc::clone(&calls), graph.waker()?);
+            let put = move |call: Query| {
                 if let Err(call) = calls.push(call) {
                     // Where this fails, the caller has gone.
                     let _ = call.reply_err("busy").wait();
                 }
                 waker.wake();
-            }
+            };
+            let queryable = member.session().declare_queryable(key.clone());
+            let queryable = queryable.complete(true).callback(put).wait();
+            Ok(queryable.map_err(KeyError::when("offer", key))?)
         };
-        let queryable = member.session().declare_queryable(endpoint.key.clone());
-        let queryable = queryable.complete(true).callback(put).wait();
-        let queryable = queryable.map_err(KeyError::when("offer", &endpoint.key))?;
+        let queryables = [offer(&endpoint.key)?, offer(&endpoint.humble_key)?];
         Ok(Service {
             topic: topic.to_owned(),
             calls,
-            _queryable: queryable,
+            _queryables: queryables,
             _token: member.show(&endpoint)?,
-            key: endpoint.key,
             service: PhantomData,
         })
     }
@@ -117,8 +116,8 @@ impl<S: RosService> Service<S> {
             sent_ns: wall_ns(),
             ..attachment
         };
-        let reply = call.reply(self.key.as_str(), response);
+        let reply = call.reply(call.key_expr(), response);
         let reply = reply.attachment(attachment.encode()).wait();
-        Ok(reply.map_err(KeyError::when("answer", &self.key))?)
+        Ok(reply.map_err(KeyError::when("answer", call.key_expr()))?)
     }
 }

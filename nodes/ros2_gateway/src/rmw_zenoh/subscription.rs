@@ -24,7 +24,8 @@ const MAX_SENDERS: usize = 64;
 /// Receives messages.
 pub(crate) struct Subscription<M> {
     topic: String,
-    queue: Queue,
+    /// Of nodes that know the type's hash, and of those of ROS 2 Humble.
+    queues: [Queue; 2],
     /// The last sequence number of each sender.
     senders: BTreeMap<[u8; 16], i64>,
     received: bool,
@@ -55,16 +56,13 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             Keeping::Kept => Past::Last(depth),
         };
         let limits = QueueLimits::for_any(depth, max_bytes);
-        let queue = Queue::open(
-            member.session(),
-            &endpoint.key,
-            past,
-            limits,
-            graph.waker()?,
-        );
+        let open = |key: &str| -> Result<Queue, GatewayError> {
+            let waker = graph.waker()?;
+            Ok(Queue::open(member.session(), key, past, limits, waker)?)
+        };
         Ok(Subscription {
             topic: topic.to_owned(),
-            queue: queue?,
+            queues: [open(&endpoint.key)?, open(&endpoint.humble_key)?],
             senders: BTreeMap::new(),
             received: false,
             _token: member.show(&endpoint)?,
@@ -74,27 +72,32 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
 
     /// Messages that were lost because the queue was full since the last call.
     pub(crate) fn dropped(&self) -> u64 {
-        self.queue.dropped()
+        self.queues.iter().map(Queue::dropped).sum()
     }
 
     /// Most messages that can wait: who takes no more at once keeps no other topic
     /// waiting, however fast they come.
     pub(crate) fn depth(&self) -> usize {
-        self.queue.limits().messages
+        self.queues
+            .iter()
+            .map(|queue| queue.limits().messages)
+            .sum()
     }
 
     /// Why a message was not let in at all, for each such.
     pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
-        let found = self.queue.next_too_long()?;
+        let mut queues = self.queues.iter();
+        let (found, most) = queues
+            .find_map(|queue| Some((queue.next_too_long()?, queue.limits().message_bytes)))?;
         Some(GatewayError::TooLong {
             topic: self.topic.clone(),
             found,
-            most: self.queue.limits().message_bytes,
+            most,
         })
     }
 
     pub(crate) fn next(&mut self) -> Option<Received<M>> {
-        let sample = self.queue.next()?;
+        let sample = self.queues.iter().find_map(Queue::next)?;
         let mut lost = 0;
         let message = self.decode(&sample, &mut lost);
         if message.is_ok() && !self.received {

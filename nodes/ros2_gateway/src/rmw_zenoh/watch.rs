@@ -131,10 +131,8 @@ impl Watch {
 /// How a topic is published where another type is expected, or the same.
 fn publishing(found: &TypeInfo, expected: &TypeInfo) -> Publishing {
     match () {
-        () if found == expected => Publishing::Expected,
         () if found.name != expected.name => Publishing::OtherType,
-        // What rmw_zenoh of Humble writes in its place is no hash.
-        () if !found.hash.starts_with("RIHS01_") => Publishing::NoVersion,
+        () if found.hash == expected.hash || found.has_no_hash() => Publishing::Expected,
         () => Publishing::OtherVersion,
     }
 }
@@ -147,7 +145,8 @@ fn judge(token: &Token, subscribed: &str, published: &[(String, TypeInfo)]) -> O
         return Some(Seen::Subscriber(node.clone()));
     }
     let (_, expected) = published.iter().find(|(known, _)| known == topic)?;
-    let is_strange = kind == Kind::Publisher.code() && token.info != *expected;
+    let is_strange =
+        kind == Kind::Publisher.code() && publishing(&token.info, expected) != Publishing::Expected;
     is_strange.then(|| {
         Seen::Stranger(GatewayError::Stranger {
             node: node.clone(),
@@ -192,7 +191,7 @@ mod tests {
         };
         assert_eq!(with(&expected.name, &expected.hash), Publishing::Expected);
         let humble = with(&expected.name, "TypeHashNotSupported");
-        assert_eq!(humble, Publishing::NoVersion);
+        assert_eq!(humble, Publishing::Expected);
         assert_eq!(with(&expected.name, "RIHS01_00"), Publishing::OtherVersion);
         assert_eq!(with("other", &expected.hash), Publishing::OtherType);
     }

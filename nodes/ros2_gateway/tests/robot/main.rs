@@ -10,6 +10,7 @@ mod carried;
 mod client;
 mod filter;
 mod nav2;
+mod humble;
 mod refusals;
 mod tracked;
 mod waiting;

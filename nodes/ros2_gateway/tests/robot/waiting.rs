@@ -36,7 +36,8 @@ fn inputs_that_do_not_come_are_named_and_the_node_is_ready_when_they_do() {
     let graph = &joined.graph;
     let robot = &mut joined.robot;
     robot.order("humble", json!({ "topic": "scan" }));
-    let humble = "/scan: a publisher with no type hash (ROS 2 Humble)";
+    // Its types have no hashes.
+    let humble = "/scan: a publisher, and no message yet";
     wait_until_waiting(graph, &format!("/map: no publisher, {humble}"));
     robot.order("arrive", json!({}));
     wait_until_waiting(graph, &format!("waiting for {humble}"));

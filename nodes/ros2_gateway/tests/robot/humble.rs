@@ -1,0 +1,44 @@
+//! A robot of ROS 2 Humble, whose types have no hashes.
+
+use super::client::{ask, of_scan, parameters, state};
+use super::tracked::{poses_of, send_pose, tracked};
+use super::*;
+
+#[test]
+fn a_robot_whose_types_have_no_hashes_is_understood_and_understands() {
+    let file = parameters("humble.yaml", &["save_pose_rate: 0.0"]);
+    let file = file.to_str().unwrap();
+    let options = ["--as", "amcl", "--autostart", "--params-file", file];
+    let Some(mut joined) = Joined::new("ros-humble", "/", &options) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let robot = &mut joined.robot;
+    let maps = graph.subscriber::<topic::Map>().unwrap();
+    let scans_in = graph.subscriber::<topic::Scan>().unwrap();
+    let odometry_in = graph.subscriber::<topic::OdometryTopic>().unwrap();
+    robot.order("know_no_hashes", json!({}));
+    robot.order("arrive", json!({}));
+    wait_for(graph, &maps, |_: &MapHeader, _| Some(()));
+    robot.order("drive", json!({ "index": 0 }));
+    let header: ScanHeader = wait_for(graph, &scans_in, |header, _| Some(*header));
+    assert_eq!(header.mount_known, 1, "by /tf_static");
+    wait_for(graph, &odometry_in, |_: &Odometry, _| Some(()));
+
+    // What the node offers and publishes.
+    assert_eq!(state(robot), "active");
+    let names = json!({ "names": ["scan_topic"] });
+    let got = ask(robot, "amcl/get_parameters", &names);
+    assert_eq!(got["values"][0]["string_value"], "scan");
+    robot.order("follow", json!({}));
+    assert_eq!(state(robot), "active");
+    let poses = poses_of(graph);
+    let sent = tracked(header.stamp);
+    send_pose(&poses, &sent);
+    of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
+    assert_eq!(robot.wait_for("tf")["same"], true);
+    // Who comes late has the last pose.
+    robot.order("join", json!({ "name": "late" }));
+    of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
+    joined.stop();
+}
