@@ -29,7 +29,7 @@ DEFINITIONS = {
     ),
 }
 # Of these, all that they hold is said.
-WHOLE = ["bond", "amcl/transition_event", "localization", "/parameter_events"]
+WHOLE = ["bond", "amcl/transition_event", "localization", "/parameter_events", "/rosout"]
 TYPES |= {
     "particle_cloud": "nav2_msgs/msg/ParticleCloud",
     "bond": "bond/msg/Status",
@@ -96,6 +96,14 @@ SERVICES = {
         "rcl_interfaces/srv/DescribeParameters",
         NAMES,
         "rcl_interfaces/ParameterDescriptor[] descriptors\n",
+    ),
+    "amcl/get_type_description": (
+        "type_description_interfaces/srv/GetTypeDescription",
+        "string type_name\nstring type_hash\nbool include_type_sources true\n",
+        "bool successful\nstring failure_reason\n"
+        "type_description_interfaces/TypeDescription type_description\n"
+        "type_description_interfaces/TypeSource[] type_sources\n"
+        "type_description_interfaces/KeyValue[] extra_information\n",
     ),
     "set_initial_pose": ("nav2_msgs/srv/SetInitialPose", POSE, EMPTY),
     "request_nomotion_update": (SERVICE, EMPTY, EMPTY),

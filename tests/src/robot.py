@@ -47,6 +47,7 @@ TYPES = {
     "/tf_static": "tf2_msgs/msg/TFMessage",
     "/clock": "rosgraph_msgs/msg/Clock",
     "/parameter_events": "rcl_interfaces/msg/ParameterEvent",
+    "/rosout": "rcl_interfaces/msg/Log",
 }
 SERVICE = "std_srvs/srv/Empty"
 # What ROS puts into a message without fields.

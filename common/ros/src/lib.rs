@@ -44,6 +44,7 @@ pub mod rcl_interfaces;
 mod service;
 mod std_msgs;
 mod tf_message;
+pub mod type_description_interfaces;
 
 pub use bond::BondStatus;
 pub use clock::Clock;

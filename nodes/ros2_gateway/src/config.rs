@@ -176,6 +176,9 @@ pub struct Reach {
     pub radians: f64,
 }
 
+/// The node's name in the graph.
+pub const NODE: &str = "ros2_gateway";
+
 /// The map's frame where neither the user nor the robot names it.
 pub(crate) const MAP_FRAME: &str = "map";
 

@@ -30,7 +30,7 @@ mod vda5050;
 mod verdict;
 mod waiting;
 
-pub use config::{Brought, Config, Seed};
+pub use config::{Brought, Config, NODE, Seed};
 pub use error::GatewayError;
 pub use role::{Options, Role};
 pub use run::run;

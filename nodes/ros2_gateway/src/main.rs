@@ -7,7 +7,7 @@ use ros2_gateway::Config;
 
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main_with_log("ros2_gateway", zenoh_session::LOG, |graph| {
+    transport::node::main_with_log(ros2_gateway::NODE, zenoh_session::LOG, |graph| {
         ros2_gateway::run(graph, &config)
     })
 }

@@ -28,6 +28,7 @@ pub(crate) struct Topics {
     /// Of all nodes together, whatever the namespace.
     pub(crate) clock: String,
     pub(crate) parameter_events: String,
+    pub(crate) rosout: String,
 }
 
 /// The scans of a laser.
@@ -77,6 +78,7 @@ impl Topics {
             bond: resolve("namespace", "bond")?,
             clock: "/clock".to_owned(),
             parameter_events: "/parameter_events".to_owned(),
+            rosout: "/rosout".to_owned(),
         })
     }
 }

@@ -2,7 +2,8 @@
 //! with no initial guess.
 //!
 //! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud` and `standing` are pure; `life`
-//! and `parameter_services` offer the first two, `body` is what a lifecycle manager
+//! and `parameter_services` offer the first two, `rosout` is the log and `type_descriptions` a service
+//! of each node, `body` is what a lifecycle manager
 //! configures and activates, with `parts` while it is configured.
 
 mod body;
@@ -16,9 +17,11 @@ mod outgoing;
 mod parameter_services;
 mod parameters;
 mod params_file;
+mod rosout;
 mod saved_pose;
 mod sim_clock;
 mod standing;
+mod type_descriptions;
 
 use std::path::Path;
 use std::time::Duration;
@@ -35,6 +38,8 @@ use body::{Body, Joined, Said};
 use life::Life;
 use parameter_services::ParameterServices;
 use parameters::Parameters;
+use rosout::Rosout;
+use type_descriptions::TypeDescriptions;
 
 /// Is nav2's AMCL until the stop flag is set; looks for what came every `tick`.
 pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), GatewayError> {
@@ -64,6 +69,8 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     let mut life = Life::open(graph, &member, &node)?;
     let events = &topics.parameter_events;
     let mut services = ParameterServices::open(graph, &member, &node, events)?;
+    let types = TypeDescriptions::open(graph, &member, &node)?;
+    let mut rosout = Rosout::open(graph, &member, &topics.rosout, &node)?;
     let map_frame = config
         .map_frame
         .clone()
@@ -81,12 +88,14 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
         health: graph.subscriber()?,
     };
     tracing::info!(domain, node, "joined the robot's domain in AMCL's place");
-    if config.amcl.autostart {
+    if config.amcl.autostart || parameters.is_on("autostart_node") {
         life.start(|change| body.change(change, &parameters));
     }
     graph.run(&[&said.hypotheses, &said.poses, &said.health], tick, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
+        types.serve(&mut report)?;
+        rosout.send(&mut report)?;
         let state = life.lifecycle.primary();
         body.step(&said, state, &parameters, &mut report)?;
         report.tick()?;

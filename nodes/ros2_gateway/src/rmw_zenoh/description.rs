@@ -2,8 +2,7 @@
 //! of REP-2011 (`RIHS01`): SHA-256 over the fields' names and types, and those of the
 //! types that it is made of.
 //!
-//! Constants and defaults do not count. Refuses bounds of texts, which no message
-//! in use has.
+//! Constants and defaults do not count.
 
 use std::collections::BTreeMap;
 
@@ -171,11 +170,19 @@ fn field(line: &str) -> Option<FieldDescription> {
             (kind, TypeId::ARRAY_OFFSET, length)
         }
     };
-    let primitive = primitive(kind);
+    let (kind, string_capacity) = match kind.split_once("<=") {
+        Some((text, most)) => (text, most.parse().ok()?),
+        None => (kind, 0),
+    };
+    let primitive = match (kind, string_capacity) {
+        ("string", 1..) => Some(TypeId::BOUNDED_STRING),
+        (_, 1..) => return None,
+        (_, 0) => primitive(kind),
+    };
     let field_type = FieldTypeDescription {
         type_id: primitive.unwrap_or(TypeId::NESTED_TYPE) + offset,
         capacity,
-        string_capacity: 0,
+        string_capacity,
         nested_type_name: match primitive {
             Some(_) => String::new(),
             // Ours name the package of each type.
@@ -215,6 +222,7 @@ mod tests {
     use ros::lifecycle_msgs::{ChangeState, TransitionEvent};
     use ros::nav2_msgs::{ParticleCloud, SetInitialPose};
     use ros::rcl_interfaces::{DescribeParameters, GetParameters, ParameterEvent};
+    use ros::type_description_interfaces::GetTypeDescription;
     use ros::{
         BondStatus, Clock, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
         PoseWithCovarianceStamped, RosService, TfMessage,
@@ -348,6 +356,12 @@ mod tests {
             of::<DescribeParameters>(),
             "rcl_interfaces::srv::dds_::DescribeParameters_",
             "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
+        );
+        // With bounded texts.
+        check(
+            of::<GetTypeDescription>(),
+            "type_description_interfaces::srv::dds_::GetTypeDescription_",
+            "69b9c19c1021405984cc60dbbb1edceb147a6538b411d812ba6afabeed962cd5",
         );
         check(
             of::<SetInitialPose>(),

@@ -93,7 +93,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
             // And so it is by the transforms.
             let tf = loop {
                 let tf = robot.wait_for("tf");
-                if tf["stamp"] == stamp + 500_000_000 {
+                if tf["stamp"].as_i64().unwrap() >= stamp + 500_000_000 {
                     break tf;
                 }
             };
@@ -246,6 +246,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         "amcl/get_parameters",
         "amcl/get_state",
         "amcl/get_transition_graph",
+        "amcl/get_type_description",
         "amcl/list_parameters",
         "amcl/set_parameters",
         "amcl/set_parameters_atomically",
@@ -261,6 +262,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         "MP /localization :1:,1:,:,:,,",
         "MP /parameter_events ::,1000:,:,:,,",
         "MP /particle_cloud 2::,5:,:,:,,",
+        "MP /rosout :1:,1000:,:,:,,",
         "MP /tf ::,100:,:,:,,",
         "MS /initialpose ::,10:,:,:,,",
         "MS /map :1:,1:,:,:,,",
@@ -277,6 +279,21 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         .chain(services)
         .collect();
     assert_eq!(endpoints["found"], json!(expected));
+
+    let wanted = json!({ "type_name": "std_msgs/msg/String" });
+    let described = ask(robot, "amcl/get_type_description", &wanted);
+    assert_eq!(described["successful"], false);
+    let reason = described["failure_reason"].as_str().unwrap();
+    assert!(reason.contains("std_msgs/msg/String"), "{reason}");
+
+    // Who comes late has the log of the start.
+    robot.order("join", json!({ "name": "console", "topic": "/rosout" }));
+    let line = robot.wait_for("/rosout");
+    assert_eq!(
+        (&line["same"], &line["name"]),
+        (&json!(true), &json!("amcl"))
+    );
+    assert!(line["level"].as_u64().unwrap() >= 20, "{line}");
 
     let states = ask(robot, "amcl/get_available_states", &json!({}));
     assert_eq!(states["available_states"].as_array().unwrap().len(), 11);

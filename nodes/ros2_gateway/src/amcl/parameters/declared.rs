@@ -67,6 +67,11 @@ pub(super) const ALL: &[Declared] = &[
         "each activation begins with initial_pose, not the first alone",
     ),
     start(
+        "autostart_node",
+        Bool(false),
+        "the node configures and activates itself, with no lifecycle manager",
+    ),
+    start(
         "base_frame_id",
         Text("base_footprint"),
         "the frame whose pose is published",
