@@ -109,6 +109,12 @@ pub enum GatewayError {
         /// Why not.
         reason: String,
     },
+    /// Another node has this one's name.
+    #[error(
+        "there is a second node {0}: both answer its services and publish its transform; leave the \
+         other one out of the launch file, or give this one another --node"
+    )]
+    SecondNode(String),
     /// A number is none.
     #[error("{field} of {topic} is {found}: allowed is a finite number")]
     Number {

@@ -79,7 +79,9 @@ impl Kind {
 pub(crate) struct Member {
     session: Session,
     domain: u32,
-    /// Mangled: namespace and name.
+    /// Namespace and name.
+    node: String,
+    /// The same, mangled.
     who: String,
     _token: LivelinessToken,
     /// The node itself has the first number.
@@ -89,10 +91,10 @@ pub(crate) struct Member {
 /// A topic or service that the node sends, takes or offers.
 pub(super) struct Endpoint {
     pub(super) key: String,
-    pub(super) topic: String,
-    /// By which others know who sends.
     /// The key by which nodes of ROS 2 Humble have it.
     pub(super) humble_key: String,
+    pub(super) topic: String,
+    /// By which others know who sends.
     pub(super) sender: [u8; 16],
     token: String,
 }
@@ -115,6 +117,7 @@ impl Member {
             _token: declare(session, &key)?,
             session: session.clone(),
             domain,
+            node: format!("{}/{name}", namespace.trim_end_matches('/')),
             who,
             next: AtomicUsize::new(1),
         })
@@ -122,6 +125,11 @@ impl Member {
 
     pub(crate) fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// The node's whole name.
+    pub(super) fn node(&self) -> &str {
+        &self.node
     }
 
     /// The robot's domain.
@@ -147,6 +155,7 @@ impl Member {
             self.next.fetch_add(1, Ordering::Relaxed),
         );
         let (name, quality) = (mangled(topic), encoded(quality));
+        let of_type = format!("{domain}/{}/{}", topic.trim_matches('/'), info.name);
         let token = format!(
             "{TOKENS}/{domain}/{session}/0/{entity}/{kind}/%/{who}/{name}/{info}/{quality}"
         );
@@ -156,7 +165,6 @@ impl Member {
             topic: topic.to_owned(),
             // As rmw_zenoh makes it: both halves, the lower one first.
             sender: XxHash3_128::oneshot(token.as_bytes()).to_le_bytes(),
-        let of_type = format!("{domain}/{}/{}", topic.trim_matches('/'), info.name);
             token,
         }
     }

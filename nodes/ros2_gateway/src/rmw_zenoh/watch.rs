@@ -26,7 +26,7 @@ pub(crate) enum Seen {
     /// Somebody subscribes to the topic that is watched; the node's name.
     Subscriber(String),
     /// Somebody publishes a topic that is taken, as something else than it is taken
-    /// for: it will never come.
+    /// for: it will never come. Or there is a second node of this one's name.
     Stranger(GatewayError),
 }
 
@@ -119,13 +119,27 @@ impl Watch {
             if let Some(token) = &others {
                 self.note(token);
             }
-            let seen = others.and_then(|token| judge(&token, &self.subscribed, &self.published));
+            let seen = others.and_then(|token| {
+                let is_second = is_second(&token, member.node());
+                let second = || GatewayError::SecondNode(token.node.clone());
+                is_second
+                    .then(|| Seen::Stranger(second()))
+                    .or_else(|| judge(&token, &self.subscribed, &self.published))
+            });
             if seen.is_some() {
                 return seen;
             }
         }
         None
     }
+}
+
+/// Each node publishes this topic.
+const EVENTS: &str = "/parameter_events";
+
+/// Whether somebody else is a node of this name.
+fn is_second(token: &Token, node: &str) -> bool {
+    token.node == node && token.kind == Kind::Publisher.code() && token.topic == EVENTS
 }
 
 /// How a topic is published where another type is expected, or the same.
@@ -180,6 +194,18 @@ mod tests {
         let other = format!("{START}/MS/%/%/amcl/%other/{kind}/{QOS}");
         assert!(seen(&other).is_none());
         assert!(seen(&format!("{START}/NN/%/%/amcl")).is_none());
+    }
+
+    #[test]
+    fn a_second_node_of_this_ones_name_is_seen_once() {
+        let kind = "rcl_interfaces::msg::dds_::ParameterEvent_/RIHS01_00";
+        let of = |node: &str, topic: &str| {
+            let token = format!("{START}/MP/%/{node}/{topic}/{kind}/{QOS}");
+            is_second(&Token::read(&token).unwrap(), "/r2/amcl")
+        };
+        assert!(of("%r2/amcl", "%parameter_events"));
+        assert!(!of("%r2/amcl", "%r2%amcl_pose"));
+        assert!(!of("%/amcl", "%parameter_events"));
     }
 
     #[test]
