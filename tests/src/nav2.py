@@ -306,15 +306,16 @@ class Nav2(Robot):
         _, token = self.endpoint(node, kind, topic, TYPES[topic], "TypeHashNotSupported", SENSOR)
         self.token(token)
 
-    def point(self, frame, x, y):
+    def point(self, frame, x, y, yaw=0.0):
         """As "2D Pose Estimate" does."""
         msgtype = TYPES["initialpose"]
-        message = build((Nodetype.NAME, msgtype), self.pointed(frame, x, y))
+        message = build((Nodetype.NAME, msgtype), self.pointed(frame, x, y, yaw))
         self.put("initialpose", bytes(STORE.serialize_cdr(message, msgtype)))
 
     @staticmethod
-    def pointed(frame, x, y):
-        pose = {"position": {"x": x, "y": y}, "orientation": {"w": 1.0}}
+    def pointed(frame, x, y, yaw):
+        turn = {"z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}
+        pose = {"position": {"x": x, "y": y}, "orientation": turn}
         return {"header": {"frame_id": frame}, "pose": {"pose": pose}}
 
     def ask(self, service, request):

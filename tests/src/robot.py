@@ -92,8 +92,8 @@ class Robot:
         self.session = zenoh.open(config)
         self.namespace = namespace
         self.alive = []
-        self.ids = 0
         self.has_hashes = True
+        self.ids = 0
         self.sequence = {}
         self.publishers = {}
         self.recorded = {}
@@ -119,7 +119,6 @@ class Robot:
     def token(self, key):
         self.alive.append(self.session.liveliness().declare_token(key))
 
-    def endpoint(self, node, kind, topic, msgtype, type_hash, qos):
     def know_no_hashes(self):
         """From now on, its nodes are of ROS 2 Humble."""
         self.has_hashes = False
@@ -127,6 +126,7 @@ class Robot:
     def type_hash(self, type_hash):
         return type_hash if self.has_hashes else "TypeHashNotSupported"
 
+    def endpoint(self, node, kind, topic, msgtype, type_hash, qos):
         dds, type_hash = ros2_to_dds_type(msgtype), self.type_hash(type_hash)
         entity = EndpointEntity(
             node, self.next(), kind, self.name(topic), dds, type_hash, qos.encode()

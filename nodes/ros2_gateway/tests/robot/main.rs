@@ -7,10 +7,11 @@
 
 mod amcl;
 mod carried;
+mod clicks;
 mod client;
 mod filter;
-mod nav2;
 mod humble;
+mod nav2;
 mod refusals;
 mod tracked;
 mod waiting;

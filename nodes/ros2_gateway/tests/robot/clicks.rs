@@ -1,0 +1,82 @@
+//! A robot in whose AMCL's place we are, and an operator who clicks "2D Pose Estimate".
+
+use messages::InitialPose;
+
+use super::client::{of_scan, parameters, planar};
+use super::filter::engine_and_tracker;
+use super::*;
+
+/// As often as Simple Commander and an impatient operator do between two scans.
+const CLICKS: usize = 10;
+
+#[test]
+fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
+    let file = parameters("clicks.yaml", &["save_pose_rate: 0.0"]);
+    let file = file.to_str().unwrap();
+    let options = ["--as", "amcl", "--autostart", "--params-file", file];
+    let Some(mut joined) = Joined::new("ros-clicks", "/", &options) else {
+        return;
+    };
+    let nodes = engine_and_tracker(&joined.graph);
+    let graph = &joined.graph;
+    let poses = graph.subscriber::<topic::Tracked>().unwrap();
+    let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
+    let robot = &mut joined.robot;
+    robot.order("join", json!({ "name": "rviz" }));
+    robot.order("arrive", json!({}));
+    for node in [
+        "boundary_extractor",
+        "accumulator",
+        "peak_extractor",
+        "tracker",
+    ] {
+        wait_until_ready(graph, node);
+    }
+    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let truths = truths.ground_truths().unwrap();
+    let mount = Pose::new(0.78, 0.0, 0.0);
+    let scans = scans();
+    let stamp = |index: usize| scans[index].header.stamp.as_ns();
+    let truth = |index: usize| truths[&stamp(index)].pose.then(mount.inverse());
+    let drive = |robot: &mut Robot, index: usize| -> PoseHeader {
+        robot.order("drive", json!({ "index": index }));
+        wait_for(graph, &poses, |header: &PoseHeader, _| {
+            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp(index);
+            is_this.then_some(*header)
+        })
+    };
+    // The last of the clicks has come to the tracker as soon as it has come here.
+    let click = |robot: &mut Robot, at: Pose| {
+        for _ in 0..CLICKS {
+            let how = json!({ "frame": "map", "x": at.x, "y": at.y, "yaw": at.yaw });
+            robot.order("point", how);
+        }
+        wait_for(graph, &hints, |hint: &InitialPose, _| {
+            (hint.map_from_base.x == at.x).then_some(())
+        });
+    };
+    let mut index = 0;
+    while !drive(robot, index).is_unique() {
+        index += 1;
+    }
+    for round in 0..30 {
+        let here = truth(index);
+        let off = match round % 3 {
+            0 => Pose::new(0.3, -0.2, 0.1),
+            1 => Pose::new(-12.0, 1.0, 2.0),
+            _ => Pose::new(5.0, 4.0, -1.0),
+        };
+        click(robot, here.then(off));
+        index += 1;
+        let pose = drive(robot, index);
+        assert!(pose.is_believed(), "{round}: {pose:?}");
+        let base = planar(&of_scan(robot, "amcl_pose", stamp(index))["pose"]);
+        let expected = truth(index);
+        assert!(
+            base.is_within(expected, 0.25, 0.05),
+            "{round}: {base:?} {expected:?}"
+        );
+    }
+    nodes.into_iter().for_each(NodeProcess::stop);
+    joined.stop();
+}
