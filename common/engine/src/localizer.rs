@@ -21,7 +21,6 @@ use crate::votes::{FieldVotes, VoteSet, VoteShare};
 pub use config::{FieldMethod, LocalizerConfig};
 use field::Fields;
 pub use preparation::Preparation;
-pub use together::Together;
 
 /// What the localizer knows of the heading beforehand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

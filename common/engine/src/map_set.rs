@@ -14,7 +14,7 @@
 
 use crate::EngineError;
 use crate::fit::Ends;
-use crate::localizer::{Localizer, Outcome, Together};
+use crate::localizer::{Localizer, Outcome};
 use crate::locator::{self, Locator};
 use crate::observation::Observation;
 use crate::peaks::{Found, Merged, Places, merge};
@@ -62,19 +62,9 @@ impl MapSet {
     /// If there is none.
     #[must_use]
     pub fn new(locators: Vec<Locator>) -> Self {
-        MapSet::part(locators, 0.0)
-    }
-
-    /// A part of a set whose largest map has a diagonal of so many metres, for others search
-    /// the rest.
-    ///
-    /// # Panics
-    /// If it has no map.
-    #[must_use]
-    pub fn part(locators: Vec<Locator>, reach_m: f64) -> Self {
         assert!(!locators.is_empty(), "a set of maps has at least one");
         let longest = locators.iter().map(Locator::longest_m);
-        let reach_m = longest.fold(reach_m, f64::max);
+        let reach_m = longest.fold(0.0, f64::max);
         let locators = locators.into_iter();
         MapSet {
             locators: locators.map(|map| map.reaching(reach_m)).collect(),
@@ -104,31 +94,9 @@ impl MapSet {
         heading: Option<f64>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Located<'w>>, EngineError> {
-        let together = Together {
-            heading,
-            ..Together::default()
-        };
-        self.locate_beside(workspace, scan, together, stop)
-    }
-
-    /// The same while others search other maps: beside what the best pose has, be it theirs, too
-    /// few votes are left out, as if one search had found all.
-    ///
-    /// # Errors
-    /// See [`MapSet::locate_unless`].
-    ///
-    /// # Panics
-    /// See [`MapSet::locate_unless`].
-    pub fn locate_beside<'w, 's>(
-        &self,
-        workspace: &'w mut Workspace,
-        scan: impl Into<Observation<'s>>,
-        together: Together<'_>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Located<'w>>, EngineError> {
         let scan = scan.into();
-        let has_others = self.locators.len() > 1 || together.lead.is_some();
-        if self.search(workspace, scan, together, stop)?.is_none() {
+        let has_others = self.locators.len() > 1;
+        if self.search(workspace, scan, heading, stop)?.is_none() {
             return Ok(None);
         }
         let Workspace { maps, merged } = workspace;
@@ -158,14 +126,14 @@ impl MapSet {
         &self,
         workspace: &mut Workspace,
         scan: Observation<'_>,
-        together: Together<'_>,
+        heading: Option<f64>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<usize>, EngineError> {
         let maps = &mut workspace.maps;
         maps.resize_with(self.locators.len(), locator::Workspace::default);
         let localizers = self.locators.iter().map(Locator::localizer);
         let searched = localizers.zip(maps.iter_mut().map(locator::Workspace::localizer));
-        Localizer::search_together(searched.collect(), scan, together, stop)
+        Localizer::search_together(searched.collect(), scan, heading, stop)
     }
 }
 

@@ -10,7 +10,6 @@
 mod bmp;
 mod claim;
 mod description;
-mod diagonal;
 mod error;
 mod grid;
 mod keys;
@@ -25,7 +24,6 @@ mod rules;
 mod save;
 mod set;
 
-pub use diagonal::diagonal_m;
 pub use error::MapError;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;

@@ -16,7 +16,7 @@ use crate::LocateError;
 use crate::error::REFUSED;
 
 /// Between two attempts, where nobody answers or all are busy.
-pub(crate) const PAUSE: Duration = Duration::from_millis(20);
+const PAUSE: Duration = Duration::from_millis(20);
 
 /// How long an attempt may say nothing before another one is made beside it; each that
 /// is under way doubles it, so that slow servers are not asked again and again.
@@ -40,64 +40,42 @@ pub fn ask(
 ) -> Result<Received<topic::Hypotheses>, LocateError> {
     let encoding = network_payload::encoding::<topic::Scan>();
     let question = Question::new(session, (header, ranges), &encoding)?;
-    let (encoding, payload) = ask_bytes(session, map, &question, deadline, &|| {})?;
+    let (encoding, payload) = ask_bytes(session, map, &question, deadline)?;
     let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
     answer.rebase(monotonic_ns());
     Ok(answer)
 }
 
 /// A scan as bytes, and what they say of themselves.
-pub(crate) struct Question {
+struct Question {
     encoding: String,
     payload: Vec<u8>,
 }
 
 impl Question {
-    pub(crate) fn new(
+    fn new(
         session: &Session,
         (header, ranges): (&ScanHeader, &[f32]),
         encoding: &str,
     ) -> Result<Self, LocateError> {
-        let payload = scan_bytes(session, (header, ranges))?;
-        Ok(Question::of(encoding, payload))
-    }
-
-    pub(crate) fn of(encoding: &str, payload: Vec<u8>) -> Self {
-        Question {
+        let preamble = Preamble {
+            sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
+            sequence: header.stamp.counter,
+            clock_ns: monotonic_ns(),
+        };
+        Ok(Question {
             encoding: encoding.to_owned(),
-            payload,
-        }
+            payload: network_payload::encode::<topic::Scan>(&preamble, header, ranges)?,
+        })
     }
 }
 
-/// A number for who asks by this session.
-pub(crate) fn sender(session: &Session) -> u64 {
-    u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes()))
-}
-
-/// A scan as the bridge sends it.
-pub(crate) fn scan_bytes(
-    session: &Session,
-    (header, ranges): (&ScanHeader, &[f32]),
-) -> Result<Vec<u8>, LocateError> {
-    let preamble = Preamble {
-        sender: sender(session),
-        sequence: header.stamp.counter,
-        clock_ns: monotonic_ns(),
-    };
-    Ok(network_payload::encode::<topic::Scan>(
-        &preamble, header, ranges,
-    )?)
-}
-
-/// The answer to a question as bytes, and what they say of themselves; `before` is called before
-/// each attempt.
-pub(crate) fn ask_bytes(
+/// The answer to a question as bytes, and what they say of themselves.
+fn ask_bytes(
     session: &Session,
     map: &str,
     question: &Question,
     deadline: Duration,
-    before: &dyn Fn(),
 ) -> Result<(String, Vec<u8>), LocateError> {
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
@@ -110,7 +88,6 @@ pub(crate) fn ask_bytes(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            before();
             attempt(session, map, question, due - now, events.clone())?;
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));

@@ -11,8 +11,6 @@ use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use map::{MapError, MapFile, MapSet};
 
-use crate::shard::Shard;
-
 /// Locates scans on a map, for clients on Zenoh.
 ///
 /// Listens on this machine only by default. Any number of servers may answer for one
@@ -29,15 +27,9 @@ pub struct Config {
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     pub maps: Option<PathBuf>,
 
-    /// Hold only these maps of several, by the names of maps or of floors; shards are parts
-    /// of what remains, so all are given the same names
+    /// Hold only these maps of several, by the names of maps or of floors
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
     pub on: Vec<String>,
-
-    /// The part of the set that this server holds: 2/4 is every fourth map from the second
-    /// on. It is asked at backcast/locate/NAME.2-of-4, all of them by `ask_shards`
-    #[arg(long, value_name = "NUMBER/OF")]
-    pub shard: Option<Shard>,
 
     /// The name of the map or the maps, the last part of backcast/locate/NAME: 1 to 64 of
     /// a-z A-Z 0-9 - _ . [default: that of the folder in which they lie]
@@ -105,14 +97,6 @@ impl Config {
             (None, files) => map::set_of_files(files),
         };
         Ok(all?.select(&self.on)?.maps)
-    }
-
-    /// The name under which it is asked: that of the shard, where it holds one.
-    #[must_use]
-    pub fn asked_name(&self) -> String {
-        let name = self.name();
-        self.shard
-            .map_or_else(|| name.clone(), |shard| shard.name(&name))
     }
 
     /// What the map or the set of maps is called.

@@ -53,12 +53,6 @@ impl Counts {
         self.note(says);
     }
 
-    /// What another shard is said to have found is not sound.
-    pub(crate) fn refuse_lead(&self, error: &LocateError) {
-        self.refused.fetch_add(1, Ordering::Relaxed);
-        self.note(with_causes(error));
-    }
-
     fn note(&self, says: String) {
         let problem = self.problem.lock();
         *problem.unwrap_or_else(PoisonError::into_inner) = Some(says);

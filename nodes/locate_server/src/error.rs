@@ -79,20 +79,6 @@ pub enum LocateError {
         /// As asked, milliseconds.
         deadline_ms: u128,
     },
-    /// A shard has no map.
-    #[error("shard {shard} of {maps} maps has none: allowed are at most as many shards as maps")]
-    EmptyShard {
-        /// As configured.
-        shard: String,
-        /// Maps of the set.
-        maps: usize,
-    },
-    /// The answer of a shard is not sound.
-    #[error("the answer of a shard cannot be used: {reason}")]
-    Part {
-        /// What is wrong, and what is allowed.
-        reason: String,
-    },
     /// A server says so.
     #[error("the server rejects the request: {says}")]
     Refused {

@@ -7,8 +7,7 @@
 //! beyond that; what cannot be answered before its deadline is not searched. Nothing
 //! is kept from one request to the next: who wants to be tracked runs the graph.
 //!
-//! A set of maps may be divided into shards, each with servers of its own: [`ask_shards`] asks
-//! them all and merges what they find.
+//! A server of several maps searches them together.
 
 mod client;
 mod config;
@@ -16,12 +15,9 @@ mod counts;
 mod dispatcher;
 mod error;
 mod json;
-mod leads;
 mod locator;
 mod request;
 mod run;
-mod shard;
-mod shards;
 mod team;
 mod worker;
 
@@ -29,7 +25,5 @@ pub use client::ask;
 pub use config::Config;
 pub use error::{BUSY, LATE, LocateError, REFUSED};
 pub use locator::{Answer, Locator, SearchedMap, Workspace};
-pub use request::{Form, JSON, JSON_ANSWER, PART, PART_ANSWER, Request, Wanted, read, write};
+pub use request::{Form, JSON, JSON_ANSWER, Request, read, write};
 pub use run::run;
-pub use shard::{Part, Shard};
-pub use shards::{OverMaps, ask_shards};

@@ -4,27 +4,20 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Prior, Together};
+use engine::localizer::Prior;
 use engine::locator::{LocatorConfig, OccupancyView};
 pub use engine::map_set::Workspace;
 use engine::map_set::{Located, MapSet};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
-use engine::search::Lead;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, searched_id};
-
-use crate::shard::{Part, Shard};
 
 /// A map, or several, ready to be searched by any number of threads.
 #[derive(Debug)]
 pub struct Locator {
     /// Ids and names, in the order of the set.
     maps: Vec<(u64, String)>,
-    /// Their numbers and ids in the whole set.
-    held: Vec<(u32, u64)>,
-    /// Which part of the set it is, and the names of all maps of that.
-    part_of: (Shard, Vec<String>),
     set: MapSet,
 }
 
@@ -32,7 +25,6 @@ pub struct Locator {
 #[derive(Debug)]
 pub struct SearchedMap {
     id: u64,
-    number: u32,
     name: String,
     locator: engine::locator::Locator,
 }
@@ -41,13 +33,12 @@ pub struct SearchedMap {
 pub type Answer = (HypothesesHeader, Vec<Hypothesis>);
 
 impl SearchedMap {
-    /// Prepares the map of this number and name in the whole set, which takes from
-    /// milliseconds to seconds.
+    /// Prepares the map of this name, which takes from milliseconds to seconds.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(
-        (number, name): (u32, String),
+        name: String,
         map: &OccupancyGrid,
         rules: CellRules,
         config: LocatorConfig,
@@ -63,7 +54,6 @@ impl SearchedMap {
         };
         Ok(SearchedMap {
             id: map.id(),
-            number,
             name,
             locator: engine::locator::Locator::new(view, config, Prior::None)?,
         })
@@ -80,33 +70,23 @@ impl Locator {
         rules: CellRules,
         config: LocatorConfig,
     ) -> Result<Self, EngineError> {
-        let map = SearchedMap::new((0, String::new()), map, rules, config)?;
-        Ok(Locator::of_set(
-            vec![map],
-            (Shard::WHOLE, vec![String::new()]),
-            0.0,
-        ))
+        let map = SearchedMap::new(String::new(), map, rules, config)?;
+        Ok(Locator::of_set(vec![map]))
     }
 
-    /// Searches maps together, of which there is at least one. They are that part of a set
-    /// whose maps have these names, and of which the maps of other shards have diagonals of so
-    /// many metres at most.
+    /// Searches maps together.
+    ///
+    /// # Panics
+    /// If there is none.
     #[must_use]
-    pub fn of_set(
-        maps: Vec<SearchedMap>,
-        part_of: (Shard, Vec<String>),
-        others_reach_m: f64,
-    ) -> Self {
-        let held = maps.iter().map(|map| (map.number, map.id)).collect();
+    pub fn of_set(maps: Vec<SearchedMap>) -> Self {
         let (ids, locators): (_, Vec<_>) = maps
             .into_iter()
             .map(|map| ((map.id, map.name), map.locator))
             .unzip();
         Locator {
             maps: ids,
-            held,
-            part_of,
-            set: MapSet::part(locators, others_reach_m),
+            set: MapSet::new(locators),
         }
     }
 
@@ -141,29 +121,6 @@ impl Locator {
             let votes = (outcome.found.best.into(), outcome.highest_possible);
             described(scan.0, &self.maps, votes, found.places)
         }))
-    }
-
-    /// The same as it is merged with what others find on other maps of the set, while it is known
-    /// what the best pose of all has.
-    ///
-    /// # Errors
-    /// As [`Locator::locate`].
-    pub fn locate_part(
-        &self,
-        workspace: &mut Workspace,
-        (header, ranges): (&ScanHeader, &[f32]),
-        lead: &Lead,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Part>, EngineError> {
-        let together = Together {
-            lead: Some(lead),
-            ..Together::default()
-        };
-        let scan = Scan::of(header, ranges);
-        let found = self.set.locate_beside(workspace, &scan, together, stop)?;
-        // After the search: it was beside no better pose than that.
-        let how = (self.set.locators()[0].peaks().score, lead.share());
-        Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found, how)))
     }
 
     fn search<'w>(

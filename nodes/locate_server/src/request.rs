@@ -7,7 +7,6 @@
 
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
 use network_payload::{Preamble, Wire};
-use serde::{Deserialize, Serialize};
 
 use crate::LocateError;
 use crate::json;
@@ -16,12 +15,8 @@ use crate::json;
 pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// That of its answer.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
-/// The encoding of a request to one shard of a set of maps, in postcard.
-pub const PART: &str = "application/postcard;backcast.ScanForPart/v2";
-/// That of its answer.
-pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v2";
 /// What a request may say of itself.
-pub(crate) const ENCODINGS: [&str; 3] = ["application/postcard;backcast.Scan/v2", JSON, PART];
+pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
 /// Characters of a foreign encoding that an error shows.
 const SHOWN: usize = 80;
 
@@ -34,36 +29,11 @@ pub enum Form {
     Json,
 }
 
-/// What the answer is to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
-    /// The places, in the form of the request.
-    Hypotheses(Form),
-    /// What one shard of a set of maps finds, which is merged with others'.
-    Part {
-        /// Which question it is, so that others can say what they found for it.
-        question: QuestionId,
-    },
-}
-
-/// The number of a question to all shards: of the one who asks, and among theirs.
-pub(crate) type QuestionId = (u64, u64);
-
-/// A question to one shard.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PartQuestion<'a> {
-    /// Its number.
-    pub id: QuestionId,
-    /// The scan, as the bridge sends it.
-    #[serde(borrow)]
-    pub scan: &'a [u8],
-}
-
 /// A scan that somebody wants to be located.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// What is asked for.
-    pub wanted: Wanted,
+    /// That of the answer, too.
+    pub form: Form,
     /// As in topic `scan`.
     pub header: ScanHeader,
     /// Metres.
@@ -84,40 +54,23 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     if encoding == JSON {
         let (header, ranges) = json::read(payload, now_ns)?;
         return Ok(Request {
-            wanted: Wanted::Hypotheses(Form::Json),
+            form: Form::Json,
             header,
             ranges,
         });
     }
     let as_scan = network_payload::encoding::<topic::Scan>();
-    let of_part = match encoding {
-        PART => Some(PartQuestion::read(payload)?),
-        _ if encoding == as_scan => None,
-        _ => {
-            let found = encoding.chars().take(SHOWN).collect();
-            return Err(LocateError::Encoding { found });
-        }
-    };
-    let payload = of_part.as_ref().map_or(payload, |asked| asked.scan);
+    if encoding != as_scan {
+        let found = encoding.chars().take(SHOWN).collect();
+        return Err(LocateError::Encoding { found });
+    }
     let mut scan = network_payload::decode::<topic::Scan>(&as_scan, payload)?;
     scan.rebase(now_ns);
-    let wanted = match of_part {
-        None => Wanted::Hypotheses(Form::Postcard(scan.preamble)),
-        Some(PartQuestion { id, .. }) => Wanted::Part { question: id },
-    };
     Ok(Request {
-        wanted,
+        form: Form::Postcard(scan.preamble),
         header: scan.header,
         ranges: scan.items,
     })
-}
-
-impl<'a> PartQuestion<'a> {
-    fn read(payload: &'a [u8]) -> Result<Self, LocateError> {
-        postcard::from_bytes(payload).map_err(|error| LocateError::Part {
-            reason: error.to_string(),
-        })
-    }
 }
 
 /// An answer in this form, which is sent at `now_ns` of the monotonic clock: its
@@ -192,7 +145,7 @@ mod tests {
             network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
         let asked = read(ENCODINGS[0], &payload, 50_000).unwrap();
         let form = Form::Postcard(PREAMBLE);
-        assert_eq!(asked.wanted, Wanted::Hypotheses(form));
+        assert_eq!(asked.form, form);
         assert_eq!(asked.ranges, [1.0, 2.0]);
         assert_eq!(
             asked.header.stamp.entered_ns,
@@ -204,23 +157,6 @@ mod tests {
         let answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
         assert_eq!((answer.preamble.sender, answer.preamble.sequence), (7, 3));
         assert_eq!(answer.preamble.clock_ns, 60_000);
-    }
-
-    #[test]
-    fn a_question_to_a_shard_has_a_number() {
-        let scan = network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
-        let question = PartQuestion {
-            id: (7, 9),
-            scan: &scan,
-        };
-        let payload = postcard::to_allocvec(&question).unwrap();
-        let asked = read(PART, &payload, 50_000).unwrap();
-        assert_eq!(asked.wanted, Wanted::Part { question: (7, 9) });
-        assert_eq!(asked.ranges, [1.0, 2.0]);
-        assert!(matches!(
-            read(PART, b"\xff", 0),
-            Err(LocateError::Part { .. })
-        ));
     }
 
     #[test]

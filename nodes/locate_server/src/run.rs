@@ -11,15 +11,14 @@ use transport::{Flow, Graph, Waker, wall_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::query::{Query, Queryable};
-use zenoh::sample::{Sample, SampleKind};
+use zenoh::sample::SampleKind;
 use zenoh::{Result as ZenohResult, Session, Wait};
 use zenoh_session::KeyError;
 
 use crate::counts::Counts;
 use crate::dispatcher::Dispatcher;
-use crate::leads::{Leads, SentLead};
 use crate::locator::{Locator, SearchedMap};
-use crate::{Config, LocateError, Shard, worker};
+use crate::{Config, LocateError, worker};
 
 /// Between two looks at the counters, and at who else is there.
 const TICK: Duration = Duration::from_millis(200);
@@ -65,21 +64,13 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
     let set = config.maps.as_deref().unwrap_or(Path::new("--map"));
     let mut maps = Vec::new();
     let files = config.files().map_err(|source| failed(set, source))?;
-    // Without shards, all of them are held here.
-    let shard = config.shard.unwrap_or(Shard::WHOLE);
-    for (number, MapFile { name, yaml, .. }) in shard.take(&files)? {
+    for MapFile { name, yaml, .. } in files {
         let grid = map::load_noting(&yaml, |key| tracing::warn!("{key}"));
         let grid = grid.map_err(|source| failed(&yaml, source))?;
-        let map = SearchedMap::new((number, name), &grid, config.cells, how.clone());
+        let map = SearchedMap::new(name, &grid, config.cells, how.clone());
         maps.push(map.map_err(|source| LocateError::UnusableMap { path: yaml, source })?);
     }
-    let mut others_reach_m: f64 = 0.0;
-    for yaml in shard.others(&files) {
-        let diagonal_m = map::diagonal_m(yaml).map_err(|source| failed(yaml, source))?;
-        others_reach_m = others_reach_m.max(diagonal_m);
-    }
-    let names = files.into_iter().map(|file| file.name).collect();
-    Ok(Locator::of_set(maps, (shard, names), others_reach_m))
+    Ok(Locator::of_set(maps))
 }
 
 /// What stands on the network, as long as this lives.
@@ -93,7 +84,6 @@ struct Service {
     to_all: Option<Queryable<()>>,
     _handed_on: Queryable<()>,
     _team: Subscriber<()>,
-    _leads: Subscriber<()>,
     _token: LivelinessToken,
 }
 
@@ -105,7 +95,7 @@ impl Service {
         counts: &Arc<Counts>,
         waker: Waker,
     ) -> Result<Self, LocateError> {
-        let key = network_payload::locate(&config.asked_name());
+        let key = network_payload::locate(&config.name());
         let workers = config.workers();
         let me = session.zid().to_string();
         let waiting = usize::from(config.waiting);
@@ -113,13 +103,11 @@ impl Service {
         let (dispatcher, work_queue) =
             Dispatcher::new(session, &key, load, config.deadline, counts);
         let work_queue = Arc::new(work_queue);
-        let leads = Arc::new(Leads::new(workers * (waiting + 1)));
         for _ in 0..workers {
             let (work_queue, locator, counts) =
                 (work_queue.clone(), locator.clone(), counts.clone());
             // They end when the dispatcher is closed, or with the process.
-            let leads = leads.clone();
-            std::thread::spawn(move || worker::work(&work_queue, (&locator, &leads), &counts));
+            std::thread::spawn(move || worker::work(&work_queue, &locator, &counts));
         }
         let map_id = locator.map_id();
         let since = wall_ns().unsigned_abs();
@@ -133,7 +121,6 @@ impl Service {
                 move |query| dispatcher.ask_me(query, &key)
             })?,
             _team: meet(session, &key, map_id, &dispatcher, waker)?,
-            _leads: take_leads(session, &config.asked_name(), leads, counts)?,
             _token: tried("be alive at", &token, |key| {
                 session.liveliness().declare_token(key).wait()
             })?,
@@ -176,23 +163,6 @@ fn answer(
             .complete(true)
             .callback(ask)
             .wait()
-    })
-}
-
-/// Takes what other shards have found.
-fn take_leads(
-    session: &Session,
-    name: &str,
-    leads: Arc<Leads>,
-    counts: &Arc<Counts>,
-) -> Result<Subscriber<()>, LocateError> {
-    let counts = Arc::clone(counts);
-    tried("subscribe to", &SentLead::key(name), |key| {
-        let take = move |sample: Sample| match SentLead::read(&sample.payload().to_bytes()) {
-            Ok(sent) => leads.take(sent),
-            Err(error) => counts.refuse_lead(&error),
-        };
-        session.declare_subscriber(key).callback(take).wait()
     })
 }
 

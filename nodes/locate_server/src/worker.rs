@@ -10,20 +10,14 @@ use zenoh::Wait;
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
 use crate::error::BUSY;
-use crate::leads::Leads;
 use crate::locator::{Locator, Workspace};
-use crate::request::{PART_ANSWER, Wanted};
 use crate::{LocateError, request};
 
 /// Answers until nobody takes requests any more.
-pub(crate) fn work(
-    work_queue: &WorkQueue,
-    (locator, leads): (&Locator, &Leads),
-    counts: &Arc<Counts>,
-) {
+pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
     while let Some(job) = work_queue.next() {
-        match answer(&job, (locator, leads), &mut workspace) {
+        match answer(&job, locator, &mut workspace) {
             Ok((encoding, payload)) => {
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
                 counts.sent(&reply.wait());
@@ -41,7 +35,7 @@ pub(crate) fn work(
 
 fn answer(
     job: &Job,
-    (locator, leads): (&Locator, &Leads),
+    locator: &Locator,
     workspace: &mut Workspace,
 ) -> Result<(String, Vec<u8>), LocateError> {
     let deadline = job.deadline;
@@ -58,25 +52,11 @@ fn answer(
     )?;
     let stop = || deadline.has_passed();
     let scan = (&asked.header, asked.ranges.as_slice());
-    let form = match asked.wanted {
-        Wanted::Hypotheses(form) => form,
-        Wanted::Part { question } => {
-            let lead = leads.of(question);
-            let Some(mut part) = locator.locate_part(workspace, scan, &lead, &stop)? else {
-                return Err(deadline.late());
-            };
-            part.search_ns = start.elapsed().as_nanos() as u64;
-            let bytes = postcard::to_allocvec(&part).map_err(|error| LocateError::Part {
-                reason: error.to_string(),
-            })?;
-            return Ok((PART_ANSWER.to_owned(), bytes));
-        }
-    };
     let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
         return Err(deadline.late());
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
     let name_of = |map_id| locator.name_of(map_id).map(str::to_owned);
-    request::write(form, &header, &hypotheses, &name_of, header.sent_ns)
+    request::write(asked.form, &header, &hypotheses, &name_of, header.sent_ns)
 }

@@ -9,15 +9,6 @@ use crate::observation::Observation;
 use crate::search::{Lead, SearchIndex, Searched};
 use crate::votes::{VoteShare, least_close};
 
-/// What is known beside the scan.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Together<'a> {
-    /// The heading in the maps' frames, radians, where it is given.
-    pub heading: Option<f64>,
-    /// What the best pose has, where others search other maps; it may rise meanwhile.
-    pub lead: Option<&'a Lead>,
-}
-
 impl Localizer {
     /// Searches maps together, each in a workspace of its own, with the settings of the first:
     /// of each map the poses that come near the best one of all. The number of the map that
@@ -34,14 +25,13 @@ impl Localizer {
     pub fn search_together(
         mut maps: Vec<(&Localizer, &mut Workspace)>,
         scan: Observation<'_>,
-        together: Together<'_>,
+        heading: Option<f64>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<usize>, EngineError> {
-        let own = Lead::default();
-        let best = together.lead.unwrap_or(&own);
-        let found = match together.heading {
+        let best = Lead::default();
+        let found = match heading {
             Some(heading) => at_heading(&mut maps, scan, heading, stop)?,
-            None => at_any_heading(&mut maps, scan, best, stop)?,
+            None => at_any_heading(&mut maps, scan, &best, stop)?,
         };
         if found.is_none() {
             return Ok(None);
@@ -53,13 +43,11 @@ impl Localizer {
             Ordering::Greater => b,
             _ => a,
         };
-        let (leading, share) = shares.enumerate().reduce(greater).expect("a map");
-        // Others may have a better pose on their maps.
-        let (_, lead) = greater((leading, share), (leading, best.share()));
+        let (leading, lead) = shares.enumerate().reduce(greater).expect("a map");
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
             outcome.lead = lead.on(outcome.highest_possible as u16);
-            if together.heading.is_some() {
+            if heading.is_some() {
                 let floor = map.config.collect.floor(outcome.lead);
                 let least = least_close(outcome.lead);
                 outcome.found.confine((outcome.lead, floor), Some(least));

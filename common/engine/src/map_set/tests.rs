@@ -1,6 +1,5 @@
 use geometry::Pose;
 use messages::Verdict;
-use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
@@ -8,10 +7,9 @@ use crate::fit::GridPose;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::localizer::{LocalizerConfig, Prior};
 use crate::locator::{LocatorConfig, OccupancyView};
-use crate::peaks::{PeakConfig, Place, Score};
+use crate::peaks::{PeakConfig, Score};
 use crate::program::VoteConfig;
 use crate::scan::Scan;
-use crate::search::Lead;
 use crate::testing::{any_grid, any_scan};
 
 /// None where the grid has no obstacle or no room.
@@ -67,115 +65,6 @@ proptest! {
         // By votes alone they are shares here, and votes there.
         prop_assert!((all.places.confidence - found.places.confidence).abs() < 1e-12);
         prop_assert_eq!(all.ends, found.ends);
-    }
-
-    #[test]
-    fn parts_of_a_set_that_are_merged_have_its_best_pose_by_votes(
-        worlds in vec((any_grid(), 0.07..0.14f64), 2..6), scan in any_scan(), cut in 1usize..5,
-    ) {
-        let locators = locators(&worlds, scan.config());
-        prop_assume!(locators.len() > 1);
-        let cut = cut.min(locators.len() - 1);
-        let mut workspace = Workspace::default();
-        let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
-        let mut ask = |locators: &[Locator]| {
-            let set = MapSet::part(locators.to_vec(), reach_m);
-            // As shards do, so that a single map is one of several, too.
-            let lead = Lead::default();
-            let together = Together { lead: Some(&lead), ..Together::default() };
-            let found = set.locate_beside(&mut workspace, &scan.scan(), together, &|| false);
-            let found = found.unwrap().unwrap();
-            (found.places.clone(), found.found.clone())
-        };
-        let (whole, all) = ask(&locators);
-        let (_, first) = ask(&locators[..cut]);
-        let (_, second) = ask(&locators[cut..]);
-        let config = *locators[0].peaks();
-        let parts = [first, numbered_from(cut, second)];
-        for parts in [&parts[..], &[parts[1].clone(), parts[0].clone()]] {
-            let merged = merge(parts, &config);
-            prop_assert_eq!(merged.found.lead, all.lead);
-            prop_assert_eq!(merged.found.leading_map, all.leading_map);
-            prop_assert_eq!(merged.places.places.is_empty(), whole.places.is_empty());
-            // Of the map that has it, all that one search finds are among the places.
-            let on_it = |places: &[Place]| {
-                let on_it = places.iter().filter(|place| place.map == all.leading_map);
-                on_it.map(|place| (place.map_from_laser, place.score)).collect::<Vec<_>>()
-            };
-            prop_assert_eq!(on_it(&merged.found.places), on_it(&all.places));
-        }
-    }
-}
-
-/// The locators of those worlds that have obstacles and room.
-fn locators(worlds: &[(Grid, f64)], votes: VoteConfig) -> Vec<Locator> {
-    let located = |(grid, side): &(Grid, f64)| locator(grid, *side, votes, Score::Fit);
-    worlds.iter().filter_map(located).collect()
-}
-
-/// What was found on the maps from this number of a set on.
-fn numbered_from(first: usize, mut found: Found) -> Found {
-    found.leading_map += first as u32;
-    found
-        .places
-        .iter_mut()
-        .for_each(|place| place.map += first as u32);
-    found
-}
-
-proptest! {
-    #[test]
-    fn beside_a_pose_elsewhere_a_part_finds_what_counts_beside_it(
-        worlds in vec((any_grid(), 0.07..0.14f64), 2..5), scan in any_scan(), cut in 1usize..4,
-        told_at in 0u32..40,
-    ) {
-        let locators = locators(&worlds, scan.config());
-        prop_assume!(locators.len() > 1);
-        let cut = cut.min(locators.len() - 1);
-        let mut workspace = Workspace::default();
-        let reach_m = locators.iter().map(Locator::longest_m).fold(0.0, f64::max);
-        let mut ask = |locators: &[Locator], lead: &Lead, stop: &dyn Fn() -> bool| {
-            let set = MapSet::part(locators.to_vec(), reach_m);
-            let together = Together { lead: Some(lead), ..Together::default() };
-            let found = set.locate_beside(&mut workspace, &scan.scan(), together, stop);
-            found.unwrap().unwrap().found.clone()
-        };
-        let lead = Lead::default();
-        let all = ask(&locators, &lead, &|| false);
-        prop_assert_eq!(lead.share().compare(all.lead), std::cmp::Ordering::Equal);
-        // It is told before a search, or while one is at work.
-        let late = Lead::default();
-        let looks = std::cell::Cell::new(0);
-        let tell = || {
-            looks.set(looks.get() + 1);
-            if looks.get() == told_at {
-                late.raise(all.lead);
-            }
-            false
-        };
-        let config = *locators[0].peaks();
-        for (lead, stop) in [(&lead, &(|| false) as &dyn Fn() -> bool), (&late, &tell)] {
-            let first = ask(&locators[..cut], lead, stop);
-            let second = numbered_from(cut, ask(&locators[cut..], lead, stop));
-            let merged = merge(&[first, second], &config).found;
-            let on_it = |places: &[Place]| {
-                let on_it = places.iter().filter(|place| place.map == all.leading_map);
-                on_it.map(|place| (place.map_from_laser, place.score)).collect::<Vec<_>>()
-            };
-            prop_assert_eq!((merged.lead, merged.leading_map), (all.lead, all.leading_map));
-            prop_assert_eq!(on_it(&merged.places), on_it(&all.places));
-            let is_certain = |place: &&Place| {
-                let collect = locators[place.map as usize].localizer().config().collect;
-                place.intensity >= collect.floor(all.lead.on(place.possible))
-            };
-            for place in all.places.iter().filter(is_certain) {
-                // A candidate that only one of both has may stand for it, if it is the same place.
-                let apart = (2.0 * config.same_place_m, 2.0 * config.same_place_deg.to_radians());
-                let is_it = |other: &Place| other.map == place.map
-                    && other.map_from_laser.is_within(place.map_from_laser, apart.0, apart.1);
-                prop_assert!(merged.places.iter().any(is_it), "{place:?} of {merged:?}");
-            }
-        }
     }
 
     #[test]

@@ -30,4 +30,4 @@ mod task;
 
 pub use index::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
 pub use plan::{BlockBounds, Searched, Workspace};
-pub use task::lead::Lead;
+pub(crate) use task::lead::Lead;

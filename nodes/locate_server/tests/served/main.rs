@@ -5,7 +5,7 @@
 )]
 
 mod handed_on;
-mod shards;
+mod set;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::ScopedJoinHandle;
