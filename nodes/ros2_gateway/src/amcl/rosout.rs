@@ -1,6 +1,6 @@
 //! The log of the graph's nodes on the topic on which ROS collects logs.
 
-use messages::topic;
+use messages::{LogLevel, topic};
 use ros::{Log, Time};
 use transport::{Graph, Subscriber, TransportError};
 use zenoh_session::Report;
@@ -39,6 +39,10 @@ impl Rosout {
     pub(super) fn send(&mut self, report: &mut Report) -> Result<(), TransportError> {
         while let Some(line) = self.lines.receive()? {
             let header = line.header();
+            // As a node of ROS, unless somebody asks for more.
+            if header.level < LogLevel::Info as u32 {
+                continue;
+            }
             let stamp = Time::from_ns(header.wall_ns).unwrap_or_default();
             let text = String::from_utf8_lossy(line.items());
             let mut log = Log::of(stamp, header, &text);
