@@ -14,6 +14,8 @@ pub(crate) enum Publishing {
     OtherVersion,
     /// Somebody who does not say which version: a node of ROS 2 Humble.
     NoVersion,
+    /// Somebody who is best effort or volatile, where messages must arrive or be kept.
+    OtherQuality,
     /// Somebody whose messages are taken.
     Expected,
 }
@@ -41,6 +43,7 @@ impl Input<'_> {
             (Publishing::OtherType, 0) => "a publisher of another type",
             (Publishing::OtherVersion, 0) => "a publisher with another version of the type",
             (Publishing::NoVersion, 0) => "a publisher with no type hash (ROS 2 Humble)",
+            (Publishing::OtherQuality, 0) => "a publisher with another quality of service",
             (Publishing::Expected, 0) => "a publisher, and no message yet",
             (_, _) => "no message any more",
         };
