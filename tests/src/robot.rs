@@ -45,11 +45,22 @@ impl Robot {
         let python = python::with("robot", &LIBRARIES, "zenoh_ros2_sdk, rosbags")
             .map_err(|why| Need::Python.is_missing("a robot with ROS 2", &why))
             .ok()?;
-        let mut process = Command::new(python)
+        let mut command = Command::new(python);
+        command
             .args(["-c", PROGRAM, endpoint])
             .arg(recording)
             .arg(namespace)
-            .env_remove("ROS_DOMAIN_ID")
+            .env_remove("ROS_DOMAIN_ID");
+        Some(Self::run(&mut command))
+    }
+
+    /// A robot that is a program of Python, and says that it is there.
+    ///
+    /// # Panics
+    /// If it does not start.
+    #[must_use]
+    pub fn run(command: &mut Command) -> Self {
+        let mut process = command
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -70,7 +81,7 @@ impl Robot {
             passed_over: Vec::new(),
         };
         robot.wait_for("there");
-        Some(robot)
+        robot
     }
 
     /// Gives an order.

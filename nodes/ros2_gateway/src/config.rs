@@ -5,17 +5,22 @@ use geometry::Mount;
 use messages::FrameName;
 
 use crate::GatewayError;
+use crate::middleware::Rmw;
 use crate::role::{Options, Role};
 
-/// Connects a graph to a ROS 2 robot that uses rmw_zenoh (jazzy and later), without ROS
-/// installed.
+/// Connects a graph to a ROS 2 robot that uses Fast DDS, Cyclone DDS or rmw_zenoh (jazzy and
+/// later), without ROS installed.
 ///
-/// It is the robot's Zenoh router by default, unless it connects to another. The
+/// With rmw_zenoh it is the robot's Zenoh router by default, unless it connects to another. The
 /// robot's scan, odometry and map enter the graph; when the verdict is Unique, the
 /// robot's particle filter gets its initial pose.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "ros2_gateway", version)]
 pub struct Config {
+    /// The robot's middleware [default: as RMW_IMPLEMENTATION says, else zenoh]
+    #[arg(long, value_name = "MIDDLEWARE")]
+    pub rmw: Option<Rmw>,
+
     /// The robot's domain, 0 to 232 [default: ROS_DOMAIN_ID, else 0]
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(..=MAX_DOMAIN))]
     pub domain: Option<u32>,

@@ -6,7 +6,7 @@ use transport::{TransportError, monotonic_ns, wall_ns};
 use zenoh_session::Report;
 
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 use crate::stamps::stamp;
 
 /// Sends it, dated by the robot's clock.

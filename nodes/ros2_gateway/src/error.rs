@@ -72,6 +72,22 @@ pub enum GatewayError {
     /// A key cannot be used.
     #[error(transparent)]
     Key(#[from] KeyError),
+    /// DDS cannot be used.
+    #[error("cannot {action} the domain of DDS: {reason}")]
+    Dds {
+        /// What was tried.
+        action: &'static str,
+        /// Why not.
+        reason: String,
+    },
+    /// A message cannot be sent.
+    #[error("the message for {topic} cannot be sent: {reason}")]
+    Send {
+        /// The robot's topic or service.
+        topic: String,
+        /// Why not.
+        reason: String,
+    },
     /// A message is longer than any sound one.
     #[error("the message of {topic} has {found} bytes: allowed are at most {most}")]
     TooLong {

@@ -14,7 +14,7 @@ use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
 use crate::outlet::{Outlet, Rules};
-use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
+use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::role::Role;
 use crate::seeding::{Belief, Seeding};
 use crate::topics::Topics;
@@ -79,7 +79,8 @@ impl Incoming {
             scans,
             fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
             moving: open.wanted(odometry, &topics.tf, reliable, 100, sizes.0)?,
-            odometry: open.wanted(by_topic, &topics.odom, reliable, 16, sizes.0)?,
+            // Also of robots whose odometry is best effort.
+            odometry: open.wanted(by_topic, &topics.odom, Keeping::Fresh, 16, sizes.0)?,
             maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
             beliefs: open.wanted(
                 config.seed == Seed::Lost,

@@ -2,12 +2,11 @@
 //! node's health for as long as it holds.
 
 use transport::{TransportError, monotonic_ns};
-use zenoh_session::{Report, Routers};
+use zenoh_session::Report;
 
-use crate::GatewayError;
 use crate::config::{Brought, Config};
 use crate::incoming::Incoming;
-use crate::rmw_zenoh::{Member, Watch};
+use crate::rmw::{Member, Watch};
 use crate::role::Role;
 use crate::topics::Topics;
 use crate::waiting::{Input, Status, Waiting};
@@ -16,10 +15,11 @@ use crate::waiting::{Input, Status, Waiting};
 const PERIOD_NS: i64 = 200_000_000;
 
 /// Looks at the robot's side now and then.
+#[derive(Default)]
 pub(crate) struct Inputs {
-    routers: Routers,
     waiting: Waiting,
-    looked_ns: i64,
+    /// None before the first look.
+    looked_ns: Option<i64>,
     /// What was said last in the log.
     said: Option<String>,
 }
@@ -33,20 +33,6 @@ pub(crate) struct Taken<'a> {
 }
 
 impl Inputs {
-    pub(crate) fn new(config: &Config) -> Result<Self, GatewayError> {
-        Ok(Inputs {
-            routers: Routers::of(&config.network)?,
-            waiting: Waiting::default(),
-            looked_ns: i64::MIN,
-            said: Some(String::new()),
-        })
-    }
-
-    /// Before the session is there.
-    pub(crate) fn connecting(&self, report: &mut Report) -> Result<(), TransportError> {
-        report.waiting_for(Some(&self.routers.awaited()))
-    }
-
     /// Says what is waited for: the router, else an input, else what the gateway itself waits
     /// for, in words; nothing is taken yet where `taken` is none.
     pub(crate) fn look(
@@ -58,12 +44,14 @@ impl Inputs {
         report: &mut Report,
     ) -> Result<(), TransportError> {
         let now_ns = monotonic_ns();
-        if now_ns.saturating_sub(self.looked_ns) < PERIOD_NS {
+        let is_early = |looked_ns| now_ns.saturating_sub(looked_ns) < PERIOD_NS;
+        if self.looked_ns.is_some_and(is_early) {
             return Ok(());
         }
-        self.looked_ns = now_ns;
+        let is_first = self.looked_ns.replace(now_ns).is_none();
+        member.tick();
         let inputs = taken.map(|taken| taken.inputs(config, topics));
-        let missing = self.routers.missing(member.session());
+        let missing = member.missing();
         let status = match &inputs {
             _ if !missing.is_empty() => Status::Waits(&missing),
             None => itself.map_or(Status::Begins, Status::Waits),
@@ -78,7 +66,7 @@ impl Inputs {
             Status::Waits(words) => Some(words),
         };
         report.waiting_for(words)?;
-        if self.said.as_deref() != words {
+        if is_first || self.said.as_deref() != words {
             match words {
                 None => tracing::info!("all that the robot brings comes"),
                 Some("") => {}

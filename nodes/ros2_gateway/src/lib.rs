@@ -1,6 +1,6 @@
 //! Joins a graph to a ROS 2 robot, with no ROS installed.
 //!
-//! It speaks what `rmw_zenoh` speaks: the robot's scan, odometry and map enter the
+//! It speaks what `rmw_zenoh` speaks, or DDS: the robot's scan, odometry and map enter the
 //! graph, and the graph's answers go to the robot, with an initial pose for its
 //! particle filter as soon as the verdict is Unique. Module `ros` knows the format and
 //! nothing of localization; `frames`, `seeding`, `waiting` and `vda5050` are pure. What comes from the
@@ -18,9 +18,10 @@ mod error;
 mod frames;
 mod incoming;
 mod inputs;
+mod middleware;
 mod outgoing;
 mod outlet;
-mod rmw_zenoh;
+mod rmw;
 mod role;
 mod run;
 mod seeding;
@@ -32,5 +33,6 @@ mod waiting;
 
 pub use config::{Brought, Config, NODE, Seed};
 pub use error::GatewayError;
+pub use middleware::Rmw;
 pub use role::{Options, Role};
 pub use run::run;

@@ -10,7 +10,7 @@ use crate::GatewayError;
 use crate::config::{Config, Reach};
 use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
 use crate::stamps::{Forward, in_map, stamp};
 use crate::topics::Topics;

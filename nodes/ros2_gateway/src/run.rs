@@ -14,7 +14,7 @@ use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::{Inputs, Taken};
 use crate::outgoing::Outgoing;
-use crate::rmw_zenoh::{Member, Seen, Service, Watch};
+use crate::rmw::{Member, Seen, Service, Watch};
 use crate::role::Role;
 use crate::seeding::Seeding;
 use crate::topics::Topics;
@@ -43,12 +43,10 @@ fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     // What is wrong with options is said before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);
     let mut report = Report::new(graph.health()?);
-    let mut inputs = Inputs::new(config)?;
-    inputs.connecting(&mut report)?;
-    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
+    let mut inputs = Inputs::default();
+    let Some(member) = Member::join(graph, config, &mut report)? else {
         return Ok(());
     };
-    let member = Member::join(&session, domain, &config.namespace, config.node())?;
     let mut gateway = Gateway::open(graph, member, config, &topics, mounts)?;
     tracing::info!(domain, node = config.node(), "joined the robot's domain");
     let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);

@@ -4,7 +4,7 @@ use messages::Name;
 use ros::lasers;
 
 use crate::config::{Config, Names};
-use crate::{GatewayError, rmw_zenoh};
+use crate::{GatewayError, rmw};
 
 /// As in [`Names`], resolved.
 #[derive(Debug, Clone)]
@@ -42,7 +42,7 @@ pub(crate) struct Scans {
 impl Topics {
     pub(crate) fn of(config: &Config) -> Result<Self, GatewayError> {
         let resolve = |option, name: &str| {
-            rmw_zenoh::resolve(&config.namespace, name)
+            rmw::resolve(&config.namespace, name)
                 .map_err(|reason| GatewayError::Option { option, reason })
         };
         // Refused here, before anything is opened: it becomes a part of every token.

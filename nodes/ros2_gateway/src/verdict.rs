@@ -9,7 +9,7 @@ use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
 use zenoh_session::{KeyError, Report};
 
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::{GatewayError, vda5050};
@@ -17,20 +17,24 @@ use crate::{GatewayError, vda5050};
 /// Sends it, once a scan.
 pub(crate) struct Verdict {
     topic: Publisher<Localization>,
-    fleet: ZenohPublisher<'static>,
+    /// None where the robot is not on Zenoh.
+    fleet: Option<ZenohPublisher<'static>>,
 }
 
 impl Verdict {
     pub(crate) fn open(member: &Member, topics: &Topics) -> Result<Self, GatewayError> {
-        let key = format!("vda5050/{}{}", member.domain(), topics.localization);
-        let publisher = member.session().declare_publisher(key.clone());
-        let publisher = publisher
-            .congestion_control(CongestionControl::Drop)
-            .encoding(Encoding::APPLICATION_JSON)
-            .wait();
+        let fleet = member.session().map(|session| {
+            let key = format!("vda5050/{}{}", member.domain(), topics.localization);
+            let publisher = session.declare_publisher(key.clone());
+            let publisher = publisher
+                .congestion_control(CongestionControl::Drop)
+                .encoding(Encoding::APPLICATION_JSON)
+                .wait();
+            publisher.map_err(KeyError::when("publish", &key))
+        });
         Ok(Verdict {
             topic: Publisher::open_kept(member, &topics.localization, 1)?,
-            fleet: publisher.map_err(KeyError::when("publish", &key))?,
+            fleet: fleet.transpose()?,
         })
     }
 
@@ -47,7 +51,8 @@ impl Verdict {
         }
         let on_topic = in_map(from.stamp, map_frame)
             .and_then(|header| self.topic.send(&Localization::of(header, from, words)));
-        for outcome in [on_topic, self.send_to_fleet(from)] {
+        let to_fleet = self.fleet.as_ref().map(|fleet| send_to(fleet, from));
+        for outcome in [Some(on_topic), to_fleet].into_iter().flatten() {
             match outcome {
                 Ok(()) => report.sent(),
                 Err(error) => report.refused(&error)?,
@@ -55,28 +60,14 @@ impl Verdict {
         }
         Ok(())
     }
-
-    fn send_to_fleet(&self, from: &PoseHeader) -> Result<(), GatewayError> {
-        let key = self.fleet.key_expr();
-        let bytes = serde_json::to_vec(&vda5050::of(from)).map_err(|error| {
-            let (topic, reason) = (key.to_string(), error.to_string());
-            GatewayError::Encode { topic, reason }
-        })?;
-        let sent = self.fleet.put(bytes).wait();
-        Ok(sent.map_err(KeyError::when("send on", key.as_str()))?)
-    }
 }
 
-#[cfg(test)]
-mod tests {
-    use ros::RosMessage;
-
-    use super::*;
-
-    #[test]
-    fn the_definition_stands_in_the_document() {
-        let (fields, _) = Localization::DEFINITION.split_once("====").unwrap();
-        let document = include_str!("../../../docs/ros2.md");
-        assert!(document.contains(fields), "docs/ros2.md lacks:\n{fields}");
-    }
+fn send_to(fleet: &ZenohPublisher<'static>, from: &PoseHeader) -> Result<(), GatewayError> {
+    let key = fleet.key_expr();
+    let bytes = serde_json::to_vec(&vda5050::of(from)).map_err(|error| {
+        let (topic, reason) = (key.to_string(), error.to_string());
+        GatewayError::Encode { topic, reason }
+    })?;
+    let sent = fleet.put(bytes).wait();
+    Ok(sent.map_err(KeyError::when("send on", key.as_str()))?)
 }

@@ -12,6 +12,8 @@ pub(crate) enum Publishing {
     OtherType,
     /// Somebody whose messages are of another version of the type.
     OtherVersion,
+    /// Somebody who is best effort or volatile, where messages must arrive or be kept.
+    OtherQuality,
     /// Somebody whose messages are taken.
     Expected,
 }
@@ -38,6 +40,7 @@ impl Input<'_> {
             (Publishing::Nobody, 0) => "no publisher",
             (Publishing::OtherType, 0) => "a publisher of another type",
             (Publishing::OtherVersion, 0) => "a publisher with another version of the type",
+            (Publishing::OtherQuality, 0) => "a publisher with another quality of service",
             (Publishing::Expected, 0) => "a publisher, and no message yet",
             (_, _) => "no message any more",
         };

@@ -13,7 +13,7 @@ use super::lifecycle::{Change, Primary};
 use super::parameters::Parameters;
 use super::saved_pose;
 use crate::inputs::Inputs;
-use crate::rmw_zenoh::Member;
+use crate::rmw::Member;
 use crate::topics::Topics;
 use crate::{Config, GatewayError};
 use parts::Parts;

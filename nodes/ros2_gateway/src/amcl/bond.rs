@@ -6,7 +6,7 @@ use transport::{monotonic_ns, wall_ns};
 use twox_hash::XxHash3_128;
 
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 
 /// Without a sign for so long the manager gives the node up, seconds: as nav2 has it.
 const TIMEOUT_S: f32 = 4.0;

@@ -11,7 +11,7 @@ use super::hint;
 use crate::GatewayError;
 use crate::frames::Frames;
 use crate::incoming::{MAX_BYTES, take};
-use crate::rmw_zenoh::{Keeping, Member, Service, Subscription, Watch};
+use crate::rmw::{Keeping, Member, Service, Subscription, Watch};
 use crate::topics::Topics;
 
 /// What comes, and where it goes.

@@ -11,7 +11,7 @@ use zenoh_session::Report;
 
 use super::lifecycle::{self, Change, Lifecycle};
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Publisher, Service};
+use crate::rmw::{Member, Publisher, Service};
 
 /// The node's life, as others see it.
 pub(super) struct Life {

@@ -32,7 +32,7 @@ use zenoh_session::Report;
 use crate::GatewayError;
 use crate::config::{Config, MAP_FRAME, Seed};
 use crate::inputs::Inputs;
-use crate::rmw_zenoh::{self, Member};
+use crate::rmw::{self, Member};
 use crate::topics::Topics;
 use body::{Body, Joined, Said};
 use life::Life;
@@ -43,7 +43,7 @@ use type_descriptions::TypeDescriptions;
 
 /// Is nav2's AMCL until the stop flag is set; looks for what came every `tick`.
 pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), GatewayError> {
-    let node = rmw_zenoh::resolve(&config.namespace, config.node());
+    let node = rmw::resolve(&config.namespace, config.node());
     let node = node.map_err(|reason| GatewayError::Option {
         option: "node",
         reason,
@@ -60,12 +60,10 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     let domain = config.domain()?;
     config.mounts()?;
     let mut report = Report::new(graph.health()?);
-    let inputs = Inputs::new(&config)?;
-    inputs.connecting(&mut report)?;
-    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
+    let inputs = Inputs::default();
+    let Some(member) = Member::join(graph, &config, &mut report)? else {
         return Ok(());
     };
-    let member = Member::join(&session, domain, &config.namespace, config.node())?;
     let mut life = Life::open(graph, &member, &node)?;
     let events = &topics.parameter_events;
     let mut services = ParameterServices::open(graph, &member, &node, events)?;

@@ -14,7 +14,7 @@ use super::standing::Standing;
 use crate::GatewayError;
 use crate::diagnostics::Diagnostics;
 use crate::outgoing::transform;
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 use crate::stamps::{Forward, in_map};
 use crate::topics::Topics;
 use crate::verdict::Verdict;

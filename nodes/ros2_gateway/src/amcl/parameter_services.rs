@@ -12,7 +12,7 @@ use zenoh_session::Report;
 
 use super::parameters::Parameters;
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Publisher, Service};
+use crate::rmw::{Member, Publisher, Service};
 
 /// Events that are kept for those that are slow, as ROS has it.
 const EVENTS: usize = 1000;

@@ -7,7 +7,7 @@ use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::config::NODE;
-use crate::rmw_zenoh::{Member, Publisher};
+use crate::rmw::{Member, Publisher};
 
 /// Lines that are kept for those who come late, as ROS has it.
 const LINES: usize = 1000;

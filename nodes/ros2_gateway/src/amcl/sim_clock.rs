@@ -7,7 +7,7 @@ use zenoh_session::Report;
 use crate::GatewayError;
 use crate::checks::measured_ns;
 use crate::incoming::{MAX_BYTES, take};
-use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
+use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::topics::Topics;
 
 /// Follows it.

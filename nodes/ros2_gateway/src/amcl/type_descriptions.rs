@@ -6,7 +6,7 @@ use transport::{Graph, TransportError};
 use zenoh_session::Report;
 
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Service};
+use crate::rmw::{Member, Service};
 
 /// Answers that nothing is known of a type but its hash.
 pub(super) struct TypeDescriptions(Service<GetTypeDescription>);

@@ -264,7 +264,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         "MP /tf ::,100:,:,:,,",
         "MS /amcl_pose ::,10:,:,:,,",
         "MS /map :1:,1:,:,:,,",
-        "MS /odom ::,16:,:,:,,",
+        "MS /odom 2::,16:,:,:,,",
         "MS /scan 2::,5:,:,:,,",
         "MS /tf ::,100:,:,:,,",
         "MS /tf_static :1:,100:,:,:,,",

@@ -16,7 +16,7 @@ use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::Taken;
 use crate::outlet::Rules;
-use crate::rmw_zenoh::{Member, Seen, Service, Watch};
+use crate::rmw::{Member, Seen, Service, Watch};
 use crate::seeding::Seeding;
 
 /// From the configuration to the cleanup.

@@ -14,18 +14,15 @@
 //! builds with all transports of Zenoh alone, of which most are not wanted here.
 
 mod attachment;
-mod description;
 mod entity;
-mod name;
 mod publisher;
 mod service;
 mod subscription;
 mod watch;
 
-pub(crate) use attachment::Attachment;
-pub(crate) use entity::{Keeping, Member};
-pub(crate) use name::resolve;
-pub(crate) use publisher::Publisher;
-pub(crate) use service::Service;
-pub(crate) use subscription::Subscription;
-pub(crate) use watch::{Seen, Watch};
+use attachment::Attachment;
+pub(super) use entity::Member;
+pub(super) use publisher::Publisher;
+pub(super) use service::Service;
+pub(super) use subscription::Subscription;
+pub(super) use watch::Watch;

@@ -8,54 +8,23 @@
 //! | enclave, namespace, node | names, each `/` as `%`; `%` alone is none |
 //! | topic, type, hash, quality | of all but nodes |
 
-use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use transport::Graph;
 use twox_hash::XxHash3_128;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
-use zenoh_session::KeyError;
+use zenoh_session::{KeyError, Report, Routers};
 
-use crate::GatewayError;
+use crate::rmw::Keeping;
+use crate::rmw::type_info::TypeInfo;
+use crate::{Config, GatewayError};
 
 /// What all tokens begin with.
 const TOKENS: &str = "@ros2_lv";
 
 /// What ROS 2 Humble writes in the place of a type's hash.
 const NO_HASH: &str = "TypeHashNotSupported";
-
-/// Which messages a topic has for those who come late, in the words of ROS.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Keeping {
-    /// Best effort, volatile: sensors.
-    Fresh,
-    /// Reliable, volatile.
-    Reliable,
-    /// Reliable, transient local: the last of each sender is there.
-    Kept,
-}
-
-/// A type as keys name it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct TypeInfo {
-    /// As `std_msgs::msg::dds_::String_`.
-    pub(super) name: String,
-    /// As `RIHS01_` and 64 digits.
-    pub(super) hash: String,
-}
-
-impl TypeInfo {
-    /// Whether a node of ROS 2 Humble, which knows no hashes, says so of its type.
-    pub(super) fn has_no_hash(&self) -> bool {
-        self.hash == NO_HASH
-    }
-}
-
-impl fmt::Display for TypeInfo {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.name, self.hash)
-    }
-}
 
 /// What an endpoint is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +52,7 @@ pub(crate) struct Member {
     node: String,
     /// The same, mangled.
     who: String,
+    routers: Routers,
     _token: LivelinessToken,
     /// The node itself has the first number.
     next: AtomicUsize,
@@ -100,27 +70,40 @@ pub(super) struct Endpoint {
 }
 
 impl Member {
-    /// Joins as `name` in `namespace`, which is `/` or begins with it.
+    /// Opens the session, which may take until a router is there, and joins; none once the
+    /// stop flag is set.
     pub(crate) fn join(
-        session: &Session,
-        domain: u32,
-        namespace: &str,
-        name: &str,
-    ) -> Result<Self, GatewayError> {
-        let namespace = match namespace.trim_end_matches('/') {
+        graph: &Graph,
+        config: &Config,
+        report: &mut Report,
+    ) -> Result<Option<Self>, GatewayError> {
+        let domain = config.domain()?;
+        let routers = Routers::of(&config.network)?;
+        report.waiting_for(Some(&routers.awaited()))?;
+        let session = zenoh_session::open(graph, &config.network, || report.tick())?;
+        let Some(session) = session else {
+            return Ok(None);
+        };
+        let namespace = match config.namespace.trim_end_matches('/') {
             "" => "/",
             namespace => namespace,
         };
-        let who = format!("{}/{name}", mangled(namespace));
+        let who = format!("{}/{}", mangled(namespace), config.node());
         let key = format!("{TOKENS}/{domain}/{}/0/0/NN/%/{who}", session.zid());
-        Ok(Member {
-            _token: declare(session, &key)?,
-            session: session.clone(),
+        Ok(Some(Member {
+            _token: declare(&session, &key)?,
+            session,
             domain,
-            node: format!("{}/{name}", namespace.trim_end_matches('/')),
+            node: format!("{}/{}", namespace.trim_end_matches('/'), config.node()),
             who,
+            routers,
             next: AtomicUsize::new(1),
-        })
+        }))
+    }
+
+    /// Routers that are missing; empty where all are there.
+    pub(crate) fn missing(&self) -> String {
+        self.routers.missing(&self.session)
     }
 
     pub(crate) fn session(&self) -> &Session {

@@ -3,7 +3,6 @@
 //! What is lost is counted: here for want of limits, and before by the sender's own
 //! numbers.
 
-use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
 use ros::RosMessage;
@@ -14,29 +13,20 @@ use zenoh::sample::Sample;
 use zenoh_session::{Past, Queue, QueueLimits};
 
 use super::entity::Kind;
-use super::{Attachment, Keeping, Member, description};
+use super::{Attachment, Member};
 use crate::GatewayError;
-
-/// Senders of a topic whose sequence is followed; who has more is not informed what it
-/// lost.
-const MAX_SENDERS: usize = 64;
+use crate::rmw::received::{Received, Senders};
+use crate::rmw::{Keeping, description};
 
 /// Receives messages.
 pub(crate) struct Subscription<M> {
     topic: String,
     /// Of nodes that know the type's hash, and of those of ROS 2 Humble.
     queues: [Queue; 2],
-    /// The last sequence number of each sender.
-    senders: BTreeMap<[u8; 16], i64>,
+    senders: Senders,
     received: bool,
     _token: LivelinessToken,
     message: PhantomData<M>,
-}
-
-/// One message, or why there is none, and how many were lost before it.
-pub(crate) struct Received<M> {
-    pub(crate) message: Result<M, GatewayError>,
-    pub(crate) lost: u64,
 }
 
 impl<M: RosMessage + DeserializeOwned> Subscription<M> {
@@ -63,7 +53,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         Ok(Subscription {
             topic: topic.to_owned(),
             queues: [open(&endpoint.key)?, open(&endpoint.humble_key)?],
-            senders: BTreeMap::new(),
+            senders: Senders::default(),
             received: false,
             _token: member.show(&endpoint)?,
             message: PhantomData,
@@ -111,23 +101,15 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         // Scripts that speak Zenoh alone may leave it out.
         if let Some(bytes) = sample.attachment() {
             let attachment = Attachment::decode(&self.topic, bytes)?;
-            *lost = self.lost_before(attachment);
+            let Attachment {
+                sender, sequence, ..
+            } = attachment;
+            *lost = self.senders.lost_before(sender, sequence);
         }
         let bytes = sample.payload().to_bytes();
         ros::cdr::decode(&bytes).map_err(|reason| GatewayError::Message {
             topic: self.topic.clone(),
             reason,
         })
-    }
-
-    fn lost_before(&mut self, attachment: Attachment) -> u64 {
-        if self.senders.len() >= MAX_SENDERS && !self.senders.contains_key(&attachment.sender) {
-            self.senders.clear();
-        }
-        let last = self.senders.insert(attachment.sender, attachment.sequence);
-        let between = last.and_then(|last| attachment.sequence.checked_sub(last));
-        // What came again, or late, is no loss.
-        let between = between.and_then(|between| u64::try_from(between).ok());
-        between.unwrap_or(0).saturating_sub(1)
     }
 }

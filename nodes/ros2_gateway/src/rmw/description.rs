@@ -12,7 +12,7 @@ use hiroz_schema::{
 };
 use ros::RosMessage;
 
-use super::entity::TypeInfo;
+use super::type_info::TypeInfo;
 use crate::GatewayError;
 
 /// What ROS puts into a message without fields.

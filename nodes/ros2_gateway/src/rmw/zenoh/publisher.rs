@@ -13,8 +13,9 @@ use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, Mis
 use zenoh_session::KeyError;
 
 use super::entity::{Endpoint, Kind};
-use super::{Attachment, Keeping, Member, description};
+use super::{Attachment, Member};
 use crate::GatewayError;
+use crate::rmw::{Keeping, description};
 
 /// Sends messages.
 pub(crate) struct Publisher<M> {
@@ -34,76 +35,37 @@ enum Sink {
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Reliable, with the last `depth` messages kept by those that are slow. What comes
-    /// with each scan is dropped where the robot's network is slower than the graph: it
-    /// is fresh or of no use.
-    pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
-        Self::volatile(
-            member,
-            topic,
-            (Keeping::Reliable, depth),
-            CongestionControl::Drop,
-        )
-    }
-
-    /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
-    /// is slow it is waited for, until Zenoh closes the connection.
-    pub(crate) fn open_blocking(
-        member: &Member,
-        topic: &str,
-        depth: usize,
-    ) -> Result<Self, GatewayError> {
-        Self::volatile(
-            member,
-            topic,
-            (Keeping::Reliable, depth),
-            CongestionControl::Block,
-        )
-    }
-
-    /// Best effort, as sensors are: what nobody misses who did not get it.
-    pub(crate) fn open_fresh(
-        member: &Member,
-        topic: &str,
-        depth: usize,
-    ) -> Result<Self, GatewayError> {
-        let congestion = CongestionControl::Drop;
-        Self::volatile(member, topic, (Keeping::Fresh, depth), congestion)
-    }
-
-    fn volatile(
+    /// Opens it. Where the network is slow, one that blocks waits until Zenoh closes the
+    /// connection, and others drop the message.
+    pub(crate) fn open(
         member: &Member,
         topic: &str,
         quality: (Keeping, usize),
-        congestion: CongestionControl,
+        blocks: bool,
     ) -> Result<Self, GatewayError> {
+        let congestion = match blocks {
+            true => CongestionControl::Block,
+            false => CongestionControl::Drop,
+        };
         Self::with(member, topic, quality, |key| {
             let publisher = member.session().declare_publisher(key);
             // Not express: each message would take one of the two batches of its
             // priority, so that a third at once is dropped, and Zenoh may go on to drop.
-            let publisher = publisher.congestion_control(congestion).wait()?;
-            Ok(Sink::Volatile(publisher))
-        })
-    }
-
-    /// Reliable and transient local: who joins later gets the last `depth` messages.
-    pub(crate) fn open_kept(
-        member: &Member,
-        topic: &str,
-        depth: usize,
-    ) -> Result<Self, GatewayError> {
-        Self::with(member, topic, (Keeping::Kept, depth), |key| {
-            let publisher = member.session().declare_publisher(key);
-            let publisher = publisher
-                .congestion_control(CongestionControl::Drop)
-                .advanced()
-                .cache(CacheConfig::default().max_samples(depth))
-                // Else each message would need a time by Zenoh's clock.
-                .sample_miss_detection(MissDetectionConfig::default())
-                // By which subscribers that were connected late ask for what they missed.
-                .publisher_detection()
-                .wait()?;
-            Ok(Sink::Kept(publisher))
+            let publisher = publisher.congestion_control(congestion);
+            Ok(match quality {
+                (Keeping::Fresh | Keeping::Reliable, _) => Sink::Volatile(publisher.wait()?),
+                (Keeping::Kept, depth) => {
+                    let publisher = publisher
+                        .advanced()
+                        .cache(CacheConfig::default().max_samples(depth))
+                        // Else each message would need a time by Zenoh's clock.
+                        .sample_miss_detection(MissDetectionConfig::default())
+                        // By which subscribers that were connected late ask for what they
+                        // missed.
+                        .publisher_detection();
+                    Sink::Kept(publisher.wait()?)
+                }
+            })
         })
     }
 

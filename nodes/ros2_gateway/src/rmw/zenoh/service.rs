@@ -13,14 +13,12 @@ use zenoh::query::{Query, Queryable};
 use zenoh_session::{KeyError, Report};
 
 use super::entity::Kind;
-use super::{Attachment, Keeping, Member, description};
+use super::{Attachment, Member};
 use crate::GatewayError;
+use crate::rmw::{Keeping, call, description};
 
 /// Calls that wait for their answer; more are turned away.
 const MAX_WAITING: usize = 16;
-
-/// Most bytes of a request: names and values of some hundred parameters.
-const MAX_BYTES: usize = 64 << 10;
 
 /// Offers the service as long as it lives.
 pub(crate) struct Service<S> {
@@ -86,38 +84,20 @@ impl<S: RosService> Service<S> {
 
     fn answer(
         &self,
-        call: &Query,
+        query: &Query,
         respond: impl FnOnce(S::Request) -> S::Response,
     ) -> Result<(), GatewayError> {
         let none = ZBytes::new();
-        let payload = call.payload().unwrap_or(&none);
-        let (found, most) = (payload.len(), MAX_BYTES);
-        let topic = || self.topic.clone();
-        if found > most {
-            return Err(GatewayError::TooLong {
-                topic: topic(),
-                found,
-                most,
-            });
-        }
-        let attachment = Attachment::decode(&self.topic, call.attachment().unwrap_or(&none))?;
-        let request =
-            ros::cdr::decode(&payload.to_bytes()).map_err(|reason| GatewayError::Message {
-                topic: topic(),
-                reason,
-            })?;
-        let response =
-            ros::cdr::encode(&respond(request)).map_err(|error| GatewayError::Encode {
-                topic: topic(),
-                reason: error.to_string(),
-            })?;
+        let payload = query.payload().unwrap_or(&none).to_bytes();
+        let attachment = Attachment::decode(&self.topic, query.attachment().unwrap_or(&none))?;
+        let response = call::answer::<S>(&self.topic, &payload, respond)?;
         // The caller knows its call again by number and sender.
         let attachment = Attachment {
             sent_ns: wall_ns(),
             ..attachment
         };
-        let reply = call.reply(call.key_expr(), response);
+        let reply = query.reply(query.key_expr(), response);
         let reply = reply.attachment(attachment.encode()).wait();
-        Ok(reply.map_err(KeyError::when("answer", call.key_expr()))?)
+        Ok(reply.map_err(KeyError::when("answer", query.key_expr()))?)
     }
 }

@@ -1,0 +1,286 @@
+//! The middleware that was chosen: each type is that of `zenoh` or that of `dds`.
+
+use ros::{RosMessage, RosService};
+use serde::de::DeserializeOwned;
+use transport::{Graph, TransportError};
+use zenoh::Session;
+use zenoh_session::Report;
+
+use super::received::Received;
+use super::{Keeping, Seen, dds, zenoh as rmw_zenoh};
+use crate::middleware::{self, Rmw};
+use crate::waiting::Publishing;
+use crate::{Config, GatewayError};
+
+/// A node of ROS, as others see it, for as long as this lives.
+pub(crate) enum Member {
+    Zenoh(Box<rmw_zenoh::Member>),
+    Dds(Box<dds::Member>),
+}
+
+impl Member {
+    /// Joins the robot's domain by the names of the configuration; none once the stop flag
+    /// is set.
+    pub(crate) fn join(
+        graph: &Graph,
+        config: &Config,
+        report: &mut Report,
+    ) -> Result<Option<Self>, GatewayError> {
+        let implementation = std::env::var("RMW_IMPLEMENTATION").unwrap_or_default();
+        let (rmw, why) = middleware::chosen(config.rmw, &implementation);
+        tracing::info!(?rmw, why, "the robot's middleware");
+        Ok(match rmw {
+            Rmw::Zenoh => rmw_zenoh::Member::join(graph, config, report)?
+                .map(|member| Member::Zenoh(Box::new(member))),
+            Rmw::Dds => Some(Member::Dds(Box::new(dds::Member::join(config)?))),
+        })
+    }
+
+    /// Zenoh's session, where Zenoh was chosen.
+    pub(crate) fn session(&self) -> Option<&Session> {
+        match self {
+            Member::Zenoh(member) => Some(member.session()),
+            Member::Dds(_) => None,
+        }
+    }
+
+    /// The robot's domain.
+    pub(crate) fn domain(&self) -> u32 {
+        match self {
+            Member::Zenoh(member) => member.domain(),
+            Member::Dds(member) => member.domain(),
+        }
+    }
+
+    /// To be called now and then.
+    pub(crate) fn tick(&self) {
+        match self {
+            Member::Zenoh(_) => {}
+            Member::Dds(member) => member.tick(),
+        }
+    }
+
+    /// Routers that are missing; empty where all are there, or none is needed.
+    pub(crate) fn missing(&self) -> String {
+        match self {
+            Member::Zenoh(member) => member.missing(),
+            Member::Dds(_) => String::new(),
+        }
+    }
+}
+
+/// Sends messages of a topic.
+pub(crate) enum Publisher<M> {
+    Zenoh(Box<rmw_zenoh::Publisher<M>>),
+    Dds(dds::Publisher<M>),
+}
+
+impl<M: RosMessage> Publisher<M> {
+    /// Reliable, with the last `depth` messages kept by those that are slow. What comes
+    /// with each scan is dropped where the robot's network is slower than the graph: it
+    /// is fresh or of no use.
+    pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (Keeping::Reliable, depth), false)
+    }
+
+    /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
+    /// is slow it is waited for.
+    pub(crate) fn open_blocking(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (Keeping::Reliable, depth), true)
+    }
+
+    /// Best effort, as sensors are: what nobody misses who did not get it.
+    pub(crate) fn open_fresh(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (Keeping::Fresh, depth), false)
+    }
+
+    /// Reliable and transient local: who joins later gets the last `depth` messages.
+    pub(crate) fn open_kept(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (Keeping::Kept, depth), false)
+    }
+
+    fn with(
+        member: &Member,
+        topic: &str,
+        quality: (Keeping, usize),
+        blocks: bool,
+    ) -> Result<Self, GatewayError> {
+        Ok(match member {
+            Member::Zenoh(member) => {
+                let publisher = rmw_zenoh::Publisher::open(member, topic, quality, blocks)?;
+                Publisher::Zenoh(Box::new(publisher))
+            }
+            Member::Dds(member) => {
+                Publisher::Dds(dds::Publisher::open(member, topic, quality, blocks)?)
+            }
+        })
+    }
+
+    pub(crate) fn send(&mut self, message: &M) -> Result<(), GatewayError> {
+        match self {
+            Publisher::Zenoh(publisher) => publisher.send(message),
+            Publisher::Dds(publisher) => publisher.send(message),
+        }
+    }
+}
+
+/// Receives messages of a topic.
+pub(crate) enum Subscription<M> {
+    Zenoh(Box<rmw_zenoh::Subscription<M>>),
+    Dds(Box<dds::Subscription<M>>),
+}
+
+impl<M: RosMessage + DeserializeOwned> Subscription<M> {
+    /// Takes messages of at most `max_bytes`; `depth` of them wait.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        topic: &str,
+        keeping: Keeping,
+        depth: usize,
+        max_bytes: usize,
+    ) -> Result<Self, GatewayError> {
+        let quality = (keeping, depth);
+        Ok(match member {
+            Member::Zenoh(member) => Subscription::Zenoh(Box::new(rmw_zenoh::Subscription::open(
+                graph, member, topic, keeping, depth, max_bytes,
+            )?)),
+            Member::Dds(member) => Subscription::Dds(Box::new(dds::Subscription::open(
+                graph, member, topic, quality, max_bytes,
+            )?)),
+        })
+    }
+
+    /// Messages that were lost because the queue was full since the last call.
+    pub(crate) fn dropped(&self) -> u64 {
+        match self {
+            Subscription::Zenoh(subscription) => subscription.dropped(),
+            // Gaps in the numbers of a sender show them.
+            Subscription::Dds(_) => 0,
+        }
+    }
+
+    /// Most messages that can wait: who takes no more at once keeps no other topic
+    /// waiting, however fast they come.
+    pub(crate) fn depth(&self) -> usize {
+        match self {
+            Subscription::Zenoh(subscription) => subscription.depth(),
+            Subscription::Dds(subscription) => subscription.depth(),
+        }
+    }
+
+    /// Why a message was not let in at all, for each such.
+    pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
+        match self {
+            Subscription::Zenoh(subscription) => subscription.next_too_long(),
+            // It stands in the place of the message.
+            Subscription::Dds(_) => None,
+        }
+    }
+
+    pub(crate) fn next(&mut self) -> Option<Received<M>> {
+        match self {
+            Subscription::Zenoh(subscription) => subscription.next(),
+            Subscription::Dds(subscription) => subscription.next(),
+        }
+    }
+}
+
+/// Offers a service as long as it lives.
+pub(crate) enum Service<S> {
+    Zenoh(Box<rmw_zenoh::Service<S>>),
+    Dds(Box<dds::Service<S>>),
+}
+
+impl<S: RosService> Service<S> {
+    pub(crate) fn open(graph: &Graph, member: &Member, topic: &str) -> Result<Self, GatewayError> {
+        Ok(match member {
+            Member::Zenoh(member) => {
+                Service::Zenoh(Box::new(rmw_zenoh::Service::open(graph, member, topic)?))
+            }
+            Member::Dds(member) => {
+                Service::Dds(Box::new(dds::Service::open(graph, member, topic)?))
+            }
+        })
+    }
+
+    /// Answers the calls that wait by what `respond` says, and counts them; returns how
+    /// many were answered.
+    pub(crate) fn serve(
+        &self,
+        report: &mut Report,
+        respond: impl FnMut(S::Request) -> S::Response,
+    ) -> Result<u64, TransportError> {
+        match self {
+            Service::Zenoh(service) => service.serve(report, respond),
+            Service::Dds(service) => service.serve(report, respond),
+        }
+    }
+}
+
+/// Watches the topics of other nodes.
+pub(crate) enum Watch {
+    Zenoh(rmw_zenoh::Watch),
+    Dds(dds::Watch),
+}
+
+impl Watch {
+    /// Reports subscribers of `subscribed`.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        subscribed: &str,
+    ) -> Result<Self, GatewayError> {
+        Ok(match member {
+            Member::Zenoh(member) => {
+                Watch::Zenoh(rmw_zenoh::Watch::open(graph, member, subscribed)?)
+            }
+            Member::Dds(member) => Watch::Dds(dds::Watch::open(member, subscribed)),
+        })
+    }
+
+    /// Also reports publishers of `topic` whose messages cannot be received as `M`.
+    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
+        match self {
+            Watch::Zenoh(watch) => watch.expect::<M>(topic),
+            Watch::Dds(watch) => watch.expect::<M>(topic),
+        }
+    }
+
+    /// How the topic is published, by whoever does so as it is taken.
+    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
+        match self {
+            Watch::Zenoh(watch) => watch.publishing(topic),
+            Watch::Dds(watch) => watch.publishing(topic),
+        }
+    }
+
+    /// Events that were not looked at since the last call: there were too many.
+    pub(crate) fn dropped(&self) -> u64 {
+        match self {
+            Watch::Zenoh(watch) => watch.dropped(),
+            Watch::Dds(_) => 0,
+        }
+    }
+
+    /// The next that is of interest.
+    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
+        match (self, member) {
+            (Watch::Zenoh(watch), Member::Zenoh(member)) => watch.next(member),
+            (Watch::Dds(watch), Member::Dds(member)) => watch.next(member),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! A call of a service, from bytes to bytes.
+
+use ros::RosService;
+
+use crate::GatewayError;
+
+/// Most bytes of a request: names and values of some hundred parameters.
+pub(super) const MAX_BYTES: usize = 64 << 10;
+
+/// The response to a request, both in CDR with its header.
+pub(super) fn answer<S: RosService>(
+    topic: &str,
+    request: &[u8],
+    respond: impl FnOnce(S::Request) -> S::Response,
+) -> Result<Vec<u8>, GatewayError> {
+    let (found, most) = (request.len(), MAX_BYTES);
+    let topic = || topic.to_owned();
+    if found > most {
+        let topic = topic();
+        return Err(GatewayError::TooLong { topic, found, most });
+    }
+    let request = ros::cdr::decode(request).map_err(|reason| GatewayError::Message {
+        topic: topic(),
+        reason,
+    })?;
+    ros::cdr::encode(&respond(request)).map_err(|error| GatewayError::Encode {
+        topic: topic(),
+        reason: error.to_string(),
+    })
+}

@@ -1,0 +1,138 @@
+//! `rmw_dds_common/ParticipantEntitiesInfo`: the nodes of a participant and their topics.
+//!
+//! An endpoint's number has 16 bytes since ROS 2 Iron, and 24 up to Humble, whose nodes
+//! fail on messages of the other kind.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// The topic, without the prefix that others have.
+pub(super) const TOPIC: &str = "ros_discovery_info";
+
+/// Its type.
+pub(super) const TYPE: &str = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+
+/// The number of an endpoint.
+pub(super) type Gid = [u8; 16];
+
+/// How numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Humble,
+    Iron,
+}
+
+/// A node and its endpoints.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Node {
+    pub(super) namespace: String,
+    pub(super) name: String,
+    pub(super) readers: Vec<Gid>,
+    pub(super) writers: Vec<Gid>,
+}
+
+impl Node {
+    /// Namespace and name.
+    pub(super) fn whole_name(&self) -> String {
+        format!("{}/{}", self.namespace.trim_end_matches('/'), self.name)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct Info<G> {
+    participant: G,
+    nodes: Vec<NodeInfo<G>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct NodeInfo<G> {
+    namespace: String,
+    name: String,
+    readers: Vec<G>,
+    writers: Vec<G>,
+}
+
+/// The message of a participant with one node, in CDR.
+pub(super) fn encode(format: Format, participant: Gid, node: &Node) -> Result<Vec<u8>, String> {
+    match format {
+        Format::Iron => encode_as(|gid| gid, participant, node),
+        Format::Humble => encode_as(long, participant, node),
+    }
+}
+
+/// The nodes of a message, and how their numbers are written where there is a node.
+pub(super) fn decode(bytes: &[u8]) -> Result<(Option<Format>, Vec<Node>), String> {
+    let (format, nodes) = match decode_as(bytes, |gid: Gid| gid) {
+        Ok(nodes) => (Format::Iron, nodes),
+        Err(_) => (Format::Humble, decode_as(bytes, short)?),
+    };
+    let format = Some(format).filter(|_| !nodes.is_empty());
+    Ok((format, nodes))
+}
+
+fn encode_as<G: Serialize>(
+    gid: impl Fn(Gid) -> G,
+    participant: Gid,
+    node: &Node,
+) -> Result<Vec<u8>, String> {
+    let all = |gids: &[Gid]| gids.iter().map(|number| gid(*number)).collect();
+    let info = Info {
+        participant: gid(participant),
+        nodes: vec![NodeInfo {
+            namespace: node.namespace.clone(),
+            name: node.name.clone(),
+            readers: all(&node.readers),
+            writers: all(&node.writers),
+        }],
+    };
+    ros::cdr::encode(&info).map_err(|error| error.to_string())
+}
+
+fn decode_as<G: DeserializeOwned>(
+    bytes: &[u8],
+    gid: impl Fn(G) -> Gid,
+) -> Result<Vec<Node>, String> {
+    let info: Info<G> = ros::cdr::decode(bytes)?;
+    let all = |gids: Vec<G>| gids.into_iter().map(&gid).collect();
+    let node = |node: NodeInfo<G>| Node {
+        namespace: node.namespace,
+        name: node.name,
+        readers: all(node.readers),
+        writers: all(node.writers),
+    };
+    Ok(info.nodes.into_iter().map(node).collect())
+}
+
+fn long(gid: Gid) -> [u8; 24] {
+    let mut long = [0; 24];
+    long[..16].copy_from_slice(&gid);
+    long
+}
+
+fn short(gid: [u8; 24]) -> Gid {
+    std::array::from_fn(|index| gid[index])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_formats_are_told_apart() {
+        let node = Node {
+            namespace: "/r2".to_owned(),
+            name: "amcl".to_owned(),
+            readers: vec![[1; 16], [2; 16]],
+            writers: vec![[3; 16]],
+        };
+        assert_eq!(node.whole_name(), "/r2/amcl");
+        for format in [Format::Humble, Format::Iron] {
+            let bytes = encode(format, [9; 16], &node).unwrap();
+            let (found, nodes) = decode(&bytes).unwrap();
+            assert_eq!((found, nodes), (Some(format), vec![node.clone()]));
+            for length in 0..bytes.len() - 8 {
+                assert!(decode(&bytes[..length]).is_err(), "{format:?} {length}");
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The gateway as a node that others see, and the nodes that it sees.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use rustdds::GUID;
+use rustdds::bytes::Bytes;
+use rustdds::no_key::DataWriter;
+
+use super::entities::{self, Format, Gid};
+use super::raw::{Raw, fields};
+use super::reader::Reader;
+
+/// Endpoints of others whose nodes are known; a large robot has some thousand.
+const MAX_NAMES: usize = 16384;
+
+/// Published for as long as it lives.
+pub(super) struct Node {
+    participant: Gid,
+    infos: Reader,
+    writer: DataWriter<Bytes, Raw>,
+    state: RefCell<State>,
+}
+
+struct State {
+    own: entities::Node,
+    /// As other nodes write it; nothing is published before one has come.
+    format: Option<Format>,
+    is_changed: bool,
+    /// The nodes of endpoints.
+    names: BTreeMap<Gid, String>,
+}
+
+/// An endpoint that others see as the node's, until this is dropped.
+pub(super) struct Shown {
+    node: Rc<Node>,
+    gid: Gid,
+}
+
+impl Node {
+    pub(super) fn new(
+        participant: GUID,
+        (namespace, name): (&str, &str),
+        infos: Reader,
+        writer: DataWriter<Bytes, Raw>,
+    ) -> Self {
+        let own = entities::Node {
+            namespace: namespace.to_owned(),
+            name: name.to_owned(),
+            ..entities::Node::default()
+        };
+        Node {
+            participant: participant.to_bytes(),
+            infos,
+            writer,
+            state: RefCell::new(State {
+                own,
+                format: None,
+                is_changed: true,
+                names: BTreeMap::new(),
+            }),
+        }
+    }
+
+    pub(super) fn show_reader(self: &Rc<Self>, guid: GUID) -> Shown {
+        self.show(guid, |own, gid| own.readers.push(gid))
+    }
+
+    pub(super) fn show_writer(self: &Rc<Self>, guid: GUID) -> Shown {
+        self.show(guid, |own, gid| own.writers.push(gid))
+    }
+
+    fn show(self: &Rc<Self>, guid: GUID, push: impl FnOnce(&mut entities::Node, Gid)) -> Shown {
+        let gid = guid.to_bytes();
+        let mut state = self.state.borrow_mut();
+        push(&mut state.own, gid);
+        state.is_changed = true;
+        let node = Rc::clone(self);
+        Shown { node, gid }
+    }
+
+    /// The node that an endpoint belongs to, if it has said so.
+    pub(super) fn name_of(&self, endpoint: GUID) -> Option<String> {
+        self.state.borrow().names.get(&endpoint.to_bytes()).cloned()
+    }
+
+    /// Takes what other nodes have said, and says what has changed here.
+    pub(super) fn tick(&self) {
+        let mut state = self.state.borrow_mut();
+        while let Some(sample) = self.infos.next() {
+            let info = sample.map_err(|error| error.to_string());
+            match info.and_then(|sample| entities::decode(&sample.bytes)) {
+                Ok((format, nodes)) => state.on_nodes(format, nodes),
+                Err(reason) => tracing::debug!("{}: {reason}", entities::TOPIC),
+            }
+        }
+        if let (true, Some(format)) = (state.is_changed, state.format) {
+            let sent = entities::encode(format, self.participant, &state.own).and_then(|bytes| {
+                let sent = self.writer.write(fields(bytes), None);
+                sent.map_err(|error| error.to_string())
+            });
+            match sent {
+                Ok(()) => state.is_changed = false,
+                // It is sent again at the next tick.
+                Err(reason) => tracing::debug!("{}: {reason}", entities::TOPIC),
+            }
+        }
+    }
+}
+
+impl State {
+    fn on_nodes(&mut self, format: Option<Format>, nodes: Vec<entities::Node>) {
+        if format.is_some() && format != self.format {
+            self.format = format;
+            self.is_changed = true;
+        }
+        for node in nodes {
+            let name = node.whole_name();
+            for gid in node.readers.into_iter().chain(node.writers) {
+                if self.names.len() >= MAX_NAMES {
+                    self.names.clear();
+                }
+                self.names.insert(gid, name.clone());
+            }
+        }
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        let mut state = self.node.state.borrow_mut();
+        let own = &mut state.own;
+        own.readers.retain(|gid| *gid != self.gid);
+        own.writers.retain(|gid| *gid != self.gid);
+        state.is_changed = true;
+    }
+}

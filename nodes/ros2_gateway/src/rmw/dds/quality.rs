@@ -1,0 +1,62 @@
+//! The quality of service of a topic in the words of DDS.
+
+use rustdds::policy::{Durability, History, Reliability, ResourceLimits};
+use rustdds::{Duration, QosPolicies, QosPolicyBuilder};
+
+use crate::rmw::Keeping;
+
+/// How long a message that must arrive waits for a network that is slow.
+const MAX_BLOCKING: Duration = Duration::from_millis(100);
+
+/// Of a topic that is published.
+pub(super) fn offered((keeping, depth): (Keeping, usize), blocks: bool) -> QosPolicies {
+    let wait = match blocks {
+        true => MAX_BLOCKING,
+        false => Duration::ZERO,
+    };
+    common((keeping, depth), wait).build()
+}
+
+/// Of a topic that is subscribed to; `rustdds` keeps so many messages of all senders
+/// together.
+pub(super) fn requested((keeping, depth): (Keeping, usize)) -> QosPolicies {
+    let depth_i32 = i32::try_from(depth).unwrap_or(i32::MAX);
+    common((keeping, depth), MAX_BLOCKING)
+        .resource_limits(ResourceLimits {
+            max_samples: depth_i32,
+            max_instances: 1,
+            max_samples_per_instance: depth_i32,
+        })
+        .build()
+}
+
+fn common((keeping, depth): (Keeping, usize), wait: Duration) -> QosPolicyBuilder {
+    let (durability, reliability) = match keeping {
+        Keeping::Fresh => (Durability::Volatile, Reliability::BestEffort),
+        Keeping::Reliable => (Durability::Volatile, reliable(wait)),
+        Keeping::Kept => (Durability::TransientLocal, reliable(wait)),
+    };
+    QosPolicyBuilder::new()
+        .durability(durability)
+        .reliability(reliability)
+        .history(History::KeepLast {
+            depth: i32::try_from(depth).unwrap_or(i32::MAX),
+        })
+}
+
+fn reliable(max_blocking_time: Duration) -> Reliability {
+    Reliability::Reliable { max_blocking_time }
+}
+
+/// In the words of ROS.
+pub(super) fn in_words(quality: &QosPolicies) -> String {
+    let reliability = match quality.is_reliable() {
+        true => "reliable",
+        false => "best effort",
+    };
+    let durability = match quality.is_volatile() {
+        true => "volatile",
+        false => "transient local",
+    };
+    format!("{reliability}, {durability}")
+}

@@ -1,0 +1,108 @@
+//! A topic of DDS that is received, message by message.
+
+use std::sync::Arc;
+use std::task::{Wake, Waker};
+
+use rustdds::dds::ReadError;
+use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
+use rustdds::{GUID, SampleIdentity};
+
+use super::raw::{AtMost, Payload, Raw};
+use crate::GatewayError;
+
+/// Receives.
+pub(super) struct Reader {
+    topic: String,
+    reader: SimpleDataReader<Payload, Raw>,
+    waker: Waker,
+    max_bytes: usize,
+}
+
+/// A message.
+pub(super) struct Sample {
+    /// With the header of CDR.
+    pub(super) bytes: Vec<u8>,
+    /// The publisher, and the message's number among its messages.
+    pub(super) identity: SampleIdentity,
+    /// What it refers to, as its sender says.
+    pub(super) related: Option<SampleIdentity>,
+}
+
+/// Wakes the event loop of the graph.
+struct GraphWaker(transport::Waker);
+
+impl Wake for GraphWaker {
+    fn wake(self: Arc<Self>) {
+        self.0.wake();
+    }
+}
+
+impl Reader {
+    /// Of a topic that is called `topic` in the log; wakes the graph if there is a waker.
+    pub(super) fn new(
+        topic: &str,
+        reader: SimpleDataReader<Payload, Raw>,
+        waker: Option<transport::Waker>,
+        max_bytes: usize,
+    ) -> Self {
+        let waker = waker.map(|waker| Waker::from(Arc::new(GraphWaker(waker))));
+        let waker = waker.unwrap_or_else(|| Waker::noop().clone());
+        reader.set_waker(Some(waker.clone()));
+        Reader {
+            topic: topic.to_owned(),
+            reader,
+            waker,
+            max_bytes,
+        }
+    }
+
+    pub(super) fn guid(&self) -> GUID {
+        self.reader.guid()
+    }
+
+    /// The next that waits, or why it cannot be taken.
+    pub(super) fn next(&self) -> Option<Result<Sample, GatewayError>> {
+        if let Some(next) = self.take() {
+            return Some(next);
+        }
+        // The waker counts once. What came between the two looks woke nobody.
+        self.reader.drain_read_notifications();
+        self.reader.set_waker(Some(self.waker.clone()));
+        self.take()
+    }
+
+    fn take(&self) -> Option<Result<Sample, GatewayError>> {
+        match self.reader.try_take_one_with(AtMost(self.max_bytes)) {
+            Ok(None) => None,
+            Ok(Some(change)) => Some(self.sample(change)),
+            Err(ReadError::Deserialization { .. }) => Some(Err(GatewayError::Message {
+                topic: self.topic.clone(),
+                reason: "its representation is not plain CDR".to_owned(),
+            })),
+            Err(error) => Some(Err(GatewayError::Message {
+                topic: self.topic.clone(),
+                reason: error.to_string(),
+            })),
+        }
+    }
+
+    fn sample(&self, change: DeserializedCacheChange<Payload>) -> Result<Sample, GatewayError> {
+        let related = change.related_sample_identity();
+        let identity = SampleIdentity {
+            writer_guid: change.writer_guid(),
+            sequence_number: change.sequence_number,
+        };
+        match change.into_value() {
+            Payload::Cdr(bytes) => Ok(Sample {
+                bytes,
+                identity,
+                related,
+            }),
+            Payload::TooLong(found) => Err(GatewayError::TooLong {
+                topic: self.topic.clone(),
+                found,
+                most: self.max_bytes,
+            }),
+        }
+    }
+}

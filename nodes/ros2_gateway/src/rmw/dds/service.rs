@@ -1,0 +1,223 @@
+//! A service: each request has one response.
+//!
+//! A response says which request it answers: on Fast DDS beside the message, on Cyclone DDS
+//! by 16 bytes before its fields, which are those of the request.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
+use std::marker::PhantomData;
+use std::time::{Duration, Instant};
+
+use ros::RosService;
+use rustdds::bytes::Bytes;
+use rustdds::no_key::DataWriter;
+use rustdds::with_key::WriteOptionsBuilder;
+use rustdds::{
+    DomainParticipant, GUID, RTPSEntity, SampleIdentity, SequenceNumber, TopicDescription,
+};
+use transport::{Graph, TransportError};
+use zenoh_session::Report;
+
+use super::node::Shown;
+use super::raw::{HEADER, Raw, fields};
+use super::reader::{Reader, Sample};
+use super::{Member, quality};
+use crate::GatewayError;
+use crate::rmw::{Keeping, call, description};
+
+/// Requests that wait, of all clients together, and responses.
+const MAX_WAITING: usize = 128;
+
+/// How long a response waits for a client whose reader is not known yet.
+const MATCHING: Duration = Duration::from_secs(2);
+
+/// How long after its discovery a reader is certainly sent what is written.
+const SETTLED: Duration = Duration::from_millis(20);
+
+/// What participants of Cyclone DDS have first in their numbers.
+const CYCLONE: [u8; 2] = [0x01, 0x10];
+
+/// The bytes before the fields, on Cyclone DDS.
+const CALL: usize = 16;
+
+/// Offers the service as long as it lives.
+pub(crate) struct Service<S> {
+    topic: String,
+    participant: DomainParticipant,
+    requests: Reader,
+    responses: DataWriter<Bytes, Raw>,
+    state: RefCell<State>,
+    _shown: [Shown; 2],
+    service: PhantomData<S>,
+}
+
+#[derive(Default)]
+struct State {
+    /// Readers of responses, and when they were first seen.
+    readers: BTreeMap<GUID, Instant>,
+    waiting: VecDeque<Response>,
+}
+
+struct Response {
+    fields: Bytes,
+    /// The request, by its client's own number or that of its reader.
+    request: SampleIdentity,
+    since: Instant,
+}
+
+impl<S: RosService> Service<S> {
+    pub(crate) fn open(graph: &Graph, member: &Member, topic: &str) -> Result<Self, GatewayError> {
+        let info = description::of_service(S::NAME, S::REQUEST, S::RESPONSE)?;
+        let (request, response) = (
+            format!("{}Request_", info.name),
+            format!("{}Response_", info.name),
+        );
+        let quality = quality::offered((Keeping::Reliable, MAX_WAITING), true);
+        let names = (&*format!("rr{topic}Reply"), &*response);
+        let responses = member.writer(names, &quality)?;
+        let quality = quality::requested((Keeping::Reliable, MAX_WAITING));
+        let names = (&*format!("rq{topic}Request"), &*request, topic);
+        let requests = member.reader(graph, names, &quality, call::MAX_BYTES)?;
+        let node = member.node();
+        let _shown = [
+            node.show_writer(responses.guid()),
+            node.show_reader(requests.guid()),
+        ];
+        Ok(Service {
+            topic: topic.to_owned(),
+            participant: member.participant().clone(),
+            requests,
+            responses,
+            state: RefCell::default(),
+            _shown,
+            service: PhantomData,
+        })
+    }
+
+    /// Answers the calls that wait by what `respond` says, and counts them; returns how
+    /// many were answered.
+    pub(crate) fn serve(
+        &self,
+        report: &mut Report,
+        mut respond: impl FnMut(S::Request) -> S::Response,
+    ) -> Result<u64, TransportError> {
+        let mut answered = 0;
+        let mut state = self.state.borrow_mut();
+        for _ in 0..MAX_WAITING {
+            let Some(request) = self.requests.next() else {
+                break;
+            };
+            report.received();
+            match request.and_then(|request| self.answer(&request, &mut respond)) {
+                Ok(response) => {
+                    answered += 1;
+                    state.waiting.push_back(response);
+                }
+                Err(error) => report.refused(&error)?,
+            }
+        }
+        if state.waiting.iter().any(|response| !state.is_due(response)) {
+            self.look_for_readers(&mut state);
+        }
+        for response in std::mem::take(&mut state.waiting) {
+            if state.is_due(&response) {
+                if let Err(error) = self.send(response) {
+                    report.refused(&error)?;
+                }
+            } else if state.waiting.len() < MAX_WAITING {
+                state.waiting.push_back(response);
+            }
+        }
+        Ok(answered)
+    }
+
+    fn answer(
+        &self,
+        request: &Sample,
+        respond: impl FnOnce(S::Request) -> S::Response,
+    ) -> Result<Response, GatewayError> {
+        let since = Instant::now();
+        let is_prefixed =
+            request.related.is_none() && request.identity.writer_guid.to_bytes()[..2] == CYCLONE;
+        let bytes = &request.bytes;
+        if let (true, Some((start, rest))) = (is_prefixed, bytes.split_at_checked(HEADER + CALL)) {
+            let (header, prefix) = start.split_at(HEADER);
+            let response = call::answer::<S>(&self.topic, &[header, rest].concat(), respond)?;
+            let response = fields(response);
+            return Ok(Response {
+                fields: [prefix, &response].concat().into(),
+                request: request.identity,
+                since,
+            });
+        }
+        let response = call::answer::<S>(&self.topic, bytes, respond)?;
+        Ok(Response {
+            fields: fields(response),
+            request: called(request),
+            since,
+        })
+    }
+
+    fn send(&self, response: Response) -> Result<(), GatewayError> {
+        let client = response.request.writer_guid;
+        let mut options = WriteOptionsBuilder::new().related_sample_identity(response.request);
+        if client.entity_id.entity_kind.is_reader() {
+            // Each client keeps some responses only, and would lose its own among many others.
+            options = options.to_single_reader(client);
+        }
+        let sent = self
+            .responses
+            .write_with_options(response.fields, options.build());
+        match sent {
+            Ok(_) => Ok(()),
+            Err(error) => Err(GatewayError::Send {
+                topic: self.topic.clone(),
+                reason: error.to_string(),
+            }),
+        }
+    }
+
+    fn look_for_readers(&self, state: &mut State) {
+        let topic = self.responses.topic().name();
+        let now = Instant::now();
+        let found = self.participant.discovered_readers().into_iter();
+        let found = found
+            .map(|reader| reader.subscription_topic_data)
+            .filter(|data| *data.topic_name() == topic)
+            .map(|data| data.key());
+        let since = |guid| (guid, state.readers.get(&guid).copied().unwrap_or(now));
+        state.readers = found.map(since).collect();
+    }
+}
+
+impl State {
+    /// Whether the response is to be sent: its client's reader is there, or does not come.
+    fn is_due(&self, response: &Response) -> bool {
+        let client = response.request.writer_guid;
+        let mut readers = self.readers.iter();
+        // Which of a client's readers takes responses is not always said.
+        let is_reader = |reader: &GUID| match client.entity_id.entity_kind.is_reader() {
+            true => *reader == client,
+            false => reader.prefix == client.prefix,
+        };
+        let is_there =
+            readers.any(|(reader, since)| is_reader(reader) && since.elapsed() > SETTLED);
+        is_there || response.since.elapsed() > MATCHING
+    }
+}
+
+/// The request's number, by which its client knows it again. Clients on Fast DDS say the
+/// number of the reader that waits for the response, and leave out that of the message.
+fn called(request: &Sample) -> SampleIdentity {
+    let own = request.identity;
+    match request.related {
+        Some(related) if related.writer_guid != GUID::GUID_UNKNOWN => SampleIdentity {
+            writer_guid: related.writer_guid,
+            sequence_number: match related.sequence_number == SequenceNumber::UNKNOWN {
+                true => own.sequence_number,
+                false => related.sequence_number,
+            },
+        },
+        _ => own,
+    }
+}

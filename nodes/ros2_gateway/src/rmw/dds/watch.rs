@@ -1,0 +1,219 @@
+//! Who comes to the robot's domain, by the discovery of DDS.
+
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use ros::RosMessage;
+use rustdds::{
+    DomainParticipantStatusEvent as Event, DomainParticipantStatusListener, EndpointDescription,
+    GUID, RTPSEntity, StatusEvented,
+};
+
+use super::{Member, quality};
+use crate::GatewayError;
+use crate::rmw::Seen;
+use crate::rmw::expected::{Endpoint, Expected};
+use crate::rmw::type_info::TypeInfo;
+use crate::waiting::Publishing;
+
+/// For so long an endpoint waits for what is said of its quality of service.
+const SETTLED: Duration = Duration::from_millis(50);
+
+/// For so long it waits for the name of its node.
+const NAMED: Duration = Duration::from_secs(1);
+
+/// The first bytes of an endpoint's number are those of its participant.
+const PARTICIPANT: usize = 12;
+
+/// Watches the endpoints.
+pub(crate) struct Watch {
+    listener: DomainParticipantStatusListener,
+    /// The participant's number.
+    own: [u8; 16],
+    expected: Expected,
+    /// Whether those were looked at who were there before.
+    has_begun: bool,
+    /// What was looked at once: discovery says everything again and again.
+    known: BTreeSet<GUID>,
+    pending: Vec<Pending>,
+}
+
+/// An endpoint of which not everything is known yet.
+struct Pending {
+    guid: GUID,
+    since: Instant,
+    is_publisher: bool,
+    topic: String,
+    info: TypeInfo,
+    /// The qualities that are offered and requested, where these differ too much.
+    mismatch: Option<[String; 2]>,
+}
+
+impl Watch {
+    /// Reports subscribers of `subscribed`.
+    pub(crate) fn open(member: &Member, subscribed: &str) -> Self {
+        let listener = member.participant().status_listener();
+        Watch {
+            listener,
+            own: member.participant().guid().to_bytes(),
+            expected: Expected::new(subscribed),
+            has_begun: false,
+            known: BTreeSet::new(),
+            pending: Vec::new(),
+        }
+    }
+
+    /// Also reports publishers of `topic` whose messages cannot be received as `M`.
+    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
+        self.expected.expect::<M>(topic)
+    }
+
+    /// How the topic is published, by whoever does so as it is taken.
+    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
+        self.expected.publishing(topic)
+    }
+
+    /// The next that is of interest.
+    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.begin(member);
+        }
+        while let Some(event) = self.listener.try_recv_status() {
+            match event {
+                Event::ReaderDetected { reader } => self.add_described(false, &reader),
+                Event::WriterDetected { writer } => self.add_described(true, &writer),
+                Event::ReaderLost { guid, .. } | Event::WriterLost { guid, .. } => {
+                    self.known.remove(&guid);
+                    self.pending.retain(|pending| pending.guid != guid);
+                }
+                Event::RemoteWriterQosIncompatible {
+                    remote_writer,
+                    requested_qos,
+                    offered_qos,
+                    ..
+                } => {
+                    let is_it = |pending: &&mut Pending| pending.guid == remote_writer;
+                    if let Some(pending) = self.pending.iter_mut().find(is_it) {
+                        let words = [&*offered_qos, &*requested_qos].map(quality::in_words);
+                        pending.mismatch = Some(words);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.settle(member)
+    }
+
+    /// Looks at those who were there before.
+    fn begin(&mut self, member: &Member) {
+        for reader in member.participant().discovered_readers() {
+            let data = &reader.subscription_topic_data;
+            let names = (data.topic_name().as_str(), data.type_name().as_str());
+            self.add(data.key(), false, names, &reader.user_data);
+        }
+        for writer in member.participant().discovered_writers() {
+            let data = &writer.publication_topic_data;
+            let names = (data.topic_name.as_str(), data.type_name.as_str());
+            self.add(data.key, true, names, &writer.user_data);
+        }
+    }
+
+    fn add_described(&mut self, is_publisher: bool, endpoint: &EndpointDescription) {
+        let names = (&*endpoint.topic_name, &*endpoint.type_name);
+        self.add(endpoint.guid, is_publisher, names, &endpoint.user_data);
+    }
+
+    /// Has an endpoint looked at that is of interest.
+    fn add(
+        &mut self,
+        guid: GUID,
+        is_publisher: bool,
+        (topic, kind): (&str, &str),
+        user_data: &[u8],
+    ) {
+        let is_own = guid.to_bytes()[..PARTICIPANT] == self.own[..PARTICIPANT];
+        let topic = topic.strip_prefix("rt").filter(|_| !is_own);
+        if let Some(topic) = topic
+            && self.expected.concerns(is_publisher, topic)
+            && self.known.insert(guid)
+        {
+            self.pending.push(Pending {
+                guid,
+                since: Instant::now(),
+                is_publisher,
+                topic: topic.to_owned(),
+                info: TypeInfo {
+                    name: kind.to_owned(),
+                    hash: type_hash(user_data),
+                },
+                mismatch: None,
+            });
+        }
+    }
+
+    /// The next endpoint of which all is known, or that has waited enough.
+    fn settle(&mut self, member: &Member) -> Option<Seen> {
+        let mut index = 0;
+        while let Some(pending) = self.pending.get(index) {
+            let waited = pending.since.elapsed();
+            let name = member.node().name_of(pending.guid);
+            if waited < SETTLED || (name.is_none() && waited < NAMED) {
+                index += 1;
+                continue;
+            }
+            let pending = self.pending.remove(index);
+            let name = name.unwrap_or_else(|| "a node without a name".to_owned());
+            let seen = self.judge(pending, name);
+            if seen.is_some() {
+                return seen;
+            }
+        }
+        None
+    }
+
+    fn judge(&mut self, pending: Pending, node: String) -> Option<Seen> {
+        let Pending {
+            is_publisher,
+            topic,
+            info,
+            mismatch,
+            ..
+        } = pending;
+        if let Some([found, expected]) = mismatch {
+            self.expected.found_as(&topic, Publishing::OtherQuality);
+            return Some(Seen::Stranger(GatewayError::Stranger {
+                node,
+                topic,
+                found,
+                expected,
+            }));
+        }
+        self.expected.note(&Endpoint {
+            is_publisher,
+            node,
+            topic,
+            info,
+        })
+    }
+}
+
+/// The type hash that an endpoint says beside its type, as `typehash=RIHS01_…;`, if it does.
+fn type_hash(user_data: &[u8]) -> String {
+    let text = String::from_utf8_lossy(user_data);
+    let hash = text
+        .split(';')
+        .find_map(|pair| pair.strip_prefix("typehash="));
+    hash.unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_type_hash_is_found() {
+        assert_eq!(type_hash(b"enclave=/;typehash=RIHS01_00;"), "RIHS01_00");
+        assert_eq!(type_hash(b"enclave=/;"), "");
+        assert_eq!(type_hash(&[0xff, 0]), "");
+    }
+}

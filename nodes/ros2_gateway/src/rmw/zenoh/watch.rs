@@ -1,0 +1,157 @@
+//! Who comes to the robot's domain, by the tokens of its nodes.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crossbeam::queue::ArrayQueue;
+use ros::RosMessage;
+use transport::Graph;
+use zenoh::Wait;
+use zenoh::pubsub::Subscriber;
+use zenoh::sample::{Sample, SampleKind};
+use zenoh_session::KeyError;
+
+use super::Member;
+use super::entity::{Kind, Token};
+use crate::GatewayError;
+use crate::rmw::Seen;
+use crate::rmw::expected::{Endpoint, Expected};
+use crate::waiting::Publishing;
+
+/// Tokens that wait: a large robot has some hundred.
+const MAX_WAITING: usize = 4096;
+
+/// Watches the tokens.
+pub(crate) struct Watch {
+    tokens: Arc<ArrayQueue<String>>,
+    dropped: Arc<AtomicU64>,
+    expected: Expected,
+    _subscriber: Subscriber<()>,
+}
+
+impl Watch {
+    /// Reports subscribers of `subscribed`.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        subscribed: &str,
+    ) -> Result<Self, GatewayError> {
+        let tokens = Arc::new(ArrayQueue::new(MAX_WAITING));
+        let dropped = Arc::new(AtomicU64::new(0));
+        let waker = graph.waker()?;
+        let key = member.tokens();
+        let put = {
+            let (tokens, dropped) = (Arc::clone(&tokens), Arc::clone(&dropped));
+            move |sample: Sample| {
+                if sample.kind() != SampleKind::Put {
+                    return;
+                }
+                if tokens.push(sample.key_expr().to_string()).is_err() {
+                    dropped.fetch_add(1, Ordering::Relaxed);
+                }
+                waker.wake();
+            }
+        };
+        let liveliness = member.session().liveliness();
+        let subscriber = liveliness.declare_subscriber(key.clone()).history(true);
+        let subscriber = subscriber.callback(put).wait();
+        let subscriber = subscriber.map_err(KeyError::when("watch", &key))?;
+        Ok(Watch {
+            tokens,
+            dropped,
+            expected: Expected::new(subscribed),
+            _subscriber: subscriber,
+        })
+    }
+
+    /// Also reports publishers of `topic` that publish anything but `M`.
+    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
+        self.expected.expect::<M>(topic)
+    }
+
+    /// How the topic is published, by whoever does so as it is taken.
+    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
+        self.expected.publishing(topic)
+    }
+
+    /// Tokens that were not looked at since the last call: there were too many.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.dropped.swap(0, Ordering::Relaxed)
+    }
+
+    /// The next that is of interest. A token that cannot be read is of no interest.
+    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
+        let mine = member.session().zid().to_string();
+        while let Some(key) = self.tokens.pop() {
+            let Some(token) = Token::read(&key).filter(|token| token.session != mine) else {
+                continue;
+            };
+            if is_second(&token, member.node()) {
+                return Some(Seen::Stranger(GatewayError::SecondNode(token.node)));
+            }
+            let seen = endpoint(token).and_then(|other| self.expected.note(&other));
+            if seen.is_some() {
+                return seen;
+            }
+        }
+        None
+    }
+}
+
+/// Each node publishes this topic.
+const EVENTS: &str = "/parameter_events";
+
+/// Whether somebody else is a node of this name.
+fn is_second(token: &Token, node: &str) -> bool {
+    token.node == node && token.kind == Kind::Publisher.code() && token.topic == EVENTS
+}
+
+/// The topic that a token is of; services are of no interest.
+fn endpoint(token: Token) -> Option<Endpoint> {
+    let is_publisher = token.kind == Kind::Publisher.code();
+    if !is_publisher && token.kind != Kind::Subscription.code() {
+        return None;
+    }
+    Some(Endpoint {
+        is_publisher,
+        node: token.node,
+        topic: token.topic,
+        info: token.info,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(token: &str) -> Option<Seen> {
+        Expected::new("/initialpose").note(&endpoint(Token::read(token)?)?)
+    }
+
+    const START: &str = "@ros2_lv/0/aac3178e146ba6f1fc6e6a4085e77f21/0/10";
+    const QOS: &str = "::,10:,:,:,,";
+
+    #[test]
+    fn a_second_node_of_this_ones_name_is_seen_once() {
+        let kind = "rcl_interfaces::msg::dds_::ParameterEvent_/RIHS01_00";
+        let of = |node: &str, topic: &str| {
+            let token = format!("{START}/MP/%/{node}/{topic}/{kind}/{QOS}");
+            is_second(&Token::read(&token).unwrap(), "/r2/amcl")
+        };
+        assert!(of("%r2/amcl", "%parameter_events"));
+        assert!(!of("%r2/amcl", "%r2%amcl_pose"));
+        assert!(!of("%/amcl", "%parameter_events"));
+    }
+
+    #[test]
+    fn a_subscriber_of_the_initial_pose_is_seen() {
+        let kind = "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_/RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e";
+        let token = format!("{START}/MS/%/%/amcl/%initialpose/{kind}/{QOS}");
+        assert!(matches!(seen(&token), Some(Seen::Subscriber(node)) if node == "/amcl"));
+        let other = format!("{START}/MS/%/%/amcl/%other/{kind}/{QOS}");
+        assert!(seen(&other).is_none());
+        let service = format!("{START}/SS/%/%/amcl/%initialpose/{kind}/{QOS}");
+        assert!(seen(&service).is_none());
+        assert!(seen(&format!("{START}/NN/%/%/amcl")).is_none());
+    }
+}

@@ -1,0 +1,346 @@
+//! A ROS 2 robot on DDS, by ROS's own rclpy and Fast DDS, and the gateway between it and a
+//! graph.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::process::Command;
+
+use bytemuck::Zeroable;
+use messages::{
+    HypothesesHeader, Hypothesis, MapHeader, NodeState, Odometry, Pose2, PoseHeader, ScanHeader,
+    Stamp, TrackState, Verdict, topic,
+};
+use serde_json::json;
+use tests::needs::Need;
+use tests::python;
+use tests::robot::Robot;
+use transport::testing::{Isolated, NodeProcess, wait_for};
+use transport::{Graph, monotonic_ns};
+
+const LIBRARIES: [&str; 9] = [
+    "ros-jazzy-rclpy",
+    "ros-jazzy-rmw-fastrtps-cpp",
+    "ros-jazzy-sensor-msgs",
+    "ros-jazzy-nav-msgs",
+    "ros-jazzy-geometry-msgs",
+    "ros-jazzy-std-srvs",
+    "ros-jazzy-diagnostic-msgs",
+    "ros-jazzy-lifecycle-msgs",
+    "ros-jazzy-rcl-interfaces",
+];
+
+/// So many bearings a scan has.
+const BEAMS: usize = 720;
+
+/// A domain of this process alone, as far as numbers go, away from those that people use.
+fn domain() -> String {
+    (101 + std::process::id() % 120).to_string()
+}
+
+/// A graph with a gateway, and a robot in the same domain.
+struct Joined {
+    robot: Robot,
+    gateway: Option<NodeProcess>,
+    graph: Graph,
+    domain: String,
+    namespace: &'static str,
+    options: Vec<&'static str>,
+    // Behind the graph, so that it is dropped after it.
+    _isolated: Isolated,
+}
+
+impl Joined {
+    /// None where ROS cannot be had.
+    fn new(tag: &str, namespace: &'static str, options: &[&'static str]) -> Option<Self> {
+        let isolated = Isolated::new(tag);
+        let graph = isolated.join("test");
+        let domain = domain();
+        let robot = robot(&domain, namespace)?;
+        let mut joined = Joined {
+            robot,
+            gateway: None,
+            graph,
+            domain,
+            namespace,
+            options: options.to_vec(),
+            _isolated: isolated,
+        };
+        joined.start();
+        Some(joined)
+    }
+
+    fn start(&mut self) {
+        let common = [
+            "--rmw",
+            "dds",
+            "--domain",
+            &self.domain,
+            "--namespace",
+            self.namespace,
+            "--mount",
+            "0.2,0,0",
+        ];
+        let arguments = common.iter().chain(&self.options);
+        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
+        self.gateway = Some(NodeProcess::start(executable, &self.graph, arguments));
+    }
+
+    fn stop(&mut self) {
+        self.gateway.take().unwrap().stop();
+    }
+}
+
+fn robot(domain: &str, namespace: &str) -> Option<Robot> {
+    let python = python::with("ros", &LIBRARIES, "rclpy, nav_msgs, lifecycle_msgs")
+        .map_err(|why| Need::Python.is_missing("a robot with ROS 2 on DDS", &why))
+        .ok()?;
+    let mut command = Command::new(python);
+    command
+        .args([
+            "-c",
+            include_str!("robot.py"),
+            namespace,
+            &BEAMS.to_string(),
+        ])
+        .env("ROS_DOMAIN_ID", domain)
+        .env("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
+        .env("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp");
+    Some(Robot::run(&mut command))
+}
+
+/// Has the robot drive until its scan and its odometry are in the graph, which begins with
+/// the discovery of each other.
+fn drive(joined: &mut Joined, ns: i64) -> (ScanHeader, Vec<f32>, Odometry) {
+    let scans = joined.graph.subscriber::<topic::Scan>().unwrap();
+    let odometries = joined.graph.subscriber::<topic::OdometryTopic>().unwrap();
+    let (mut scan, mut odometry) = (None, None);
+    let mut next = 0;
+    joined
+        .graph
+        .run(
+            &[&scans, &odometries],
+            std::time::Duration::from_millis(100),
+            |wake| {
+                if wake.tick {
+                    joined.robot.order("drive", json!({ "ns": ns + next }));
+                    next += 1_000_000;
+                }
+                while let Some(sample) = scans.receive()? {
+                    scan.get_or_insert((*sample.header(), sample.items().to_vec()));
+                }
+                while let Some(sample) = odometries.receive()? {
+                    odometry.get_or_insert(*sample.header());
+                }
+                Ok::<_, transport::TransportError>(match scan.is_some() && odometry.is_some() {
+                    true => transport::Flow::Stop,
+                    false => transport::Flow::Continue,
+                })
+            },
+        )
+        .unwrap();
+    let (header, ranges) = scan.unwrap();
+    (header, ranges, odometry.unwrap())
+}
+
+/// When the first scan was measured.
+const START_NS: i64 = 1_700_000_000_000_000_000;
+
+fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
+    Pose2 { x, y, yaw }
+}
+
+fn stamp(counter: u64) -> Stamp {
+    Stamp {
+        measured_ns: START_NS,
+        entered_ns: monotonic_ns(),
+        counter,
+    }
+}
+
+fn wait_until_waiting(graph: &Graph, words: &str) {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    wait_for(graph, &health, |report, error| {
+        let is_waiting = report.state == NodeState::Waiting as u32;
+        let is_said = String::from_utf8_lossy(error).contains(words);
+        (is_waiting && is_said).then_some(())
+    });
+}
+
+#[test]
+fn scan_odometry_and_a_large_map_enter_the_graph() {
+    let Some(mut joined) = Joined::new("dds-in", "/r2", &[]) else {
+        return;
+    };
+    wait_until_waiting(&joined.graph, "/r2/scan: no publisher");
+    let (header, ranges, odometry) = drive(&mut joined, START_NS);
+    assert_eq!(ranges.len(), BEAMS);
+    assert_eq!(ranges[..2], [1.0, 1.01]);
+    assert!(header.stamp.measured_ns >= START_NS);
+    assert_eq!(header.frame.as_str(), "laser");
+    assert_eq!(header.base_from_laser, pose2(0.2, 0.0, 0.0));
+    assert_eq!(odometry.odom_from_child, pose2(1.5, 0.0, 0.0));
+
+    // 16 MB, in some hundred fragments.
+    let maps = joined.graph.subscriber::<topic::Map>().unwrap();
+    joined
+        .robot
+        .order("map", json!({ "width": 4000, "height": 4000 }));
+    let (header, occupied): (MapHeader, usize) = wait_for(&joined.graph, &maps, |header, cells| {
+        Some((
+            *header,
+            cells.iter().filter(|cell| **cell == cells[0]).count(),
+        ))
+    });
+    assert_eq!((header.width, header.height), (4000, 4000));
+    assert_eq!(occupied, 4000);
+
+    // A gateway that starts again gets the map without being sent it again.
+    joined.stop();
+    joined.start();
+    let again: MapHeader = wait_for(&joined.graph, &maps, |header, _| Some(*header));
+    assert_eq!(again.map_id, header.map_id);
+    drive(&mut joined, START_NS);
+    joined.stop();
+}
+
+#[test]
+fn what_the_graph_says_reaches_the_robot() {
+    let Some(mut joined) = Joined::new("dds-out", "/", &[]) else {
+        return;
+    };
+    drive(&mut joined, START_NS);
+    let publisher = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    for topic in ["hypotheses", "initialpose", "/diagnostics"] {
+        joined.robot.order("subscribe", json!({ "topic": topic }));
+    }
+    let diagnostics = joined.robot.wait_for("/diagnostics");
+    assert_eq!(diagnostics["names"], json!(["backcast: ros2_gateway"]));
+    // The filter has come by now, or comes.
+    let mut seed = None;
+    for counter in 0.. {
+        let header = HypothesesHeader {
+            stamp: stamp(counter),
+            verdict: Verdict::Unique as u32,
+            mount_known: 1,
+            ..HypothesesHeader::zeroed()
+        };
+        let item = Hypothesis {
+            map_from_base: pose2(1.0, 2.0, 0.0),
+            map_from_laser: pose2(1.2, 2.0, 0.0),
+            ..Hypothesis::zeroed()
+        };
+        let mut loan = publisher.loan(1).unwrap();
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(&[item]);
+        loan.send().unwrap();
+        let said = joined.robot.receive();
+        if said["event"] == "initialpose" {
+            seed = Some(said);
+            break;
+        }
+    }
+    let seed = seed.unwrap();
+    assert_eq!(seed["poses"], json!([[1.0, 2.0, 0.0, 1.0]]));
+    assert_eq!(
+        (&seed["stamp"], &seed["frame"]),
+        (&json!(START_NS), &json!("map"))
+    );
+    let hypotheses = joined.robot.wait_for("hypotheses");
+    assert_eq!(hypotheses["poses"][0], seed["poses"][0]);
+
+    // Everybody who asks is answered.
+    joined.robot.order("reinitialize", json!({ "clients": 20 }));
+    let said = joined.robot.wait_for("reinitialized");
+    assert_eq!(said["missing"], 0);
+
+    // The graph of ROS shows the node and its topics.
+    joined
+        .robot
+        .order("nodes", json!({ "topic": "hypotheses" }));
+    let said = joined.robot.wait_for("nodes");
+    let nodes: Vec<String> = serde_json::from_value(said["nodes"].clone()).unwrap();
+    assert!(nodes.contains(&"/backcast".to_owned()), "{nodes:?}");
+    assert_eq!(said["publishers"], json!(["backcast"]));
+    joined.stop();
+}
+
+#[test]
+fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
+    let Some(mut joined) = Joined::new("dds-amcl", "/", &["--as", "amcl"]) else {
+        return;
+    };
+    let robot = &mut joined.robot;
+    let mut change = |id: u8| {
+        robot.order("change", json!({ "id": id }));
+        let success = robot.wait_for("change")["success"].as_bool().unwrap();
+        robot.order("state", json!({}));
+        (success, robot.wait_for("state")["label"].clone())
+    };
+    assert_eq!(change(3), (false, json!("unconfigured")));
+    assert_eq!(change(1), (true, json!("inactive")));
+    assert_eq!(change(3), (true, json!("active")));
+
+    let set = json!({ "name": "save_pose_rate", "value": 0.25 });
+    robot.order("parameters", set);
+    let said = robot.wait_for("parameters");
+    let listed: Vec<String> = serde_json::from_value(said["listed"].clone()).unwrap();
+    assert!(listed.contains(&"laser_max_range".to_owned()), "{listed:?}");
+    assert_eq!(
+        (&said["successful"], &said["value"]),
+        (&json!(true), &json!(0.25))
+    );
+
+    // A click goes to the tracker, and the tracker's pose to the robot.
+    let hints = joined
+        .graph
+        .subscriber::<topic::InitialPoseTopic>()
+        .unwrap();
+    joined
+        .robot
+        .order("click", json!({ "ns": START_NS, "x": 3.0, "y": 1.0 }));
+    let hint = wait_for(&joined.graph, &hints, |hint, _| Some(hint.map_from_base));
+    assert_eq!(hint, pose2(3.0, 1.0, 0.0));
+    let poses = joined
+        .graph
+        .publisher_for::<topic::Tracked>(PoseHeader::WORDS_CAPACITY)
+        .unwrap();
+    let header = PoseHeader {
+        stamp: stamp(0),
+        probability: 0.75,
+        places: 1,
+        state: TrackState::Unique as u32,
+        from_scan: 1,
+        pose_known: 1,
+        mount_known: 1,
+        map_from_base: pose2(3.0, 1.0, 0.0),
+        map_from_laser: pose2(3.2, 1.0, 0.0),
+        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
+        ..PoseHeader::zeroed()
+    };
+    let mut loan = poses.loan(0).unwrap();
+    *loan.header_mut() = header;
+    loan.send().unwrap();
+    // Kept for those who come later.
+    joined
+        .robot
+        .order("subscribe", json!({ "topic": "amcl_pose" }));
+    let pose = joined.robot.wait_for("amcl_pose");
+    assert_eq!(pose["poses"], json!([[3.0, 1.0, 0.0, 1.0]]));
+    joined.stop();
+}
+
+#[test]
+fn publishers_that_cannot_be_received_are_named() {
+    let Some(mut joined) = Joined::new("dds-strange", "/", &[]) else {
+        return;
+    };
+    let graph = &joined.graph;
+    joined.robot.order("wrong_type", json!({ "topic": "scan" }));
+    let volatile = json!({ "width": 10, "height": 10, "kept": false });
+    joined.robot.order("map", volatile);
+    wait_until_waiting(graph, "/scan: a publisher of another type");
+    wait_until_waiting(graph, "/map: a publisher with another quality of service");
+    joined.stop();
+}
