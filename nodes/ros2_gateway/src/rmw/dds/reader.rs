@@ -5,7 +5,7 @@ use std::task::{Wake, Waker};
 
 use rustdds::dds::ReadError;
 use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
-use rustdds::{GUID, RTPSEntity, SampleIdentity};
+use rustdds::{GUID, SampleIdentity};
 
 use super::raw::{AtMost, Payload, Raw};
 use crate::GatewayError;
