@@ -7,7 +7,9 @@ use ros2_gateway::Config;
 
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main_with_log(ros2_gateway::NODE, zenoh_session::LOG, |graph| {
+    // What DDS does in the normal case is of no interest.
+    let log = format!("{},rustdds=warn", zenoh_session::LOG);
+    transport::node::main_with_log(ros2_gateway::NODE, &log, |graph| {
         ros2_gateway::run(graph, &config)
     })
 }
