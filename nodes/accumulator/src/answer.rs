@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::grid::Grid;
-use engine::localizer::{Localizer, Outcome, Together, Workspace};
+use engine::localizer::{Localizer, Outcome, Workspace};
 use engine::observation::Observation;
 use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
@@ -44,11 +44,7 @@ pub fn ask(
     }
     let localizers = maps.iter().map(|map| &map.localizer);
     let searched = localizers.zip(workspaces.iter_mut()).collect();
-    let together = Together {
-        heading,
-        ..Together::default()
-    };
-    Localizer::search_together(searched, scan, together, stop)
+    Localizer::search_together(searched, scan, heading, stop)
 }
 
 /// What to send about a scan to which the engine replied within `engine_ns`.
