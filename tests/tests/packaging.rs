@@ -127,3 +127,46 @@ fn the_package_does_its_work_where_nothing_else_is() {
         assert_eq!(summary["pose"]["unique_wrong"], 0, "{said}");
     }
 }
+
+/// Prints the descriptor that the launch file writes, for a robot in a namespace.
+const GRAPH: &str = "import sys; sys.path.insert(0, sys.argv[1]); sys.dont_write_bytecode = True
+from backcast_ros2.graph import descriptor
+print(descriptor('r2', '/etc/robot/a file.yaml', True, 'debug'))
+source = open(sys.argv[1] + '/launch/localization_launch.py').read()
+compile(source, 'localization_launch.py', 'exec')";
+
+#[test]
+fn the_graph_of_the_launch_file_is_sound() {
+    let package = tests::root().join("packaging/ros2/backcast_ros2");
+    let mut python = Command::new("python3");
+    let Ok(output) = python.args(["-c", GRAPH]).arg(&package).output() else {
+        let test = "the_graph_of_the_launch_file_is_sound";
+        return Need::Python.is_missing(test, "no python3");
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    for expected in [
+        "__ns:=/r2",
+        "'/etc/robot/a file.yaml'",
+        "use_sim_time:=true",
+    ] {
+        assert!(text.contains(expected), "{text}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("localization.yaml");
+    let built = tests::executables::path("backcast").with_file_name("");
+    let built = format!("path: {}/", built.display());
+    std::fs::write(&file, text.replace("path: ", &built)).unwrap();
+    run(tests::executables::backcast().arg("check").arg(&file));
+    // What ROS would not say is refused by the gateway itself.
+    let wrong = text
+        .replace("__ns:=", "__namespace:=")
+        .replace("path: ", &built);
+    std::fs::write(&file, wrong).unwrap();
+    let refused = tests::executables::backcast()
+        .arg("check")
+        .arg(&file)
+        .output();
+    assert!(!refused.unwrap().status.success());
+}

@@ -33,6 +33,11 @@ pub struct Config {
     #[arg(long, value_name = "NAME")]
     pub node: Option<String>,
 
+    /// What is logged: debug, info, warn, error or fatal, or LOGGER:=LEVEL, of which the level
+    /// counts [default: as RUST_LOG says, else info]
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub log_level: Option<String>,
+
     /// In AMCL's place.
     #[command(flatten)]
     pub amcl: Options,
@@ -247,6 +252,16 @@ impl Config {
     #[must_use]
     pub fn brings(&self, topic: Brought) -> bool {
         self.bring.contains(&topic)
+    }
+}
+
+/// A level of ROS, as the log knows it.
+fn level(text: &str) -> Result<String, String> {
+    let level = text.rsplit(":=").next().unwrap_or(text).to_lowercase();
+    match &*level {
+        "fatal" => Ok("error".to_owned()),
+        "debug" | "info" | "warn" | "error" => Ok(level),
+        _ => Err("allowed are debug, info, warn, error and fatal".to_owned()),
     }
 }
 

@@ -6,9 +6,17 @@ use clap::Parser;
 use ros2_gateway::Config;
 
 fn main() -> ExitCode {
-    let config = Config::parse();
+    let words = match ros2_gateway::translated(std::env::args()) {
+        Ok(words) => words,
+        Err(problem) => {
+            eprintln!("{}: {problem}", ros2_gateway::NODE);
+            return ExitCode::from(2);
+        }
+    };
+    let config = Config::parse_from(words);
+    let level = config.log_level.as_deref().unwrap_or("info");
     // What DDS does in the normal case is of no interest.
-    let log = format!("{},rustdds=warn", zenoh_session::LOG);
+    let log = zenoh_session::LOG.replacen("info", level, 1) + ",rustdds=warn";
     transport::node::main_with_log(ros2_gateway::NODE, &log, |graph| {
         ros2_gateway::run(graph, &config)
     })

@@ -14,9 +14,14 @@ pub struct Options {
     #[arg(long = "as", value_name = "ROLE", default_value = "seed")]
     pub role: Role,
 
-    /// Parameters in the form of ROS, as nav2_amcl has them; with --as amcl
+    /// Parameters in the form of ROS, as nav2_amcl has them; of several files the last counts;
+    /// with --as amcl
     #[arg(long, value_name = "FILE")]
-    pub params_file: Option<PathBuf>,
+    pub params_file: Vec<PathBuf>,
+
+    /// A parameter, as `use_sim_time:=true`, which counts before those of files; with --as amcl
+    #[arg(long, value_name = "NAME:=VALUE")]
+    pub parameter: Vec<String>,
 
     /// Start active, for robots without a lifecycle manager; with --as amcl
     #[arg(long)]
@@ -32,7 +37,8 @@ impl Options {
     /// Refuses what counts in AMCL's place alone.
     pub(crate) fn check(&self) -> Result<(), GatewayError> {
         let given = [
-            (self.params_file.is_some(), "params-file"),
+            (!self.params_file.is_empty(), "params-file"),
+            (!self.parameter.is_empty(), "parameter"),
             (self.autostart, "autostart"),
             (self.believe_initial_pose, "believe-initial-pose"),
         ];
@@ -64,9 +70,10 @@ mod tests {
     #[test]
     fn options_of_amcls_place_are_refused_elsewhere() {
         let parse = |words: &[&str]| Config::parse_from(["ros2_gateway"].iter().chain(words));
-        let options: [&[&str]; 3] = [
+        let options: [&[&str]; 4] = [
             &["--autostart"],
             &["--params-file", "a"],
+            &["--parameter", "a:=1"],
             &["--believe-initial-pose"],
         ];
         for words in options {

@@ -49,8 +49,13 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
         reason,
     })?;
     let mut parameters = Parameters::default();
-    if let Some(file) = &config.amcl.params_file {
+    for file in &config.amcl.params_file {
         for remark in load(&mut parameters, file, &node)? {
+            tracing::warn!("{remark}");
+        }
+    }
+    for rule in &config.amcl.parameter {
+        for remark in params_file::set(&mut parameters, rule, &node)? {
             tracing::warn!("{remark}");
         }
     }

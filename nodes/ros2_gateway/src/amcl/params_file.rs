@@ -87,6 +87,25 @@ pub(super) fn load(
     Ok(remarks)
 }
 
+/// Takes one parameter, as `use_sim_time:=true`, whose value is one of YAML.
+pub(super) fn set(
+    parameters: &mut Parameters,
+    rule: &str,
+    node: &str,
+) -> Result<Vec<String>, GatewayError> {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || "_./".contains(c);
+    let parts = rule.split_once(":=");
+    let parts = parts.filter(|(name, value)| name.chars().all(is_letter) && !value.contains('\n'));
+    let Some((name, value)) = parts else {
+        return Err(GatewayError::Option {
+            option: "parameter",
+            reason: format!("{rule:?}: allowed is NAME:=VALUE, as use_sim_time:=true"),
+        });
+    };
+    let text = format!("/**:\n  {PARAMETERS}:\n    {name}: {value}\n");
+    load(parameters, &text, rule, node)
+}
+
 #[derive(Default)]
 struct Found<'a> {
     nodes: Vec<(String, &'a Json)>,

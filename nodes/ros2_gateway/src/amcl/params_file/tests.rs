@@ -141,3 +141,25 @@ fn what_is_wrong_is_named() {
     let deep = "amcl: {ros__parameters: {b: ".to_owned() + &deep + "}}";
     assert!(loaded(&deep, "/amcl").is_err());
 }
+
+#[test]
+fn a_parameter_by_itself_is_one_of_a_file_with_it_alone() {
+    let mut parameters = Parameters::default();
+    let mut take = |rule: &str| set(&mut parameters, rule, "/r2/amcl");
+    assert!(take("use_sim_time:=true").unwrap().is_empty());
+    assert!(take("initial_pose.x:=1.5").unwrap().is_empty());
+    let remarks = take("max_particles:=3").unwrap();
+    assert!(
+        remarks[0].contains("max_particles has no meaning here"),
+        "{remarks:?}"
+    );
+    for (rule, expected) in [
+        ("use_sim_time", "allowed is NAME:=VALUE"),
+        ("a b:=1", "allowed is NAME:=VALUE"),
+        ("use_sim_time:=7", "use_sim_time"),
+    ] {
+        let error = take(rule).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    assert!(parameters.is_on("use_sim_time"));
+}

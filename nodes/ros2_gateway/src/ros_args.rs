@@ -1,0 +1,151 @@
+//! Arguments as ROS hands them to its nodes, as options of the gateway. Pure.
+//!
+//! ```text
+//! ros2_gateway --as amcl --ros-args -r __ns:=/r2 -r /tf:=tf -p use_sim_time:=true --params-file FILE
+//! ```
+//!
+//! The rules are those of <https://design.ros2.org/articles/ros_command_line_arguments.html>: what
+//! stands between `--ros-args` and `--` is for ROS.
+
+/// Flags of ROS that change nothing here: the gateway logs to standard error and, in AMCL's place,
+/// to `/rosout`.
+const IDLE: [&str; 6] = [
+    "--enable-rosout-logs",
+    "--disable-rosout-logs",
+    "--enable-stdout-logs",
+    "--disable-stdout-logs",
+    "--enable-external-lib-logs",
+    "--disable-external-lib-logs",
+];
+
+/// The names that can be remapped, and the options that do so.
+const NAMES: [(&str, &str); 11] = [
+    ("scan", "--scan"),
+    ("odom", "--odom"),
+    ("map", "--map"),
+    ("tf", "--tf"),
+    ("tf_static", "--tf-static"),
+    ("amcl_pose", "--amcl-pose"),
+    ("initialpose", "--initial-pose"),
+    ("hypotheses", "--hypotheses"),
+    ("localization", "--localization"),
+    ("diagnostics", "--diagnostics"),
+    ("reinitialize_global_localization", "--reinitialize"),
+];
+
+/// Translates a command line. The first word is the program's.
+///
+/// # Errors
+/// Words that say what is wrong and what is allowed.
+pub fn translated(words: impl Iterator<Item = String>) -> Result<Vec<String>, String> {
+    let mut found = Vec::new();
+    let mut words = words.peekable();
+    let mut is_for_ros = false;
+    while let Some(word) = words.next() {
+        match &*word {
+            "--ros-args" => is_for_ros = true,
+            "--" if is_for_ros => is_for_ros = false,
+            _ if !is_for_ros => found.push(word),
+            "-r" | "--remap" => remap(&following(&word, words.next())?, &mut found)?,
+            "-p" | "--param" => {
+                let rule = following(&word, words.next())?;
+                if let Some(rule) = of_this_node(&rule) {
+                    found.extend(["--parameter".to_owned(), rule.to_owned()]);
+                }
+            }
+            "--params-file" => found.extend([word.clone(), following(&word, words.next())?]),
+            "--log-level" => {
+                let level = following(&word, words.next())?;
+                found.extend(["--log-level".to_owned(), level]);
+            }
+            "-e" | "--enclave" | "--log-config-file" | "--log-file-name" => {
+                following(&word, words.next())?;
+            }
+            flag if IDLE.contains(&flag) => {}
+            other => {
+                return Err(format!(
+                    "{other:?} after --ros-args: allowed are -r, -p, --params-file and --log-level"
+                ));
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn following(flag: &str, next: Option<String>) -> Result<String, String> {
+    next.ok_or_else(|| format!("{flag} ends the arguments: a value must follow"))
+}
+
+/// A rule without the name of the node that it is for. The gateway is one node, so that a rule for
+/// a node is taken for it: launch files give each process its own.
+fn of_this_node(rule: &str) -> Option<&str> {
+    let name = rule.split(":=").next()?;
+    match name.split_once(':') {
+        Some((node, _)) => rule.get(node.len() + 1..),
+        None => Some(rule),
+    }
+}
+
+fn remap(rule: &str, found: &mut Vec<String>) -> Result<(), String> {
+    let rule = of_this_node(rule).unwrap_or(rule);
+    let (from, to) = rule
+        .split_once(":=")
+        .ok_or_else(|| format!("the remapping {rule:?} has no :=, as in scan:=front/scan"))?;
+    let option = match from {
+        "__node" | "__name" => "--node",
+        "__ns" => "--namespace",
+        _ => {
+            let from = from.trim_start_matches('/').trim_start_matches("~/");
+            let known = NAMES.iter().find(|(name, _)| *name == from);
+            let (_, option) = known.ok_or_else(|| {
+                let names = NAMES.map(|(name, _)| name).join(", ");
+                format!("the remapping of {from:?}: allowed are __node, __ns, {names}")
+            })?;
+            option
+        }
+    };
+    found.push(format!("{option}={to}"));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(line: &str) -> Result<String, String> {
+        let words = line.split_whitespace().map(str::to_owned);
+        translated(words).map(|found| found.join(" "))
+    }
+
+    #[test]
+    fn what_launch_files_hand_to_amcl_is_understood() {
+        let found = of(
+            "g --as amcl --ros-args --log-level info --ros-args -r __node:=amcl -r __ns:=/r2 \
+             --params-file /tmp/a -r /tf:=tf -r tf_static:=/tf_static -p use_sim_time:=true",
+        );
+        assert_eq!(
+            found.unwrap(),
+            "g --as amcl --log-level info --node=amcl --namespace=/r2 --params-file /tmp/a \
+             --tf=tf --tf-static=/tf_static --parameter use_sim_time:=true"
+        );
+    }
+
+    #[test]
+    fn what_follows_two_dashes_is_the_gateways_own() {
+        let found = of("g --ros-args -p amcl:max_beams:=3 --enable-rosout-logs -- --domain 4");
+        assert_eq!(found.unwrap(), "g --parameter max_beams:=3 --domain 4");
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named_with_what_would_be() {
+        for (line, expected) in [
+            ("g --ros-args -r", "a value must follow"),
+            ("g --ros-args -r scan", "has no :="),
+            ("g --ros-args -r cloud:=c", "\"cloud\": allowed are __node"),
+            ("g --ros-args --domain 3", "\"--domain\" after --ros-args"),
+        ] {
+            let error = of(line).unwrap_err();
+            assert!(error.contains(expected), "{line}: {error}");
+        }
+    }
+}

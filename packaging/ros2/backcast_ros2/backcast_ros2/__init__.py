@@ -1,0 +1,1 @@
+"""Backcast in the place of nav2_amcl."""
