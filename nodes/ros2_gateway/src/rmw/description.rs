@@ -374,7 +374,8 @@ mod tests {
     fn what_is_no_field_is_refused_by_name() {
         for line in [
             "float32",
-            "string<=5 name",
+            "string<=x name",
+            "int8<=5 name",
             "Header header",
             "int8[x] cells",
             "int8[<=x] cells",

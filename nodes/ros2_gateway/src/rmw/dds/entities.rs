@@ -62,9 +62,11 @@ pub(super) fn encode(format: Format, participant: Gid, node: &Node) -> Result<Ve
 
 /// The nodes of a message, and how their numbers are written where there is a node.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Option<Format>, Vec<Node>), String> {
-    let (format, nodes) = match decode_as(bytes, |gid: Gid| gid) {
-        Ok(nodes) => (Format::Iron, nodes),
-        Err(_) => (Format::Humble, decode_as(bytes, short)?),
+    // Numbers of 16 bytes read as of 24 leave the number of nodes to be letters of a name, and so
+    // more nodes than there are bytes. The other way round, it is the zeros that fill up the first.
+    let (format, nodes) = match decode_as(bytes, short) {
+        Ok(nodes) if !nodes.is_empty() => (Format::Humble, nodes),
+        _ => (Format::Iron, decode_as(bytes, |gid: Gid| gid)?),
     };
     let format = Some(format).filter(|_| !nodes.is_empty());
     Ok((format, nodes))
