@@ -55,10 +55,10 @@ fn by_tools(recording: &Path, map: &Path) -> Track {
     text.lines().map(line).collect()
 }
 
-/// The poses of all scans, from a graph that is fed at a rate.
+/// The poses of all scans, from a graph that is fed at a rate; the map by options of its server.
 pub(super) fn by_graph(
     tag: &str,
-    (recording, map): (&Path, &Path),
+    (recording, map): (&Path, &[&str]),
     (rate, search): (&str, &str),
     tracker: &[&str],
     scans: usize,
@@ -70,7 +70,7 @@ pub(super) fn by_graph(
         NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
     };
     let nodes = [
-        start("map_server", &["--map", map.to_str().unwrap()]),
+        start("map_server", map),
         start("boundary_extractor", &[]),
         start("accumulator", &["--search", search]),
         start("peak_extractor", &[]),
@@ -122,6 +122,7 @@ fn the_graph_and_the_tools_track_alike() {
     let world = World::of("malaga_corridor");
     let (recording, map) = (world.recording(), world.map());
     let expected = by_tools(&recording, &map);
+    let map = ["--map", map.to_str().unwrap()];
     let poses = by_graph("track-all", (&recording, &map), ("max", "all"), &[], 37);
     assert!(expected.len() > 25, "{}", expected.len());
     assert_eq!(track(&poses), expected);
