@@ -43,7 +43,7 @@ impl Forward {
     /// Whether a time, nanoseconds, goes on from the last one, which it then is.
     pub(crate) fn admits(&mut self, at_ns: i64) -> bool {
         let behind_ns = self.last_ns.saturating_sub(at_ns);
-        let is_later = behind_ns < 0 || behind_ns > SET_BACK_NS;
+        let is_later = !(0..=SET_BACK_NS).contains(&behind_ns);
         if is_later {
             self.last_ns = at_ns;
         }

@@ -6,7 +6,7 @@
 )]
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use geometry::Pose;
 use messages::{PoseHeader, TrackState};
@@ -25,12 +25,12 @@ fn folder(test: &str, name: &str) -> Option<PathBuf> {
 }
 
 /// What a graph with a tracker says of each scan of a drive that holds its own map.
-fn poses(test: &str, drive: PathBuf, tracker: &[&str], scans: usize) -> Vec<PoseHeader> {
+fn poses(test: &str, drive: &Path, tracker: &[&str], scans: usize) -> Vec<PoseHeader> {
     // That of the recording counts.
     let other = World::of("malaga_corridor").map();
-    let files = [&other, &drive].map(|file| file.to_str().unwrap());
+    let files = [other.as_path(), drive].map(|file| file.to_str().unwrap());
     let map = ["--map", files[0], "--recorded", files[1]];
-    by_graph(test, (&drive, &map), ("max", "all"), tracker, scans)
+    by_graph(test, (drive, &map), ("max", "all"), tracker, scans)
 }
 
 fn is_unique(pose: &PoseHeader) -> bool {
@@ -73,7 +73,7 @@ fn a_covered_laser_is_nowhere() {
         ("covered-1", "covered_1.0"),
         ("covered-half", "covered_0.5"),
     ] {
-        let said = poses(tag, folder.join(format!("{name}.mcap")), &[], 100);
+        let said = poses(tag, &folder.join(format!("{name}.mcap")), &[], 100);
         assert_eq!(
             said.iter().filter(|pose| is_unique(pose)).count(),
             0,
@@ -93,7 +93,7 @@ fn a_crowd_that_walks_along_does_not_carry_the_pose_away() {
         .unwrap()
         .into_iter()
         .collect();
-    let said = poses("crowd", folder.join("crowd_walks_along.mcap"), &[], 170);
+    let said = poses("crowd", &folder.join("crowd_walks_along.mcap"), &[], 170);
     let unique = said.iter().filter(|pose| is_unique(pose));
     let mut count = 0;
     for pose in unique {
@@ -116,7 +116,7 @@ fn odometry_that_never_moves_is_none() {
         ("odom-rests", "odometry_never_moves"),
         ("odom-dies", "odometry_dies_at_start"),
     ] {
-        let said = poses(tag, folder.join(format!("{name}.mcap")), &[], 170);
+        let said = poses(tag, &folder.join(format!("{name}.mcap")), &[], 170);
         // By the scans alone it is known a metre or two after the start.
         let first = said.iter().position(is_unique).unwrap();
         assert!(first <= 15, "{name}: {first}");
@@ -132,7 +132,7 @@ fn a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed() {
         return;
     };
     let drive = folder.join("stands_from_the_start.mcap");
-    let said = |tag: &str, tracker: &[&str]| poses(tag, drive.clone(), tracker, 300);
+    let said = |tag: &str, tracker: &[&str]| poses(tag, &drive, tracker, 300);
     let unique = |said: &[PoseHeader]| said.iter().filter(|pose| is_unique(pose)).count();
     let alone = said("stands", &[]);
     assert_eq!(unique(&alone), 0);

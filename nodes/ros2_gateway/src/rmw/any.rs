@@ -72,7 +72,7 @@ impl Member {
 /// Sends messages of a topic.
 pub(crate) enum Publisher<M> {
     Zenoh(Box<rmw_zenoh::Publisher<M>>),
-    Dds(dds::Publisher<M>),
+    Dds(Box<dds::Publisher<M>>),
 }
 
 impl<M: RosMessage> Publisher<M> {
@@ -123,7 +123,8 @@ impl<M: RosMessage> Publisher<M> {
                 Publisher::Zenoh(Box::new(publisher))
             }
             Member::Dds(member) => {
-                Publisher::Dds(dds::Publisher::open(member, topic, quality, blocks)?)
+                let publisher = dds::Publisher::open(member, topic, quality, blocks)?;
+                Publisher::Dds(Box::new(publisher))
             }
         })
     }
