@@ -292,7 +292,10 @@ impl Tracker {
         let (verdict, hypotheses) = self.search.locate(seen, None, |found| {
             let places = found.places.places.iter();
             let hypotheses = places.map(|place| place.hypothesis(0, of_laser));
-            (found.places.verdict, hypotheses.collect::<Vec<Hypothesis>>())
+            (
+                found.places.verdict,
+                hypotheses.collect::<Vec<Hypothesis>>(),
+            )
         })?;
         let mut candidates = Vec::new();
         Candidate::fill(
