@@ -41,7 +41,7 @@ pub(crate) struct TrackedPose {
     probability: f64,
     /// How well the scan fits there, at most 1.
     score: f64,
-    /// By how much the place leads over the next, natural logarithm of odds.
+    /// Natural logarithm of the odds of that probability.
     lead: f64,
     /// Places that come near the best, itself included.
     places: u32,
