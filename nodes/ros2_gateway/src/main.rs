@@ -6,7 +6,7 @@ use clap::Parser;
 use ros2_gateway::Config;
 
 fn main() -> ExitCode {
-    let words = match ros2_gateway::translated(std::env::args()) {
+    let words = match ros2_gateway::translated(std::env::args_os()) {
         Ok(words) => words,
         Err(problem) => {
             eprintln!("{}: {problem}", ros2_gateway::NODE);

@@ -7,6 +7,8 @@
 //! The rules are those of <https://design.ros2.org/articles/ros_command_line_arguments.html>: what
 //! stands between `--ros-args` and `--` is for ROS.
 
+use std::ffi::OsString;
+
 /// Flags of ROS that change nothing here: the gateway logs to standard error and, in AMCL's place,
 /// to `/rosout`.
 const IDLE: [&str; 6] = [
@@ -37,9 +39,14 @@ const NAMES: [(&str, &str); 11] = [
 ///
 /// # Errors
 /// Words that say what is wrong and what is allowed.
-pub fn translated(words: impl Iterator<Item = String>) -> Result<Vec<String>, String> {
+pub fn translated(words: impl Iterator<Item = OsString>) -> Result<Vec<String>, String> {
+    let text = |word: OsString| {
+        let refused = |word: OsString| format!("{word:?}: allowed is text in UTF-8");
+        word.into_string().map_err(refused)
+    };
+    let words = words.map(text).collect::<Result<Vec<String>, String>>()?;
+    let mut words = words.into_iter();
     let mut found = Vec::new();
-    let mut words = words.peekable();
     let mut is_for_ros = false;
     while let Some(word) = words.next() {
         match &*word {
@@ -110,10 +117,12 @@ fn remap(rule: &str, found: &mut Vec<String>) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use std::os::unix::ffi::OsStringExt;
+
     use super::*;
 
     fn of(line: &str) -> Result<String, String> {
-        let words = line.split_whitespace().map(str::to_owned);
+        let words = line.split_whitespace().map(OsString::from);
         translated(words).map(|found| found.join(" "))
     }
 
@@ -134,6 +143,13 @@ mod tests {
     fn what_follows_two_dashes_is_the_gateways_own() {
         let found = of("g --ros-args -p amcl:max_beams:=3 --enable-rosout-logs -- --domain 4");
         assert_eq!(found.unwrap(), "g --parameter max_beams:=3 --domain 4");
+    }
+
+    #[test]
+    fn words_that_are_no_text_are_refused() {
+        let word = OsString::from_vec(vec![b'g', 0xff]);
+        let error = translated([word].into_iter()).unwrap_err();
+        assert!(error.contains("allowed is text in UTF-8"), "{error}");
     }
 
     #[test]

@@ -45,19 +45,20 @@ fn no_start_is_wrong_where_a_sensor_is() {
     };
     let starts = ["--starts", "12", "--kidnaps", "0", "--outages", "0"];
     let of = |name: &str| figures(&folder.join(format!("{name}.mcap")), &starts);
-    for name in [
+    let [_, _, chassis] = [
         "courtyard_odometry_stops",
         "frozen_laser",
         "base_called_chassis",
-    ] {
+    ]
+    .map(|name| {
         let found = of(name);
         assert!(found["starts"].as_u64().unwrap() >= 1, "{name}: {found}");
         assert_eq!(found["wrong_starts"], 0, "{name}: {found}");
-    }
+        found
+    });
     // The name of the base changes nothing.
-    let controlled = ["base_called_chassis", "base_called_base_link_control"].map(of);
-    let right = controlled.map(|found| found["right"].clone());
-    assert_eq!(right[0], right[1]);
+    let control = of("base_called_base_link_control");
+    assert_eq!(chassis["right"], control["right"]);
     // Nobody can know that a laser is mirrored before it has turned; then nobody believes it.
     let mirrored = of("upside_down_undeclared");
     assert_eq!(mirrored["unique_share"], 0.0, "{mirrored}");
