@@ -13,6 +13,8 @@ use transport::with_causes;
 use super::delay::odometry_delay;
 use super::drive::{Drive, is_far};
 use super::finding::Finding;
+use super::located::Located;
+use super::map_fit;
 use super::sensors;
 use super::survey::{Farthest, Seen, Survey};
 
@@ -29,11 +31,15 @@ const MOSTLY_SILENT: f64 = 0.9;
 const MAX_STEPS: f64 = 2.0;
 
 /// Everything that is found, the worst first.
-pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+pub(super) fn all(
+    recording: &Recording,
+    survey: &Survey,
+    given: Option<&OccupancyGrid>,
+) -> Vec<Finding> {
     let checks = [
         damage(recording),
         undecodable(survey),
-        topics(recording, survey),
+        topics(recording, survey, given.is_some()),
         map(recording),
         mount(recording, survey),
         frames(survey),
@@ -45,10 +51,16 @@ pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
         mended(survey),
         truths(recording, survey),
         order(recording),
-        odometry_delay(recording, survey),
         Drive::of(recording).map_or_else(Vec::new, |drive| sensors::all(&drive)),
     ];
-    let mut all: Vec<Finding> = checks.into_iter().flatten().collect();
+    let on_map = Located::of(recording, given).map_or_else(
+        |_| Vec::new(),
+        |located| {
+            let delay = odometry_delay(recording, survey, &located);
+            delay.into_iter().chain(map_fit::all(&located)).collect()
+        },
+    );
+    let mut all: Vec<Finding> = checks.into_iter().flatten().chain(on_map).collect();
     all.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     all
 }
@@ -78,7 +90,7 @@ fn undecodable(survey: &Survey) -> Vec<Finding> {
 }
 
 /// Whether it is clear what is meant, and all is there that localizing needs.
-fn topics(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding> {
     let kinds = [Kind::Scan, Kind::Map, Kind::Odometry];
     let unclear = kinds
         .into_iter()
@@ -89,8 +101,10 @@ fn topics(recording: &Recording, survey: &Survey) -> Vec<Finding> {
             "no laser scans: there is nothing to localize",
         ));
     }
-    if survey.of_kind(Kind::Map).next().is_none() {
-        found.push(Finding::note("no map: commands need --map"));
+    if !has_map && survey.of_kind(Kind::Map).next().is_none() {
+        found.push(Finding::note(
+            "no map: commands need --map, and doctor compares scans with it",
+        ));
     }
     found
 }

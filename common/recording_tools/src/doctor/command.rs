@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::checks;
 use super::finding::{Finding, Severity};
+use super::located;
 use super::survey::Survey;
 use crate::RecordingToolsError;
 
@@ -24,6 +25,11 @@ pub struct Config {
     /// folders, or .db3)
     #[arg(required = true, value_name = "FILE")]
     recordings: Vec<PathBuf>,
+
+    /// The map to compare scans with, a YAML file as map_server reads it, or another
+    /// recording that holds one [default: in the recording]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
 
     #[command(flatten)]
     topics: TopicOptions,
@@ -45,11 +51,16 @@ struct Report {
 /// # Errors
 /// A file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    let map = config.map.as_ref().map(|file| {
+        let options = located::options().with_map(file);
+        options.load_map(&config.recordings)
+    });
+    let map = map.transpose()?.flatten();
     let mut worst = Severity::Note;
     for path in &config.recordings {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
-        let findings = checks::all(&recording, &Survey::of(&recording));
+        let findings = checks::all(&recording, &Survey::of(&recording), map.as_ref());
         let severity = findings.iter().map(|finding| finding.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));
         let report = Report {

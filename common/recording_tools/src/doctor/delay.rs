@@ -1,37 +1,31 @@
 //! Whether the clocks of odometry and laser agree: scans are located, and how the laser
 //! moved is compared with what the odometry says.
 
-use clap::Parser;
 use engine::motion::{Motion, Sighting};
 use geometry::Pose;
-use offline::{Options, Session, each_odometry};
+use offline::each_odometry;
 use recording::{Kind, Recording};
 
 use super::finding::Finding;
+use super::located::{Located, LocatedScan};
 use super::survey::{Seen, Survey};
 use crate::RecordingToolsError;
-
-/// Scans that are located at most: a minute of a laser of 8 Hz, seconds of computing.
-const MAX_SCANS: usize = 500;
 
 /// A difference is worth a note from here on, seconds: a robot that turns by a radian a
 /// second is off by a degree then.
 const WORTH_A_NOTE_S: f64 = 0.02;
 
-/// How scans are taken: as they are, for the motion is what is asked for.
-#[derive(Debug, Parser)]
-struct Line {
-    #[command(flatten)]
-    options: Options,
-}
-
 /// Whether the odometry's stamps fit those of the scans.
-pub(super) fn odometry_delay(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+pub(super) fn odometry_delay(
+    recording: &Recording,
+    survey: &Survey,
+    located: &Located,
+) -> Vec<Finding> {
     let scans = survey.of_kind(Kind::Scan).map(|(_, seen)| seen);
     let usual_period_s = scans
         .filter_map(Seen::usual_step_s)
         .fold(WORTH_A_NOTE_S, f64::max);
-    let found = estimate(recording, usual_period_s).ok().flatten();
+    let found = estimate(recording, located, usual_period_s).ok().flatten();
     let note = found.map(|delay_s| {
         let way = if delay_s > 0.0 {
             "leads"
@@ -55,42 +49,27 @@ pub(super) fn odometry_delay(recording: &Recording, survey: &Survey) -> Vec<Find
 /// The recording has no map, or cannot be read: that is said elsewhere.
 fn estimate(
     recording: &Recording,
+    located: &Located,
     usual_period_s: f64,
 ) -> Result<Option<f64>, RecordingToolsError> {
     let Some(topic) = recording.topic(Kind::Odometry)? else {
         return Ok(None);
     };
-    let options = Line::parse_from(["doctor", "--deskew", "false"]).options;
-    let mut session = Session::open(recording, &options, None)?;
-    let mut sightings = Vec::new();
-    let mut laser = None;
-    let mut worth_a_note_s = WORTH_A_NOTE_S;
-    for _ in 0..MAX_SCANS {
-        let Some(scan) = session.scans.next() else {
-            break;
-        };
-        let Ok(scan) = scan else {
-            continue;
-        };
-        if scan.message.time_increment == 0.0 {
-            worth_a_note_s = usual_period_s;
-        }
-        let reply = session.ask(&scan)?;
-        let Ok(answer) = reply.answer else {
-            continue;
-        };
-        // One in a wrong place is outvoted by the others.
-        if let Some(best) = answer.places.places.first() {
-            sightings.push(Sighting {
-                at_ns: scan.stamp_ns,
-                map_from_laser: best.map_from_laser,
-            });
-        }
-        laser.get_or_insert((scan.frame().to_owned(), scan.base_from_laser));
-    }
-    let Some((frame, mount)) = laser else {
+    let Some(first) = located.scans.first() else {
         return Ok(None);
     };
+    let (frame, mount) = (first.scan.frame(), first.scan.base_from_laser);
+    let is_timed = |found: &LocatedScan| found.scan.message.time_increment != 0.0;
+    let worth_a_note_s = match located.scans.iter().all(is_timed) {
+        true => WORTH_A_NOTE_S,
+        false => usual_period_s,
+    };
+    // A scan in a wrong place is outvoted by the others.
+    let sightings = located.scans.iter().map(|found| Sighting {
+        at_ns: found.scan.stamp_ns,
+        map_from_laser: found.map_from_laser,
+    });
+    let sightings: Vec<Sighting> = sightings.collect();
     let mut motion = Motion::keeping(usize::MAX);
     let mut child_from_laser = mount.unwrap_or_default();
     each_odometry(recording, &topic, |odometry| {

@@ -2,13 +2,16 @@
 //!
 //! `finding` is what can be said, `survey` gathers what is looked at in one
 //! pass over the messages, and `checks` judges it; `drive` matches scans without a map,
-//! and `sensors` compares that with the odometry. Nothing is repaired.
+//! and `sensors` compares that with the odometry; `located` locates scans on the map, and
+//! `map_fit` and `delay` compare that with the map and the odometry. Nothing is repaired.
 
 mod checks;
 mod command;
 mod delay;
 mod drive;
 mod finding;
+mod located;
+mod map_fit;
 mod sensors;
 mod survey;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use ::map::OccupancyGrid;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
 
@@ -12,6 +13,10 @@ use super::survey::Survey;
 const CORRIDOR: &str = "../../recordings/malaga_corridor/recording.mcap";
 
 fn findings(change: impl Fn(&mut Message)) -> Vec<Finding> {
+    findings_on(None, change)
+}
+
+fn findings_on(map: Option<&OccupancyGrid>, change: impl Fn(&mut Message)) -> Vec<Finding> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(CORRIDOR);
     let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
     for record in Recording::open(&path).unwrap().records() {
@@ -22,12 +27,17 @@ fn findings(change: impl Fn(&mut Message)) -> Vec<Finding> {
     }
     let bytes = writer.finish().unwrap().into_inner();
     let changed = Recording::from_bytes("changed", bytes).unwrap();
-    checks::all(&changed, &Survey::of(&changed))
+    checks::all(&changed, &Survey::of(&changed), map)
 }
 
 #[track_caller]
 fn check(words: &str, change: impl Fn(&mut Message)) {
-    let found = findings(change);
+    check_on(None, words, change);
+}
+
+#[track_caller]
+fn check_on(map: Option<&OccupancyGrid>, words: &str, change: impl Fn(&mut Message)) {
+    let found = findings_on(map, change);
     let is_problem = |finding: &Finding| {
         finding.severity == Severity::Problem && finding.finding.contains(words)
     };
@@ -82,6 +92,34 @@ fn a_mount_that_is_turned_or_far_away_is_named() {
             let half = std::f64::consts::FRAC_1_SQRT_2;
             let rotation = &mut message.transforms[0].transform.rotation;
             (rotation.z, rotation.w) = (half, half);
+        }
+    });
+}
+
+#[test]
+fn a_map_of_another_scale_or_place_is_named() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../recordings");
+    let corridor = ::map::load(root.join("malaga_corridor/map.yaml")).unwrap();
+    for (scale, words) in [
+        (1.025, "about 3 % larger than what the laser reads"),
+        (0.96, "about 4 % smaller than what the laser reads"),
+    ] {
+        let scaled = OccupancyGrid {
+            resolution_m: corridor.resolution_m * scale,
+            ..corridor.clone()
+        };
+        check_on(Some(&scaled), words, |_| ());
+    }
+    let courtyard = ::map::load(root.join("malaga_courtyard/map.yaml")).unwrap();
+    check_on(Some(&courtyard), "none of 37 scans has a place", |_| ());
+}
+
+#[test]
+fn a_base_in_walls_is_named() {
+    // The corridor is 3 m wide, and the laser 0.78 m ahead of the base.
+    check("stands in a wall or off the map at", |message| {
+        if let Message::StaticTransforms(message) = message {
+            message.transforms[0].transform.translation.y += 9.0;
         }
     });
 }

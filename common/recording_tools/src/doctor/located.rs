@@ -1,0 +1,119 @@
+//! The scans of a recording, located on its map one by one.
+
+use clap::Parser;
+use geometry::Pose;
+use map::OccupancyGrid;
+use messages::Verdict;
+use offline::{OfflineError, Options, Session, TakenScan};
+use recording::Recording;
+
+use crate::RecordingToolsError;
+
+/// Scans that are located at most: a minute of a laser of 8 Hz, seconds of computing.
+const MAX_SCANS: usize = 500;
+
+/// Scans that are compared with the map at several scales, spread over the others.
+const SCALED_SCANS: usize = 12;
+
+/// How many times as far as they say readings are taken to be.
+pub(super) const SCALES: [f32; 11] = [
+    0.9, 0.92, 0.94, 0.96, 0.98, 1.0, 1.02, 1.04, 1.06, 1.08, 1.1,
+];
+
+/// Index of the readings as they are in [`SCALES`].
+pub(super) const AS_MEASURED: usize = 5;
+
+/// Scans are taken as they are, for the motion within them is not known yet.
+#[derive(Debug, Parser)]
+struct Line {
+    #[command(flatten)]
+    options: Options,
+}
+
+/// The options of tools with their defaults, but for [`Line`].
+pub(super) fn options() -> Options {
+    Line::parse_from(["doctor", "--deskew", "false"]).options
+}
+
+/// The scans of a recording that have a place on its map.
+pub(super) struct Located {
+    pub(super) scans: Vec<LocatedScan>,
+    /// Of some scans, how well the best place fits at each of [`SCALES`].
+    pub(super) by_scale: Vec<[f64; SCALES.len()]>,
+    /// The map of the last scan.
+    pub(super) map: OccupancyGrid,
+}
+
+/// A scan with its best place.
+pub(super) struct LocatedScan {
+    pub(super) scan: TakenScan,
+    pub(super) map_from_laser: Pose,
+    pub(super) is_unique: bool,
+    score: f64,
+}
+
+impl Located {
+    /// # Errors
+    /// The recording has no map, or cannot be read: that is said elsewhere.
+    pub(super) fn of(
+        recording: &Recording,
+        map: Option<&OccupancyGrid>,
+    ) -> Result<Self, RecordingToolsError> {
+        let mut session = Session::open(recording, &options(), map)?;
+        let total = MAX_SCANS.min(session.scans.total() as usize);
+        let every = total.div_ceil(SCALED_SCANS).max(1);
+        let (mut scans, mut by_scale) = (Vec::new(), Vec::new());
+        for i in 0..MAX_SCANS {
+            let Some(scan) = session.scans.next() else {
+                break;
+            };
+            let Ok(scan) = scan else {
+                continue;
+            };
+            let Some(found) = locate(&mut session, scan)? else {
+                continue;
+            };
+            if i % every == every / 2 {
+                by_scale.push(scores(&mut session, &found.scan)?);
+            }
+            scans.push(found);
+        }
+        Ok(Located {
+            scans,
+            by_scale,
+            map: session.map()?.clone(),
+        })
+    }
+}
+
+fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedScan>, OfflineError> {
+    let Ok(answer) = session.ask(&scan)?.answer else {
+        return Ok(None);
+    };
+    let is_unique = answer.places.verdict == Verdict::Unique;
+    Ok(answer.places.places.first().map(|best| LocatedScan {
+        map_from_laser: best.map_from_laser,
+        is_unique,
+        score: best.score,
+        scan,
+    }))
+}
+
+/// How well a scan fits at each scale.
+fn scores(
+    session: &mut Session<'_>,
+    scan: &TakenScan,
+) -> Result<[f64; SCALES.len()], OfflineError> {
+    let mut scores = [0.0; SCALES.len()];
+    for (score, scale) in scores.iter_mut().zip(SCALES) {
+        let mut scaled = scan.clone();
+        scaled.message.range_max *= scale;
+        scaled
+            .message
+            .ranges
+            .iter_mut()
+            .for_each(|range| *range *= scale);
+        *score = locate(session, scaled)?.map_or(0.0, |found| found.score);
+    }
+    Ok(scores)
+}
