@@ -6,5 +6,7 @@ mod error;
 pub mod evaluate;
 pub mod locate;
 mod sequence;
+mod text;
+mod trust;
 
 pub use error::EvaluationError;

@@ -124,7 +124,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ),
     (
         "Probabilities of a file",
-        &[("common/evaluation/src/evaluate/trust.rs", "Said")],
+        &[("common/evaluation/src/trust.rs", "Said")],
     ),
     (
         "`backcast evaluate --sequence --json`",

@@ -13,10 +13,10 @@ use recording::GroundTruth;
 use super::judge::{Effort, Evaluation, Judge};
 use super::limits::Limits;
 use super::memory;
-use super::table::{self, Table};
-use super::trust::Trust;
+use super::table::Table;
 use crate::EvaluationError;
 use crate::sequence::{self, SequenceOptions};
+use crate::trust::Trust;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -115,7 +115,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
         }
     }
     if !config.json && header.is_none() {
-        stdout::print(&format!("\n{}", table::probabilities(&trust)))?;
+        stdout::print(&format!("\n{trust}"))?;
     }
     Ok(code)
 }

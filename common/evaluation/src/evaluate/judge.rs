@@ -1,12 +1,12 @@
 //! From answers and true poses to the figures of one file. Pure.
 
-use engine::peaks::Places;
+use engine::peaks::{Place, Places};
 use geometry::Pose;
 use messages::Verdict;
 use serde::Serialize;
 use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
-use super::trust::{self, Said, Trust};
+use crate::trust::{Said, Trust};
 
 /// Collects what is known about one file.
 pub(super) struct Judge {
@@ -122,7 +122,7 @@ impl Judge {
         }
         self.trust.add(place.probability, is_right);
         if found.verdict == Verdict::Unique {
-            self.in_ellipse += u64::from(trust::is_in_ellipse(place, truth));
+            self.in_ellipse += u64::from(is_in_ellipse(place, truth));
         }
     }
 
@@ -181,6 +181,13 @@ impl Evaluation {
     pub(super) fn json(&self) -> String {
         json::object(self)
     }
+}
+
+/// Whether a position lies in the ellipse that is to hold 95 % of the truths.
+fn is_in_ellipse(place: &Place, truth: Pose) -> bool {
+    let pose = place.map_from_laser;
+    let off = (truth.x - pose.x, truth.y - pose.y);
+    statistics::holds(place.covariance, off)
 }
 
 #[cfg(test)]

@@ -10,6 +10,5 @@ mod judge;
 mod limits;
 mod memory;
 mod table;
-mod trust;
 
 pub use command::{Config, NOTES, run};

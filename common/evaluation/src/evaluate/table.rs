@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::judge::Evaluation;
-use super::trust::Trust;
+use crate::text::{number, percent, share};
 
 /// The columns behind the file's name, and how wide each is.
 const COLUMNS: [(&str, usize); 18] = [
@@ -88,30 +88,6 @@ impl Table {
     }
 }
 
-/// What was said of the answers to all files, and how often it was right: lines,
-/// the highest probability first, none for a range without answers.
-pub(super) fn probabilities(trust: &Trust) -> String {
-    let mut lines = String::from("probability  answers  mean %  right %\n");
-    for said in trust.said().iter().rev().filter(|said| said.answers > 0) {
-        let range = format!("{:.2}..{:.2}", said.from, said.to);
-        let (mean, right) = (percent(said.mean), percent(share(said.right, said.answers)));
-        lines += &format!("{range:>11}  {:>7}  {mean:>6}  {right:>7}\n", said.answers);
-    }
-    lines
-}
-
-fn share(count: u64, of: u64) -> Option<f64> {
-    (of > 0).then(|| count as f64 / of as f64)
-}
-
-fn percent(share: Option<f64>) -> String {
-    number(share.map(|share| 100.0 * share), 1)
-}
-
-fn number(value: Option<f64>, decimals: usize) -> String {
-    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::judge;
@@ -127,23 +103,6 @@ mod tests {
             "
 recording          cells   scans  truths  50cm10deg %  20cm3deg %  top16 %  unique  wrong  ellipse %    cpu ms       p90       max  prepare ms  peak MB  error m     p90  error deg     p90
 r.mcap               720       9       5         40.0        20.0     60.0       3      1       33.3       2.0       4.0       4.0          12       34    0.100   0.300       0.10    0.30
-"
-        );
-    }
-
-    #[test]
-    fn ranges_without_answers_have_no_line() {
-        let mut trust = Trust::default();
-        for (probability, is_right) in [(0.5, false), (1.0, true), (0.98, true), (0.97, false)] {
-            trust.add(probability, is_right);
-        }
-        assert_eq!(
-            format!("\n{}", probabilities(&trust)),
-            "
-probability  answers  mean %  right %
- 0.99..1.00        1   100.0    100.0
- 0.95..0.99        2    97.5     50.0
- 0.40..0.60        1    50.0      0.0
 "
         );
     }

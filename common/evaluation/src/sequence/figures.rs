@@ -9,6 +9,7 @@ use super::jumps::Jumps;
 use super::limits::Reached;
 use super::outages::Outages;
 use super::starts::Starts;
+use crate::text::{number, percent, share};
 
 /// Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -73,10 +74,6 @@ impl Times {
     }
 }
 
-fn share(part: u64, of: u64) -> Option<f64> {
-    (of > 0).then(|| part as f64 / of as f64)
-}
-
 fn after(parts: [u64; 5], of: [u64; 5]) -> After {
     let [one, two, five, ten, twenty] = std::array::from_fn(|i| share(parts[i], of[i]));
     After {
@@ -102,7 +99,7 @@ impl Figures {
             right: after(starts.right, starts.judged),
             not_yet: after(starts.not_yet, starts.judged),
             wrong_starts: starts.wrong.len() as u64,
-            wrong_scans: starts.tally.with(followed.tally).wrong,
+            wrong_scans: starts.tally.with(&followed.tally).wrong,
             losses: followed.losses.len(),
             rms_m: followed.rms_m,
             rms_deg: followed.rms_deg,
@@ -141,10 +138,6 @@ impl Figures {
 
     /// As lines to read.
     pub(super) fn text(&self) -> String {
-        let percent =
-            |share: Option<f64>| share.map_or("–".into(), |s| format!("{:.1}", 100.0 * s));
-        let number =
-            |n: Option<f64>, digits: usize| n.map_or("–".into(), |n| format!("{n:.digits$}"));
         let row = |after: &After| {
             let After {
                 one,
@@ -159,7 +152,7 @@ impl Figures {
                 .concat()
         };
         let spread = |spread: Option<Spread>, digits: usize| {
-            spread.map_or("–".into(), |Spread { rmse, median, max }| {
+            spread.map_or("-".into(), |Spread { rmse, median, max }| {
                 format!("{rmse:.digits$} / {median:.digits$} / {max:.digits$}")
             })
         };

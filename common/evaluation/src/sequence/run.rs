@@ -7,6 +7,7 @@ use offline::{World, cpu};
 
 use super::drive::Moment;
 use crate::EvaluationError;
+use crate::trust::Trust;
 
 /// A tracker on the way.
 pub(super) struct Run<'a> {
@@ -31,12 +32,13 @@ pub(super) struct Said {
 }
 
 /// Scans whose truth is known.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Tally {
     pub(super) scans: u64,
     /// Those of them that were Unique, and those of these that were wrong.
     pub(super) unique: u64,
     pub(super) wrong: u64,
+    pub(super) trust: Trust,
 }
 
 impl Tally {
@@ -45,15 +47,18 @@ impl Tally {
         self.scans += u64::from(is_judged);
         self.unique += u64::from(is_judged && said.is_unique());
         self.wrong += u64::from(said.is_wrong());
+        if said.off.is_some() {
+            self.trust.add(said.report.probability, !said.is_off());
+        }
     }
 
     /// Of both.
-    pub(super) fn with(self, other: Self) -> Self {
-        Tally {
-            scans: self.scans + other.scans,
-            unique: self.unique + other.unique,
-            wrong: self.wrong + other.wrong,
-        }
+    pub(super) fn with(mut self, other: &Self) -> Self {
+        self.scans += other.scans;
+        self.unique += other.unique;
+        self.wrong += other.wrong;
+        self.trust.merge(&other.trust);
+        self
     }
 }
 

@@ -16,6 +16,7 @@ use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};
 use super::variants::{Stress, Variant};
 use crate::EvaluationError;
+use crate::trust::Trust;
 
 /// Evaluates the variants of one file after another. A file that cannot be evaluated is
 /// reported on standard error, and the next one follows.
@@ -31,6 +32,7 @@ pub(in super::super) fn evaluate(
 ) -> Result<ExitCode, EvaluationError> {
     let variants = stress.variants();
     let mut code = ExitCode::SUCCESS;
+    let mut trust = Trust::default();
     for (i, bag) in bags.iter().enumerate() {
         let next = (bags.len() > 1).then(|| &bags[(i + 1) % bags.len()]);
         let other = sequence.other_map.as_ref().or(next);
@@ -44,6 +46,7 @@ pub(in super::super) fn evaluate(
             (maps.0, maps.1.as_ref()),
             (options, sequence),
             &variants,
+            &mut trust,
         ) {
             Ok(true) => {}
             Ok(false) => code = ExitCode::FAILURE,
@@ -53,6 +56,9 @@ pub(in super::super) fn evaluate(
                 code = ExitCode::FAILURE;
             }
         }
+    }
+    if !json {
+        stdout::print(&format!("\n{trust}"))?;
     }
     Ok(code)
 }
@@ -64,6 +70,7 @@ fn one(
     (map, other_map): (Option<&OccupancyGrid>, Option<&OccupancyGrid>),
     (options, sequence): (&Options, &SequenceOptions),
     variants: &[&'static Variant],
+    trust: &mut Trust,
 ) -> Result<bool, EvaluationError> {
     let (recording, truths) = drive::open(bag, options)?;
     let map = map.cloned().map_or_else(|| map_in(&recording), Ok)?;
@@ -99,7 +106,10 @@ fn one(
                 continue;
             }
         };
-        let figures = Figures::new((name.clone(), variant.name), &trial.starts, &trial.followed);
+        let tally = trial.starts.tally.with(&trial.followed.tally);
+        trust.merge(&tally.trust);
+        let judged = (&trial.starts, &trial.followed);
+        let figures = Figures::new((name.clone(), variant.name), judged, tally);
         let line = match json {
             true => format!("{}\n", figures.json()),
             false => figures.row(),

@@ -5,6 +5,8 @@ use serde::Serialize;
 use super::super::follow::Followed;
 use super::super::run::Tally;
 use super::super::starts::Starts;
+use crate::text::{number, percent, share};
+use crate::trust::Said;
 
 /// Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +22,8 @@ pub(super) struct Figures {
     pub(super) losses: u64,
     pub(super) right: After,
     pub(super) rms_m: Option<f64>,
+    /// The probabilities of the poses, and how many of those were within 1 m and 25°.
+    pub(super) probabilities: Vec<Said>,
 }
 
 /// Shares of the starts after this many metres.
@@ -34,18 +38,16 @@ pub(super) struct After {
 impl Figures {
     pub(super) fn new(
         (bag, variant): (String, &'static str),
-        starts: &Starts,
-        followed: &Followed,
+        (starts, followed): (&Starts, &Followed),
+        tally: Tally,
     ) -> Self {
         let Tally {
             scans,
             unique,
             wrong,
-        } = starts.tally.with(followed.tally);
-        let after = |i: usize| {
-            let (right, judged) = (starts.right[i], starts.judged[i]);
-            (judged > 0).then(|| right as f64 / judged as f64)
-        };
+            trust,
+        } = tally;
+        let after = |i: usize| share(starts.right[i], starts.judged[i]);
         Figures {
             bag,
             variant,
@@ -60,6 +62,7 @@ impl Figures {
                 ten: after(3),
             },
             rms_m: followed.rms_m,
+            probabilities: trust.said().to_vec(),
         }
     }
 
@@ -87,10 +90,6 @@ impl Figures {
 
     /// As a row of a table.
     pub(super) fn row(&self) -> String {
-        let percent = |share: Option<f64>| {
-            share.map_or("–".into(), |share| format!("{:.1}", 100.0 * share))
-        };
-        let rms = self.rms_m.map_or("–".into(), |m| format!("{m:.3}"));
         format!(
             "  {:<22}{:>7}{:>7}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n",
             self.variant,
@@ -102,7 +101,7 @@ impl Figures {
             self.losses,
             percent(self.right.five),
             percent(self.right.ten),
-            rms,
+            number(self.rms_m, 3),
         )
     }
 }

@@ -1,0 +1,14 @@
+//! Numbers as tables print them; a dash for what is not known.
+
+pub(crate) fn share(count: u64, of: u64) -> Option<f64> {
+    (of > 0).then(|| count as f64 / of as f64)
+}
+
+/// In per cent, with one decimal.
+pub(crate) fn percent(share: Option<f64>) -> String {
+    number(share.map(|share| 100.0 * share), 1)
+}
+
+pub(crate) fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
+}

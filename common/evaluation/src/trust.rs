@@ -1,0 +1,105 @@
+//! Whether the probabilities of answers are true. Pure.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::text::{percent, share};
+
+/// Where one range of probabilities ends and the next begins: closer where a user
+/// decides, near 1.
+const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
+
+/// Answers whose best place had a probability in one range.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct Said {
+    /// The range; its upper end belongs to it.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// This many answers.
+    pub(crate) answers: u64,
+    /// Those of them that were right.
+    pub(crate) right: u64,
+    /// The mean of their probabilities.
+    pub(crate) mean: Option<f64>,
+}
+
+/// Collects what answers say of themselves, and how it turned out.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Trust {
+    answers: [u64; ENDS.len()],
+    right: [u64; ENDS.len()],
+    /// Sums of probabilities.
+    said: [f64; ENDS.len()],
+}
+
+impl Trust {
+    /// Takes note of an answer's best place.
+    pub(crate) fn add(&mut self, probability: f64, is_right: bool) {
+        // Rounded sums may be a trifle more than 1.
+        let i = ENDS.iter().position(|&end| probability <= end);
+        let i = i.unwrap_or(ENDS.len() - 1);
+        self.answers[i] += 1;
+        self.right[i] += u64::from(is_right);
+        self.said[i] += probability;
+    }
+
+    /// Takes over what another has collected.
+    pub(crate) fn merge(&mut self, other: &Trust) {
+        for i in 0..ENDS.len() {
+            self.answers[i] += other.answers[i];
+            self.right[i] += other.right[i];
+            self.said[i] += other.said[i];
+        }
+    }
+
+    /// What was said in each range, the lowest first.
+    pub(crate) fn said(&self) -> [Said; ENDS.len()] {
+        std::array::from_fn(|i| {
+            let answers = self.answers[i];
+            Said {
+                from: if i == 0 { 0.0 } else { ENDS[i - 1] },
+                to: ENDS[i],
+                answers,
+                right: self.right[i],
+                mean: (answers > 0).then(|| self.said[i] / answers as f64),
+            }
+        })
+    }
+}
+
+/// A table of the ranges that have answers, the highest probability first.
+impl fmt::Display for Trust {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "probability  answers  mean %  right %")?;
+        for said in self.said().iter().rev().filter(|said| said.answers > 0) {
+            let range = format!("{:.2}..{:.2}", said.from, said.to);
+            let (mean, right) = (percent(said.mean), percent(share(said.right, said.answers)));
+            let answers = said.answers;
+            writeln!(f, "{range:>11}  {answers:>7}  {mean:>6}  {right:>7}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_without_answers_have_no_line() {
+        let mut trust = Trust::default();
+        for (probability, is_right) in [(0.5, false), (1.0, true), (0.98, true), (0.97, false)] {
+            trust.add(probability, is_right);
+        }
+        assert_eq!(
+            format!("\n{trust}"),
+            "
+probability  answers  mean %  right %
+ 0.99..1.00        1   100.0    100.0
+ 0.95..0.99        2    97.5     50.0
+ 0.40..0.60        1    50.0      0.0
+"
+        );
+    }
+}
