@@ -16,6 +16,7 @@ use recording::{Kind, Recording};
 
 use crate::InitError;
 use crate::descriptor::{Served, Source, descriptor_of};
+use crate::robot::{self, Robot};
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -23,10 +24,11 @@ Examples:
   backcast init --laser 192.168.0.1 --map map.yaml --mount 0.2,0,0 --out graph.yaml
   backcast init --laser 192.168.0.1 --maps building/ --out graph.yaml
   backcast init --serial /dev/ttyUSB0 --map map.yaml --out graph.yaml
+  backcast init --ros2 --out graph.yaml
   backcast init --ros2 tcp/192.168.0.5:7447 --out graph.yaml
   backcast init --replay drive.mcap --map map.yaml --out graph.yaml
 
-Exit codes: 0 written, 1 the laser, the map or the recording cannot be used, 2 wrong use";
+Exit codes: 0 written, 1 the laser, the robot, the map or the recording cannot be used, 2 wrong use";
 
 /// What `backcast init` takes.
 #[derive(Debug, clap::Args)]
@@ -41,8 +43,9 @@ pub struct Config {
     #[arg(long, value_name = "DEVICE", group = "source")]
     serial: Option<String>,
 
-    /// A ROS 2 robot that speaks rmw_zenoh: its router, as tcp/192.168.0.5:7447; without an
-    /// address the graph is the robot's router
+    /// A ROS 2 robot. Its nodes are looked for on DDS and Zenoh, or by its router of Zenoh
+    /// alone, as tcp/192.168.0.5:7447; if none is found, it is taken to use rmw_zenoh with
+    /// this graph as its router
     #[arg(long, value_name = "ROUTER", group = "source", num_args = 0..=1)]
     ros2: Option<Option<String>>,
 
@@ -64,7 +67,7 @@ pub struct Config {
     #[arg(long, value_name = "X,Y,YAW_DEG", allow_hyphen_values = true)]
     mount: Option<String>,
 
-    /// Write without asking the laser
+    /// Write without asking the laser or looking for the robot
     #[arg(long)]
     no_probe: bool,
 
@@ -141,8 +144,20 @@ fn source(config: &Config) -> Result<Source, InitError> {
         return Ok(Source::Laser { options, mount });
     }
     if let Some(router) = &config.ros2 {
+        let mut seen = Robot::default();
+        if !config.no_probe {
+            say("looking for the robot's nodes");
+            seen = robot::look(router.as_deref())?;
+            let is_map_needed =
+                |said: &&String| !has_map || seen.has_map || !said.contains("--map");
+            seen.said
+                .iter()
+                .filter(is_map_needed)
+                .for_each(|said| say(said));
+        }
         return Ok(Source::Ros2 {
             router: router.clone(),
+            options: seen.options,
             mount,
             brings_map: !has_map,
         });

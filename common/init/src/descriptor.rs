@@ -14,6 +14,8 @@ pub(crate) enum Source {
     },
     /// A ROS 2 robot.
     Ros2 {
+        /// Options that name its middleware and its topics.
+        options: Vec<String>,
         /// Its router's address; none where the gateway is the router.
         router: Option<String>,
         /// `X,Y,YAW_DEG`.
@@ -44,7 +46,7 @@ impl Source {
             Source::Laser { options, .. } => format!("a laser (lms_reader {})", words(options)),
             Source::Ros2 { router, .. } => match router {
                 Some(router) => format!("a ROS 2 robot with the router {router}"),
-                None => "a ROS 2 robot that connects to this graph".to_owned(),
+                None => "a ROS 2 robot".to_owned(),
             },
             Source::Recording { file, .. } => format!("the recording {file}"),
         }
@@ -96,10 +98,12 @@ impl Source {
             ),
             Source::Ros2 {
                 router,
+                options,
                 mount: at,
                 brings_map,
             } => {
                 let router = router.as_deref().map(|r| format!(" --connect {}", word(r)));
+                let options = options.iter().map(|option| format!(" {}", word(option)));
                 let (brought, output) = match brings_map {
                     true => (",map", ", map"),
                     false => ("", ""),
@@ -116,7 +120,8 @@ impl Source {
     outputs: [scan, odometry{output}]
 {RESTARTS}",
                     args = quoted(&format!(
-                        "--bring scan,odometry{brought}{}{}",
+                        "--bring scan,odometry{brought}{}{}{}",
+                        options.collect::<String>(),
                         router.unwrap_or_default(),
                         mount(at)
                     )),
@@ -276,7 +281,7 @@ fn word(text: &str) -> String {
 }
 
 /// A text of YAML on one line.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
@@ -306,6 +311,9 @@ mod tests {
             mount,
         };
         let robot = |router, brings_map| Source::Ros2 {
+            options: ["--rmw", "dds", "--scan", "/r2/scan"]
+                .map(str::to_owned)
+                .to_vec(),
             router,
             mount: mount.clone(),
             brings_map,

@@ -23,6 +23,18 @@ pub enum InitError {
         /// Why not.
         source: ProbeError,
     },
+    /// The robot cannot be looked at.
+    #[error("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")]
+    Robot {
+        /// Why not.
+        reason: String,
+    },
+    /// The robot's messages cannot be recorded.
+    #[error("the robot cannot be recorded: {reason}")]
+    Record {
+        /// Why not.
+        reason: String,
+    },
     /// The map cannot be used.
     #[error(transparent)]
     Map(#[from] MapError),

@@ -24,6 +24,11 @@ pub(crate) fn find(path: &str, folder: &Path) -> Option<String> {
     found.next()?.into_os_string().into_string().ok()
 }
 
+/// The executable of a node, by its name, beside the command or where it is installed.
+pub fn node(name: &str) -> Option<PathBuf> {
+    find(name, Path::new("/")).map(PathBuf::from)
+}
+
 /// Where a bare name is looked for.
 fn folders() -> impl Iterator<Item = PathBuf> {
     let nodes = prefix().map(|prefix| prefix.join("lib/backcast"));

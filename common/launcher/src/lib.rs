@@ -10,3 +10,4 @@ mod installed;
 pub mod run;
 
 pub use error::LauncherError;
+pub use installed::node;

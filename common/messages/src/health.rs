@@ -59,6 +59,18 @@ pub enum NodeState {
 }
 
 impl NodeState {
+    /// As users read it.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Ready => "ready",
+            Self::Degraded => "degraded",
+            Self::Stopped => "stopped",
+            Self::Busy => "busy",
+        }
+    }
+
     /// The state with this number, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {

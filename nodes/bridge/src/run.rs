@@ -12,8 +12,9 @@ use zenoh_session::Report;
 use crate::alive::Alive;
 use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
+use crate::plain::Plain;
 use crate::ports::Ports;
-use crate::{BridgeError, Config};
+use crate::{BridgeError, Config, json};
 
 /// How long a late joiner of the graph, an image that somebody beyond the bridge
 /// wants, and a silent node may wait.
@@ -50,7 +51,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
 }
 
 /// One topic, out or in.
-trait Route {
+pub(crate) trait Route {
     fn input(&self) -> Option<Rc<dyn Input>>;
     fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;
 }
@@ -106,7 +107,18 @@ fn ways(
         };
         network_payload::by_name(name, open)
     });
-    out.chain(into).collect()
+    let mut ways: Vec<Box<dyn Route>> = out.chain(into).collect::<Result<_, _>>()?;
+    let goes_out = |name: &str| ports.out.iter().any(|out| out == name);
+    let (ends, rates) = ((graph, session), &config.rate);
+    if goes_out(topic::Tracked::NAME) {
+        let pose = Plain::<topic::Tracked>::open(ends, robot, rates, json::pose)?;
+        ways.push(Box::new(pose));
+    }
+    if goes_out(topic::Health::NAME) {
+        let health = Plain::<topic::Health>::open(ends, robot, rates, json::health)?;
+        ways.push(Box::new(health));
+    }
+    Ok(ways)
 }
 
 struct Outward<'a> {

@@ -21,6 +21,11 @@ pub struct Config {
     #[arg(long, value_name = "MIDDLEWARE")]
     pub rmw: Option<Rmw>,
 
+    /// Prints the scans, maps, odometry and transforms that nodes publish, found within so many
+    /// seconds on each middleware or on that of --rmw: objects of JSON, a line each; 0.1 to 60
+    #[arg(long, value_name = "SECONDS", value_parser = looking)]
+    pub look: Option<f64>,
+
     /// The robot's domain, 0 to 232 [default: ROS_DOMAIN_ID, else 0]
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(..=MAX_DOMAIN))]
     pub domain: Option<u32>,
@@ -290,6 +295,13 @@ fn frame(text: &str) -> Result<String, String> {
     }
     let (found, most) = (text.len(), FrameName::CAPACITY);
     Err(format!("it has {found} bytes, allowed are 1 to {most}"))
+}
+
+fn looking(text: &str) -> Result<f64, String> {
+    match numbers(text) {
+        Some([seconds]) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("expected are 0.1 to 60 seconds".into()),
+    }
 }
 
 fn ahead(text: &str) -> Result<f64, String> {

@@ -11,6 +11,16 @@ pub enum Rmw {
     Zenoh,
 }
 
+impl Rmw {
+    /// As `--rmw` has it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Rmw::Dds => "dds",
+            Rmw::Zenoh => "zenoh",
+        }
+    }
+}
+
 /// The middleware by the option `--rmw`, else by `RMW_IMPLEMENTATION`, and why it is that.
 pub(crate) fn chosen(option: Option<Rmw>, implementation: &str) -> (Rmw, String) {
     if let Some(rmw) = option {

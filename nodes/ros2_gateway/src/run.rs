@@ -19,7 +19,7 @@ use crate::role::Role;
 use crate::seeding::Seeding;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
-use crate::{Config, GatewayError};
+use crate::{Config, GatewayError, look};
 
 /// How long a late joiner of the graph may wait for the map.
 const TICK: Duration = Duration::from_millis(50);
@@ -30,6 +30,9 @@ const TICK: Duration = Duration::from_millis(50);
 /// If a name or Zenoh's configuration cannot be used, the session cannot be opened,
 /// or the graph fails. A robot that is not there is no error: it is waited for.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+    if let Some(seconds) = config.look {
+        return look::look(graph, config, seconds);
+    }
     match config.amcl.role {
         Role::Seed => seed(graph, config),
         Role::Amcl => amcl::run(graph, config, TICK),
@@ -167,6 +170,7 @@ impl Gateway {
                     tracing::info!(node, "subscribes to the initial pose");
                     self.seeding.greet();
                 }
+                Seen::Publisher { .. } => {}
                 Seen::Stranger(error) => report.refused(&error)?,
             }
         }

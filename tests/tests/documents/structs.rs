@@ -98,6 +98,8 @@ fn every_message_has_its_table() {
 /// The structs that are sent as JSON, each with the section that has its fields: those of
 /// several structs where they are sent as one object.
 const JSON: &[(&str, &[(&str, &str)])] = &[
+    ("`pose/json`", &[("nodes/bridge/src/json.rs", "Pose")]),
+    ("`health/json`", &[("nodes/bridge/src/json.rs", "Health")]),
     (
         "`backcast locate --json`",
         &[("common/evaluation/src/locate/object.rs", "Object")],

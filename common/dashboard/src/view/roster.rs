@@ -130,14 +130,9 @@ impl Entry {
             report.sent_hz = rate(header.sent, sent);
             self.base = (header.sent_ns, header.received, header.sent);
         }
-        report.state = match NodeState::from_code(header.state) {
-            Some(NodeState::Waiting) => "waiting",
-            Some(NodeState::Ready) => "ready",
-            Some(NodeState::Stopped) => "stopped",
-            Some(NodeState::Busy) => "busy",
-            // A state that this version does not know is worth a look.
-            Some(NodeState::Degraded) | None => "degraded",
-        };
+        // A state that this version does not know is worth a look.
+        let state = NodeState::from_code(header.state).unwrap_or(NodeState::Degraded);
+        report.state = state.as_str();
         report.received = header.received;
         report.sent = header.sent;
         report.dropped = header.dropped;

@@ -1,7 +1,8 @@
 //! The command `backcast doctor`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use command_line::{LOST_DATA, stdout};
 use offline::TopicOptions;
@@ -23,8 +24,24 @@ Exit codes: 0 nothing but notes, 1 there are problems, 2 wrong use, 3 data was l
 pub struct Config {
     /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
     /// folders, or .db3)
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "ros2", value_name = "FILE")]
     recordings: Vec<PathBuf>,
+
+    /// Check a live ROS 2 robot: its scans, odometry and map are recorded for so many seconds
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        num_args = 0..=1,
+        default_missing_value = "20",
+        conflicts_with = "recordings",
+        value_parser = clap::value_parser!(u16).range(1..=3600)
+    )]
+    ros2: Option<u16>,
+
+    /// With --ros2: the robot's router of Zenoh, as tcp/192.168.0.5:7447 [default: the robot
+    /// is looked for on DDS and Zenoh]
+    #[arg(long, value_name = "ROUTER", requires = "ros2")]
+    connect: Option<String>,
 
     /// The map to compare scans with, a YAML file as map_server reads it, or another
     /// recording that holds one [default: in the recording]
@@ -46,25 +63,64 @@ struct Report {
     findings: Vec<Finding>,
 }
 
+impl Config {
+    /// The router of a live robot that is to be recorded, if one is known, and for how long.
+    #[must_use]
+    pub fn live(&self) -> Option<(Option<&str>, Duration)> {
+        let seconds = u64::from(self.ros2?);
+        Some((self.connect.as_deref(), Duration::from_secs(seconds)))
+    }
+}
+
 /// Examines one file after another.
 ///
 /// # Errors
 /// A file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    examine(config, &config.recordings, &[])
+}
+
+/// Examines the recording of a live robot, whose faults that it does not show are in
+/// `warnings`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_on<'a>(
+    config: &Config,
+    recording: &Path,
+    warnings: impl IntoIterator<Item = &'a String>,
+) -> Result<ExitCode, RecordingToolsError> {
+    let warnings: Vec<Finding> = warnings.into_iter().map(Finding::problem).collect();
+    examine(config, &[recording.to_owned()], &warnings)
+}
+
+fn examine(
+    config: &Config,
+    recordings: &[PathBuf],
+    known: &[Finding],
+) -> Result<ExitCode, RecordingToolsError> {
     let map = config.map.as_ref().map(|file| {
         let options = located::options().with_map(file);
-        options.load_map(&config.recordings)
+        options.load_map(recordings)
     });
     let map = map.transpose()?.flatten();
     let mut worst = Severity::Note;
-    for path in &config.recordings {
+    for path in recordings {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
-        let findings = checks::all(&recording, &Survey::of(&recording), map.as_ref());
+        let mut findings = known.to_vec();
+        findings.extend(checks::all(
+            &recording,
+            &Survey::of(&recording),
+            map.as_ref(),
+        ));
         let severity = findings.iter().map(|finding| finding.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));
         let report = Report {
-            recording: path.display().to_string(),
+            recording: match config.ros2 {
+                Some(_) => "the robot".to_owned(),
+                None => path.display().to_string(),
+            },
             findings,
         };
         stdout::print(&match config.json {

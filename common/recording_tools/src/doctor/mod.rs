@@ -17,4 +17,4 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use command::{Config, NOTES, run};
+pub use command::{Config, NOTES, run, run_on};

@@ -71,10 +71,21 @@ impl OnRecordings {
             Self::Evaluate(config) => end(evaluate::run(config)),
             Self::Plot(config) => end(plots::run(config)),
             Self::Info(config) => end(info::run(config)),
-            Self::Doctor(config) => end(doctor::run(config)),
+            Self::Doctor(config) => doctor(config),
             Self::Convert(config) => end(convert::run(config)),
             Self::Regress(config) => end(regression::run(config)),
         }
+    }
+}
+
+/// Checks recordings, or a live robot by one that is made of it.
+fn doctor(config: &doctor::Config) -> ExitCode {
+    let Some((router, length)) = config.live() else {
+        return end(doctor::run(config));
+    };
+    match init::record(router, length) {
+        Ok(recorded) => end(doctor::run_on(config, &recorded.file, &recorded.warnings)),
+        Err(error) => end(Err(error)),
     }
 }
 

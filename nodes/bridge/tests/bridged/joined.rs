@@ -5,14 +5,21 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+use std::io::{BufRead, BufReader};
 use std::path::Path;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use messages::{FrameName, MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
+use bytemuck::Zeroable;
+use messages::{
+    FrameName, MapHeader, Name, Pose2, PoseHeader, ScanHeader, Stamp, TrackState, topic,
+};
 use network_payload::{Preamble, Wire};
 use tests::machine::Machine;
+use tests::needs::Need;
+use tests::python;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
 use zenoh::bytes::Encoding;
@@ -24,6 +31,11 @@ use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
 const LASER: &str = "nodes:
   - {id: laser, path: x, outputs: [scan, map]}
   - {id: bridge, path: y, inputs: {scan: laser/scan, map: laser/map}, outputs: [hypotheses]}
+";
+/// One that follows a robot.
+const TRACKER: &str = "nodes:
+  - {id: tracker, path: x, outputs: [pose]}
+  - {id: bridge, path: y, inputs: {pose: tracker/pose}}
 ";
 /// The machine with the engine.
 const ENGINE: &str = "nodes:
@@ -344,4 +356,53 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
         network_payload::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
     assert_eq!((map.header.map_id, map.items), (sent.0.map_id, sent.1));
     bridge.stop();
+}
+
+/// The example of docs/bridge.md, by the library of others.
+#[test]
+fn ten_lines_of_python_print_where_the_robot_is() {
+    let found = python::with("robot", &tests::robot::LIBRARIES, "zenoh");
+    let python = match found {
+        Ok(python) => python,
+        Err(why) => return Need::Python.is_missing("a pose in Python", &why),
+    };
+    let robot = machine("json", TRACKER);
+    let endpoint = robot.loopback();
+    let _bridge = robot.joined_bridge(&["--listen", &endpoint]);
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/zenoh/pose.py");
+    let mut command = Command::new(python);
+    command.arg(example).args([&endpoint, "r1"]);
+    let mut process = command.stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+    let (said, line) = std::sync::mpsc::channel();
+    std::thread::spawn(move || said.send(lines.next()));
+    let poses = robot.graph.publisher::<topic::Tracked>().unwrap();
+    let words = "at one place".as_bytes();
+    let mut printed = None;
+    let outcome = robot.graph.run(&[], Duration::from_millis(20), |_| {
+        let mut loan = poses.loan(words.len())?;
+        *loan.header_mut() = PoseHeader {
+            state: TrackState::Unique as u32,
+            pose_known: 1,
+            mount_known: 1,
+            map_from_base: pose2(1.5, -2.0),
+            map_from_laser: pose2(2.25, -2.0),
+            probability: 0.99,
+            ..PoseHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(words);
+        loan.send()?;
+        printed = line.try_recv().ok();
+        let is_over = printed.is_some();
+        Ok::<_, TransportError>(if is_over { Flow::Stop } else { Flow::Continue })
+    });
+    outcome.unwrap();
+    process.kill().unwrap();
+    process.wait().unwrap();
+    let expected = "Unique {'x': 1.5, 'y': -2.0, 'yaw': 0.5} at one place";
+    assert_eq!(printed.flatten().unwrap().unwrap(), expected);
+}
+
+fn pose2(x: f64, y: f64) -> Pose2 {
+    Pose2 { x, y, yaw: 0.5 }
 }

@@ -260,6 +260,14 @@ impl Watch {
         }
     }
 
+    /// Reports publishers of all topics instead.
+    pub(crate) fn expect_everything(&mut self) {
+        match self {
+            Watch::Zenoh(watch) => watch.expected.expect_everything(),
+            Watch::Dds(watch) => watch.expected.expect_everything(),
+        }
+    }
+
     /// How the topic is published, by whoever does so as it is taken.
     pub(crate) fn publishing(&self, topic: &str) -> Publishing {
         match self {

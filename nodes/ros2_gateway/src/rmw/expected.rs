@@ -14,6 +14,14 @@ use crate::waiting::Publishing;
 pub(crate) enum Seen {
     /// Somebody subscribes to the topic that is watched; the node's name.
     Subscriber(String),
+    /// Somebody publishes a topic, where everything is looked for.
+    Publisher {
+        /// Namespace and name of the node.
+        node: String,
+        topic: String,
+        /// The type, as middleware names it.
+        kind: String,
+    },
     /// Somebody publishes a topic that is taken in a way that it cannot be received.
     Stranger(GatewayError),
 }
@@ -33,6 +41,7 @@ pub(super) struct Endpoint {
 pub(super) struct Expected {
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
+    is_everything: bool,
     /// How those of them are published that somebody has published.
     found: BTreeMap<String, Publishing>,
 }
@@ -43,6 +52,7 @@ impl Expected {
         Expected {
             subscribed: subscribed.to_owned(),
             published: Vec::new(),
+            is_everything: false,
             found: BTreeMap::new(),
         }
     }
@@ -52,6 +62,11 @@ impl Expected {
         let info = description::of_message::<M>()?;
         self.published.push((topic.to_owned(), info));
         Ok(())
+    }
+
+    /// Reports publishers of all topics instead.
+    pub(super) fn expect_everything(&mut self) {
+        self.is_everything = true;
     }
 
     /// How the topic is published, by whoever does so as it is taken.
@@ -64,7 +79,7 @@ impl Expected {
     pub(super) fn concerns(&self, is_publisher: bool, topic: &str) -> bool {
         match is_publisher {
             false => topic == self.subscribed,
-            true => self.published.iter().any(|(known, _)| known == topic),
+            true => self.is_everything || self.published.iter().any(|(known, _)| known == topic),
         }
     }
 
@@ -76,6 +91,13 @@ impl Expected {
         }
         if !endpoint.is_publisher {
             return Some(Seen::Subscriber(node.clone()));
+        }
+        if self.is_everything {
+            return Some(Seen::Publisher {
+                node: node.clone(),
+                topic: topic.clone(),
+                kind: endpoint.info.name.clone(),
+            });
         }
         let (_, expected) = self.published.iter().find(|(known, _)| known == topic)?;
         let (how, expected) = (judge(&endpoint.info, expected), expected.to_string());

@@ -14,8 +14,8 @@ use messages::{
 };
 use serde_json::json;
 use tests::needs::Need;
-use tests::python;
 use tests::robot::Robot;
+use tests::{executables, python};
 use transport::testing::{Isolated, NodeProcess, wait_for};
 use transport::{Graph, monotonic_ns};
 
@@ -34,9 +34,10 @@ const LIBRARIES: [&str; 9] = [
 /// So many bearings a scan has.
 const BEAMS: usize = 720;
 
-/// A domain of this process alone, as far as numbers go, away from those that people use.
-fn domain() -> String {
-    (101 + std::process::id() % 120).to_string()
+/// A domain of this process alone, as far as numbers go, away from those that people use;
+/// one of three.
+fn domain(number: u32) -> String {
+    (101 + 3 * (std::process::id() % 40) + number).to_string()
 }
 
 /// A graph with a gateway, and a robot in the same domain.
@@ -56,7 +57,7 @@ impl Joined {
     fn new(tag: &str, namespace: &'static str, options: &[&'static str]) -> Option<Self> {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
-        let domain = domain();
+        let domain = domain(0);
         let robot = robot(&domain, namespace)?;
         let mut joined = Joined {
             robot,
@@ -342,5 +343,61 @@ fn publishers_that_cannot_be_received_are_named() {
     joined.robot.order("map", volatile);
     wait_until_waiting(graph, "/scan: a publisher of another type");
     wait_until_waiting(graph, "/map: a publisher with another quality of service");
+    joined.stop();
+}
+
+/// By the commands that somebody types beside a robot that drives, of which nothing is known.
+#[test]
+fn a_robot_is_found_and_checked_while_it_drives() {
+    let domain = domain(1);
+    let Some(mut robot) = robot(&domain, "/r2") else {
+        return;
+    };
+    robot.order("play", json!({ "rate": 10, "seconds": 60 }));
+    let folder = tempfile::tempdir().unwrap();
+    let backcast = |arguments: &[&str]| {
+        let mut command = Command::new(executables::path("backcast"));
+        command.args(arguments).current_dir(folder.path());
+        command.env("ROS_DOMAIN_ID", &domain).output().unwrap()
+    };
+    let output = backcast(&["init", "--ros2", "--out", "graph.yaml"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let seen = format!("on dds, domain {domain}, /r2/robot publishes /r2/scan");
+    assert!(said.contains(&seen), "{said}");
+    let written = std::fs::read_to_string(folder.path().join("graph.yaml")).unwrap();
+    let options = format!("--rmw dds --domain {domain} --scan /r2/scan --odom /r2/odom");
+    assert!(written.contains(&options), "{written}");
+
+    let output = backcast(&["doctor", "--ros2", "5"]);
+    let found = String::from_utf8_lossy(&output.stdout);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{found}{said}");
+    assert!(found.starts_with("the robot:\n"), "{found}{said}");
+    let mount = "/tf_static does not say where \"laser\" sits on the robot";
+    assert!(found.contains(mount), "{found}{said}");
+}
+
+#[test]
+fn nothing_crosses_from_one_domain_to_another() {
+    let Some(mut joined) = Joined::new("dds-own", "/", &[]) else {
+        return;
+    };
+    let isolated = Isolated::new("dds-other");
+    let other = isolated.join("test");
+    let next = domain(2);
+    let executable = env!("CARGO_BIN_EXE_ros2_gateway");
+    let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.2,0,0"];
+    let gateway = NodeProcess::start(executable, &other, options);
+    let scans = other.subscriber::<topic::Scan>().unwrap();
+    // As often as the robot and its own gateway start anew.
+    for _ in 0..3 {
+        drive(&mut joined, START_NS);
+        joined.stop();
+        joined.start();
+    }
+    wait_until_waiting(&other, "/scan: no publisher");
+    assert!(scans.receive().unwrap().is_none());
+    gateway.stop();
     joined.stop();
 }

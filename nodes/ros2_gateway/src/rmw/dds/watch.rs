@@ -20,7 +20,7 @@ use crate::waiting::Publishing;
 const SETTLED: Duration = Duration::from_millis(50);
 
 /// For so long it waits for the name of its node.
-const NAMED: Duration = Duration::from_secs(1);
+const NAMED: Duration = Duration::from_secs(3);
 
 /// The first bytes of an endpoint's number are those of its participant.
 const PARTICIPANT: usize = 12;
@@ -30,7 +30,7 @@ pub(crate) struct Watch {
     listener: DomainParticipantStatusListener,
     /// The participant's number.
     own: [u8; 16],
-    expected: Expected,
+    pub(in crate::rmw) expected: Expected,
     /// Whether those were looked at who were there before.
     has_begun: bool,
     /// What was looked at once: discovery says everything again and again.

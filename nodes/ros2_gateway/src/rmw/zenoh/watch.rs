@@ -25,7 +25,7 @@ const MAX_WAITING: usize = 4096;
 pub(crate) struct Watch {
     tokens: Arc<ArrayQueue<String>>,
     dropped: Arc<AtomicU64>,
-    expected: Expected,
+    pub(in crate::rmw) expected: Expected,
     _subscriber: Subscriber<()>,
 }
 

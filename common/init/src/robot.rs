@@ -1,0 +1,189 @@
+//! A ROS 2 robot as its nodes show it: which topics the gateway is to take, by its own look.
+
+use std::collections::BTreeSet;
+use std::process::{Command, Stdio};
+
+use serde::Deserialize;
+use transport::GRAPH_VARIABLE;
+
+use crate::InitError;
+
+/// How long nodes are looked for on each middleware, seconds: those on DDS say every three
+/// seconds that they are there.
+const LOOK_S: &str = "6";
+
+/// A topic that a node of the robot publishes, as `ros2_gateway --look` prints it.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub(crate) struct Published {
+    rmw: String,
+    domain: u32,
+    kind: String,
+    topic: String,
+    node: String,
+}
+
+/// What is known of a robot.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Robot {
+    /// Options of the gateway that name its middleware and its topics.
+    pub(crate) options: Vec<String>,
+    /// Whether a node publishes a map.
+    pub(crate) has_map: bool,
+    /// What was seen, for people, a sentence each.
+    pub(crate) said: Vec<String>,
+}
+
+/// Looks at the robot with this router, or at those that are in the network.
+///
+/// # Errors
+/// The gateway cannot be started, or ends with an error.
+pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
+    let failed = |reason: String| InitError::Robot { reason };
+    let gateway = launcher::node("ros2_gateway").ok_or_else(|| {
+        failed("ros2_gateway is not built; `cargo build --release -p ros2_gateway` does".into())
+    })?;
+    let mut command = Command::new(gateway);
+    command.args(["--look", LOOK_S]);
+    if let Some(router) = router {
+        command.args(["--rmw", "zenoh", "--connect", router]);
+    }
+    // What it says while it looks is of no interest beside what it finds.
+    let output = command
+        .env(GRAPH_VARIABLE, format!("look_{}", std::process::id()))
+        .stderr(Stdio::piped())
+        .output()
+        .map_err(|error| failed(error.to_string()))?;
+    if !output.status.success() {
+        let words = String::from_utf8_lossy(&output.stderr);
+        let last = words.lines().last().unwrap_or_default();
+        return Err(failed(format!("ros2_gateway ended with an error: {last}")));
+    }
+    let lines = output.stdout.split(|&byte| byte == b'\n');
+    let lines = lines.filter(|line| !line.is_empty());
+    let published: Result<Vec<Published>, _> = lines.map(serde_json::from_slice).collect();
+    let published = published.map_err(|error| failed(format!("ros2_gateway: {error}")))?;
+    Ok(robot_of(&published))
+}
+
+/// The options for what is published.
+fn robot_of(published: &[Published]) -> Robot {
+    let mut robot = Robot::default();
+    // Of several robots, the one whose scans come first.
+    let Some(first) = published.iter().find(|one| one.kind == "scan") else {
+        robot.said.push(
+            "no node publishes laser scans on DDS or Zenoh: start the robot, and check \
+             ROS_DOMAIN_ID and the router"
+                .to_owned(),
+        );
+        return robot;
+    };
+    let (rmw, domain) = (&first.rmw, first.domain);
+    let of_kind = |kind: &str| {
+        let all = published
+            .iter()
+            .filter(|one| one.rmw == *rmw && one.domain == domain);
+        let topics = all
+            .filter(|one| one.kind == kind)
+            .map(|one| one.topic.clone());
+        topics.collect::<BTreeSet<String>>()
+    };
+    robot.options.extend(["--rmw".to_owned(), rmw.clone()]);
+    if domain != 0 {
+        robot
+            .options
+            .extend(["--domain".to_owned(), domain.to_string()]);
+    }
+    robot.said.push(format!(
+        "on {rmw}, domain {domain}, {} publishes {}",
+        first.node, first.topic
+    ));
+    let scans = of_kind("scan");
+    let maps: BTreeSet<String> = of_kind("map")
+        .into_iter()
+        .filter(|topic| !topic.contains("costmap"))
+        .collect();
+    robot.has_map = !maps.is_empty();
+    for (option, default, topics) in [
+        ("--scan", "/scan", &scans),
+        ("--odom", "/odom", &of_kind("odometry")),
+        ("--map", "/map", &maps),
+    ] {
+        let Some(chosen) = topics.get(default).or_else(|| topics.first()) else {
+            continue;
+        };
+        if chosen != default {
+            robot.options.extend([option.to_owned(), chosen.clone()]);
+        }
+        if topics.len() > 1 {
+            let all: Vec<&str> = topics.iter().map(String::as_str).collect();
+            let all = all.join(", ");
+            robot
+                .said
+                .push(format!("{option} {chosen} is taken of {all}"));
+        }
+    }
+    if !robot.has_map {
+        robot
+            .said
+            .push("no node publishes a map: --map FILE serves one".to_owned());
+    }
+    robot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn published(kinds: &[(&str, &str)], rmw: &str, domain: u32) -> Vec<Published> {
+        let one = |&(kind, topic): &(&str, &str)| Published {
+            rmw: rmw.to_owned(),
+            domain,
+            kind: kind.to_owned(),
+            topic: topic.to_owned(),
+            node: "/lidar".to_owned(),
+        };
+        kinds.iter().map(one).collect()
+    }
+
+    #[test]
+    fn the_usual_names_need_no_option() {
+        let seen = [
+            ("scan", "/scan"),
+            ("scan", "/scan_filtered"),
+            ("odometry", "/odom"),
+            ("map", "/global_costmap/costmap"),
+            ("map", "/map"),
+            ("transforms", "/tf"),
+        ];
+        let robot = robot_of(&published(&seen, "zenoh", 0));
+        assert_eq!(robot.options, ["--rmw", "zenoh"]);
+        assert!(robot.has_map);
+        assert_eq!(
+            robot.said,
+            [
+                "on zenoh, domain 0, /lidar publishes /scan",
+                "--scan /scan is taken of /scan, /scan_filtered",
+            ]
+        );
+    }
+
+    #[test]
+    fn other_names_are_options() {
+        let seen = [
+            ("scan", "/r2/front"),
+            ("scan", "/r2/rear"),
+            ("odometry", "/r2/odometry/filtered"),
+        ];
+        let robot = robot_of(&published(&seen, "dds", 7));
+        let expected = "--rmw dds --domain 7 --scan /r2/front --odom /r2/odometry/filtered";
+        assert_eq!(robot.options.join(" "), expected);
+        assert!(!robot.has_map);
+    }
+
+    #[test]
+    fn a_robot_that_is_not_there_is_said() {
+        let robot = robot_of(&[]);
+        assert!(robot.options.is_empty());
+        assert!(robot.said[0].starts_with("no node publishes laser scans"));
+    }
+}

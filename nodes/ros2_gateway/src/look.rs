@@ -1,0 +1,114 @@
+//! Which topics of interest are published, for whoever sets the gateway up.
+
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use transport::{Flow, Graph, TransportError};
+use zenoh_session::Report;
+
+use crate::middleware::Rmw;
+use crate::rmw::{Member, Seen, Watch};
+use crate::{Config, GatewayError};
+
+/// From one look at what is discovered to the next.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Where the robot's router listens if it runs on this machine.
+const ROUTER: &str = "tcp/127.0.0.1:7447";
+
+/// Types of the messages that the gateway takes, as middleware names them.
+const TYPES: [(&str, &str); 4] = [
+    ("sensor_msgs::msg::dds_::LaserScan_", "scan"),
+    ("nav_msgs::msg::dds_::OccupancyGrid_", "map"),
+    ("nav_msgs::msg::dds_::Odometry_", "odometry"),
+    ("tf2_msgs::msg::dds_::TFMessage_", "transforms"),
+];
+
+/// A topic that a node publishes.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub(crate) struct Published {
+    rmw: &'static str,
+    domain: u32,
+    /// `scan`, `map`, `odometry` or `transforms`.
+    kind: &'static str,
+    topic: String,
+    node: String,
+}
+
+/// Prints what is published within so many seconds on each middleware, or on the one that
+/// is chosen: objects of JSON, a line each.
+///
+/// # Errors
+/// A name or Zenoh's configuration cannot be used, or standard output takes no more.
+pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), GatewayError> {
+    let mut report = Report::new(graph.health()?);
+    let mut found = BTreeSet::new();
+    let all = [Rmw::Dds, Rmw::Zenoh];
+    for rmw in all
+        .into_iter()
+        .filter(|rmw| config.rmw.is_none_or(|chosen| chosen == *rmw))
+    {
+        let of_rmw = Config {
+            rmw: Some(rmw),
+            ..config.clone()
+        };
+        let joined = match Member::join(graph, &of_rmw, &mut report) {
+            // Somebody is the router of this machine.
+            Err(_) if rmw == Rmw::Zenoh && is_alone(config) => {
+                let mut called = of_rmw.clone();
+                called.network.connect.push(ROUTER.to_owned());
+                Member::join(graph, &called, &mut report)
+            }
+            joined => joined,
+        };
+        match joined {
+            Ok(Some(member)) => look_at(graph, (&member, rmw), seconds, &mut found)?,
+            Ok(None) => return Ok(()),
+            // The other may be there.
+            Err(error) => tracing::warn!("{}", transport::with_causes(&error)),
+        }
+    }
+    for published in found {
+        println!("{}", json::object(&published));
+    }
+    Ok(())
+}
+
+/// Whether no router is named, nor where to listen.
+fn is_alone(config: &Config) -> bool {
+    let network = &config.network;
+    network.config.is_none() && network.listen.is_empty() && network.connect.is_empty()
+}
+
+fn look_at(
+    graph: &Graph,
+    (member, rmw): (&Member, Rmw),
+    seconds: f64,
+    found: &mut BTreeSet<Published>,
+) -> Result<(), GatewayError> {
+    let mut watch = Watch::open(graph, member, "")?;
+    watch.expect_everything();
+    let end = Instant::now() + Duration::from_secs_f64(seconds);
+    graph.run(&[], TICK, |_| {
+        member.tick();
+        while let Some(seen) = watch.next(member) {
+            let Seen::Publisher { node, topic, kind } = seen else {
+                continue;
+            };
+            let Some(&(_, kind)) = TYPES.iter().find(|(name, _)| *name == kind) else {
+                continue;
+            };
+            found.insert(Published {
+                rmw: rmw.name(),
+                domain: member.domain(),
+                kind,
+                topic,
+                node,
+            });
+        }
+        let is_over = Instant::now() >= end;
+        Ok::<_, TransportError>(if is_over { Flow::Stop } else { Flow::Continue })
+    })?;
+    Ok(())
+}
