@@ -257,18 +257,25 @@ class Robot:
 
     def mounts(self, lasers, topic="tf_static"):
         """The frames of lasers: name, x, and a quaternion's x, y, z, w."""
+        self.frames(topic, [("base_link", f"{name}_laser", x, turn) for name, x, turn in lasers])
+
+    def correct(self):
+        """Another node says where the odometry begins on the map."""
+        self.frames("tf", [("map", "odom", 1.0, (0.0, 0.0, 0.0, 1.0))])
+
+    def frames(self, topic, frames):
         t = STORE.types
         stamp = t["builtin_interfaces/msg/Time"](0, 0)
         transforms = [
             t["geometry_msgs/msg/TransformStamped"](
-                t["std_msgs/msg/Header"](stamp, "base_link"),
-                f"{name}_laser",
+                t["std_msgs/msg/Header"](stamp, parent),
+                child,
                 t["geometry_msgs/msg/Transform"](
                     t["geometry_msgs/msg/Vector3"](x, 0.0, 0.0),
                     t["geometry_msgs/msg/Quaternion"](*turn),
                 ),
             )
-            for name, x, turn in lasers
+            for parent, child, x, turn in frames
         ]
         message = t[TYPES[topic]](transforms)
         self.put(topic, bytes(STORE.serialize_cdr(message, TYPES[topic])), KEPT)

@@ -131,6 +131,19 @@ pub enum GatewayError {
          other one out of the launch file, or give this one another --node"
     )]
     SecondNode(String),
+    /// Somebody else publishes the transform that we publish.
+    #[error(
+        "another node publishes the transform from {parent} to {child} on {topic}, as this one does, \
+         and poses jump between the two: stop the other one, as AMCL or a SLAM"
+    )]
+    SecondBroadcaster {
+        /// The frames of the other's transform.
+        parent: String,
+        /// The odometry's frame.
+        child: String,
+        /// The robot's topic.
+        topic: String,
+    },
     /// A number is none.
     #[error("{field} of {topic} is {found}: allowed is a finite number")]
     Number {

@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
 use zenoh_session::Report;
 
+use crate::broadcast::Sent;
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
@@ -47,6 +48,9 @@ pub(crate) struct Incoming {
     map_frame: Option<String>,
     /// Whose rotations were mended, which is said once.
     mended: BTreeSet<&'static str>,
+    /// The transforms to the odometry that we sent.
+    sent: Sent,
+    tf: String,
 }
 
 impl Incoming {
@@ -55,7 +59,7 @@ impl Incoming {
         member: &Member,
         config: &Config,
         topics: &Topics,
-        watch: &mut Watch,
+        (watch, sent): (&mut Watch, Sent),
     ) -> Result<Self, GatewayError> {
         let mut open = Opening {
             graph,
@@ -94,6 +98,8 @@ impl Incoming {
             odometry_ns: None,
             map_frame: None,
             mended: BTreeSet::new(),
+            sent,
+            tf: topics.tf.clone(),
         })
     }
 
@@ -136,6 +142,8 @@ impl Incoming {
             odometry_ns,
             map_frame,
             mended,
+            sent,
+            tf,
         } = self;
         take(fixed, report, |message, _| {
             frames.on_static_transforms(&message)
@@ -149,7 +157,17 @@ impl Incoming {
         })?;
         let alone = odometry_ns.is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
         take_if(moving, report, |message, report| {
+            // What is sound beside it is taken.
+            let mut second = None;
             for transform in message.transforms {
+                if sent.is_from_another(&transform, odom_frame) {
+                    second = Some(GatewayError::SecondBroadcaster {
+                        parent: transform.header.frame_id,
+                        child: transform.child_frame_id,
+                        topic: tf.clone(),
+                    });
+                    continue;
+                }
                 if !alone && transform.header.frame_id.trim_start_matches('/') == odom_frame {
                     let turn = transform.transform.rotation;
                     let odometry = odometry_of(transform)?;
@@ -158,7 +176,7 @@ impl Incoming {
                     outlet.send_odometry(odometry, report)?;
                 }
             }
-            Ok(())
+            second.map_or(Ok(()), Err)
         })?;
         take_if(maps, report, |message, report| {
             let frame = message.header.frame_id.clone();

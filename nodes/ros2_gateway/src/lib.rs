@@ -11,6 +11,7 @@
 //! tracker's pose in all its forms, with AMCL's services and parameters.
 
 mod amcl;
+mod broadcast;
 mod checks;
 mod config;
 mod diagnostics;

@@ -7,12 +7,13 @@ use transport::TransportError;
 use zenoh_session::Report;
 
 use crate::GatewayError;
+use crate::broadcast::{Broadcaster, Sent};
 use crate::config::{Config, Reach};
 use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
 use crate::rmw::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
-use crate::stamps::{Forward, in_map, stamp};
+use crate::stamps::{in_map, stamp};
 use crate::topics::Topics;
 
 /// Hypotheses that are less likely are no place to be: there are up to 64, and one of
@@ -25,9 +26,8 @@ pub(crate) struct Outgoing {
     hypotheses: Publisher<PoseArray>,
     pub(crate) diagnostics: Diagnostics,
     /// None where the user does not want it.
-    transforms: Option<Publisher<TfMessage>>,
+    broadcaster: Option<Broadcaster>,
     ahead_ns: i64,
-    forward: Forward,
     spread: Reach,
     /// Where the odometry's frame lies, by the last verdict that was Unique.
     map_from_odom: Option<(Pose, String)>,
@@ -40,17 +40,17 @@ impl Outgoing {
         member: &Member,
         config: &Config,
         topics: &Topics,
+        sent: Sent,
     ) -> Result<Self, GatewayError> {
-        let transforms = config
+        let broadcaster = config
             .broadcast_tf
-            .then(|| Publisher::open(member, &topics.tf, 100));
+            .then(|| Broadcaster::open(member, &topics.tf, sent));
         Ok(Outgoing {
             initial_pose: Publisher::open_blocking(member, &topics.initial_pose, 1)?,
             hypotheses: Publisher::open(member, &topics.hypotheses, 10)?,
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
-            transforms: transforms.transpose()?,
+            broadcaster: broadcaster.transpose()?,
             ahead_ns: (config.tf_ahead * 1e9) as i64,
-            forward: Forward::default(),
             spread: config.spread,
             map_from_odom: None,
             is_tracked: false,
@@ -171,16 +171,14 @@ impl Outgoing {
         map_frame: &str,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
-        let (Some(transforms), Some((pose, odom))) = (&mut self.transforms, &self.map_from_odom)
+        let (Some(broadcaster), Some((pose, odom))) = (&mut self.broadcaster, &self.map_from_odom)
         else {
             return Ok(());
         };
         let at_ns = of.measured_ns.saturating_add(self.ahead_ns);
-        if !self.forward.admits(at_ns) {
-            return Ok(());
+        if broadcaster.send(at_ns, (map_frame, odom), *pose)? {
+            report.sent();
         }
-        transforms.send(&transform(at_ns, map_frame, odom, *pose)?)?;
-        report.sent();
         Ok(())
     }
 }

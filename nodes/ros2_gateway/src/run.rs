@@ -9,6 +9,7 @@ use transport::{Flow, Graph, Subscriber, TransportError};
 use zenoh_session::Report;
 
 use crate::amcl;
+use crate::broadcast::Sent;
 use crate::config::MAP_FRAME;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
@@ -85,11 +86,12 @@ impl Gateway {
         mounts: Vec<Mount>,
     ) -> Result<Self, GatewayError> {
         // What is sent is there before anybody who waits for it is seen.
-        let outgoing = Outgoing::open(&member, config, topics)?;
+        let sent = Sent::default();
+        let outgoing = Outgoing::open(&member, config, topics, sent.clone())?;
         let mut watch = Watch::open(graph, &member, &topics.initial_pose)?;
         Ok(Gateway {
             service: Service::open(graph, &member, &topics.reinitialize)?,
-            incoming: Incoming::open(graph, &member, config, topics, &mut watch)?,
+            incoming: Incoming::open(graph, &member, config, topics, (&mut watch, sent))?,
             outgoing,
             verdict: None,
             watch,

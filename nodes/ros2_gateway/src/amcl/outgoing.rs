@@ -3,8 +3,8 @@
 
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp};
+use ros::PoseWithCovarianceStamped;
 use ros::nav2_msgs::ParticleCloud;
-use ros::{PoseWithCovarianceStamped, TfMessage};
 use transport::{TransportError, monotonic_ns};
 use zenoh_session::Report;
 
@@ -12,10 +12,10 @@ use super::cloud;
 use super::parameters::Parameters;
 use super::standing::Standing;
 use crate::GatewayError;
+use crate::broadcast::{Broadcaster, Sent};
 use crate::diagnostics::Diagnostics;
-use crate::outgoing::transform;
 use crate::rmw::{Member, Publisher};
-use crate::stamps::{Forward, in_map};
+use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 
@@ -23,11 +23,10 @@ use crate::verdict::Verdict;
 pub(super) struct Outgoing {
     pose: Publisher<PoseWithCovarianceStamped>,
     cloud: Publisher<ParticleCloud>,
-    transforms: Publisher<TfMessage>,
+    broadcaster: Broadcaster,
     verdict: Verdict,
     pub(super) diagnostics: Diagnostics,
     standing: Standing,
-    forward: Forward,
     /// Whether the tracker believes a pose.
     is_believed: bool,
     /// Whether the tracker was asked to start over, and has not yet: what it believes is of
@@ -44,15 +43,15 @@ impl Outgoing {
         member: &Member,
         topics: &Topics,
         uses_sim_time: bool,
+        sent: Sent,
     ) -> Result<Self, GatewayError> {
         Ok(Outgoing {
             pose: Publisher::open_kept(member, &topics.amcl_pose, 1)?,
             cloud: Publisher::open_fresh(member, &topics.particle_cloud, 5)?,
-            transforms: Publisher::open(member, &topics.tf, 100)?,
+            broadcaster: Broadcaster::open(member, &topics.tf, sent)?,
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             verdict: Verdict::open(member, topics)?,
             standing: Standing::default(),
-            forward: Forward::default(),
             is_believed: false,
             is_outdated: false,
             uses_sim_time,
@@ -188,13 +187,10 @@ impl Outgoing {
         }
         let ahead_ns = (parameters.number("transform_tolerance") * 1e9) as i64;
         let at_ns = due.at_ns.saturating_add(ahead_ns);
-        if !self.forward.admits(at_ns) {
-            return Ok(());
-        }
-        let sent = transform(at_ns, map_frame, due.odom, due.map_from_odom)
-            .and_then(|transform| self.transforms.send(&transform));
-        match sent {
-            Ok(()) => report.sent(),
+        let frames = (map_frame, due.odom);
+        match self.broadcaster.send(at_ns, frames, due.map_from_odom) {
+            Ok(true) => report.sent(),
+            Ok(false) => {}
             Err(error) => report.refused(&error)?,
         }
         Ok(())

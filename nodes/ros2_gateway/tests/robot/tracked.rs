@@ -58,6 +58,13 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
+    // Somebody else says that, too.
+    let health = joined.graph.subscriber::<topic::Health>().unwrap();
+    joined.robot.order("correct", json!({}));
+    let named = "from map to odom on /tf, as this one does";
+    wait_for(&joined.graph, &health, |_, error| {
+        String::from_utf8_lossy(error).contains(named).then_some(())
+    });
     // The verdict is a topic as soon as there is a tracker.
     joined
         .robot

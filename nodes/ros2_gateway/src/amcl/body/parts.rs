@@ -12,6 +12,7 @@ use crate::amcl::outgoing::Outgoing;
 use crate::amcl::parameters::Parameters;
 use crate::amcl::saved_pose::{self, SavedPose};
 use crate::amcl::sim_clock::SimClock;
+use crate::broadcast::Sent;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::Taken;
@@ -45,9 +46,10 @@ impl Parts {
             topics,
         } = joined;
         let uses_sim_time = parameters.is_on("use_sim_time");
-        let outgoing = Outgoing::open(member, topics, uses_sim_time)?;
+        let sent = Sent::default();
+        let outgoing = Outgoing::open(member, topics, uses_sim_time, sent.clone())?;
         let mut watch = Watch::open(graph, member, &topics.initial_pose)?;
-        let mut incoming = Incoming::open(graph, member, config, topics, &mut watch)?;
+        let mut incoming = Incoming::open(graph, member, config, topics, (&mut watch, sent))?;
         incoming.set_rules(rules(parameters));
         let are_believed = config.amcl.believe_initial_pose;
         let hints = Hints::open(graph, member, topics, &mut watch, are_believed)?;
