@@ -21,7 +21,7 @@
 //! | `restart_delay` | seconds before the first restart; it doubles with each | at once |
 //! | `max_restart_delay` | seconds that it does not exceed | 5, or `restart_delay` if that is more |
 //! | `restart_window` | seconds | 60 |
-//! | `health_check_timeout` | seconds without a sign of life after which the node is ended | 15 |
+//! | `health_check_timeout` | seconds without a sign of life after which the node is ended, 2 at least | 15 |
 //!
 //! Where the last three are absent, dora waits ever longer, counts all restarts, and
 //! does not look for signs of life.

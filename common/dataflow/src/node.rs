@@ -242,6 +242,16 @@ mod tests {
     }
 
     #[test]
+    fn a_node_has_time_to_report() {
+        let text = "
+nodes:
+  - {id: a, path: a, restart_policy: always, health_check_timeout: 0}
+";
+        let found = faults(text);
+        assert!(found[0].contains("seconds from 2 to 3600"), "{found:?}");
+    }
+
+    #[test]
     fn every_key_is_read() {
         let text = "
 nodes:

@@ -41,15 +41,21 @@ pub(crate) fn read_seconds(
     // `007` and `1.` are texts to some parsers of YAML.
     let ambiguous = text.value.ends_with('.')
         || (text.value.starts_with('0') && text.value.len() > 1 && !text.value.starts_with("0."));
+    let (least, allowed) = match key {
+        // Nodes report each second.
+        "health_check_timeout" => (2.0, "seconds from 2 to 3600, like 15"),
+        _ => (0.0, "seconds from 0 to 3600, like 0.5"),
+    };
+    let is_allowed = |s: &f64| (least..=MAX_SECONDS).contains(s);
     text.value
         .parse()
         .ok()
-        .filter(|s| looks_decimal && !ambiguous && *s <= MAX_SECONDS && is_plain(text, source))
+        .filter(|s| looks_decimal && !ambiguous && is_allowed(s) && is_plain(text, source))
         .map(Duration::from_secs_f64)
         .ok_or_else(|| Fault::BadNumber {
             key,
             found: text.value.clone(),
-            allowed: "seconds from 0 to 3600, like 0.5",
+            allowed,
         })
 }
 
