@@ -78,6 +78,7 @@ impl Database {
         if found != "ok" {
             return Err(damaged(path, &found));
         }
+        self.check_tables(path)?;
         let has_messages = self.connection.table_exists(None, "messages");
         if self.lacks_log && !has_messages.map_err(failed)? {
             let log = log_of(path);
@@ -102,6 +103,23 @@ impl Database {
         match length.len().checked_rem(page.into()) {
             Some(0) => Ok(()),
             _ => Err(damaged(path, "it ends within a page")),
+        }
+    }
+}
+
+impl Database {
+    /// Refuses views and virtual tables in the place of a bag's tables: a query of theirs may
+    /// never end.
+    fn check_tables(&self, path: &Path) -> Result<(), RecordingError> {
+        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+        let ask = "SELECT name FROM sqlite_schema WHERE name COLLATE NOCASE \
+             IN ('messages', 'topics', 'message_definitions') \
+             AND (type = 'view' OR sql LIKE 'CREATE VIRTUAL%')";
+        let mut query = self.connection.prepare(ask).map_err(failed)?;
+        let mut names = query.query_map((), |row| row.get(0)).map_err(failed)?;
+        match names.next().transpose().map_err(failed)? {
+            None => Ok(()),
+            Some::<String>(name) => Err(refused(path, format!("its {name} is no table of a bag"))),
         }
     }
 }
@@ -251,6 +269,24 @@ mod tests {
         let refusal = Database::open(&path, &path).err().unwrap().to_string();
         assert!(
             refusal.ends_with("r ü.db3-wal, which is missing: copy it along"),
+            "{refusal}"
+        );
+    }
+
+    #[test]
+    fn a_view_in_the_place_of_a_table_is_refused() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("r.db3");
+        let endless = "CREATE TABLE topics(id INTEGER PRIMARY KEY);
+            CREATE VIEW Messages AS WITH RECURSIVE n(id) AS
+                (SELECT 1 UNION ALL SELECT id + 1 FROM n) SELECT id FROM n;";
+        Connection::open(&path)
+            .unwrap()
+            .execute_batch(endless)
+            .unwrap();
+        let refusal = Database::open(&path, &path).err().unwrap().to_string();
+        assert!(
+            refusal.ends_with("its Messages is no table of a bag"),
             "{refusal}"
         );
     }

@@ -61,9 +61,12 @@ fn write(contents: &Contents, text: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
+/// Columns stand under each other as long as no topic is longer.
+const MAX_WIDTH: usize = 80;
+
 fn channels(contents: &Contents, text: &mut String) -> std::fmt::Result {
     let topics = contents.channels.iter().map(|channel| channel.topic.len());
-    let width = topics.max().unwrap_or(0).max("channel".len());
+    let width = topics.max().unwrap_or(0).clamp("channel".len(), MAX_WIDTH);
     writeln!(
         text,
         "\n  {:<width$} {:>9} {:>8}  schema",
