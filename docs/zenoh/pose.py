@@ -15,6 +15,7 @@ config = zenoh.Config()
 config.insert_json5("mode", '"client"')
 config.insert_json5("connect/endpoints", json.dumps([endpoint]))
 with zenoh.open(config) as session:
-    for sample in session.declare_subscriber(f"backcast/{robot}/pose/json"):
+    poses = session.declare_subscriber(f"backcast/{robot}/pose/json")
+    for sample in poses:
         pose = json.loads(sample.payload.to_bytes())
         print(pose["state"], pose["base"] or pose["laser"], pose["says"], flush=True)
