@@ -20,6 +20,7 @@ mod outgoing;
 mod plain;
 mod ports;
 mod rates;
+mod route;
 mod run;
 
 pub use config::Config;

@@ -12,7 +12,7 @@ use zenoh::{Session, Wait};
 use zenoh_session::{KeyError, Report};
 
 use crate::rates::Limit;
-use crate::run::Route;
+use crate::route::Route;
 use crate::{BridgeError, Rate};
 
 /// Sends the messages of a topic as JSON, while somebody subscribes.

@@ -14,6 +14,7 @@ use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
 use crate::plain::Plain;
 use crate::ports::Ports;
+use crate::route::Route;
 use crate::{BridgeError, Config, json};
 
 /// How long a late joiner of the graph, an image that somebody beyond the bridge
@@ -48,12 +49,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
         report.tick()?;
         Ok(Flow::Continue)
     })
-}
-
-/// One topic, out or in.
-pub(crate) trait Route {
-    fn input(&self) -> Option<Rc<dyn Input>>;
-    fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;
 }
 
 impl<T: Wire> Route for Outgoing<T> {

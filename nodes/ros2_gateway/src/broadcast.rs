@@ -5,12 +5,11 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use geometry::Pose;
-use ros::{TfMessage, Time, TransformStamped};
+use ros::{Header, TfMessage, Time, TransformStamped};
 
 use crate::GatewayError;
-use crate::outgoing::transform;
 use crate::rmw::{Member, Publisher};
-use crate::stamps::Forward;
+use crate::stamps::{Forward, stamp};
 
 /// Sent transforms that are known again when they come back: as many as slow subscribers keep.
 const MAX_KNOWN: usize = 100;
@@ -69,6 +68,23 @@ impl Sent {
         let is_its = received.child_frame_id.trim_start_matches('/') == odom_frame;
         is_its && !stamps.is_empty() && !stamps.contains(&received.header.stamp)
     }
+}
+
+/// The transform from the map to the odometry, `at_ns`.
+fn transform(
+    at_ns: i64,
+    map_frame: &str,
+    odom: &str,
+    map_from_odom: Pose,
+) -> Result<TfMessage, GatewayError> {
+    let transform = TransformStamped {
+        header: Header::new(stamp(at_ns)?, map_frame),
+        child_frame_id: odom.to_owned(),
+        transform: ros::planar::transform(map_from_odom),
+    };
+    Ok(TfMessage {
+        transforms: vec![transform],
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict};
-use ros::{Header, PoseArray, PoseWithCovarianceStamped, TfMessage, TransformStamped};
+use ros::{PoseArray, PoseWithCovarianceStamped};
 use transport::TransportError;
 use zenoh_session::Report;
 
@@ -13,7 +13,7 @@ use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
 use crate::rmw::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
-use crate::stamps::{in_map, stamp};
+use crate::stamps::in_map;
 use crate::topics::Topics;
 
 /// Hypotheses that are less likely are no place to be: there are up to 64, and one of
@@ -225,23 +225,6 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
     with.pose = pose.pose.pose;
     pose.pose = with;
     pose
-}
-
-/// The transform from the map to the odometry, `at_ns`.
-pub(crate) fn transform(
-    at_ns: i64,
-    map_frame: &str,
-    odom: &str,
-    map_from_odom: Pose,
-) -> Result<TfMessage, GatewayError> {
-    let transform = TransformStamped {
-        header: Header::new(stamp(at_ns)?, map_frame),
-        child_frame_id: odom.to_owned(),
-        transform: ros::planar::transform(map_from_odom),
-    };
-    Ok(TfMessage {
-        transforms: vec![transform],
-    })
 }
 
 #[cfg(test)]
