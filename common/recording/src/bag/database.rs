@@ -105,9 +105,7 @@ impl Database {
             _ => Err(damaged(path, "it ends within a page")),
         }
     }
-}
 
-impl Database {
     /// Refuses views and virtual tables in the place of a bag's tables: a query of theirs may
     /// never end.
     fn check_tables(&self, path: &Path) -> Result<(), RecordingError> {

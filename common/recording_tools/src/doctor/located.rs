@@ -15,7 +15,7 @@ const MAX_SCANS: usize = 500;
 /// Scans that are compared with the map at several scales, spread over the others.
 const SCALED_SCANS: usize = 12;
 
-/// How many times as far as they say readings are taken to be.
+/// Factors by which the readings of a scan are changed.
 pub(super) const SCALES: [f32; 11] = [
     0.9, 0.92, 0.94, 0.96, 0.98, 1.0, 1.02, 1.04, 1.06, 1.08, 1.1,
 ];
@@ -38,7 +38,7 @@ pub(super) fn options() -> Options {
 /// The scans of a recording that have a place on its map.
 pub(super) struct Located {
     pub(super) scans: Vec<LocatedScan>,
-    /// Of some scans, how well the best place fits at each of [`SCALES`].
+    /// Scores of the best places of some scans at each of [`SCALES`].
     pub(super) by_scale: Vec<[f64; SCALES.len()]>,
     /// The map of the last scan.
     pub(super) map: OccupancyGrid,
@@ -74,7 +74,7 @@ impl Located {
                 continue;
             };
             if i % every == every / 2 {
-                by_scale.push(scores(&mut session, &found.scan)?);
+                by_scale.push(scores(&mut session, &found)?);
             }
             scans.push(found);
         }
@@ -102,11 +102,12 @@ fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedSc
 /// How well a scan fits at each scale.
 fn scores(
     session: &mut Session<'_>,
-    scan: &TakenScan,
+    found: &LocatedScan,
 ) -> Result<[f64; SCALES.len()], OfflineError> {
-    let mut scores = [0.0; SCALES.len()];
-    for (score, scale) in scores.iter_mut().zip(SCALES) {
-        let mut scaled = scan.clone();
+    let mut scores = [found.score; SCALES.len()];
+    let changed = scores.iter_mut().zip(SCALES);
+    for (score, scale) in changed.filter(|(_, scale)| *scale != 1.0) {
+        let mut scaled = found.scan.clone();
         scaled.message.range_max *= scale;
         scaled
             .message

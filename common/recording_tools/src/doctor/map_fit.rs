@@ -19,7 +19,7 @@ const BETTER_FIT: f64 = 0.03;
 const MIN_SHARE: f64 = 0.5;
 
 /// On a map of another place, scans fit no better than this, and hardly better at one scale
-/// than at others: by 0.4 to 0.65 and within 0.04 for seven pairs of drives and maps.
+/// than at others: by 0.4 to 0.65 and within 0.05 for five pairs of drives and maps.
 const NOWHERE_FIT: f64 = 0.7;
 const NOWHERE_SPREAD: f64 = 0.1;
 
