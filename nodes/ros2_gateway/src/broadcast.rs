@@ -61,8 +61,8 @@ impl Sent {
         stamps.push_back(stamp);
     }
 
-    /// Whether somebody else sends a transform to the odometry's frame while we do: what we
-    /// sent comes back to us as well.
+    /// Whether another node sent a transform to the odometry's frame while the gateway sends
+    /// its own, which it receives as well.
     pub(crate) fn is_from_another(&self, received: &TransformStamped, odom_frame: &str) -> bool {
         let stamps = self.0.borrow();
         let is_its = received.child_frame_id.trim_start_matches('/') == odom_frame;

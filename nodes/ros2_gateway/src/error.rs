@@ -131,7 +131,10 @@ pub enum GatewayError {
          other one out of the launch file, or give this one another --node"
     )]
     SecondNode(String),
-    /// Somebody else publishes the transform that we publish.
+    /// Standard output takes no more.
+    #[error(transparent)]
+    Output(#[from] command_line::OutputError),
+    /// Another node publishes the transform that the gateway publishes.
     #[error(
         "another node publishes the transform from {parent} to {child} on {topic}, as this one does, \
          and poses jump between the two: stop the other one, as AMCL or a SLAM"

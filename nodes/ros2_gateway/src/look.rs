@@ -1,8 +1,9 @@
-//! Which topics of interest are published, for whoever sets the gateway up.
+//! The topics that nodes publish for the gateway to take, for who sets it up.
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use command_line::stdout;
 use serde::Serialize;
 use transport::{Flow, Graph, TransportError};
 use zenoh_session::Report;
@@ -14,7 +15,7 @@ use crate::{Config, GatewayError};
 /// From one look at what is discovered to the next.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Where the robot's router listens if it runs on this machine.
+/// Endpoint of a router that runs on this machine.
 const ROUTER: &str = "tcp/127.0.0.1:7447";
 
 /// Types of the messages that the gateway takes, as middleware names them.
@@ -69,10 +70,8 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
             Err(error) => tracing::warn!("{}", transport::with_causes(&error)),
         }
     }
-    for published in found {
-        println!("{}", json::object(&published));
-    }
-    Ok(())
+    let lines = found.iter().map(|found| json::object(found) + "\n");
+    Ok(stdout::print(&lines.collect::<String>())?)
 }
 
 /// Whether no router is named, nor where to listen.
