@@ -6,8 +6,7 @@ use serde::Serialize;
 
 use crate::text::{percent, share};
 
-/// Where one range of probabilities ends and the next begins: closer where a user
-/// decides, near 1.
+/// Upper ends of the ranges of probabilities: closer near 1, where a user decides.
 const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
 
 /// Answers whose best place had a probability in one range.
@@ -53,7 +52,7 @@ impl Trust {
         }
     }
 
-    /// What was said in each range, the lowest first.
+    /// The ranges with their answers, the lowest first.
     pub(crate) fn said(&self) -> [Said; ENDS.len()] {
         std::array::from_fn(|i| {
             let answers = self.answers[i];

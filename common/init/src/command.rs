@@ -148,12 +148,10 @@ fn source(config: &Config) -> Result<Source, InitError> {
         if !config.no_probe {
             say("looking for the robot's nodes");
             seen = robot::look(router.as_deref())?;
-            let is_map_needed =
-                |said: &&String| !has_map || seen.has_map || !said.contains("--map");
-            seen.said
-                .iter()
-                .filter(is_map_needed)
-                .for_each(|said| say(said));
+            seen.said.iter().for_each(|said| say(said));
+            if seen.lacks_map && !has_map {
+                say(robot::NO_MAP);
+            }
         }
         return Ok(Source::Ros2 {
             router: router.clone(),

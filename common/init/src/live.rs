@@ -20,7 +20,7 @@ use crate::robot;
 pub struct Recorded {
     /// The recording.
     pub file: PathBuf,
-    /// What the gateway said of the robot that is not as it should be.
+    /// Warnings of the gateway about the robot.
     pub warnings: BTreeSet<String>,
     _folder: tempfile::TempDir,
 }
@@ -48,6 +48,9 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
     say("looking for the robot's nodes");
     let seen = robot::look(router)?;
     seen.said.iter().for_each(|said| say(said));
+    if seen.lacks_map {
+        say(robot::NO_MAP);
+    }
     if seen.options.is_empty() {
         return Err(failed("none of its nodes publishes laser scans".to_owned()));
     }
@@ -116,7 +119,7 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
     })
 }
 
-/// What the gateway warns of in a line of the graph's log.
+/// The gateway's warning in a line of the graph's log, if it is one.
 fn warning(line: &str) -> Option<String> {
     let object = line.get(line.find('{')?..)?;
     let line: Line = serde_json::from_str(object).ok()?;

@@ -22,14 +22,14 @@ pub(crate) struct Published {
     node: String,
 }
 
-/// What is known of a robot.
+/// A robot as its topics show it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Robot {
     /// Options of the gateway that name its middleware and its topics.
     pub(crate) options: Vec<String>,
-    /// Whether a node publishes a map.
-    pub(crate) has_map: bool,
-    /// What was seen, for people, a sentence each.
+    /// Whether its nodes publish scans and no map.
+    pub(crate) lacks_map: bool,
+    /// Sentences for people about what was seen.
     pub(crate) said: Vec<String>,
 }
 
@@ -64,6 +64,9 @@ pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
     let published = published.map_err(|error| failed(format!("ros2_gateway: {error}")))?;
     Ok(robot_of(&published))
 }
+
+/// Words for a robot without a map.
+pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one";
 
 /// The options for what is published.
 fn robot_of(published: &[Published]) -> Robot {
@@ -102,7 +105,7 @@ fn robot_of(published: &[Published]) -> Robot {
         .into_iter()
         .filter(|topic| !topic.contains("costmap"))
         .collect();
-    robot.has_map = !maps.is_empty();
+    robot.lacks_map = maps.is_empty();
     for (option, default, topics) in [
         ("--scan", "/scan", &scans),
         ("--odom", "/odom", &of_kind("odometry")),
@@ -121,11 +124,6 @@ fn robot_of(published: &[Published]) -> Robot {
                 .said
                 .push(format!("{option} {chosen} is taken of {all}"));
         }
-    }
-    if !robot.has_map {
-        robot
-            .said
-            .push("no node publishes a map: --map FILE serves one".to_owned());
     }
     robot
 }
@@ -157,7 +155,7 @@ mod tests {
         ];
         let robot = robot_of(&published(&seen, "zenoh", 0));
         assert_eq!(robot.options, ["--rmw", "zenoh"]);
-        assert!(robot.has_map);
+        assert!(!robot.lacks_map);
         assert_eq!(
             robot.said,
             [
@@ -177,7 +175,7 @@ mod tests {
         let robot = robot_of(&published(&seen, "dds", 7));
         let expected = "--rmw dds --domain 7 --scan /r2/front --odom /r2/odometry/filtered";
         assert_eq!(robot.options.join(" "), expected);
-        assert!(!robot.has_map);
+        assert!(robot.lacks_map);
     }
 
     #[test]

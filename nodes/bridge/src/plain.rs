@@ -1,4 +1,4 @@
-//! A topic beside its payload as JSON, under the key `<topic>/json`.
+//! A topic as JSON under the key `<topic>/json`, in addition to its payload.
 
 use std::rc::Rc;
 
@@ -15,7 +15,7 @@ use crate::rates::Limit;
 use crate::route::Route;
 use crate::{BridgeError, Rate};
 
-/// Sends the messages of a topic as JSON, while somebody subscribes.
+/// Sends the messages of a topic as JSON while there is a subscriber.
 pub(crate) struct Plain<T: Topic> {
     subscriber: Rc<Subscriber<T>>,
     key: String,
