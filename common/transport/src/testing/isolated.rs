@@ -1,6 +1,7 @@
 //! A graph that belongs to one test.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 
 use super::watch::watch;
@@ -8,9 +9,9 @@ use crate::membership::SHARED_MEMORY;
 use crate::root::{current_user, path_for};
 use crate::{Graph, GraphName, remove_leftovers};
 
-/// A graph whose name no other test and no other run uses; what it leaves is
-/// removed in the end. A test that hangs is ended. To be declared before everything that is in the graph,
-/// so that it is dropped last; in a struct, behind it.
+/// A graph whose name no other one has, in this process or another; what it leaves is
+/// removed in the end. A test that hangs is ended. To be declared before everything that is in
+/// the graph, so that it is dropped last; in a struct, behind it.
 #[derive(Debug)]
 pub struct Isolated {
     name: GraphName,
@@ -19,7 +20,7 @@ pub struct Isolated {
 }
 
 impl Isolated {
-    /// `tag` distinguishes the tests of one executable, in at most 11 bytes.
+    /// `tag` says in lists of processes whose graph it is, in at most 11 bytes.
     ///
     /// # Panics
     /// If `tag` is longer, or holds what a graph's name must not.
@@ -69,7 +70,22 @@ impl Isolated {
 }
 
 fn name(tag: &str) -> GraphName {
-    GraphName::new(&format!("t{}-{tag}", std::process::id())).unwrap()
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    // Of 20 bytes 5 are left for the process, as many as its largest number has in base 36.
+    let [process, count] = [std::process::id(), count].map(in_base_36);
+    GraphName::new(&format!("{process}-{count}-{tag}")).unwrap()
+}
+
+fn in_base_36(mut number: u32) -> String {
+    let mut digits = Vec::new();
+    loop {
+        digits.push(char::from_digit(number % 36, 36).unwrap());
+        number /= 36;
+        if number == 0 {
+            return digits.iter().rev().collect();
+        }
+    }
 }
 
 impl Drop for Isolated {
@@ -92,5 +108,17 @@ fn collect(folder: &Path, part: &str, found: &mut Vec<PathBuf>) {
         } else if path.to_string_lossy().contains(part) {
             found.push(path);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn graphs_of_the_same_tag_have_names_of_their_own() {
+        let [first, second] = [0, 1].map(|_| name("eleven-long"));
+        assert_ne!(first, second);
+        assert_eq!(in_base_36(4_194_304), "2hwcg");
     }
 }

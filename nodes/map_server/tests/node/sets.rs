@@ -107,7 +107,7 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
 
 #[test]
 fn maps_that_come_into_the_folder_are_served_and_other_files_are_not_looked_at() {
-    let mut world = World::new("folder-of-set", &[0, 255]);
+    let mut world = World::new("set-folder", &[0, 255]);
     let sets = world.graph.subscriber::<topic::Maps>().unwrap();
     let health = world.graph.subscriber::<topic::Health>().unwrap();
     world.start_on_set();
