@@ -13,8 +13,8 @@ const MIN_WEIGHT: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct BeamConfig {
-    /// Maximum number of beams that vote, 1..=65536; longer scans are thinned by arc.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 180, value_parser = clap::value_parser!(u32).range(1..=65_536)))]
+    /// Maximum number of beams that vote, 1..=65535; longer scans are thinned by arc.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 180, value_parser = clap::value_parser!(u32).range(1..=65_535)))]
     pub max_beams: u32,
     /// Arc covered at the reading from which a beam has full weight, metres, 0..=2;
     /// nearer readings weigh by the arc that they cover. 0 gives all beams the same

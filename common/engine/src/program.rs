@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn votes_are_lowered_until_their_sum_fits() {
         let beams = BeamConfig {
-            max_beams: 65_536,
+            max_beams: 65_535,
             beam_arc_m: 0.0,
         };
         let config = VoteConfig {

@@ -24,7 +24,7 @@ pub struct Scan<'a> {
 }
 
 /// Most readings of a scan.
-const MAX_RANGES: usize = 65_536;
+pub const MAX_RANGES: usize = 65_536;
 
 impl<'a> Scan<'a> {
     /// The scan of a message, which is not copied; [`Scan::check`] is still to

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use engine::grid::{CellRules, GridFrame};
 use engine::locator::OccupancyView;
 use geometry::Pose;
-use map::{OccupancyGrid, UNKNOWN};
+use map::{MAX_CELLS, OccupancyGrid, UNKNOWN};
 use numpy::{
     PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -176,6 +176,13 @@ fn occupancies(given: &Bound<'_, PyAny>) -> PyResult<((u32, u32), Vec<u8>)> {
             )));
         }
     };
+    // One cell that is repeated takes no memory before it is copied.
+    if array.len() as u64 > MAX_CELLS {
+        let (height, width) = sides;
+        return Err(value(format!(
+            "cells has {height} x {width} cells; at most {MAX_CELLS} are allowed"
+        )));
+    }
     let cells = if let Ok(cells) = given.extract::<PyReadonlyArray2<'_, i8>>() {
         let cells = cells.as_array();
         check(cells.iter().map(|&cell| i16::from(cell)), sides.1, -1)?;

@@ -1,6 +1,7 @@
 //! A scan from Python: an array of ranges, and what they share.
 
-use engine::scan::Scan;
+use engine::EngineError;
+use engine::scan::{MAX_RANGES, Scan};
 use geometry::Pose;
 use numpy::{
     PyArrayDescrMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods, get_array_module,
@@ -86,6 +87,10 @@ fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
     if !matches!(array.dtype().kind(), b'f' | b'i' | b'u') {
         let dtype = array.dtype();
         return Err(value(format!("ranges has dtype {dtype}; {allowed}")));
+    }
+    // One number that is repeated takes no memory before it is copied.
+    if array.len() > MAX_RANGES {
+        return Err(of_engine(&EngineError::TooManyRanges(array.len())));
     }
     if let Ok(ranges) = array.extract::<PyReadonlyArray1<'_, f32>>() {
         return Ok(ranges.as_array().to_vec());

@@ -117,6 +117,7 @@ STEP = ANGLES[1]
 WRONG = [
     (([], 0.0, STEP), {}, "the scan is empty"),
     ((np.ones(70_000), 0.0, 1e-5), {}, "70000 ranges: at most 65536"),
+    ((np.broadcast_to(1.0, 10**10), 0.0, 1e-12), {}, "10000000000 ranges: at most 65536"),
     ((np.ones((2, 3)), 0.0, STEP), {}, "ranges has 2 dimensions; allowed"),
     ((np.ones(3, complex), 0.0, STEP), {}, "ranges has dtype complex128; allowed"),
     ((np.ones(3, bool), 0.0, STEP), {}, "ranges has dtype bool; allowed"),
@@ -144,7 +145,7 @@ def test_scans_that_are_refused(localizer, given, others, reason):
 
 
 SETTINGS = [
-    ({"max_beams": 0}, ValueError, "max_beams: 0 is not in 1..=65536"),
+    ({"max_beams": 0}, ValueError, "max_beams: 0 is not in 1..=65535"),
     ({"max_beams": 2.5}, ValueError, "max_beams"),
     ({"max_beams": "many"}, ValueError, "max_beams: invalid digit"),
     ({"headings": 361}, ValueError, "361 headings a turn: it must be a multiple of 8"),

@@ -72,6 +72,7 @@ WRONG = [
     (CELLS.astype(float), "cells has dtype float64; allowed"),
     (CELLS == 0, "cells has dtype bool"),
     (CELLS[0], "cells has 1 dimensions; allowed: a 2-D"),
+    (np.broadcast_to(np.int8(0), (10**5, 10**5)), "100000 x 100000 cells; at most 400000000"),
     (CELLS.tolist(), "cells is a list; allowed"),
     (None, "cells is a NoneType; allowed"),
     (np.array([[0, 0], [0, -2]], np.int8), r"cells\[1, 1\] is -2; allowed: 0 .* -1 for unknown"),

@@ -13,7 +13,7 @@ use super::report::Report;
 
 /// A pose that was unique stays so until the robot is elsewhere so many times as likely as a
 /// start allows.
-const KEPT: f64 = 5.0;
+const KEPT: f64 = 2.5;
 
 /// The tracker's belief: which of the places is the robot's, and how sure that is.
 #[derive(Debug, Clone)]
@@ -181,7 +181,7 @@ impl Belief {
 
     /// The best place, and those elsewhere that keep it from being unique.
     fn rivals<'a>(&self, places: &'a [Place]) -> impl Iterator<Item = &'a Place> {
-        rivals(places, 1.0 - self.config.sure)
+        rivals(places, self.config.sure)
     }
 
     fn reason(&self, places: &Places) -> TrackReason {

@@ -41,7 +41,7 @@ pub struct TrackingConfig {
     #[cfg_attr(feature = "clap", arg(long, value_name = "LOG", default_value_t = 1.5, value_parser = parse_log))]
     pub scan_cap: f64,
     /// Probability at which a place is the only one, 0..=1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "PROBABILITY", default_value_t = 0.98, value_parser = parse_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PROBABILITY", default_value_t = 0.94, value_parser = parse_share))]
     pub sure: f64,
     /// By this much the score of a scan may fall below the mean of those before it
     /// before the pose is doubted, 0..=1.
@@ -71,7 +71,7 @@ impl Default for TrackingConfig {
             key_m: 0.4,
             key_deg: 20.0,
             scan_cap: 1.5,
-            sure: 0.98,
+            sure: 0.94,
             doubt_fall: 0.25,
             restart_fall: 0.08,
         }

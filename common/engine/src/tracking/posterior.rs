@@ -6,34 +6,48 @@ use nalgebra::Matrix3;
 use super::place::Place;
 use super::places::Places;
 
+/// Looks repeat each other's errors, as the map's are the same in each: all of them together say
+/// half of what they would if they did not.
+const SHARE_OF_LOOKS: f64 = 0.5;
+
+/// Natural logarithm of the odds, where looks say nothing, that the place that leads is the
+/// right one.
+const LEADING: f64 = 0.7;
+
 pub(super) fn is_elsewhere(place: &Place, best: &Place) -> bool {
     place.is_apart_from((best.map, best.pose))
 }
 
-/// Probability that the robot is at the best place, 0..=1: the weight of all that lie there,
-/// of that of all places and "nowhere".
+/// Probability that the robot is at the best place, 0..=1: the odds of the weight of all that lie
+/// there against that of all other places and "nowhere", calibrated on drives with faults of each
+/// kind (docs/tracking.md).
 pub(super) fn probability(places: &Places) -> f64 {
     let Some(best) = places.all().first() else {
         return 0.0;
     };
     let weight = |place: &Place| (place.log_weight - best.log_weight).exp();
     let nowhere = (places.nowhere() - best.log_weight).exp();
-    let (mut here, mut all) = (0.0, nowhere);
+    let (mut here, mut others) = (0.0, nowhere);
     for place in places.all() {
-        all += weight(place);
-        if !is_elsewhere(place, best) {
-            here += weight(place);
+        match is_elsewhere(place, best) {
+            true => others += weight(place),
+            false => here += weight(place),
         }
     }
-    here / all
+    calibrated((here / others).ln())
 }
 
-/// The best place, and those elsewhere that are this likely against it or more.
-pub(super) fn rivals(places: &[Place], least: f64) -> impl Iterator<Item = &Place> {
+/// Probability of a place with these log odds by its weight.
+fn calibrated(log_odds: f64) -> f64 {
+    1.0 / (1.0 + (-SHARE_OF_LOOKS * log_odds - LEADING).exp())
+}
+
+/// The best place, and those elsewhere each of which alone keeps its probability below `sure`.
+pub(super) fn rivals(places: &[Place], sure: f64) -> impl Iterator<Item = &Place> {
     let best = places.first();
     places.iter().filter(move |place| {
         best.is_some_and(|best| {
-            let is_near = (place.log_weight - best.log_weight).exp() > least;
+            let is_near = calibrated(best.log_weight - place.log_weight) < sure;
             place.id == best.id || (is_near && is_elsewhere(place, best))
         })
     })

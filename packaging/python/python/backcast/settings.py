@@ -31,7 +31,7 @@ class Settings(TypedDict, total=False):
     # Threads of a search, 1..=64; the answer is the same with any number. Default: 1.
     threads: int
 
-    # Most beams that vote, 1..=65536; longer scans are thinned by arc. Default: 180.
+    # Most beams that vote, 1..=65535; longer scans are thinned by arc. Default: 180.
     max_beams: int
 
     # Arc at the reading from which a beam counts fully, metres, 0..=2; nearer ones count by the
@@ -221,7 +221,7 @@ class TrackerSettings(Settings, total=False):
     # what no model explains happens this often. Default: 1.5.
     scan_cap: float
 
-    # Probability at which a place is the only one, 0..=1. Default: 0.98.
+    # Probability at which a place is the only one, 0..=1. Default: 0.94.
     sure: float
 
     # By so much the score of a scan may fall below the mean of those before it before the pose
