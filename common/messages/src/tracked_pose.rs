@@ -64,6 +64,20 @@ impl PoseHeader {
     /// Most bytes of the words.
     pub const WORDS_CAPACITY: usize = 256;
 
+    /// Pose of the laser in the map, where there is one.
+    #[must_use]
+    pub fn laser(&self) -> Option<Pose2> {
+        let pose = Some(self.map_from_laser).filter(|_| self.pose_known == 1);
+        pose.filter(|&pose| geometry::Pose::from(pose).is_finite())
+    }
+
+    /// Pose of the base in the map, where there is one and the laser's mount is known.
+    #[must_use]
+    pub fn base(&self) -> Option<Pose2> {
+        let pose = self.laser().map(|_| self.map_from_base);
+        pose.filter(|&pose| self.mount_known == 1 && geometry::Pose::from(pose).is_finite())
+    }
+
     /// Whether there is a pose, and the tracker believes it.
     #[must_use]
     pub fn is_believed(&self) -> bool {

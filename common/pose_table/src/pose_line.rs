@@ -1,7 +1,7 @@
 //! What is printed for one scan where the graph has a tracker: its pose first, the
 //! answer to the scan alone beside it. Pure.
 
-use geometry::{Covariance, ELLIPSE_95, Pose};
+use geometry::{Covariance, ELLIPSE_95};
 use messages::{PoseHeader, TrackState};
 use serde::Serialize;
 
@@ -50,8 +50,7 @@ impl PoseLine {
     /// Reads one message of topic `pose`.
     pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
         let state = TrackState::from_code(header.state);
-        let pose = (header.pose_known == 1).then_some(header.map_from_laser);
-        let pose = pose.filter(|pose| Pose::from(*pose).is_finite());
+        let pose = header.laser();
         let covariance = pose.and_then(|_| covariance(header));
         let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
         PoseLine {

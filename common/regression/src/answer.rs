@@ -50,7 +50,7 @@ impl TrackedPose {
     fn of(header: &PoseHeader) -> Self {
         let state = TrackState::from_code(header.state);
         let reason = TrackReason::from_code(header.reason);
-        let laser = (header.pose_known == 1).then_some(header.map_from_laser);
+        let laser = header.laser();
         TrackedPose {
             state: state.map_or("unknown", TrackState::as_str).to_owned(),
             reason: reason.map_or("unknown".to_owned(), |reason| format!("{reason:?}")),

@@ -47,21 +47,19 @@ impl From<Pose2> for Placed {
 
 /// A message of topic `pose` as an object.
 pub(crate) fn pose(header: &PoseHeader, words: &[u8]) -> String {
-    let is_pose = geometry::Pose::from(header.map_from_laser).is_finite();
-    let is_known = header.pose_known == 1 && is_pose;
-    let has_base = is_known && header.mount_known == 1;
+    let (laser, base) = (header.laser(), header.base());
     let state = TrackState::from_code(header.state);
     json::object(&Pose {
         stamp_ns: header.stamp.measured_ns,
         state: state.map_or("?", TrackState::as_str),
         says: String::from_utf8_lossy(words),
         map_id: format!("{:016x}", header.map_id),
-        probability: is_known.then_some(header.probability),
+        probability: laser.map(|_| header.probability),
         from_scan: header.from_scan == 1,
-        base: has_base.then(|| header.map_from_base.into()),
-        base_covariance: has_base.then_some(header.base_covariance),
-        laser: is_known.then(|| header.map_from_laser.into()),
-        laser_covariance: is_known.then_some(header.laser_covariance),
+        base: base.map(Placed::from),
+        base_covariance: base.map(|_| header.base_covariance),
+        laser: laser.map(Placed::from),
+        laser_covariance: laser.map(|_| header.laser_covariance),
     })
 }
 

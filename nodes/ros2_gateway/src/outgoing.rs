@@ -1,7 +1,7 @@
 //! From the graph to the robot.
 
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, Verdict};
 use ros::{PoseArray, PoseWithCovarianceStamped};
 use transport::TransportError;
 use zenoh_session::Report;
@@ -202,14 +202,11 @@ fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
 
 /// Where the tracker has the robot, as an answer to the scan.
 fn tracked(header: &PoseHeader) -> Answer {
-    let is_known = header.pose_known == 1 && header.mount_known == 1;
+    let base = header.base();
     Answer {
         measured_ns: header.stamp.measured_ns,
-        is_unique: is_known && header.state == TrackState::Unique as u32,
-        map_from_base: is_known
-            .then(|| header.map_from_base.into())
-            .into_iter()
-            .collect(),
+        is_unique: base.is_some() && header.is_unique(),
+        map_from_base: base.into_iter().map(Into::into).collect(),
     }
 }
 
@@ -230,6 +227,7 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
+    use messages::TrackState;
 
     use super::*;
 

@@ -60,10 +60,8 @@ impl Tracked {
     pub(crate) fn new(header: &PoseHeader, words: &[u8], now_ns: i64) -> Self {
         let state = TrackState::from_code(header.state);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
-        let is_pose = geometry::Pose::from(header.map_from_laser).is_finite();
-        let is_known = header.pose_known == 1 && is_pose;
+        let (laser, base) = (header.laser(), header.base());
         let words = words.get(..PoseHeader::WORDS_CAPACITY).unwrap_or(words);
-        let has_base = is_known && header.mount_known == 1;
         let says = String::from_utf8_lossy(words).into_owned();
         let (why, advice) = Report::split(&says);
         Tracked {
@@ -75,10 +73,10 @@ impl Tracked {
             why: why.to_owned(),
             advice: advice.to_owned(),
             says,
-            laser: is_known.then(|| header.map_from_laser.into()),
-            base: has_base.then(|| header.map_from_base.into()),
-            ellipse: Ellipse::new(header.laser_covariance).filter(|_| is_known),
-            base_ellipse: Ellipse::new(header.base_covariance).filter(|_| has_base),
+            laser: laser.map(Into::into),
+            base: base.map(Into::into),
+            ellipse: Ellipse::new(header.laser_covariance).filter(|_| laser.is_some()),
+            base_ellipse: Ellipse::new(header.base_covariance).filter(|_| base.is_some()),
             probability: header.probability,
             lead: header.lead,
             score: header.score,

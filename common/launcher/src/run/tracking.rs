@@ -51,7 +51,7 @@ impl Tracking {
         self.scans += 1;
         *self.states.entry(word(state)).or_default() += 1;
         self.latency_ms.add(latency_ms);
-        let pose = (header.pose_known == 1).then(|| header.map_from_laser.into());
+        let pose = header.laser().map(Into::into);
         let answer = Answer {
             poses: pose.into_iter().collect(),
             // The statistics count who claims to be sure, and is wrong.

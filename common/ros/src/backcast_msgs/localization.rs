@@ -36,11 +36,9 @@ impl Localization {
     #[must_use]
     pub fn of(header: Header, from: &PoseHeader, words: &[u8]) -> Self {
         // The pose of a laser is not the robot's.
-        let pose_known = from.pose_known == 1 && from.mount_known == 1;
-        let pose = match pose_known {
-            true => planar::estimate(from.map_from_base.into(), from.base_covariance),
-            false => PoseWithCovariance::default(),
-        };
+        let pose = from
+            .base()
+            .map(|base| planar::estimate(base.into(), from.base_covariance));
         Localization {
             header,
             // There are four states.
@@ -49,8 +47,8 @@ impl Localization {
             since: Time::from_ns(from.since_ns.max(0)).unwrap_or_default(),
             alternatives: from.places.saturating_sub(1),
             map_id: map_id(from),
-            pose_known,
-            pose,
+            pose_known: pose.is_some(),
+            pose: pose.unwrap_or_default(),
             reason: String::from_utf8_lossy(words).into_owned(),
         }
     }
