@@ -198,6 +198,46 @@ fn what_a_recording_has_lost_is_reported_and_drawn() {
     assert_eq!(drawn, missing.min(20));
 }
 
+/// Stops a process for longer than its topics hold what comes, again and again until it ends.
+fn stall(child: std::process::Child) -> std::process::Output {
+    let pid = Pid::from_raw(child.id().cast_signed());
+    let waiting = std::thread::spawn(move || child.wait_with_output().unwrap());
+    let pause = |time| std::thread::sleep(std::time::Duration::from_millis(time));
+    while !waiting.is_finished() {
+        pause(300);
+        // It may have ended just now, and is a zombie until it is waited for.
+        let _ = kill(pid, Signal::SIGSTOP);
+        pause(600);
+        let _ = kill(pid, Signal::SIGCONT);
+    }
+    waiting.join().unwrap()
+}
+
+#[test]
+fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
+    let world = World::of("malaga_corridor");
+    let folder = TempDir::new().unwrap();
+    let descriptor = folder.path().join("graph.yaml");
+    std::fs::write(&descriptor, graph(&world.recording(), &world.map())).unwrap();
+    let start = |args: &[&str]| {
+        let mut command = executables::backcast();
+        command.args(args).current_dir(tests::root());
+        let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let output = stall(piped.spawn().unwrap());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{args:?}: {said}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    start(&["regress", world.folder.to_str().unwrap()]);
+    let descriptor = descriptor.to_str().unwrap();
+    let printed = start(&["run", descriptor, "--json", "--rate", "max"]);
+    let of_scan = |line: &&str| {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        line["stamp_ns"].is_i64()
+    };
+    assert_eq!(printed.lines().filter(of_scan).count(), 37, "{printed}");
+}
+
 #[test]
 fn what_the_graph_recorded_evaluates_as_the_original() {
     let world = World::of("malaga_corridor");

@@ -52,8 +52,21 @@ pub enum LauncherError {
         file: PathBuf,
     },
     /// No graph is there to be asked.
-    #[error("no graph of this user is running")]
-    NoGraph,
+    #[error("no graph of this user is running{}", others.iter().map(|other| format!("; {other}")).collect::<String>())]
+    NoGraph {
+        /// A sentence on each graph that another user runs.
+        others: Vec<String>,
+    },
+    /// A graph that was asked to stop runs on.
+    #[error(
+        "graph {graph} still runs {seconds} s after it was asked to stop: `backcast status` shows what runs"
+    )]
+    NotStopped {
+        /// The graph's name.
+        graph: String,
+        /// How long was waited.
+        seconds: u64,
+    },
     /// No launcher answers.
     #[error("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")]
     NoLauncher {

@@ -6,6 +6,32 @@
 use std::env;
 use std::path::{Path, PathBuf};
 
+use dataflow::Node;
+
+/// The executables of our nodes.
+const NODES: [&str; 15] = [
+    "accumulator",
+    "boundary_extractor",
+    "bridge",
+    "emulator",
+    "fleet_monitor",
+    "foxglove_server",
+    "lms_reader",
+    "locate_server",
+    "map_server",
+    "monitor",
+    "peak_extractor",
+    "recorder",
+    "replayer",
+    "ros2_gateway",
+    "tracker",
+];
+
+/// Whether a node runs one of our programs, by its name.
+pub(crate) fn is_ours(node: &Node) -> bool {
+    NODES.contains(&node.executable())
+}
+
 /// The descriptor of the demonstration, if there is one.
 pub(crate) fn demonstration() -> Option<PathBuf> {
     let file = prefix()?.join("share/backcast/dataflow.yaml");
@@ -50,6 +76,16 @@ fn command() -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_nodes_of_this_repository_are_known() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../nodes");
+        let nodes = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<_> = nodes.map(|node| node.unwrap().file_name()).collect();
+        names.retain(|name| name != "backcast");
+        names.sort();
+        assert_eq!(names, NODES);
+    }
 
     #[test]
     fn a_bare_name_is_found_beside_the_command_and_on_the_path() {

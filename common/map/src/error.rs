@@ -222,20 +222,6 @@ pub enum MapError {
     },
 }
 
-impl MapError {
-    /// Whether a file is not there, and may come yet.
-    #[must_use]
-    pub fn is_missing(&self) -> bool {
-        match self {
-            MapError::Description { source, .. } | MapError::Image { source, .. } => {
-                source.kind() == io::ErrorKind::NotFound
-            }
-            MapError::OfSet { source, .. } => source.is_missing(),
-            _ => false,
-        }
-    }
-}
-
 /// What the maps take that come before one, in words.
 fn beside(others_mb: u64) -> String {
     match others_mb {

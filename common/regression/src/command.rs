@@ -66,6 +66,11 @@ pub struct Config {
 /// written.
 pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
+    if let Some(folder) = config.junit.as_deref().and_then(Path::parent) {
+        // Before the work, whose outcome would be lost otherwise.
+        std::fs::create_dir_all(folder)
+            .map_err(|source| case::failed("make the folder", folder, source))?;
+    }
     let mut cases = Vec::new();
     for folder in &config.folders {
         cases.extend(Case::all_in(folder)?);

@@ -4,12 +4,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use launcher::descriptor::Descriptor;
-use launcher::run::arguments::{MAP_SERVER, find, leave_out_monitors, set, unset};
+use launcher::run::arguments::{MAP_SERVER, add_to_list, find, leave_out_monitors, set, unset};
 use launcher::run::crew::Crew;
 use launcher::run::{replay, tracker};
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, VotesHeader, topic};
 use recording::{Kind, Recording};
-use transport::{Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers};
+use transport::{
+    Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers, shared_memory_has_room,
+};
 
 use super::answer::Answer;
 use super::case::Case;
@@ -31,6 +33,7 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Reg
     leave_out_monitors(dataflow);
     let replayer = replay::play(dataflow, &[case.recording()]);
     set(replayer, "--rate", Some("max"));
+    add_to_list(replayer, "--in-step", NAME);
     unset(replayer, "--loop", false);
     let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
     set(server, "--map", Some(&case.map().to_string_lossy()));
@@ -107,12 +110,16 @@ fn collect(
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
+    let reports = graph.subscriber::<topic::Health>()?;
+    // The player waits for what it counts.
+    let mut health = graph.health()?;
     let mut received = Received {
         is_tracked,
         ..Received::default()
     };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
     let mut last_progress = Instant::now();
+    let mut taken = 0;
     let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();
         let over = crew.is_over();
@@ -122,7 +129,16 @@ fn collect(
         if received.is_complete(scans) || over && now - last_progress >= TIMEOUT {
             return Ok(Flow::Stop);
         }
-        crew.tick(now)?;
+        if received.taken() > taken {
+            health.count_received(received.taken() - taken);
+            health.send()?;
+            taken = received.taken();
+        }
+        health.tick()?;
+        while let Some(report) = reports.receive()? {
+            crew.received(report.header(), now);
+        }
+        crew.tick(now, shared_memory_has_room())?;
         Ok::<_, RegressionError>(Flow::Continue)
     });
     let stopped = crew.stop();
@@ -163,6 +179,12 @@ impl Received {
             }
         }
         Ok(self.messages() > before)
+    }
+
+    /// Scans of which the answer came, as the player counts them.
+    fn taken(&self) -> u64 {
+        let last = self.hypotheses.last();
+        last.map_or(0, |(header, _)| header.stamp.counter + 1)
     }
 
     fn messages(&self) -> usize {

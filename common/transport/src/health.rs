@@ -125,8 +125,12 @@ impl Health {
         self.state(NodeState::Stopped)
     }
 
-    /// A report that finds no room is lost: the next one holds what it held.
-    fn send(&mut self) -> Result<(), TransportError> {
+    /// Sends a report now, for whoever waits for what it counts. One that finds no room is lost: the
+    /// next one holds what it held.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn send(&mut self) -> Result<(), TransportError> {
         self.report.sent_ns = monotonic_ns();
         let losses = self.losses.count();
         let mut report = self.report;

@@ -84,6 +84,9 @@ type Scan = (usize, u64);
 
 impl Common {
     fn open(graph: &Graph, config: &Config) -> Result<Self, EmulatorError> {
+        let mut health = graph.health()?;
+        // A long recording takes a while.
+        health.state(NodeState::Busy)?;
         let Drive {
             sweep,
             happenings,
@@ -95,7 +98,7 @@ impl Common {
                 odometry: config.odom_topic.as_deref(),
             },
         )?;
-        let mut health = graph.health()?;
+        health.state(NodeState::Waiting)?;
         for error in &refused {
             tracing::warn!("{}", with_causes(error));
             health.count_refused(1);

@@ -32,7 +32,9 @@ const ACQUAINTANCE: Duration = Duration::from_millis(500);
 /// If the map cannot be used, the session cannot be opened, or the graph fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
     let mut health = graph.health()?;
+    health.state(NodeState::Busy)?;
     let locator = Arc::new(prepare(config)?);
+    health.state(NodeState::Waiting)?;
     let Some(session) = zenoh_session::open(graph, &config.network, || health.tick())? else {
         return Ok(());
     };

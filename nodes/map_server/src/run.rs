@@ -3,11 +3,13 @@
 mod one;
 mod several;
 
+use std::error::Error;
+use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
-use messages::{CellRules, MapHeader, MapName, Stamp};
-use transport::Graph;
+use messages::{CellRules, MapHeader, MapName, NodeState, Stamp};
+use transport::{Graph, Health, TransportError, with_causes};
 
 use crate::{Config, MapServerError};
 
@@ -18,14 +20,23 @@ const TICK: Duration = Duration::from_millis(250);
 /// Serves the map, or the maps, until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or a map at the start is broken; one that is served alone and is not
-/// there yet is waited for. Later a broken map is reported in `health` and the one before stays.
+/// If the graph fails, or the recording of `--recorded` is broken. Maps that are not there yet, or
+/// broken, are waited for; later a broken map is reported in `health` and the one before stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     match (&config.maps, &config.map) {
         (Some(set), _) => several::run(graph, config, set),
         (None, Some(map)) => one::run(graph, config, map),
         (None, None) => unreachable!("the command line asks for one of them"),
     }
+}
+
+/// Says that nothing can be served before a file changes, and why.
+fn wait_for(health: &mut Health, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
+    let (path, error) = (path.display(), with_causes(error));
+    let problem = format!("waiting for the map {path}: {error}");
+    tracing::warn!("{problem}");
+    health.error(&problem)?;
+    health.state(NodeState::Waiting)
 }
 
 /// What goes before the cells of a map, which has a name where it is one of a set.

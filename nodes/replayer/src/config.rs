@@ -61,6 +61,11 @@ pub struct Config {
     #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
     pub wait_for: Vec<String>,
 
+    /// Nodes that the next scan waits for at --rate max once the last one is answered, separated by
+    /// commas: each counts in its reports in topic `health` how many answers it has taken
+    #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
+    pub in_step: Vec<String>,
+
     /// Timeout for an answer, seconds, 0.1 to 3600: of every scan at --rate max, else
     /// of the last one, if anybody listens.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]

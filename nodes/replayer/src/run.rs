@@ -1,5 +1,6 @@
 //! Reads the clock, waits and sends.
 
+mod in_step;
 mod keyboard;
 mod outlet;
 
@@ -7,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use in_step::InStep;
 use keyboard::{KeyPress, Keyboard};
 use messages::{NodeState, topic};
 use outlet::Outlet;
@@ -15,7 +17,7 @@ use replay::{
     Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
     wait_for_nodes,
 };
-use transport::{Flow, Graph, Subscriber, monotonic_ns, with_causes};
+use transport::{Flow, Graph, Input, Subscriber, monotonic_ns, with_causes};
 
 use crate::pause::Pause;
 use crate::{Config, ReplayerError};
@@ -56,9 +58,12 @@ impl Summary {
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
+    // A long recording takes a while.
+    outlet.health.state(NodeState::Busy)?;
     let recording = open(config)?;
     let selection = select(config, &recording)?;
     let channels = Channels::of_lasers(&recording, &selection, &config.scan_topic)?;
+    outlet.health.state(NodeState::Waiting)?;
     wait_for_nodes(graph, &config.wait_for, &mut outlet.health)?;
     let stop = graph.stop_flag();
     if stop.load(Ordering::Relaxed) {
@@ -80,11 +85,18 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
         pending: None,
         failure: None,
         schedule: Schedule::new(config.rate, config.patience),
+        in_step: InStep::new(graph, &config.in_step)?,
         outlet,
         stop,
     };
     player.advance()?;
-    graph.run(&[&answers], TICK, |_| player.step(&answers))?;
+    let reports = player.in_step.reports();
+    let reports = reports.as_deref().map(|reports| -> &dyn Input { reports });
+    let inputs: Vec<&dyn Input> = [&answers as &dyn Input]
+        .into_iter()
+        .chain(reports)
+        .collect();
+    graph.run(&inputs, TICK, |_| player.step(&answers))?;
     player.conclude()
 }
 
@@ -164,6 +176,7 @@ struct Player<'r> {
     /// What ended the recording before its end.
     failure: Option<PlaybackError>,
     schedule: Schedule,
+    in_step: InStep,
     outlet: Outlet,
     stop: Arc<AtomicBool>,
 }
@@ -173,8 +186,11 @@ impl Player<'_> {
     fn step(&mut self, answers: &Subscriber<topic::Hypotheses>) -> Result<Flow, ReplayerError> {
         while !self.stop.load(Ordering::Relaxed) {
             while let Some(answer) = answers.receive()? {
-                self.schedule.answered(answer.header().stamp);
+                self.in_step.answer(answer.header().stamp);
                 self.outlet.count_answer()?;
+            }
+            if let Some(stamp) = self.in_step.done()? {
+                self.schedule.answered(stamp);
             }
             self.outlet.health.tick()?;
             match self

@@ -37,12 +37,15 @@ const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 /// Follows the robot until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or the file of the last pose cannot be used. A scan or a map that
-/// is refused is reported in `health`.
+/// If the graph fails. A scan, a map or a file of the last pose that cannot be used is reported in
+/// `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     let inputs = Inputs::open(graph)?;
     let memory = config.remember.as_deref().map(Memory::new);
-    let remembered = memory.as_ref().map_or(Ok(None), Memory::load)?;
+    let (remembered, unusable) = match memory.as_ref().map_or(Ok(None), Memory::load) {
+        Ok(found) => (found, None),
+        Err(error) => (None, Some(error)),
+    };
     let mut node = Node {
         config: config.clone(),
         joiner: Joiner::new(config.join.clone()),
@@ -70,6 +73,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         outputs: Outputs::open(graph, config.rate)?,
         health: graph.health()?,
     };
+    if let Some(error) = unusable {
+        node.refuse(&format!("the robot is searched everywhere: {error}"))?;
+    }
     graph.run(&inputs.all(), TICK, |_| {
         node.step(&inputs)?;
         Ok::<_, TrackerError>(Flow::Continue)

@@ -1,14 +1,23 @@
 //! Finds the graph that is meant, asks its launcher and prints the answer.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::PathBuf,
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
 
 use clap::Args;
 use command_line::stdout::print;
-use transport::{GraphName, control_socket, running_graphs};
+use transport::{GraphName, control_socket, is_launched, running_graphs};
 
-use super::text;
+use super::{others, text};
 use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask};
+
+/// How long a graph may take to stop, and how often is looked meanwhile.
+const STOPPED_WITHIN: Duration = Duration::from_secs(30);
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Options of `backcast status`.
 #[derive(Debug, Args)]
@@ -63,13 +72,24 @@ pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Stops a graph in order.
+/// Stops a graph in order, and waits until it has ended and its name is free.
 ///
 /// # Errors
-/// It does not run, or does not answer.
+/// It does not run, does not answer, or does not end.
 pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
     let graph = the_graph(config.graph.as_ref())?;
-    done(&graph, &Question::Stop)
+    let code = done(&graph, &Question::Stop)?;
+    let begin = Instant::now();
+    while is_launched(&graph) {
+        if begin.elapsed() >= STOPPED_WITHIN {
+            return Err(LauncherError::NotStopped {
+                graph: graph.to_string(),
+                seconds: STOPPED_WITHIN.as_secs(),
+            });
+        }
+        thread::sleep(LOOK);
+    }
+    Ok(code)
 }
 
 /// Restarts a node.
@@ -101,7 +121,9 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
 }
 
 fn no_graph() -> LauncherError {
-    LauncherError::NoGraph
+    LauncherError::NoGraph {
+        others: others::sentences(),
+    }
 }
 
 fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {

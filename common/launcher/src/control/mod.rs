@@ -2,6 +2,7 @@
 
 mod command;
 mod logs;
+mod others;
 mod text;
 
 pub use command::{RestartConfig, StatusConfig, StopConfig, restart, status, stop};

@@ -21,7 +21,8 @@ pub(super) fn status(status: &Status) -> String {
         // Writing to a text does not fail.
         let _ = writeln!(text, "{}", line(node));
     }
-    for sentence in &status.given_up {
+    let failing = status.nodes.iter().filter_map(|node| node.fails.as_ref());
+    for sentence in status.given_up.iter().chain(failing) {
         let _ = writeln!(text, "  {sentence}");
     }
     text
@@ -31,6 +32,9 @@ fn line(node: &NodeStatus) -> String {
     let pid = node.pid.map_or("-".to_owned(), |pid| pid.to_string());
     let up = node.uptime_s.map_or("-".to_owned(), duration);
     let mut line = format!("  {:<20} {:<18} {pid:>8} {up:>10}", node.id, node.state);
+    if let Some(age) = node.reported_s {
+        let _ = write!(line, "  reported {} ago", duration(age));
+    }
     if node.restarts > 0 {
         let _ = write!(line, "  restarts {}", node.restarts);
     }
@@ -71,8 +75,10 @@ mod tests {
             state: "running".into(),
             pid: Some(42),
             uptime_s: Some(61),
+            reported_s: Some(1),
             restarts: 2,
             last_end: Some("signal: 9 (SIGKILL)".into()),
+            fails: Some("tracker ended 3 times in a row".into()),
         };
         let shown = status(&Status {
             graph: "robot7".into(),
@@ -84,8 +90,9 @@ mod tests {
         });
         let expected = "\
 graph robot7: /opt/dataflow.yaml, launcher is process 7, up 1 h 6 min
-  tracker              running                  42  1 min 1 s  restarts 2  last ended with signal: 9 (SIGKILL)
+  tracker              running                  42  1 min 1 s  reported 1 s ago  restarts 2  last ended with signal: 9 (SIGKILL)
   recorder stays away
+  tracker ended 3 times in a row
 ";
         assert_eq!(shown, expected);
     }

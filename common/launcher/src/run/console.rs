@@ -36,16 +36,24 @@ pub fn say(who: &str, line: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Passes on what `stream` says, on a thread of its own, until its end; drops
+/// Passes on what `stream` says, on a thread of its own, until its end, to `also`, too; drops
 /// `open` then.
 ///
 /// # Errors
 /// The thread cannot be started.
-pub fn forward(who: &str, stream: impl Read + Send + 'static, open: Sender<()>) -> io::Result<()> {
+pub fn forward(
+    who: &str,
+    stream: impl Read + Send + 'static,
+    open: Sender<()>,
+    also: impl Fn(&str) + Send + 'static,
+) -> io::Result<()> {
     let who = who.to_owned();
     let body = move || {
         // A pipe that cannot be read is at its end for us.
-        let _ = for_each_line(stream, |line| say(&who, line));
+        let _ = for_each_line(stream, |line| {
+            say(&who, line);
+            also(line);
+        });
         drop(open);
     };
     thread::Builder::new()

@@ -79,10 +79,14 @@ pub struct NodeStatus {
     pub pid: Option<i32>,
     /// How long the process runs, seconds.
     pub uptime_s: Option<u64>,
+    /// Age of the last report of the process on itself, seconds.
+    pub reported_s: Option<u64>,
     /// Since the graph was started.
     pub restarts: u64,
     /// How its last process ended.
     pub last_end: Option<String>,
+    /// A sentence where the node fails again and again.
+    pub fails: Option<String>,
 }
 
 /// A question, and where its answer goes.

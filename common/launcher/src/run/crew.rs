@@ -1,7 +1,7 @@
 //! The processes of the graph: started, watched, started again, stopped.
 //!
 //! A node that fails for good ends the run if the graph needs it; else the rest continues
-//! without it, and [`Crew::given_up`] says so.
+//! without it, and [`Crew::problems`] says so.
 
 mod member;
 
@@ -20,7 +20,6 @@ use transport::{GraphName, with_causes};
 
 use self::member::{Member, State, lost_data, not_supervised};
 use super::{
-    console::warn,
     control::NodeStatus,
     process::Process,
     supervision::{is_over, is_source},
@@ -70,25 +69,28 @@ impl Crew {
     }
 
     /// Starts what is due and looks after what has ended. Returns whether any
-    /// process has ended since the last time.
+    /// process has ended since the last time. While shared memory is full, no process could
+    /// report, and none is to blame for its end.
     ///
     /// # Errors
     /// A node that the graph needs cannot be started at first, or failed for good.
-    pub fn tick(&mut self, now: Instant) -> Result<bool, LauncherError> {
+    pub fn tick(&mut self, now: Instant, has_room: bool) -> Result<bool, LauncherError> {
         let Some(open) = &self.output_open else {
             return Ok(false);
         };
         let mut any_ended = false;
         for member in &mut self.members {
+            if !has_room {
+                member.pulse.restart_timeout(now);
+            }
             let started = member.start_if_due(now, &self.folder, &self.graph, open);
-            let ended = started.and_then(|()| member.look_after(now));
+            let ended = started.and_then(|()| member.look_after(now, has_room));
             match ended {
                 Ok(ended) => any_ended |= ended,
                 Err(error) if !member.essential => {
                     any_ended = true;
                     let goes_on = format!("the graph continues without {}", member.node.id);
                     let sentence = format!("{}; {goes_on}", with_causes(&error));
-                    warn(&sentence);
                     self.given_up.push(sentence);
                 }
                 Err(error) => return Err(error),
@@ -104,8 +106,9 @@ impl Crew {
             _ => false,
         };
         if let Some(member) = self.members.iter_mut().find(is_it) {
-            let busy = NodeState::from_code(report.state) == Some(NodeState::Busy);
-            member.pulse.received(busy, now);
+            member
+                .pulse
+                .received(NodeState::from_code(report.state), now);
         }
     }
 
@@ -137,16 +140,15 @@ impl Crew {
         Ok(true)
     }
 
-    /// No process could report.
-    pub fn restart_timeout(&mut self, now: Instant) {
-        for member in &mut self.members {
-            member.pulse.restart_timeout(now);
-        }
-    }
-
     /// A sentence on each node that failed for good and that the graph continues without.
     pub fn given_up(&self) -> &[String] {
         &self.given_up
+    }
+
+    /// The same, and a sentence on each node that fails again and again.
+    pub fn problems(&self, now: Instant) -> Vec<String> {
+        let failing = self.members.iter().filter_map(|member| member.fails(now));
+        self.given_up.iter().cloned().chain(failing).collect()
     }
 
     /// Whether nothing more can come of it.

@@ -36,7 +36,7 @@ use super::{
     options::Config,
     output::{Output, Reader},
     record::{self, RECORDER},
-    tracker,
+    replay, tracker,
     watch::Watch,
 };
 use crate::{
@@ -114,6 +114,9 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     make_way(&graph)?;
 
     let lossless = forward::plays_at_max(&descriptor.dataflow);
+    if lossless {
+        replay::keep_in_step(&mut descriptor.dataflow, LAUNCHER);
+    }
     let output = Output::start(io::stdout())?;
     let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     let folder = config.options.log_folder.as_deref();
@@ -217,7 +220,8 @@ fn stay(
     let mut end = End::Interrupted;
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
-    let mut reported = 0;
+    let mut reported = Vec::new();
+    let mut taken = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
         // What a source has sent may be received after its end has been seen.
@@ -228,6 +232,12 @@ fn stay(
         }
         if received.answers || !over {
             last_progress = now;
+        }
+        // A player that waits for us goes on.
+        if received.taken > taken {
+            health.count_received(received.taken - taken);
+            health.send()?;
+            taken = received.taken;
         }
         let may_wait = now - last_progress < LAST_ANSWERS;
         if over && (journal.report.all_answered() || !may_wait) {
@@ -240,11 +250,7 @@ fn stay(
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
             warn("SIGUSR1 is for a recorder with --keep, but none is running");
         }
-        if !shared_memory_has_room() {
-            // Nobody can give a sign of life.
-            crew.restart_timeout(now);
-        }
-        if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
+        if crew.tick(now, shared_memory_has_room())? || now - last_cleanup >= CLEANUP_PERIOD {
             graph.ensure_intact()?;
             graph.cleanup_dead_nodes();
             last_cleanup = now;
@@ -252,15 +258,41 @@ fn stay(
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
             sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
         }
-        if crew.given_up().len() > reported {
-            reported = crew.given_up().len();
-            health.error(&crew.given_up().join("; "))?;
-            health.state(NodeState::Degraded)?;
+        let problems = crew.problems(now);
+        if problems != reported {
+            report(&problems, &reported, health)?;
+            reported = problems;
         }
         health.tick()?;
         Ok::<_, LauncherError>(Flow::Continue)
     })?;
     Ok(end)
+}
+
+/// Says on topic `health`, on the console and in the log which nodes fail; the latter two once
+/// for each node.
+fn report(
+    problems: &[String],
+    before: &[String],
+    health: &mut Health,
+) -> Result<(), LauncherError> {
+    let node = |problem: &str| problem.split(" ended ").next().map(str::to_owned);
+    for problem in problems {
+        if !before.iter().any(|other| node(other) == node(problem)) {
+            warn(problem);
+        }
+    }
+    match problems {
+        [] => {
+            health.forget_error();
+            health.state(NodeState::Ready)?;
+        }
+        _ => {
+            health.error(&problems.join("; "))?;
+            health.state(NodeState::Degraded)?;
+        }
+    }
+    Ok(())
 }
 
 /// Where other terminals ask the launcher.

@@ -8,7 +8,7 @@ use std::{
     os::unix::process::CommandExt,
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
-    sync::mpsc::Sender,
+    sync::{Arc, Mutex, mpsc::Sender},
 };
 
 use dataflow::Node;
@@ -40,7 +40,8 @@ pub(crate) fn executable(node: &Node, folder: &Path) -> PathBuf {
 
 impl Process {
     /// Starts `node` in `folder` as a member of `graph`. What it says goes to
-    /// our standard error; `open` is dropped when it has said all.
+    /// our standard error, the last line of its own to `last_line`, too; `open` is dropped when
+    /// it has said all.
     ///
     /// # Errors
     /// The executable cannot be started.
@@ -48,7 +49,7 @@ impl Process {
         node: &Node,
         folder: &Path,
         graph: &GraphName,
-        open: &Sender<()>,
+        (open, last_line): (&Sender<()>, &Arc<Mutex<String>>),
     ) -> io::Result<Self> {
         let mut command = Command::new(executable(node, folder));
         // Lines on a terminal are short, of nodes too, whose standard error is a pipe.
@@ -74,10 +75,16 @@ impl Process {
             pid: Pid::from_raw(pid),
         };
         if let Some(stream) = stdout {
-            console::forward(&node.id, stream, open.clone())?;
+            console::forward(&node.id, stream, open.clone(), |_| {})?;
         }
         if let Some(stream) = stderr {
-            console::forward(&node.id, stream, open.clone())?;
+            let last_line = Arc::clone(last_line);
+            let keep = move |line: &str| {
+                if let Ok(mut last_line) = last_line.lock() {
+                    line.clone_into(&mut last_line);
+                }
+            };
+            console::forward(&node.id, stream, open.clone(), keep)?;
         }
         Ok(process)
     }

@@ -7,7 +7,7 @@ use dataflow::{Dataflow, Input, Node, Place, Restart};
 use messages::{Topic, topic};
 
 use super::added;
-use super::arguments::{REPLAYER, unset};
+use super::arguments::{REPLAYER, add_to_list, unset};
 use super::supervision::{MEASUREMENTS, is_source};
 
 /// Lets the graph's replayer play these recordings as one; a graph that is fed by
@@ -25,6 +25,14 @@ pub fn play<'d>(dataflow: &'d mut Dataflow, recordings: &[PathBuf]) -> &'d mut N
         replayer.args.push(argument);
     }
     replayer
+}
+
+/// Lets the graph's replayers wait, at `--rate max`, until a node that looks on has each answer.
+pub fn keep_in_step(dataflow: &mut Dataflow, node: &str) {
+    let nodes = dataflow.nodes.iter_mut();
+    for replayer in nodes.filter(|node| node.executable() == REPLAYER) {
+        add_to_list(replayer, "--in-step", node);
+    }
 }
 
 /// Takes the sources out and puts a replayer first.

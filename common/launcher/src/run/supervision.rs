@@ -7,7 +7,7 @@ use std::{
 };
 
 use dataflow::{Node, Restart, RestartPolicy};
-use messages::{Topic, topic};
+use messages::{NodeState, Topic, topic};
 
 use crate::LauncherError;
 
@@ -39,6 +39,8 @@ pub enum Ended {
     Well,
     /// It failed, which may go better another time.
     Badly,
+    /// It failed while shared memory was full, which says nothing of it.
+    Starved,
     /// It was started wrongly, which goes no better another time.
     Misused,
 }
@@ -60,7 +62,7 @@ pub struct Restarts {
     rules: Restart,
     /// When they were decided on, within the window.
     recent: VecDeque<Instant>,
-    /// Since it last worked for a while.
+    /// How often it was started again since it last worked for a while.
     in_a_row: u32,
 }
 
@@ -84,14 +86,22 @@ impl Restarts {
         u32::try_from(self.recent.len()).unwrap_or(u32::MAX)
     }
 
-    /// Decides at `now`, after an end of a process that ran for `worked`, and counts
+    /// How often it was started again since it last worked for a while.
+    pub fn in_a_row(&self) -> u32 {
+        self.in_a_row
+    }
+
+    /// Decides at `now`, after an end of a process that did its work for `worked`, and counts
     /// the restart.
     pub fn after_end(&mut self, ended: Ended, worked: Duration, now: Instant) -> AfterEnd {
         let wanted = match (self.rules.policy, ended) {
             (RestartPolicy::Never, _) | (_, Ended::Misused) => false,
-            (RestartPolicy::OnFailure, ended) => ended == Ended::Badly,
+            (RestartPolicy::OnFailure, ended) => ended != Ended::Well,
             (RestartPolicy::Always, _) => true,
         };
+        if wanted && ended == Ended::Starved {
+            return AfterEnd::Restart(self.rules.max_delay);
+        }
         let old = |at: &Instant| now.saturating_duration_since(*at) > self.rules.window;
         while self.recent.front().is_some_and(old) {
             self.recent.pop_front();
@@ -100,7 +110,11 @@ impl Restarts {
             self.in_a_row = 0;
         }
         let limit = self.rules.max_restarts;
-        if wanted && (limit == 0 || self.recent() < limit) {
+        let used = match ended {
+            Ended::Badly => self.recent().max(self.in_a_row),
+            _ => self.recent(),
+        };
+        if wanted && (limit == 0 || used < limit) {
             let doublings = self.in_a_row.min(Self::MAX_DOUBLINGS);
             self.in_a_row = self.in_a_row.saturating_add(1);
             // Without a limit nobody asks how many there were.
@@ -112,7 +126,7 @@ impl Restarts {
         }
         match ended {
             Ended::Well => AfterEnd::Done,
-            Ended::Badly | Ended::Misused => AfterEnd::Failed,
+            Ended::Badly | Ended::Starved | Ended::Misused => AfterEnd::Failed,
         }
     }
 }
@@ -121,45 +135,80 @@ impl Restarts {
 #[derive(Debug, Clone, Copy)]
 pub struct Pulse {
     timeout: Duration,
-    /// Nothing before the first report: programs that send none are not expected to.
-    last: Option<Instant>,
+    /// Whether it has to report: it runs one of our programs, or has reported before.
+    is_expected: bool,
+    /// The last report of its process.
+    reported: Option<Instant>,
+    /// Since when its silence counts: the last report, or what excuses that there is none.
+    silent_since: Option<Instant>,
+    /// When its process first said that it works.
+    at_work_since: Option<Instant>,
     /// It said that it is at work on something long.
-    busy: bool,
+    is_busy: bool,
 }
 
 impl Pulse {
-    /// Nothing received yet.
-    pub fn new(timeout: Duration) -> Self {
+    /// So much longer may a node be silent that is at work on something long: five minutes, where
+    /// others have 15 s.
+    const BUSY: u32 = 20;
+
+    /// Nothing received yet from a program that has to report, or need not.
+    pub fn new(timeout: Duration, is_expected: bool) -> Self {
         Pulse {
             timeout,
-            last: None,
-            busy: false,
+            is_expected,
+            reported: None,
+            silent_since: None,
+            at_work_since: None,
+            is_busy: false,
         }
     }
 
-    /// Its process was started: who has reported before is expected to report again.
+    /// Its process was started.
     pub fn started(&mut self, now: Instant) {
-        self.busy = false;
-        self.restart_timeout(now);
+        *self = Pulse {
+            silent_since: self.is_expected.then_some(now),
+            ..Pulse::new(self.timeout, self.is_expected)
+        };
     }
 
     /// It reported.
-    pub fn received(&mut self, busy: bool, now: Instant) {
-        self.last = Some(now);
-        self.busy = busy;
+    pub fn received(&mut self, state: Option<NodeState>, now: Instant) {
+        self.is_expected = true;
+        (self.reported, self.silent_since) = (Some(now), Some(now));
+        self.is_busy = state == Some(NodeState::Busy);
+        if matches!(state, Some(NodeState::Ready | NodeState::Degraded)) {
+            self.at_work_since.get_or_insert(now);
+        }
     }
 
     /// It could not have reported.
     pub fn restart_timeout(&mut self, now: Instant) {
-        if self.last.is_some() {
-            self.last = Some(now);
+        if self.silent_since.is_some() {
+            self.silent_since = Some(now);
         }
     }
 
     /// For how long nothing was received, if that is too long.
     pub fn missed_for(&self, now: Instant) -> Option<Duration> {
-        let silent = now.saturating_duration_since(self.last?);
-        (!self.busy && silent > self.timeout).then_some(silent)
+        let silent = now.saturating_duration_since(self.silent_since?);
+        let most = match self.is_busy {
+            true => self.timeout.saturating_mul(Self::BUSY),
+            false => self.timeout,
+        };
+        (silent > most).then_some(silent)
+    }
+
+    /// The age of its process's last report.
+    pub fn age(&self, now: Instant) -> Option<Duration> {
+        Some(now.saturating_duration_since(self.reported?))
+    }
+
+    /// For how long its process has done its work; `None` where it does not say.
+    pub fn at_work_for(&self, now: Instant) -> Option<Duration> {
+        let since = |at: Instant| now.saturating_duration_since(at);
+        self.is_expected
+            .then(|| self.at_work_since.map_or(Duration::ZERO, since))
     }
 }
 
@@ -285,18 +334,50 @@ mod tests {
     }
 
     #[test]
-    fn a_node_is_missed_when_it_stops_reporting_and_is_not_busy() {
+    fn failures_are_counted_since_it_last_worked_however_long_they_take() {
+        let mut loops = Course::new(RestartPolicy::OnFailure, 15, 3000);
+        for _ in 0..15 {
+            // 0.3 s of life and 3 s to 5 s of waiting: never fifteen within the window.
+            loops.now += Duration::from_secs(5);
+            assert!(matches!(loops.end(Ended::Badly), AfterEnd::Restart(_)));
+        }
+        assert_eq!(loops.restarts.in_a_row(), 15);
+        assert_eq!(loops.end(Ended::Badly), AfterEnd::Failed);
+    }
+
+    #[test]
+    fn what_fails_for_want_of_memory_waits_and_is_not_counted() {
+        let mut starved = Course::new(RestartPolicy::OnFailure, 1, 0);
+        let longest = AfterEnd::Restart(Restart::DEFAULT.max_delay);
+        assert!((0..100).all(|_| starved.end(Ended::Starved) == longest));
+        assert_eq!(starved.restarts.recent(), 0);
+        let never = Course::new(RestartPolicy::Never, 1, 0).end(Ended::Starved);
+        assert_eq!(never, AfterEnd::Failed);
+    }
+
+    #[test]
+    fn a_node_is_missed_when_it_stops_reporting_also_at_its_start_and_while_it_is_busy() {
         let start = Instant::now();
         let at = |seconds| start + Duration::from_secs(seconds);
-        let mut pulse = Pulse::new(Duration::from_secs(15));
+        let timeout = Duration::from_secs(15);
+        let mut foreign = Pulse::new(timeout, false);
+        foreign.started(at(0));
+        assert_eq!(foreign.missed_for(at(100)), None, "it need not report");
+        assert_eq!(foreign.at_work_for(at(100)), None);
+        let mut pulse = Pulse::new(timeout, true);
         pulse.started(at(0));
-        assert_eq!(pulse.missed_for(at(100)), None, "it never reported");
-        pulse.received(false, at(100));
+        assert_eq!(pulse.missed_for(at(15)), None);
+        assert_eq!(pulse.missed_for(at(16)), Some(Duration::from_secs(16)));
+        pulse.received(Some(NodeState::Ready), at(100));
         assert_eq!(pulse.missed_for(at(115)), None);
+        assert_eq!(pulse.age(at(115)), Some(timeout));
         assert_eq!(pulse.missed_for(at(116)), Some(Duration::from_secs(16)));
-        pulse.received(true, at(116));
-        assert_eq!(pulse.missed_for(at(1000)), None, "it is busy");
+        pulse.received(Some(NodeState::Busy), at(116));
+        assert_eq!(pulse.at_work_for(at(117)), Some(Duration::from_secs(17)));
+        assert_eq!(pulse.missed_for(at(416)), None, "it is busy");
+        assert!(pulse.missed_for(at(417)).is_some(), "for too long");
         pulse.started(at(1000));
+        assert_eq!(pulse.at_work_for(at(1014)), Some(Duration::ZERO));
         assert_eq!(pulse.missed_for(at(1014)), None);
         assert!(pulse.missed_for(at(1016)).is_some(), "anew, and silent");
         pulse.restart_timeout(at(1016));

@@ -22,6 +22,8 @@ pub(crate) struct Watch {
 pub(crate) struct Received {
     /// Any answer.
     pub answers: bool,
+    /// Scans of which the answer came, as their player counts them; 0 where none came now.
+    pub taken: u64,
     /// Whether somebody reads them.
     pub reader: Reader,
 }
@@ -83,10 +85,12 @@ impl Watch {
         }
         let mut received = Received {
             answers: false,
+            taken: 0,
             reader: Reader::Reads,
         };
         while let Some(found) = self.hypotheses.receive()? {
             received.answers = true;
+            received.taken = found.header().stamp.counter.saturating_add(1);
             received.reader = journal.answer(found.header(), found.items());
         }
         // A pose follows the answer that it was made of.

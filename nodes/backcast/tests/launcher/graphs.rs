@@ -85,6 +85,28 @@ fn a_folder_that_another_user_has_taken_is_passed_over() {
 }
 
 #[test]
+fn a_graph_of_another_user_is_named_with_the_way_to_it() {
+    if !nix::unistd::geteuid().is_root() {
+        let test = "a_graph_of_another_user_is_named_with_the_way_to_it";
+        Need::Root.is_missing(test, "nobody else can act as two users");
+        return;
+    }
+    let folder = graph(&["id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\""]);
+    let user = 12_347;
+    nix::unistd::chown(folder.path(), Some(nix::unistd::Uid::from_raw(user)), None).unwrap();
+    let mut running = Running::start(&folder, &["--graph", "test-seen"]);
+    assert_eq!(running.receive("source"), "up");
+    let output = launcher(folder.path(), &["status"]).uid(user).output();
+    running.signal(Signal::SIGTERM);
+    assert!(running.wait().0.success());
+    let output = output.unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let way = "user root runs graph test-seen: `sudo -u root backcast status`";
+    assert!(said.contains(way), "{said}");
+}
+
+#[test]
 fn others_have_no_rights_on_the_files_of_a_graph() {
     let name = "test-rights";
     let folder = graph(&["id: source, outputs: [scan], args: -c 'echo up; read line < pipe'"]);
@@ -142,7 +164,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     let name = "test-control";
     let folder = graph(&[
         "id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\"",
-        "id: other, args: \"-c 'exec sleep 1000'\"",
+        "id: other, args: \"-c 'trap : TERM; while true; do sleep 0.1; done'\"",
     ]);
     let mut running = Running::start(&folder, &["--graph", name]);
     assert_eq!(running.receive("source"), "up");
@@ -197,6 +219,8 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
 
     let (code, _, said) = ask(&["stop"]);
     assert_eq!(code, Some(0), "{said}");
+    let graph = GraphName::new(name).unwrap();
+    assert!(!transport::is_launched(&graph), "its name is free at once");
     let (status, said) = running.wait();
     assert_eq!(status.code(), Some(0), "{said}");
     std::io::copy(&mut lines, &mut std::io::sink()).unwrap();

@@ -27,7 +27,7 @@ use nix::{
 };
 use tempfile::TempDir;
 use tests::needs::Need;
-use transport::testing::wait_for_health;
+use transport::testing::{wait_for_health, wait_until};
 use transport::{Graph, GraphName};
 
 /// A folder with a descriptor of these nodes, one a line.

@@ -59,6 +59,32 @@ fn a_node_that_fails_for_good_ends_the_run_and_is_named() {
 }
 
 #[test]
+fn a_node_that_fails_each_time_is_shown_with_its_reason() {
+    let name = "test-fails";
+    let folder = graph(&[
+        "id: loops, restart_policy: on-failure, restart_delay: 0.1, max_restart_delay: 0.3, \
+         args: \"-c 'echo it broke >&2; exit 7'\"",
+        "id: source, outputs: [scan], args: \"-c 'exec sleep 1000'\"",
+    ]);
+    let mut running = Running::start(&folder, &["--graph", name]);
+    let shown = "loops ended 3 times in a row, last with exit status: 7: it broke";
+    while running.receive("backcast") != shown {}
+    let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
+    let health = member.subscriber::<topic::Health>().unwrap();
+    wait_until(&member, &health, |report, error| {
+        report.node.as_str() == "backcast"
+            && report.state == NodeState::Degraded as u32
+            && String::from_utf8_lossy(error).contains("times in a row, last with exit status: 7")
+    });
+    drop((health, member));
+    let status = launcher(folder.path(), &["status", "--graph", name]);
+    let status = String::from_utf8({ status }.output().unwrap().stdout).unwrap();
+    assert!(status.contains("\n  loops ended "), "{status}");
+    running.signal(Signal::SIGTERM);
+    assert!(running.wait().0.success());
+}
+
+#[test]
 fn a_signal_is_a_failure_like_any_other() {
     let (code, _, stderr) = run(&["id: bad, args: \"-c 'kill -KILL $$'\""], &[]);
     assert_eq!(code, 1);

@@ -8,7 +8,7 @@ use messages::{CellRules, MapHeader, NodeState, topic};
 use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
-use super::{TICK, header, now};
+use super::{TICK, header, now, wait_for};
 use crate::files::Files;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
@@ -34,13 +34,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
             server.serve(&grid)?;
             compare((config, path), &grid);
         }
-        Err(error) if error.is_missing() => server.wait_for(&error)?,
-        Err(source) => {
-            return Err(MapServerError::Map {
-                path: path.to_owned(),
-                source: Box::new(source),
-            });
-        }
+        Err(error) => server.wait_for(&error, path)?,
     }
     graph.run(&[], TICK, |_| {
         if is_watched && watch.look(files.look()) == Look::Settled {
@@ -145,25 +139,18 @@ impl Server {
                 Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, path),
                 outcome => outcome,
             },
-            Err(error) if self.served == 0 && error.is_missing() => self.wait_for(&error),
+            Err(error) if self.served == 0 => self.wait_for(&error, path),
             Err(error) => self.refuse(&error, path),
         }
     }
 
-    fn wait_for(&mut self, error: &dyn Error) -> Result<(), TransportError> {
-        let problem = format!("waiting for the map: {}", with_causes(error));
-        tracing::warn!("{problem}");
-        self.health.error(&problem)?;
-        self.health.state(NodeState::Waiting)
+    fn wait_for(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
+        wait_for(&mut self.health, error, path)
     }
 
     fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
         let (path, error) = (path.display(), with_causes(error));
-        let kept = match self.served {
-            0 => "and no map is served",
-            _ => "the previous map stays",
-        };
-        tracing::warn!("the changed map {path} is rejected, {kept}: {error}");
+        tracing::warn!("the changed map {path} is rejected, the previous one stays: {error}");
         self.health.count_refused(1);
         self.health.error(&format!("map {path} refused: {error}"))?;
         self.health.state(NodeState::Degraded)

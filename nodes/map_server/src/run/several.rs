@@ -8,7 +8,7 @@ use map::{MapError, MapFile};
 use messages::{MapHeader, MapSet, NodeState, PoseHeader, Stamp, Transition, topic};
 use transport::{Flow, Graph, Health, Loan, Publisher, TransportError, with_causes};
 
-use super::{TICK, header, now};
+use super::{TICK, header, now, wait_for};
 use crate::set_files::SetFiles;
 use crate::shown::Shown;
 use crate::watch::{Look, Watch};
@@ -21,10 +21,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     let mut files = SetFiles::new(path, &config.on);
     // Looked at before loading: what changes in between is noticed.
     let mut watch = Watch::new(files.look());
-    let set = load(config, path).map_err(|source| MapServerError::Map {
-        path: path.to_owned(),
-        source: Box::new(source),
-    })?;
+    let first = load(config, path);
     let poses = graph.subscriber::<topic::Tracked>()?;
     // Whoever looks at `map` sees that it is one of a set.
     let sets = graph.publisher::<topic::Maps>()?;
@@ -38,7 +35,10 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         is_refused: false,
         has_room: true,
     };
-    server.serve(set, 0)?;
+    match first {
+        Ok(set) => server.serve(set, 0)?,
+        Err(error) => wait_for(&mut server.health, &error, path)?,
+    }
     graph.run(&[&poses], TICK, |wake| {
         while let Some(pose) = poses.receive()? {
             server.follow(pose.header())?;
@@ -235,13 +235,15 @@ impl Server {
                 return self.report_state();
             }
             Ok(set) => {
-                let shown = &self.set.maps[self.shown.map()].name;
-                let stays = set.maps.iter().position(|map| map.name == *shown);
+                let shown = self.set.maps.get(self.shown.map());
+                let is_shown = |map: &LoadedMap| shown.is_some_and(|shown| map.name == shown.name);
+                let stays = set.maps.iter().position(is_shown);
                 match self.serve(set, stays.unwrap_or(0)) {
                     Err(error @ TransportError::SharedMemoryFull { .. }) => with_causes(&error),
                     outcome => return outcome,
                 }
             }
+            Err(error) if self.served == 0 => return wait_for(&mut self.health, &error, path),
             Err(error) => with_causes(&error),
         };
         let path = path.display();

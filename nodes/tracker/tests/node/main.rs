@@ -8,8 +8,8 @@ mod world;
 
 use std::time::Duration;
 
-use messages::{InitialPoseKind, TrackState};
-use transport::testing::Isolated;
+use messages::{InitialPoseKind, TrackState, topic};
+use transport::testing::{Isolated, wait_until};
 
 use world::{Drawn, HALL, Step, World, ids, searched, with_a_box};
 
@@ -41,6 +41,52 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
         "{states:?}"
     );
     node.stop();
+}
+
+#[test]
+fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searched() {
+    let isolated = Isolated::new("remember");
+    let drawn = Drawn {
+        name: "",
+        rows: HALL.into(),
+    };
+    let world = World::of_map(&isolated, &drawn);
+    let health = isolated.join("watcher");
+    let reports = health.subscriber::<topic::Health>().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let id = drawn.header().map_id;
+    let cut = folder.path().join("pose.json");
+    std::fs::write(&cut, "{\"map_id\":").unwrap();
+    for (file, kept) in [(&*cut, true), (folder.path(), false)] {
+        let node = world.start(&["--remember", file.to_str().unwrap()]);
+        wait_until(&health, &reports, |_, error| {
+            let error = String::from_utf8_lossy(error);
+            error.contains("the robot is searched everywhere") && error.contains("the last pose in")
+        });
+        let states = (6..30)
+            .step_by(2)
+            .map(|x| world.step(x, id, Some(id)).pose.state);
+        assert_eq!(
+            states.last(),
+            Some(TrackState::Unique as u32),
+            "{}",
+            file.display()
+        );
+        match kept {
+            true => node.stop(),
+            // What cannot be written in the end is said with the exit code.
+            false => {
+                node.interrupt();
+                assert_eq!(node.exit_code(), Some(1));
+            }
+        }
+        assert_eq!(file.is_file(), kept);
+    }
+    assert!(
+        std::fs::read_to_string(&cut)
+            .unwrap()
+            .contains("map_from_base")
+    );
 }
 
 /// Two floors that look alike.

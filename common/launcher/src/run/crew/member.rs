@@ -4,7 +4,7 @@ use std::{
     io,
     path::Path,
     process::ExitStatus,
-    sync::mpsc::Sender,
+    sync::{Arc, Mutex, mpsc::Sender},
     time::{Duration, Instant},
 };
 
@@ -20,7 +20,12 @@ use super::super::{
     process::{Process, executable},
     supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential},
 };
-use crate::LauncherError;
+use crate::{LauncherError, installed::is_ours};
+
+/// A node that failed so often in a row is shown as one that fails.
+const FAILURES_SHOWN: u32 = 3;
+/// Most bytes of its last line that are shown.
+const LINE_SHOWN: usize = 400;
 
 /// A node, and what became of its processes so far.
 pub(super) struct Member {
@@ -34,6 +39,8 @@ pub(super) struct Member {
     /// How often it was started again, and how its last process ended.
     pub(super) restarted: u64,
     pub(super) last_end: Option<ExitStatus>,
+    /// The last line that its processes wrote on standard error.
+    pub(super) last_line: Arc<Mutex<String>>,
     /// Somebody wants its process to end and another one to follow.
     pub(super) wanted_anew: bool,
     /// Whether it said so with its exit code.
@@ -57,11 +64,12 @@ impl Member {
         Ok(Member {
             essential: is_essential(&node)?,
             restarts: Restarts::new(node.restart),
-            pulse: Pulse::new(node.restart.health_timeout),
+            pulse: Pulse::new(node.restart.health_timeout, is_ours(&node)),
             state: State::Due(now),
             started: None,
             restarted: 0,
             last_end: None,
+            last_line: Arc::default(),
             wanted_anew: false,
             lost_data: false,
             node,
@@ -78,7 +86,7 @@ impl Member {
         if !matches!(self.state, State::Due(at) if at <= now) {
             return Ok(());
         }
-        let process = match Process::start(&self.node, folder, graph, open) {
+        let process = match Process::start(&self.node, folder, graph, (open, &self.last_line)) {
             Ok(process) => process,
             Err(source) => return self.not_started(source, folder, now),
         };
@@ -120,8 +128,13 @@ impl Member {
         })
     }
 
-    /// Returns whether the process has ended, after deciding what follows.
-    pub(super) fn look_after(&mut self, now: Instant) -> Result<bool, LauncherError> {
+    /// Returns whether the process has ended, after deciding what follows; shared memory has room,
+    /// or is full.
+    pub(super) fn look_after(
+        &mut self,
+        now: Instant,
+        has_room: bool,
+    ) -> Result<bool, LauncherError> {
         let Some(status) = self.poll()? else {
             self.end_if_hung(now)?;
             return Ok(false);
@@ -132,8 +145,11 @@ impl Member {
             self.state = State::Due(now);
             return Ok(true);
         }
-        let worked = self.started.map_or(Duration::ZERO, |started| now - started);
-        self.state = match self.restarts.after_end(how_ended(status), worked, now) {
+        let ended = match how_ended(status) {
+            Ended::Badly if !has_room => Ended::Starved,
+            ended => ended,
+        };
+        self.state = match self.restarts.after_end(ended, self.worked(now), now) {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
@@ -145,11 +161,39 @@ impl Member {
                 return Err(LauncherError::NodeFailed {
                     node: self.node.id.clone(),
                     status,
-                    restarts: self.restarts.recent(),
+                    restarts: self.restarts.recent().max(self.restarts.in_a_row()),
                 });
             }
         };
         Ok(true)
+    }
+
+    /// For how long the process has done its work, as far as it says so; one that lived for the
+    /// window of its restarts is no new start that fails.
+    fn worked(&self, now: Instant) -> Duration {
+        let lived = self.started.map_or(Duration::ZERO, |started| now - started);
+        match self.pulse.at_work_for(now) {
+            Some(worked) if lived < self.node.restart.window => worked,
+            _ => lived,
+        }
+    }
+
+    /// A sentence on a node that fails each time that it is started.
+    pub(super) fn fails(&self, now: Instant) -> Option<String> {
+        let is_running = matches!(self.state, State::Running(_));
+        let has_recovered = is_running && self.worked(now) >= Restarts::RECOVERED_AFTER;
+        let (id, times) = (&self.node.id, self.restarts.in_a_row());
+        if times < FAILURES_SHOWN || has_recovered || matches!(self.state, State::Done) {
+            return None;
+        }
+        let status = self.last_end?;
+        let mut sentence = format!("{id} ended {times} times in a row, last with {status}");
+        let last_line = self.last_line.lock().map(|line| line.clone());
+        if let Some(line) = last_line.ok().filter(|line| !line.is_empty()) {
+            let end = line.floor_char_boundary(LINE_SHOWN);
+            sentence = format!("{sentence}: {}", &line[..end]);
+        }
+        Some(sentence)
     }
 
     pub(super) fn status(&self, now: Instant) -> NodeStatus {
@@ -164,8 +208,14 @@ impl Member {
             state: state.to_owned(),
             pid,
             uptime_s: up.map(|started| (now - started).as_secs()),
+            reported_s: self
+                .pulse
+                .age(now)
+                .filter(|_| pid.is_some())
+                .map(|age| age.as_secs()),
             restarts: self.restarted,
             last_end: self.last_end.map(|status| status.to_string()),
+            fails: self.fails(now),
         }
     }
 
