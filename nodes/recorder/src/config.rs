@@ -39,7 +39,19 @@ pub struct Config {
           value_parser = clap::value_parser!(u64).range(1..))]
     pub keep_size: u64,
 
-    /// The events on which --keep saves, separated by commas
+    /// Number of files that --keep leaves on the disk; the oldest are removed
+    #[arg(long, value_name = "COUNT", default_value_t = 20, requires = "keep",
+          value_parser = clap::value_parser!(u32).range(1..))]
+    pub keep_files: u32,
+
+    /// Size of all files that --keep leaves on the disk, megabytes (10^6 bytes); the oldest are
+    /// removed, and the newest one stays
+    #[arg(long, value_name = "MB", default_value_t = 4000, requires = "keep",
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub keep_disk: u64,
+
+    /// The events on which --keep saves, separated by commas; those that come while what the last
+    /// file holds is still kept go into one next file
     #[arg(
         long,
         value_name = "EVENTS",

@@ -104,11 +104,10 @@ impl Recorder {
         if let Some(saves) = &self.saves
             && saves.newest()?.is_some()
         {
-            self.save("asked by the graph")?;
+            self.hand_over()?;
+            self.writer.save("asked by the graph")?;
         }
-        for entry in self.transcript.entries.take() {
-            self.writer.put(entry)?;
-        }
+        self.hand_over()?;
         if self.save.swap(false, Ordering::Relaxed) {
             self.writer.save("asked by SIGUSR1")?;
         }
@@ -145,24 +144,25 @@ impl Recorder {
 
     fn happened(&mut self, event: Option<Event>) -> Result<(), RecorderError> {
         match event.filter(|event| self.save_on.contains(event)) {
-            Some(event) => self.save(&event.to_string()),
+            Some(event) => {
+                self.hand_over()?;
+                self.writer.happened(event)
+            }
             None => Ok(()),
         }
     }
 
-    /// Saves what is kept, and all that came before.
-    fn save(&mut self, why: &str) -> Result<(), RecorderError> {
+    /// Hands all that came to the writer.
+    fn hand_over(&mut self) -> Result<(), RecorderError> {
         for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;
         }
-        self.writer.save(why)
+        Ok(())
     }
 
     fn conclude(mut self) -> Result<Summary, RecorderError> {
         self.transcript.entries.finish(wall_ns())?;
-        for entry in self.transcript.entries.take() {
-            self.writer.put(entry)?;
-        }
+        self.hand_over()?;
         let status = self.writer.finish()?;
         let Transcript { health, .. } = &mut self.transcript;
         if let Some(problem) = &status.problem {

@@ -333,15 +333,15 @@ fn a_full_disk_is_reported_and_nothing_is_lost_once_there_is_room() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_an_error() {
+fn a_folder_that_cannot_be_made_is_an_error() {
     let isolated = Isolated::new("nowhere");
     let graph = isolated.join("test");
-    let arguments = ["--output", "/no/such/folder/r.mcap"];
+    let arguments = ["--output", "/proc/no/such/r.mcap"];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_recorder"), &graph, arguments);
     let (status, log) = node.finish();
     assert_eq!(status.code(), Some(1));
     assert!(
-        log.contains("cannot create the recording /no/such/folder/r.mcap"),
+        log.contains("cannot create the recording /proc/no/such/r.mcap"),
         "{log}"
     );
 }

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use ros_export::Entry;
 use transport::with_causes;
 
-use crate::writing::{BlackBox, Limits, Parts, Preamble, Store, Tally};
-use crate::{Config, RecorderError};
+use crate::writing::{BlackBox, Limits, Parts, Preamble, Room, Store, Tally};
+use crate::{Config, Event, RecorderError};
 
 /// How long something may lie in memory before it is on its way to the disk;
 /// well below the guaranteed second.
@@ -30,6 +30,7 @@ pub(super) struct Status {
 enum Command {
     Put(Entry),
     Save(String),
+    Happened(Event),
 }
 
 /// The end from which it gets its work. What waits for it is bounded: more is
@@ -59,7 +60,11 @@ impl Writer {
             }
             Some(keep) => {
                 let capacity = bytes(config.keep_size);
-                let black_box = BlackBox::new(output, keep, capacity, preamble);
+                let room = Room {
+                    files: config.keep_files,
+                    bytes: config.keep_disk.saturating_mul(MEGABYTE),
+                };
+                let black_box = BlackBox::new(output, keep, capacity, room, preamble);
                 Store::BlackBox(Box::new(black_box))
             }
         };
@@ -103,6 +108,11 @@ impl Writer {
     /// Asks it to save a black box.
     pub(super) fn save(&self, why: &str) -> Result<(), RecorderError> {
         self.send(Command::Save(why.to_owned()))
+    }
+
+    /// Tells it of an event on which a black box is saved.
+    pub(super) fn happened(&self, event: Event) -> Result<(), RecorderError> {
+        self.send(Command::Happened(event))
     }
 
     pub(super) fn status(&self) -> Status {
@@ -185,6 +195,10 @@ impl WriterThread {
             }
             Command::Save(why) => {
                 let saved = self.store.save(&why);
+                self.note(saved);
+            }
+            Command::Happened(event) => {
+                let saved = self.store.happened(&event.to_string());
                 self.note(saved);
             }
         }

@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use recording::write::{Packing, RecordingWriter};
@@ -18,10 +18,22 @@ use crate::RecorderError;
 /// What a message takes beside its bytes.
 const OVERHEAD_BYTES: usize = 128;
 
+/// What files of a black box may take on the disk.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Room {
+    pub(crate) files: u32,
+    pub(crate) bytes: u64,
+}
+
 pub(crate) struct BlackBox {
     path: PathBuf,
     keep: Duration,
     capacity_bytes: usize,
+    room: Room,
+    /// The newest message of the last file.
+    saved_ns: Option<i64>,
+    /// Events that the next file is about, and how often each came.
+    events: Vec<(String, u32)>,
     preamble: Preamble,
     kept: VecDeque<Entry>,
     bytes: usize,
@@ -35,12 +47,16 @@ impl BlackBox {
         path: PathBuf,
         keep: Duration,
         capacity_bytes: usize,
+        room: Room,
         preamble: Preamble,
     ) -> Self {
         BlackBox {
             path,
             keep,
             capacity_bytes,
+            room,
+            saved_ns: None,
+            events: Vec::new(),
             preamble,
             kept: VecDeque::new(),
             bytes: 0,
@@ -49,7 +65,9 @@ impl BlackBox {
         }
     }
 
-    pub(super) fn put(&mut self, entry: Entry) {
+    /// # Errors
+    /// If a file is due for events before, and cannot be written.
+    pub(super) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
         if let Entry::Message(message) = &entry {
             self.newest_ns = self.newest_ns.max(message.log_time_ns);
             self.tally.recorded += 1;
@@ -61,6 +79,51 @@ impl BlackBox {
         {
             self.bytes -= size(&oldest);
             self.preamble.note(&oldest);
+        }
+        match self.is_in_last_file() {
+            true => Ok(()),
+            false => self.save_events(),
+        }
+    }
+
+    /// Whether the last file holds some of what is kept: one of now would overlap it.
+    fn is_in_last_file(&self) -> bool {
+        self.saved_ns.is_some_and(|saved_ns| {
+            let since_ns = i128::from(self.newest_ns) - i128::from(saved_ns);
+            since_ns < self.keep.as_nanos() as i128
+        })
+    }
+
+    /// Writes what is kept because something happened: at once, or when the last file holds
+    /// nothing of it any more.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub(super) fn happened(&mut self, event: &str) -> Result<(), RecorderError> {
+        match self.events.iter_mut().find(|(other, _)| other == event) {
+            Some((_, times)) => *times += 1,
+            None => self.events.push((event.to_owned(), 1)),
+        }
+        match self.is_in_last_file() {
+            true => Ok(()),
+            false => self.save_events(),
+        }
+    }
+
+    /// Writes what is kept where events wait for it.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub(super) fn save_events(&mut self) -> Result<(), RecorderError> {
+        let events = std::mem::take(&mut self.events);
+        let words = events.into_iter().map(|(event, times)| match times {
+            1 => event,
+            _ => format!("{event} ({times} times)"),
+        });
+        let words: Vec<String> = words.collect();
+        match words.is_empty() {
+            true => Ok(()),
+            false => self.save(&words.join(", ")),
         }
     }
 
@@ -89,8 +152,34 @@ impl BlackBox {
                 source,
             })?;
         self.tally.files += 1;
+        self.saved_ns = Some(self.newest_ns);
         tracing::info!("{why}: saved to {}", path.display());
+        self.remove_oldest(&path);
         Ok(())
+    }
+
+    /// Removes the oldest files that there is no room for beside the newest.
+    fn remove_oldest(&self, newest: &Path) {
+        let files = name::created(&self.path).into_iter();
+        let files = files.filter(|path| path != newest).filter_map(|path| {
+            let found = path.metadata().ok()?;
+            Some((found.modified().ok()?, found.len(), path))
+        });
+        let mut files: Vec<_> = files.collect();
+        // The newest first.
+        files.sort_unstable_by(|a, b| b.cmp(a));
+        let newest_bytes = newest.metadata().map_or(0, |found| found.len());
+        let (mut count, mut bytes) = (1, newest_bytes);
+        for (_, size, path) in files {
+            (count, bytes) = (count + 1, bytes + size);
+            if count <= self.room.files && bytes <= self.room.bytes {
+                continue;
+            }
+            match std::fs::remove_file(&path) {
+                Ok(()) => tracing::info!("{} is removed: there are newer ones", path.display()),
+                Err(error) => tracing::warn!("cannot remove {}: {error}", path.display()),
+            }
+        }
     }
 
     pub(super) fn tally(&self) -> Tally {
@@ -154,16 +243,20 @@ mod tests {
     fn black_box(folder: &TempDir, keep_s: u64, capacity_bytes: usize) -> BlackBox {
         let path = folder.path().join("r.mcap");
         let keep = Duration::from_secs(keep_s);
-        BlackBox::new(path, keep, capacity_bytes, Preamble::empty())
+        let room = Room {
+            files: 3,
+            bytes: 1 << 20,
+        };
+        BlackBox::new(path, keep, capacity_bytes, room, Preamble::empty())
     }
 
     #[test]
     fn the_last_seconds_are_saved_with_the_map_from_before() {
         let folder = TempDir::new().unwrap();
         let mut black_box = black_box(&folder, 3, 1 << 20);
-        black_box.put(message(MAP, 0, true));
+        black_box.put(message(MAP, 0, true)).unwrap();
         for second in 0..10 {
-            black_box.put(message("/n", second, false));
+            black_box.put(message("/n", second, false)).unwrap();
         }
         assert!(!folder.path().join("r.mcap").exists());
         black_box.save("asked").unwrap();
@@ -173,10 +266,61 @@ mod tests {
             [map].into_iter().chain(rest).collect()
         };
         assert_eq!(saved(&folder, "r.mcap"), topics(&[6, 7, 8, 9]));
-        black_box.put(message("/n", 10, false));
+        black_box.put(message("/n", 10, false)).unwrap();
         black_box.save("asked").unwrap();
         assert_eq!(saved(&folder, "r_1.mcap"), topics(&[7, 8, 9, 10]));
         assert_eq!(black_box.tally().files, 2);
+    }
+
+    #[test]
+    fn events_that_would_overlap_the_last_file_share_the_next() {
+        let folder = TempDir::new().unwrap();
+        let mut black_box = black_box(&folder, 4, 1 << 20);
+        for second in 0..12 {
+            black_box.put(message("/n", second, false)).unwrap();
+            // Something happens each second from 3 to 6, and in the end.
+            if (3..7).contains(&second) || second == 11 {
+                black_box.happened("asked").unwrap();
+            }
+        }
+        let reason = |name: &str| {
+            let recording = Recording::open(folder.path().join(name)).unwrap();
+            let times = recording
+                .raw_records()
+                .map(|r| r.unwrap().log_time_ns / SECOND);
+            let reason = recording.metadata()[0].entries["reason"].clone();
+            (reason, times.collect::<Vec<_>>())
+        };
+        assert_eq!(reason("r.mcap"), ("asked".into(), vec![0, 1, 2, 3]));
+        let all = ("asked (3 times)".into(), vec![3, 4, 5, 6, 7]);
+        assert_eq!(reason("r_1.mcap"), all);
+        assert_eq!(black_box.tally().files, 3);
+        black_box.save_events().unwrap();
+        assert_eq!(black_box.tally().files, 3, "nothing waits");
+    }
+
+    #[test]
+    fn the_oldest_files_give_way() {
+        let folder = TempDir::new().unwrap();
+        let mut black_box = black_box(&folder, 1, 1 << 20);
+        black_box.put(message("/n", 0, false)).unwrap();
+        std::fs::write(folder.path().join("r_notes.mcap"), "").unwrap();
+        for _ in 0..5 {
+            black_box.save("asked").unwrap();
+            // Times of files have the steps of the system's clock.
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let mut names: Vec<_> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        // A name that has become free is taken again.
+        assert_eq!(names.len(), 4, "{names:?}");
+        assert!(names.contains(&"r_notes.mcap".to_owned()), "{names:?}");
+        black_box.room.bytes = 1;
+        black_box.save("asked").unwrap();
+        assert_eq!(name::created(&black_box.path).len(), 1);
     }
 
     #[test]
@@ -184,7 +328,7 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let mut black_box = black_box(&folder, 1000, 3 * 1128);
         for second in 0..10 {
-            black_box.put(message("/n", second, false));
+            black_box.put(message("/n", second, false)).unwrap();
         }
         assert_eq!((black_box.kept.len(), black_box.bytes), (3, 3 * 1128));
     }

@@ -11,7 +11,7 @@ mod staged;
 mod store;
 mod tally;
 
-pub(crate) use black_box::BlackBox;
+pub(crate) use black_box::{BlackBox, Room};
 pub(crate) use parts::{Limits, Parts};
 pub(crate) use preamble::Preamble;
 pub(crate) use store::Store;

@@ -11,11 +11,17 @@ const MAX: u32 = 100_000;
 
 /// Creates the file `path`, or where it exists the first of `stem_1.mcap`,
 /// `stem_2.mcap` and so on that does not; with `numbered`, `stem_0.mcap` and so
-/// on, as rosbag2 calls the parts of a bag.
+/// on, as rosbag2 calls the parts of a bag. A folder that is missing is made.
 ///
 /// # Errors
 /// If it cannot be created, or all names are taken.
 pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), RecorderError> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|source| RecorderError::Create {
+            path: path.to_owned(),
+            source,
+        })?;
+    }
     let plain = (!numbered).then(|| path.to_owned());
     let first = u32::from(!numbered);
     let candidates = plain
@@ -37,6 +43,30 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
         path: path.to_owned(),
         tried: MAX,
     })
+}
+
+/// The files that [`create`] has named so, in any order.
+pub(super) fn created(path: &Path) -> Vec<PathBuf> {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let is_one = |found: &Path| {
+        let number = found.file_stem().unwrap_or_default().to_string_lossy();
+        let number = number
+            .strip_prefix(&*stem)
+            .map(|rest| rest.strip_prefix('_'));
+        found.file_name() == path.file_name()
+            || number.flatten().is_some_and(|number| {
+                number
+                    .parse()
+                    .is_ok_and(|number| with_number(path, number).file_name() == found.file_name())
+            })
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path());
+    files.filter(|found| is_one(found)).collect()
 }
 
 fn with_number(path: &Path, number: u32) -> PathBuf {
@@ -65,7 +95,19 @@ mod tests {
             ["drive.mcap", "drive_1.mcap", "drive_2.mcap"]
         );
         assert_eq!([name(true), name(true)], ["drive_0.mcap", "drive_3.mcap"]);
-        let nowhere = create(Path::new("/no/such/r.mcap"), false).unwrap_err();
-        assert!(nowhere.to_string().contains("/no/such/r.mcap"), "{nowhere}");
+        for other in [
+            "drive_x.mcap",
+            "drive_01.mcap",
+            "drive_1.db3",
+            "other_1.mcap",
+        ] {
+            File::create_new(folder.path().join(other)).unwrap();
+        }
+        assert_eq!(created(&path).len(), 5);
+        let nowhere = Path::new("/proc/no/such/r.mcap");
+        let error = create(nowhere, false).unwrap_err();
+        assert!(error.to_string().contains("/no/such/r.mcap"), "{error}");
+        let new = folder.path().join("a/b/r.mcap");
+        assert_eq!(create(&new, false).unwrap().0, new);
     }
 }

@@ -19,10 +19,7 @@ impl Store {
     pub(crate) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
         match self {
             Store::Parts(parts) => parts.put(&entry),
-            Store::BlackBox(black_box) => {
-                black_box.put(entry);
-                Ok(())
-            }
+            Store::BlackBox(black_box) => black_box.put(entry),
         }
     }
 
@@ -60,14 +57,25 @@ impl Store {
         }
     }
 
-    /// Ends the file.
+    /// Saves a black box because something happened, at once or with what happens next.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(crate) fn happened(&mut self, event: &str) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(_) => Ok(()),
+            Store::BlackBox(black_box) => black_box.happened(event),
+        }
+    }
+
+    /// Ends the file, or saves what events still wait for.
     ///
     /// # Errors
     /// If the disk does not take the rest.
     pub(crate) fn finish(&mut self) -> Result<(), RecorderError> {
         match self {
             Store::Parts(parts) => parts.finish(),
-            Store::BlackBox(_) => Ok(()),
+            Store::BlackBox(black_box) => black_box.save_events(),
         }
     }
 
