@@ -166,7 +166,7 @@ pub enum Damage {
 /// The first bytes of what should be something else, for an error.
 pub(crate) fn shown(bytes: &[u8]) -> String {
     match &bytes[..bytes.len().min(8)] {
-        [] => "nothing".to_owned(),
+        [] => "nothing, as it is empty".to_owned(),
         start => format!("\"{}\"", start.escape_ascii()),
     }
 }

@@ -179,6 +179,14 @@ fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let is_twice = |path: &Path| without_ending(path).is_some_and(|path| all.contains(&path));
     paths.retain(|path| storage(path).is_some() && path.is_file() && !is_twice(path));
     paths.sort_by(|a, b| natural_order(&shown(a), &shown(b)));
+    // A disk that was full for a while leaves parts into which nothing was written, and others
+    // after them; that it is the last one that is empty is said when it is read.
+    let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|found| found.len() == 0);
+    if let Some(last) = paths.iter().rposition(|path| !is_empty(path)) {
+        let after = paths.split_off(last);
+        paths.retain(|path| !is_empty(path));
+        paths.extend(after);
+    }
     let Some(first) = paths.first() else {
         for path in all.iter().filter(|path| path.is_file()) {
             if let Content::Foreign(what, advice) = Content::of(path)? {
@@ -319,6 +327,17 @@ mod tests {
         for metadata in [None, Some("")] {
             assert_eq!(names(&folder(&there, metadata)), Ok(expected.to_vec()));
         }
+    }
+
+    #[test]
+    fn parts_that_a_full_disk_left_empty_are_passed_over_where_others_follow() {
+        let all = ["r_0.mcap", "r_1.mcap", "r_2.mcap", "r_3.mcap"];
+        let folder = folder(&all, None);
+        for name in ["r_0.mcap", "r_2.mcap"] {
+            std::fs::write(folder.path().join(name), "messages").unwrap();
+        }
+        let expected = ["r_0.mcap", "r_2.mcap", "r_3.mcap"].map(str::to_owned);
+        assert_eq!(names(&folder), Ok(expected.to_vec()));
     }
 
     #[test]

@@ -93,7 +93,10 @@ mod tests {
 
     #[test]
     fn what_starts_otherwise_is_no_recording() {
-        for (bytes, shown) in [(&b""[..], "nothing"), (b"#ROSBAG V2.0", "\"#ROSBAG \"")] {
+        for (bytes, shown) in [
+            (&b""[..], "nothing, as it is empty"),
+            (b"#ROSBAG V2.0", "\"#ROSBAG \""),
+        ] {
             let found = shown.to_owned();
             assert_eq!(Survey::of(bytes).unwrap_err(), Damage::NotMcap { found });
         }
