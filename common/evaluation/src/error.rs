@@ -24,9 +24,11 @@ pub enum EvaluationError {
     /// A map file cannot be used.
     #[error(transparent)]
     Map(#[from] MapError),
-    /// A trajectory could not be written.
-    #[error("cannot write the trajectory {}", .file.display())]
-    Trajectory {
+    /// A file could not be written, or a folder not be made.
+    #[error("cannot {action} {}", .file.display())]
+    File {
+        /// What was tried.
+        action: &'static str,
         /// Where it was to be.
         file: PathBuf,
         /// Why.

@@ -4,13 +4,15 @@ use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use messages::topic;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use progress::say;
 use serde::Deserialize;
 use transport::node::LOG_FORMAT_VARIABLE;
+use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_causes};
 
 use crate::InitError;
 use crate::descriptor::quoted;
@@ -38,8 +40,14 @@ struct Fields {
     message: String,
 }
 
+/// How long the first scan may take from the start of the graph that records it.
+const FIRST_SCAN: Duration = Duration::from_secs(30);
+
+/// Between two looks.
+const TICK: Duration = Duration::from_millis(50);
+
 /// Records the scans, odometry and map of the robot with this router, or of the one that is
-/// in the network, for so long.
+/// in the network, for so long from its first scan on.
 ///
 /// # Errors
 /// No robot is found, or the graph that records it cannot be started.
@@ -84,12 +92,14 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
         "recording the robot for {} s",
         length.as_secs_f64()
     ));
+    let name = GraphName::new(&format!("doctor_{}", std::process::id()));
+    let name = name.map_err(|error| failed(error.to_string()))?;
     let command = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut graph = Command::new(command)
         .arg("run")
         .arg(&descriptor)
         .args(["--no-build", "--no-monitor", "--graph"])
-        .arg(format!("doctor_{}", std::process::id()))
+        .arg(name.as_str())
         .env(LOG_FORMAT_VARIABLE, "json")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -101,6 +111,9 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
         let lines = log.into_iter().flat_map(BufRead::lines);
         lines.map_while(Result::ok).collect::<Vec<String>>()
     });
+    if let Err(error) = wait_for_scan(&name) {
+        say(&with_causes(&error));
+    }
     std::thread::sleep(length);
     let pid = Pid::from_raw(graph.id().cast_signed());
     kill(pid, Signal::SIGTERM).map_err(|error| failed(error.to_string()))?;
@@ -116,6 +129,24 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
         file,
         warnings: lines.iter().filter_map(|line| warning(line)).collect(),
         _folder: folder,
+    })
+}
+
+/// Waits until a scan has entered a graph that is starting, for as long as one may take.
+fn wait_for_scan(name: &GraphName) -> Result<(), TransportError> {
+    let begin = Instant::now();
+    // Whoever joins before its launcher is in its way.
+    while !control_socket(name).exists() {
+        if begin.elapsed() >= FIRST_SCAN {
+            return Ok(());
+        }
+        std::thread::sleep(TICK);
+    }
+    let graph = Graph::join_named("doctor", name)?;
+    let scans = graph.subscriber::<topic::Scan>()?;
+    graph.run(&[&scans], TICK, |_| {
+        let is_over = scans.newest()?.is_some() || begin.elapsed() >= FIRST_SCAN;
+        Ok(if is_over { Flow::Stop } else { Flow::Continue })
     })
 }
 

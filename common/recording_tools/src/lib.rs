@@ -4,6 +4,7 @@
 
 pub mod convert;
 pub mod doctor;
+mod each;
 mod error;
 pub mod info;
 pub mod simulate;

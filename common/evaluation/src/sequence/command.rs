@@ -12,27 +12,35 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
-use super::{SequenceOptions, course, drive, follow, jumps, outages, starts, stress};
+use super::{SequenceOptions, course, drive, follow, jumps, names, outages, starts, stress};
 use crate::EvaluationError;
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.
 ///
 /// # Errors
-/// Output cannot be written.
+/// A folder cannot be made, or output cannot be written.
 pub(crate) fn evaluate(
     bags: &[PathBuf],
     json: bool,
     map: Option<&OccupancyGrid>,
     (options, sequence): (&Options, &SequenceOptions),
 ) -> Result<ExitCode, EvaluationError> {
+    for folder in sequence.trajectories.iter().chain(&sequence.pictures) {
+        // Before the work, of which nothing would be left otherwise.
+        std::fs::create_dir_all(folder).map_err(|source| EvaluationError::File {
+            action: "make the folder",
+            file: folder.clone(),
+            source,
+        })?;
+    }
     if let Some(stress) = &sequence.stress {
         let how = (options, sequence);
         return stress::evaluate(bags, json, map, how, stress);
     }
     let mut code = ExitCode::SUCCESS;
-    for bag in bags {
-        match one(bag, map, options, sequence) {
+    for (bag, name) in bags.iter().zip(names::of(bags)) {
+        match one((bag, &name), map, options, sequence) {
             Ok(figures) => {
                 let line = match json {
                     true => format!("{}\n", figures.json()),
@@ -54,7 +62,7 @@ pub(crate) fn evaluate(
 }
 
 fn one(
-    bag: &Path,
+    (bag, file_name): (&Path, &str),
     map: Option<&OccupancyGrid>,
     options: &Options,
     sequence: &SequenceOptions,
@@ -76,7 +84,7 @@ fn one(
     accepted.check(bag)?;
     let (world, config) = (session.world()?, sequence.tracking);
     let said = course::of(world, &moments, config)?;
-    show(&session, (&moments, &said), (options, sequence), bag)?;
+    show(&session, (&moments, &said), (options, sequence), file_name)?;
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
     let followed = follow::evaluate(world, &moments, config, true)?;
@@ -117,14 +125,13 @@ fn show(
     session: &Session<'_>,
     (moments, said): (&[Moment], &[Said]),
     (options, sequence): (&Options, &SequenceOptions),
-    bag: &Path,
+    name: &str,
 ) -> Result<(), EvaluationError> {
-    let name = bag.file_stem().unwrap_or_default().to_string_lossy();
     if let Some(folder) = &sequence.trajectories {
-        course::write(folder, &name, (moments, said))?;
+        course::write(folder, name, (moments, said))?;
     }
     if let Some(folder) = &sequence.pictures {
-        let words = (name.to_string(), course::doubts(said));
+        let words = (name.to_owned(), course::doubts(said));
         let stops = course::stops(moments, said);
         let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
         let file = folder.join(format!("{name}.png"));

@@ -45,7 +45,11 @@ pub(super) fn write(
     let truths = both().filter_map(|(moment, _)| Some((moment.stamp_ns, moment.truth?)));
     let save = |file: String, lines: String| {
         let file = folder.join(file);
-        std::fs::write(&file, lines).map_err(|source| EvaluationError::Trajectory { file, source })
+        std::fs::write(&file, lines).map_err(|source| EvaluationError::File {
+            action: "write",
+            file,
+            source,
+        })
     };
     save(format!("{name}.tum"), trajectory(tracked))?;
     save(format!("{name}_truth.tum"), trajectory(truths))

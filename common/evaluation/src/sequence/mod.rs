@@ -11,6 +11,7 @@ mod follow;
 mod interruption;
 mod jumps;
 mod limits;
+mod names;
 mod options;
 mod outages;
 mod run;

@@ -42,11 +42,11 @@ pub(crate) struct SequenceOptions {
 
     /// Write the drive from its first scan, with no guess, as trajectories to this
     /// folder, and the true ones beside them (TUM format, which evo reads)
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", requires = "sequence")]
     pub trajectories: Option<PathBuf>,
 
     /// Draw it into this folder: the map, the path, and where the pose was not unique
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", requires = "sequence")]
     pub pictures: Option<PathBuf>,
 
     /// Evaluate variants of each drive in place of the drive: map, scans, odometry or motion

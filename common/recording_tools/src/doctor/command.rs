@@ -14,6 +14,7 @@ use super::finding::{Finding, Severity};
 use super::located;
 use super::survey::Survey;
 use crate::RecordingToolsError;
+use crate::each::each;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -27,7 +28,8 @@ pub struct Config {
     #[arg(required_unless_present = "ros2", value_name = "FILE")]
     recordings: Vec<PathBuf>,
 
-    /// Check a live ROS 2 robot: its scans, odometry and map are recorded for so many seconds
+    /// Check a live ROS 2 robot: its scans, odometry and map are recorded for so many seconds from
+    /// the first scan on
     #[arg(
         long,
         value_name = "SECONDS",
@@ -75,7 +77,7 @@ impl Config {
 /// Examines one file after another.
 ///
 /// # Errors
-/// A file cannot be read, or is no recording.
+/// The only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     examine(config, &config.recordings, &[])
 }
@@ -105,7 +107,7 @@ fn examine(
     });
     let map = map.transpose()?.flatten();
     let mut worst = Severity::Note;
-    for path in recordings {
+    let any_failed = each(recordings, |path| {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
         let mut findings = known.to_vec();
@@ -127,8 +129,10 @@ fn examine(
             true => json::object(&report) + "\n",
             false => text(&report),
         })?;
-    }
+        Ok(())
+    })?;
     Ok(match worst {
+        _ if any_failed => ExitCode::FAILURE,
         Severity::Note => ExitCode::SUCCESS,
         Severity::Problem => ExitCode::FAILURE,
         Severity::Lost => ExitCode::from(LOST_DATA),

@@ -10,6 +10,7 @@ use recording::Recording;
 use super::contents::Contents;
 use super::text;
 use crate::RecordingToolsError;
+use crate::each::each;
 
 /// Options of `backcast info`.
 #[derive(Debug, clap::Args)]
@@ -30,10 +31,10 @@ pub struct Config {
 /// Describes one file after another, a damaged one as far as it is sound.
 ///
 /// # Errors
-/// A file cannot be read, or is no recording.
+/// The only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let mut code = ExitCode::SUCCESS;
-    for path in &config.recordings {
+    let any_failed = each(&config.recordings, |path| {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
         let contents = Contents::of(&recording);
@@ -44,6 +45,10 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
             true => contents.json(),
             false => text::of(&contents),
         })?;
-    }
-    Ok(code)
+        Ok(())
+    })?;
+    Ok(match any_failed {
+        true => ExitCode::FAILURE,
+        false => code,
+    })
 }

@@ -115,6 +115,22 @@ fn a_sound_recording_has_no_findings() {
 }
 
 #[test]
+fn a_bad_file_of_several_is_named_and_the_others_follow() {
+    let folder = sound();
+    fs::write(folder.path().join("bad.mcap"), "").unwrap();
+    for (command, end) in [("info", "taken: "), ("doctor", "r.mcap: sound\n")] {
+        let (code, stdout, stderr) = run(
+            folder.path(),
+            &format!("{command} nowhere.mcap bad.mcap r.mcap"),
+        );
+        assert_eq!(code, 1, "{stderr}");
+        assert!(stdout.contains(end), "{command}: {stdout}");
+        let bad = stderr.contains("bad.mcap: the file starts with nothing, as it is empty");
+        assert!(bad && stderr.contains("nowhere.mcap"), "{stderr}");
+    }
+}
+
+#[test]
 fn what_is_lost_ends_with_three() {
     let folder = sound();
     let path = folder.path().join("r.mcap");

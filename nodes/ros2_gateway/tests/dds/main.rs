@@ -353,7 +353,7 @@ fn a_robot_is_found_and_checked_while_it_drives() {
     let Some(mut robot) = robot(&domain, "/r2") else {
         return;
     };
-    robot.order("play", json!({ "rate": 10, "seconds": 60 }));
+    robot.order("play", json!({ "rate": 10, "seconds": 300 }));
     let folder = tempfile::tempdir().unwrap();
     let backcast = |arguments: &[&str]| {
         let mut command = Command::new(executables::path("backcast"));

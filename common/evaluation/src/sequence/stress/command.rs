@@ -10,7 +10,7 @@ use plots::{PlotError, draw_drive};
 use progress::{Progress, say};
 
 use super::super::limits::Reached;
-use super::super::{SequenceOptions, course, drive};
+use super::super::{SequenceOptions, course, drive, names};
 use super::figures::Figures;
 use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};
@@ -33,7 +33,7 @@ pub(in super::super) fn evaluate(
     let variants = stress.variants();
     let mut code = ExitCode::SUCCESS;
     let mut trust = Trust::default();
-    for (i, bag) in bags.iter().enumerate() {
+    for (i, (bag, name)) in bags.iter().zip(names::of(bags)).enumerate() {
         let next = (bags.len() > 1).then(|| &bags[(i + 1) % bags.len()]);
         let other = sequence.other_map.as_ref().or(next);
         let other = other
@@ -41,7 +41,7 @@ pub(in super::super) fn evaluate(
             .transpose()?;
         let maps = (map, other.flatten());
         match one(
-            bag,
+            (bag, &name),
             json,
             (maps.0, maps.1.as_ref()),
             (options, sequence),
@@ -65,7 +65,7 @@ pub(in super::super) fn evaluate(
 
 /// Whether the file misses no requirement.
 fn one(
-    bag: &Path,
+    (bag, file_name): (&Path, &str),
     json: bool,
     (map, other_map): (Option<&OccupancyGrid>, Option<&OccupancyGrid>),
     (options, sequence): (&Options, &SequenceOptions),
@@ -118,7 +118,7 @@ fn one(
         if let Some(wrong) = &trial.first_wrong {
             progress.say(&format!("{name}: {}: {}", variant.name, words(wrong)));
             if let Some(folder) = &sequence.pictures {
-                picture(folder, (bag, variant.name), (&trial, wrong), options)?;
+                picture(folder, (file_name, variant.name), (&trial, wrong), options)?;
             }
         }
         let reached = Reached {
@@ -153,11 +153,10 @@ fn words(wrong: &Wrong) -> String {
 /// Draws the drive until the first wrong moment.
 fn picture(
     folder: &Path,
-    (bag, variant): (&Path, &str),
+    (name, variant): (&str, &str),
     (trial, wrong): (&Trial, &Wrong),
     options: &Options,
 ) -> Result<(), EvaluationError> {
-    let name = bag.file_stem().unwrap_or_default().to_string_lossy();
     let stops = course::stops(&wrong.moments, &wrong.said);
     let title = format!("{name}, {variant}");
     let scene = draw_drive(
