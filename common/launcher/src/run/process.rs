@@ -80,7 +80,10 @@ impl Process {
         if let Some(stream) = stderr {
             let last_line = Arc::clone(last_line);
             let keep = move |line: &str| {
-                if let Ok(mut last_line) = last_line.lock() {
+                // The address of a page with its token is for the console alone.
+                if !line.contains("#token=")
+                    && let Ok(mut last_line) = last_line.lock()
+                {
                     line.clone_into(&mut last_line);
                 }
             };

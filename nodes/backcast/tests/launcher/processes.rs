@@ -63,7 +63,7 @@ fn a_node_that_fails_each_time_is_shown_with_its_reason() {
     let name = "test-fails";
     let folder = graph(&[
         "id: loops, restart_policy: on-failure, restart_delay: 0.1, max_restart_delay: 0.3, \
-         args: \"-c 'echo it broke >&2; exit 7'\"",
+         args: \"-c 'echo it broke >&2; echo http://robot/#token=1 >&2; exit 7'\"",
         "id: source, outputs: [scan], args: \"-c 'exec sleep 1000'\"",
     ]);
     let mut running = Running::start(&folder, &["--graph", name]);
