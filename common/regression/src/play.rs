@@ -119,7 +119,6 @@ fn collect(
     };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
     let mut last_progress = Instant::now();
-    let mut taken = 0;
     let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();
         let over = crew.is_over();
@@ -129,11 +128,7 @@ fn collect(
         if received.is_complete(scans) || over && now - last_progress >= TIMEOUT {
             return Ok(Flow::Stop);
         }
-        if received.taken() > taken {
-            health.count_received(received.taken() - taken);
-            health.send()?;
-            taken = received.taken();
-        }
+        health.count_received_to(received.taken())?;
         health.tick()?;
         while let Some(report) = reports.receive()? {
             crew.received(report.header(), now);

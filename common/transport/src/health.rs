@@ -58,6 +58,18 @@ impl Health {
         self.report.received += samples;
     }
 
+    /// Counts samples taken until there are `total`, and reports that now, for whoever waits for it.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn count_received_to(&mut self, total: u64) -> Result<(), TransportError> {
+        if total <= self.report.received {
+            return Ok(());
+        }
+        self.report.received = total;
+        self.send()
+    }
+
     /// Counts samples sent.
     pub fn count_sent(&mut self, samples: u64) {
         self.report.sent += samples;
@@ -125,12 +137,8 @@ impl Health {
         self.state(NodeState::Stopped)
     }
 
-    /// Sends a report now, for whoever waits for what it counts. One that finds no room is lost: the
-    /// next one holds what it held.
-    ///
-    /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
-    pub fn send(&mut self) -> Result<(), TransportError> {
+    /// A report that finds no room is lost: the next one holds what it held.
+    fn send(&mut self) -> Result<(), TransportError> {
         self.report.sent_ns = monotonic_ns();
         let losses = self.losses.count();
         let mut report = self.report;

@@ -134,7 +134,7 @@ pub use graph_name::{GRAPH_VARIABLE, GraphName};
 pub use health::Health;
 pub use leftovers::{files_of, remove_dead_graphs, remove_leftovers};
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
-pub use membership::{Claim, control_socket, is_launched, running_graphs};
+pub use membership::{Claim, control_socket, graphs_of_others, is_launched, running_graphs};
 pub use peers::Peers;
 pub use publisher::{Loan, Publisher};
 pub use space::shared_memory_has_room;

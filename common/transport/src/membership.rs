@@ -14,6 +14,7 @@ use crate::root::{current_user, path_for};
 use crate::{GraphName, TransportError};
 
 pub use alive::Claim;
+use alive::{LAUNCHER, LockedFiles};
 
 /// Where Linux keeps POSIX shared memory.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";
@@ -138,6 +139,22 @@ pub fn running_graphs() -> Vec<GraphName> {
     names
 }
 
+/// Graphs that other users of the machine run, with these users' numbers. Their files are closed to
+/// us; their names and owners, and which of them are locked, are not.
+#[must_use]
+pub fn graphs_of_others() -> Vec<(u32, GraphName)> {
+    let locks = LockedFiles::now();
+    let entries = read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
+    let graphs = entries.filter_map(|entry| {
+        let file = entry.metadata().ok()?;
+        let graph = graph_of_file(&entry.path(), file.uid(), LAUNCHER)?;
+        (file.uid() != current_user() && locks.hold(&file)).then_some((file.uid(), graph))
+    });
+    let mut graphs: Vec<_> = graphs.collect();
+    graphs.sort_by(|a, b| (a.0, a.1.as_str()).cmp(&(b.0, b.1.as_str())));
+    graphs
+}
+
 /// The user is part of it, for all users share one folder of shared memory. The
 /// dot ends it: no name holds one, so no graph's prefix begins another's.
 fn prefix(user: u32, graph: &GraphName) -> String {
@@ -167,6 +184,12 @@ mod tests {
             graph_of_file(Path::new("/dev/shm/bc1000_"), 1000, "alive"),
             None
         );
+        let launched = |name: &str| graph_of_file(Path::new(name), 1000, LAUNCHER);
+        let robot = GraphName::new("robot_7").unwrap();
+        assert_eq!(launched("bc1000_robot_7.launcher"), Some(robot));
+        for other in ["bc1000_robot.alive", "sem.x", "bcx_robot.launcher"] {
+            assert_eq!(launched(other), None, "{other}");
+        }
     }
 
     #[test]

@@ -9,9 +9,10 @@ use std::{
 
 use clap::Args;
 use command_line::stdout::print;
-use transport::{GraphName, control_socket, is_launched, running_graphs};
+use nix::unistd::{Uid, User};
+use transport::{GraphName, control_socket, graphs_of_others, is_launched, running_graphs};
 
-use super::{others, text};
+use super::text;
 use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask};
 
@@ -121,8 +122,13 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
 }
 
 fn no_graph() -> LauncherError {
+    let sentence = |(user, graph): (u32, GraphName)| {
+        let name = User::from_uid(Uid::from_raw(user)).ok().flatten();
+        let name = name.map_or_else(|| format!("#{user}"), |user| user.name);
+        format!("user {name} runs graph {graph}: `sudo -u {name} backcast status`")
+    };
     LauncherError::NoGraph {
-        others: others::sentences(),
+        others: graphs_of_others().into_iter().map(sentence).collect(),
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod command;
 mod logs;
-mod others;
 mod text;
 
 pub use command::{RestartConfig, StatusConfig, StopConfig, restart, status, stop};

@@ -20,6 +20,7 @@ use transport::{GraphName, with_causes};
 
 use self::member::{Member, State, lost_data, not_supervised};
 use super::{
+    console::warn,
     control::NodeStatus,
     process::Process,
     supervision::{is_over, is_source},
@@ -91,6 +92,7 @@ impl Crew {
                     any_ended = true;
                     let goes_on = format!("the graph continues without {}", member.node.id);
                     let sentence = format!("{}; {goes_on}", with_causes(&error));
+                    warn(&sentence);
                     self.given_up.push(sentence);
                 }
                 Err(error) => return Err(error),

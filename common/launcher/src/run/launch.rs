@@ -221,7 +221,6 @@ fn stay(
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
     let mut reported = Vec::new();
-    let mut taken = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
         // What a source has sent may be received after its end has been seen.
@@ -234,11 +233,7 @@ fn stay(
             last_progress = now;
         }
         // A player that waits for us goes on.
-        if received.taken > taken {
-            health.count_received(received.taken - taken);
-            health.send()?;
-            taken = received.taken;
-        }
+        health.count_received_to(received.taken)?;
         let may_wait = now - last_progress < LAST_ANSWERS;
         if over && (journal.report.all_answered() || !may_wait) {
             end = End::Finished;
@@ -260,39 +255,23 @@ fn stay(
         }
         let problems = crew.problems(now);
         if problems != reported {
-            report(&problems, &reported, health)?;
+            let state = match problems.is_empty() {
+                true => {
+                    health.forget_error();
+                    NodeState::Ready
+                }
+                false => {
+                    health.error(&problems.join("; "))?;
+                    NodeState::Degraded
+                }
+            };
+            health.state(state)?;
             reported = problems;
         }
         health.tick()?;
         Ok::<_, LauncherError>(Flow::Continue)
     })?;
     Ok(end)
-}
-
-/// Says on topic `health`, on the console and in the log which nodes fail; the latter two once
-/// for each node.
-fn report(
-    problems: &[String],
-    before: &[String],
-    health: &mut Health,
-) -> Result<(), LauncherError> {
-    let node = |problem: &str| problem.split(" ended ").next().map(str::to_owned);
-    for problem in problems {
-        if !before.iter().any(|other| node(other) == node(problem)) {
-            warn(problem);
-        }
-    }
-    match problems {
-        [] => {
-            health.forget_error();
-            health.state(NodeState::Ready)?;
-        }
-        _ => {
-            health.error(&problems.join("; "))?;
-            health.state(NodeState::Degraded)?;
-        }
-    }
-    Ok(())
 }
 
 /// Where other terminals ask the launcher.

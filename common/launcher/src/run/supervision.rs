@@ -91,6 +91,12 @@ impl Restarts {
         self.in_a_row
     }
 
+    /// How many restarts count against the limit where it failed: those within the window, or those
+    /// since it last worked.
+    pub fn used(&self) -> u32 {
+        self.recent().max(self.in_a_row)
+    }
+
     /// Decides at `now`, after an end of a process that did its work for `worked`, and counts
     /// the restart.
     pub fn after_end(&mut self, ended: Ended, worked: Duration, now: Instant) -> AfterEnd {
@@ -111,7 +117,7 @@ impl Restarts {
         }
         let limit = self.rules.max_restarts;
         let used = match ended {
-            Ended::Badly => self.recent().max(self.in_a_row),
+            Ended::Badly => self.used(),
             _ => self.recent(),
         };
         if wanted && (limit == 0 || used < limit) {

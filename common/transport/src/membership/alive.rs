@@ -4,7 +4,7 @@
 //! folder where iceoryx2 keeps its nodes may be another one there. A lock on a file in
 //! shared memory is seen by all of them, and the kernel takes it away with the process.
 
-use std::fs::{File, OpenOptions, remove_file};
+use std::fs::{File, Metadata, OpenOptions, read_to_string, remove_file};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -69,6 +69,26 @@ impl Claim {
         // Shared, so that several who look do not take each other for a launcher.
         let look = |file| Flock::lock(file, FlockArg::LockSharedNonblock);
         matches!(file.map(look), Ok(Err((_, Errno::EWOULDBLOCK))))
+    }
+}
+
+/// The files of the machine that a process holds with a lock as [`Claim`] does, whoever owns them.
+pub(crate) struct LockedFiles(String);
+
+impl LockedFiles {
+    /// As the system lists them now: number, kind, mode, access, process, `major:minor:inode` and
+    /// range of each lock.
+    pub(crate) fn now() -> Self {
+        LockedFiles(read_to_string("/proc/locks").unwrap_or_default())
+    }
+
+    /// Whether a file is one of them.
+    pub(crate) fn hold(&self, file: &Metadata) -> bool {
+        let ending = format!(":{}", file.ino());
+        self.0.lines().any(|line| {
+            let mut words = line.split_whitespace();
+            words.nth(1) == Some("FLOCK") && words.nth(3).is_some_and(|at| at.ends_with(&ending))
+        })
     }
 }
 
@@ -175,6 +195,16 @@ mod tests {
             drop(looking);
             assert!(taken.join().unwrap().is_ok());
         });
+    }
+
+    #[test]
+    fn a_lock_is_seen_while_it_is_held() {
+        let file = tempfile::tempfile().unwrap();
+        let found = file.metadata().unwrap();
+        assert!(!LockedFiles::now().hold(&found));
+        let lock = Flock::lock(file, FlockArg::LockExclusive).unwrap();
+        assert!(LockedFiles::now().hold(&found));
+        drop(lock);
     }
 
     #[test]

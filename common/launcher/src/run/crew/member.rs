@@ -161,10 +161,17 @@ impl Member {
                 return Err(LauncherError::NodeFailed {
                     node: self.node.id.clone(),
                     status,
-                    restarts: self.restarts.recent().max(self.restarts.in_a_row()),
+                    restarts: self.restarts.used(),
                 });
             }
         };
+        // Once while it lasts: ends for want of memory are not counted.
+        if ended != Ended::Starved
+            && self.restarts.in_a_row() == FAILURES_SHOWN
+            && let Some(sentence) = self.fails(now)
+        {
+            warn(&sentence);
+        }
         Ok(true)
     }
 
