@@ -3,13 +3,12 @@
 mod one;
 mod several;
 
-use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
 use messages::{CellRules, MapHeader, MapName, NodeState, Stamp};
-use transport::{Graph, Health, TransportError, with_causes};
+use transport::{Graph, Health, TransportError};
 
 use crate::{Config, MapServerError};
 
@@ -31,9 +30,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
 }
 
 /// Says that nothing can be served before a file changes, and why.
-fn wait_for(health: &mut Health, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
-    let (path, error) = (path.display(), with_causes(error));
-    let problem = format!("waiting for the map {path}: {error}");
+fn wait_for(health: &mut Health, problem: &str, path: &Path) -> Result<(), TransportError> {
+    let problem = format!("waiting for the map {}: {problem}", path.display());
     tracing::warn!("{problem}");
     health.error(&problem)?;
     health.state(NodeState::Waiting)

@@ -34,7 +34,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
             server.serve(&grid)?;
             compare((config, path), &grid);
         }
-        Err(error) => server.wait_for(&error, path)?,
+        Err(error) => server.refuse(&error, path)?,
     }
     graph.run(&[], TICK, |_| {
         if is_watched && watch.look(files.look()) == Look::Settled {
@@ -139,17 +139,17 @@ impl Server {
                 Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, path),
                 outcome => outcome,
             },
-            Err(error) if self.served == 0 => self.wait_for(&error, path),
             Err(error) => self.refuse(&error, path),
         }
     }
 
-    fn wait_for(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
-        wait_for(&mut self.health, error, path)
-    }
-
+    /// Keeps the map that is served, or waits where none is.
     fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
-        let (path, error) = (path.display(), with_causes(error));
+        let error = with_causes(error);
+        if self.served == 0 {
+            return wait_for(&mut self.health, &error, path);
+        }
+        let path = path.display();
         tracing::warn!("the changed map {path} is rejected, the previous one stays: {error}");
         self.health.count_refused(1);
         self.health.error(&format!("map {path} refused: {error}"))?;

@@ -37,7 +37,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     };
     match first {
         Ok(set) => server.serve(set, 0)?,
-        Err(error) => wait_for(&mut server.health, &error, path)?,
+        Err(error) => wait_for(&mut server.health, &with_causes(&error), path)?,
     }
     graph.run(&[&poses], TICK, |wake| {
         while let Some(pose) = poses.receive()? {
@@ -243,9 +243,11 @@ impl Server {
                     outcome => return outcome,
                 }
             }
-            Err(error) if self.served == 0 => return wait_for(&mut self.health, &error, path),
             Err(error) => with_causes(&error),
         };
+        if self.served == 0 {
+            return wait_for(&mut self.health, &problem, path);
+        }
         let path = path.display();
         tracing::warn!("the changed maps {path} are rejected, the previous ones stay: {problem}");
         self.health.count_refused(1);
