@@ -27,7 +27,7 @@ pub enum EvaluationError {
     /// A file could not be written, or a folder not be made.
     #[error("cannot {action} {}", .file.display())]
     File {
-        /// What was tried.
+        /// The verb of what failed, as `write`.
         action: &'static str,
         /// Where it was to be.
         file: PathBuf,

@@ -101,13 +101,12 @@ impl Recorder {
     fn step(&mut self, inputs: &Inputs) -> Result<(), RecorderError> {
         inputs.take(self)?;
         // What it is about has come before.
+        self.hand_over()?;
         if let Some(saves) = &self.saves
             && saves.newest()?.is_some()
         {
-            self.hand_over()?;
             self.writer.save("asked by the graph")?;
         }
-        self.hand_over()?;
         if self.save.swap(false, Ordering::Relaxed) {
             self.writer.save("asked by SIGUSR1")?;
         }

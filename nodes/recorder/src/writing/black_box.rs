@@ -18,7 +18,7 @@ use crate::RecorderError;
 /// What a message takes beside its bytes.
 const OVERHEAD_BYTES: usize = 128;
 
-/// What files of a black box may take on the disk.
+/// Limits of the files of a black box on the disk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room {
     pub(crate) files: u32,
@@ -80,10 +80,7 @@ impl BlackBox {
             self.bytes -= size(&oldest);
             self.preamble.note(&oldest);
         }
-        match self.is_in_last_file() {
-            true => Ok(()),
-            false => self.save_events(),
-        }
+        self.save_due_events()
     }
 
     /// Whether the last file holds some of what is kept: one of now would overlap it.
@@ -104,6 +101,11 @@ impl BlackBox {
             Some((_, times)) => *times += 1,
             None => self.events.push((event.to_owned(), 1)),
         }
+        self.save_due_events()
+    }
+
+    /// Writes what is kept where events wait for it, and a file would not overlap the last one.
+    fn save_due_events(&mut self) -> Result<(), RecorderError> {
         match self.is_in_last_file() {
             true => Ok(()),
             false => self.save_events(),

@@ -26,7 +26,7 @@ impl InStep {
         })
     }
 
-    /// What tells that a node has taken more.
+    /// The reports of the nodes, to wake whoever waits for them.
     pub(super) fn reports(&self) -> Option<Rc<Subscriber<topic::Health>>> {
         self.reports.clone()
     }
