@@ -199,18 +199,19 @@ fn what_a_recording_has_lost_is_reported_and_drawn() {
 }
 
 /// Stops a process for longer than its topics hold what comes, again and again until it ends.
-fn stall(child: std::process::Child) -> std::process::Output {
+fn stall(child: &mut std::process::Child) -> std::process::ExitStatus {
     let pid = Pid::from_raw(child.id().cast_signed());
-    let waiting = std::thread::spawn(move || child.wait_with_output().unwrap());
     let pause = |time| std::thread::sleep(std::time::Duration::from_millis(time));
-    while !waiting.is_finished() {
+    loop {
+        // Its number is its own until it is waited for, whether it has ended or not.
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
         pause(300);
-        // It may have ended just now, and is a zombie until it is waited for.
-        let _ = kill(pid, Signal::SIGSTOP);
+        kill(pid, Signal::SIGSTOP).unwrap();
         pause(600);
-        let _ = kill(pid, Signal::SIGCONT);
+        kill(pid, Signal::SIGCONT).unwrap();
     }
-    waiting.join().unwrap()
 }
 
 #[test]
@@ -222,11 +223,14 @@ fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
     let start = |args: &[&str]| {
         let mut command = executables::backcast();
         command.args(args).current_dir(tests::root());
-        let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let output = stall(piped.spawn().unwrap());
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{args:?}: {said}");
-        String::from_utf8(output.stdout).unwrap()
+        // A pipe could fill that nobody reads meanwhile.
+        let [printed, said] = ["printed", "said"].map(|name| folder.path().join(name));
+        command.stdout(std::fs::File::create(&printed).unwrap());
+        command.stderr(std::fs::File::create(&said).unwrap());
+        let status = stall(&mut command.spawn().unwrap());
+        let [printed, said] = [printed, said].map(|file| std::fs::read_to_string(file).unwrap());
+        assert_eq!(status.code(), Some(0), "{args:?}: {said}");
+        printed
     };
     start(&["regress", world.folder.to_str().unwrap()]);
     let descriptor = descriptor.to_str().unwrap();

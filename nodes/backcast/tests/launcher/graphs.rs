@@ -2,6 +2,20 @@
 
 use super::*;
 
+/// Whether we may start processes of other users; a test that may not is counted as left out.
+fn may_act_as_others(test: &str) -> bool {
+    let is_root = nix::unistd::geteuid().is_root();
+    if !is_root {
+        Need::Root.is_missing(test, "nobody else can act as two users");
+    }
+    is_root
+}
+
+/// Gives a folder to another user.
+fn give(folder: &Path, user: u32) {
+    nix::unistd::chown(folder, Some(nix::unistd::Uid::from_raw(user)), None).unwrap();
+}
+
 #[test]
 fn a_name_that_is_alive_is_refused_and_goes_on() {
     let name = "test-alive";
@@ -23,16 +37,13 @@ fn a_name_that_is_alive_is_refused_and_goes_on() {
 
 #[test]
 fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
-    if !nix::unistd::geteuid().is_root() {
-        let test = "a_name_that_another_user_has_taken_is_refused_and_the_user_named";
-        Need::Root.is_missing(test, "nobody else can act as two users");
+    if !may_act_as_others("a_name_that_another_user_has_taken_is_refused_and_the_user_named") {
         return;
     }
     let file = Path::new("/dev/shm/bc12345_test-foreign.in_the_way");
     fs::write(file, "").unwrap();
     let folder = graph(&["id: a, args: -c true"]);
-    let user = Some(nix::unistd::Uid::from_raw(12_345));
-    nix::unistd::chown(folder.path(), user, None).unwrap();
+    give(folder.path(), 12_345);
     let output = launcher(folder.path(), &["--graph", "test-foreign"])
         .uid(12_345)
         .output();
@@ -47,9 +58,7 @@ fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
 /// What another user makes in `/tmp` keeps no graph from starting that has another place.
 #[test]
 fn a_folder_that_another_user_has_taken_is_passed_over() {
-    if !nix::unistd::geteuid().is_root() {
-        let test = "a_folder_that_another_user_has_taken_is_passed_over";
-        Need::Root.is_missing(test, "nobody else can act as two users");
+    if !may_act_as_others("a_folder_that_another_user_has_taken_is_passed_over") {
         return;
     }
     let user = 12_346;
@@ -58,8 +67,7 @@ fn a_folder_that_another_user_has_taken_is_passed_over() {
     let folder = graph(&["id: a, args: -c true"]);
     let own = tempfile::tempdir_in("/tmp").unwrap();
     for path in [folder.path(), own.path()] {
-        let user = Some(nix::unistd::Uid::from_raw(user));
-        nix::unistd::chown(path, user, None).unwrap();
+        give(path, user);
     }
     fs::set_permissions(
         own.path(),
@@ -86,14 +94,12 @@ fn a_folder_that_another_user_has_taken_is_passed_over() {
 
 #[test]
 fn a_graph_of_another_user_is_named_with_the_way_to_it() {
-    if !nix::unistd::geteuid().is_root() {
-        let test = "a_graph_of_another_user_is_named_with_the_way_to_it";
-        Need::Root.is_missing(test, "nobody else can act as two users");
+    if !may_act_as_others("a_graph_of_another_user_is_named_with_the_way_to_it") {
         return;
     }
     let folder = graph(&["id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\""]);
     let user = 12_347;
-    nix::unistd::chown(folder.path(), Some(nix::unistd::Uid::from_raw(user)), None).unwrap();
+    give(folder.path(), user);
     let mut running = Running::start(&folder, &["--graph", "test-seen"]);
     assert_eq!(running.receive("source"), "up");
     let output = launcher(folder.path(), &["status"]).uid(user).output();

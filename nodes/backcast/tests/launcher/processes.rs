@@ -77,8 +77,8 @@ fn a_node_that_fails_each_time_is_shown_with_its_reason() {
             && String::from_utf8_lossy(error).contains("times in a row, last with exit status: 7")
     });
     drop((health, member));
-    let status = launcher(folder.path(), &["status", "--graph", name]);
-    let status = String::from_utf8({ status }.output().unwrap().stdout).unwrap();
+    let mut status = launcher(folder.path(), &["status", "--graph", name]);
+    let status = String::from_utf8(status.output().unwrap().stdout).unwrap();
     assert!(status.contains("\n  loops ended "), "{status}");
     running.signal(Signal::SIGTERM);
     assert!(running.wait().0.success());
