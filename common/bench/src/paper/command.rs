@@ -1,5 +1,4 @@
-//! The command `backcast bench paper`: measures part by part, and writes tables, pictures
-//! and what became of the claims.
+//! The command `backcast bench paper`: measures part by part, and writes tables and pictures.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,9 +6,8 @@ use std::process::ExitCode;
 use super::super::contest::Effort;
 use super::super::progress::Progress;
 use super::super::scope::Table;
-use super::claims::Claim;
 use super::folder::Folder;
-use super::{aid, claims, corridor, counts, method, sonar, tables};
+use super::{aid, corridor, counts, method, sonar, tables};
 use crate::BenchError;
 
 /// A part of the paper.
@@ -49,8 +47,7 @@ pub(in super::super) struct Config {
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 
-    /// Parts of the paper, separated by commas; claims.csv holds the claims of
-    /// these [default: all]
+    /// Parts of the paper, separated by commas [default: all]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
     part: Vec<Part>,
 
@@ -146,10 +143,9 @@ pub(in super::super) fn run(
     };
     let scope = Scope { is_quick, seed };
     let progress = Progress::new(parts.len());
-    let mut all = Vec::new();
     for part in ALL.iter().filter(|part| parts.contains(part)) {
         let say = |what: String| progress.say(what);
-        let claims = match part {
+        match part {
             Part::Method => method_part(&folder)?,
             Part::Counts => counts_part(&folder, scope)?,
             Part::Sonar => sonar_part(&folder, scope, say)?,
@@ -157,35 +153,27 @@ pub(in super::super) fn run(
             Part::Table2 => table_part(&folder, Table::Table2, scope.table_2(), say)?,
             Part::Corridor => corridor_part(&folder, config)?,
             Part::Aid => aid_part(&folder, scope, say)?,
-        };
-        all.extend(claims);
+        }
         progress.step();
     }
-    folder.table("claims.csv", &claims::csv(&all))?;
-    progress.print(&format!("{}: {} claims judged\n", out.display(), all.len()))?;
+    progress.print(&format!("{}: written\n", out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn method_part(folder: &Folder) -> Result<Vec<Claim>, BenchError> {
+fn method_part(folder: &Folder) -> Result<(), BenchError> {
     folder.picture("figure1.png", &method::draw_figure_1()?)?;
     folder.picture("figure2.png", &method::draw_figure_2()?)?;
-    folder.picture("figure3.png", &method::draw_figure_3()?)?;
-    Ok(Vec::new())
+    folder.picture("figure3.png", &method::draw_figure_3()?)
 }
 
-fn counts_part(folder: &Folder, scope: Scope) -> Result<Vec<Claim>, BenchError> {
+fn counts_part(folder: &Folder, scope: Scope) -> Result<(), BenchError> {
     let (side, scans) = scope.counts();
     let counted = counts::count(side, scans, scope.seed)?;
     folder.table("counts.csv", &counts::csv(&counted))?;
-    folder.picture("counts.png", &counts::draw(&counted)?)?;
-    Ok(claims::of_counts(&counted))
+    folder.picture("counts.png", &counts::draw(&counted)?)
 }
 
-fn sonar_part(
-    folder: &Folder,
-    scope: Scope,
-    say: impl Fn(String),
-) -> Result<Vec<Claim>, BenchError> {
+fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> Result<(), BenchError> {
     let mut done = 0;
     let judged = sonar::judge(scope.sonar_poses(), scope.seed, || {
         done += 1;
@@ -199,7 +187,7 @@ fn sonar_part(
         folder.picture(&format!("figure{figure}_field.png"), &flat)?;
         folder.picture(&format!("figure{figure}_surface.png"), &surface)?;
     }
-    Ok(claims::of_sonar(&judged))
+    Ok(())
 }
 
 fn table_part(
@@ -207,19 +195,15 @@ fn table_part(
     table: Table,
     extent: tables::Extent,
     say: impl Fn(String),
-) -> Result<Vec<Claim>, BenchError> {
+) -> Result<(), BenchError> {
     let measured = tables::measure(table, extent, say)?;
     let name = table.name();
     folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
     let picture = tables::draw(table, extent, &measured)?;
-    folder.picture(&format!("{name}.png"), &picture)?;
-    Ok(match table {
-        Table::Table1 => claims::of_table_1(&measured),
-        _ => claims::of_table_2(&measured),
-    })
+    folder.picture(&format!("{name}.png"), &picture)
 }
 
-fn corridor_part(folder: &Folder, config: &Config) -> Result<Vec<Claim>, BenchError> {
+fn corridor_part(folder: &Folder, config: &Config) -> Result<(), BenchError> {
     let file = config.recording.clone();
     let file = file.unwrap_or_else(|| "recordings/malaga_corridor/recording.mcap".into());
     let corridor = corridor::localize(&file)?;
@@ -229,17 +213,12 @@ fn corridor_part(folder: &Folder, config: &Config) -> Result<Vec<Claim>, BenchEr
         let picture = corridor::draw_field(&corridor, number, place)?;
         folder.picture(&format!("figure6_place{number}.png"), &picture)?;
     }
-    Ok(claims::of_corridor(&corridor))
+    Ok(())
 }
 
-fn aid_part(
-    folder: &Folder,
-    scope: Scope,
-    say: impl FnMut(String),
-) -> Result<Vec<Claim>, BenchError> {
+fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> Result<(), BenchError> {
     let extent = scope.aid();
     let saved = aid::measure(extent, scope.seed, say)?;
     folder.table("aid.csv", &aid::csv(&saved))?;
-    folder.picture("aid.png", &aid::draw(extent, &saved)?)?;
-    Ok(claims::of_aid(&saved))
+    folder.picture("aid.png", &aid::draw(extent, &saved)?)
 }

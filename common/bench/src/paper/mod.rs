@@ -1,20 +1,19 @@
 //! `backcast bench paper`: every claim of the paper's sections II to V measured again, and
 //! its figures drawn again, into a folder of CSV and PNG files.
 //!
-//! A file an experiment; each makes its rows, its pictures and what the claims need.
-//! `docs/paper.md` says what came out.
+//! Each experiment is one file that makes its rows and its pictures. `docs/paper.md` judges
+//! the results.
 //!
 //! ```text
 //!            ┌─ method    figures 1 to 3
 //!            ├─ counts    operations against the formulas of section II B
-//! command ───┼─ sonar     section IV: eight sonars ──────────── claims ─ folder
+//! command ───┼─ sonar     section IV: eight sonars ──────────── folder
 //!            ├─ tables    tables 1 and 2 (through `contest`)
 //!            ├─ corridor  section V
 //!            └─ aid       what the votes save Markov localization and particles
 //! ```
 
 mod aid;
-mod claims;
 mod command;
 mod corridor;
 mod counts;
