@@ -36,9 +36,6 @@ pub enum RecordingToolsError {
         /// Why it failed.
         source: io::Error,
     },
-    /// A laser log cannot be read or written on.
-    #[error("the log cannot be read or written to its end")]
-    Log(#[source] io::Error),
     /// A file to convert holds nothing that can be.
     #[error("nothing in {} could be converted, and no file was written: {reason}", file.display())]
     NothingConverted {

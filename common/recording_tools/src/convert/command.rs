@@ -12,7 +12,6 @@ use recording::{Kind, Recording, is_bag};
 
 use super::file::{self, ending};
 use super::report::Report;
-use super::to_carmen;
 use super::to_recording::{self, Rules};
 use crate::RecordingToolsError;
 
@@ -28,11 +27,11 @@ something could not be read";
 /// Options of `backcast convert`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The file to read: .log, .clf, .txt, .mcap or .db3, or the folder of a bag
+    /// The file to read: .log, .clf, .txt or .db3, or the folder of a bag
     #[arg(value_name = "FROM")]
     from: PathBuf,
 
-    /// The file to write: .mcap, or .log
+    /// The file to write: .mcap
     #[arg(value_name = "TO")]
     to: PathBuf,
 
@@ -58,25 +57,19 @@ fn range(text: &str) -> Result<f32, String> {
 /// The files' kinds do not go together, one cannot be read or written, the one to
 /// write exists, or nothing could be converted.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
-    let to = ending(&config.to);
-    let is_written = matches!(to.as_str(), "mcap" | "log" | "clf" | "txt");
-    if !is_written || ends_packed(&config.to) {
-        return Err(no_conversion(&ending(&config.from), &config.to));
+    let none = || no_conversion(&ending(&config.from), &config.to);
+    if ending(&config.to) != "mcap" || ends_packed(&config.to) {
+        return Err(none());
     }
-    let from = file::kind(&config.from).map_err(failed("read", &config.from))?;
-    let convert = match (from, to == "mcap") {
-        (file::Kind::Log, true) => log_to_recording,
-        (file::Kind::Recording, false) => recording_to_log,
-        (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
-        (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
-        (file::Kind::Recording, true) => {
-            // What cannot be read at all is reported by the code that reads recordings.
+    let convert = match file::kind(&config.from).map_err(failed("read", &config.from))? {
+        file::Kind::Log => log_to_recording,
+        file::Kind::Recording if is_bag(&config.from) => bag_to_recording,
+        file::Kind::Recording => {
+            // An unreadable file is reported by the code that reads recordings.
             Recording::open(&config.from)?;
-            return Err(no_conversion(&ending(&config.from), &config.to));
+            return Err(none());
         }
-        (file::Kind::Unknown, _) => {
-            return Err(no_conversion(&ending(&config.from), &config.to));
-        }
+        file::Kind::Unknown => return Err(none()),
     };
     let (file, unfinished) = create(&config.to)?;
     let report = convert(config, file)?;
@@ -93,8 +86,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
 fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
     let to = to.extension().unwrap_or_default().to_string_lossy();
     RecordingToolsError::Usage(format!(
-        "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
-         and .mcap and .db3 to .log"
+        "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap"
     ))
 }
 
@@ -148,16 +140,6 @@ fn log_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let report = to_recording::convert(open, &rules, &mut writer)?;
     finish(writer, config)?;
-    Ok(report)
-}
-
-fn recording_to_log(
-    config: &Config,
-    mut log: BufWriter<File>,
-) -> Result<Report, RecordingToolsError> {
-    let recording = Recording::open(&config.from)?;
-    let report = to_carmen::convert(&recording, &mut log)?;
-    log.flush().map_err(failed("write", &config.to))?;
     Ok(report)
 }
 

@@ -1,10 +1,9 @@
-//! `backcast convert`: laser logs of CARMEN to recordings and back.
+//! `backcast convert`: laser logs of CARMEN and bags in SQLite to recordings.
 //!
-//! `carmen`, `read` and `write` are the text format, `parameters` and `angles` what a log says
-//! of its lasers beside their readings, `turning` which way their beams run (all pure);
-//! `file` detects kinds of files, `survey` reads a log for the first time, `to_recording`
-//! and `to_carmen` translate. Lines that are not converted are counted by kind (`tally`);
-//! `report` says what came of it.
+//! `carmen` and `read` parse the text format, `parameters` and `angles` find the geometry of
+//! each laser, `turning` the direction of its beams (all pure); `file` detects kinds of files,
+//! `survey` reads a log for the first time, `to_recording` translates it. Lines that are not
+//! converted are counted by kind (`tally`); `report` is the summary.
 
 mod angles;
 mod carmen;
@@ -16,9 +15,7 @@ mod report;
 mod source;
 mod survey;
 mod tally;
-mod to_carmen;
 mod to_recording;
 mod turning;
-mod write;
 
 pub use command::{Config, NOTES, run};

@@ -13,9 +13,6 @@ pub(super) struct Report {
     pub(super) remarks: Vec<String>,
     /// Lines of a log that were left out.
     pub(super) tally: Tally,
-    /// Messages that could not be read, and why the first could not.
-    pub(super) refused: u64,
-    pub(super) first_refusal: Option<String>,
     /// Why the file could not be read to its end.
     pub(super) damage: Option<String>,
     /// Scans whose laser sits elsewhere than that of the first one.
@@ -31,9 +28,6 @@ impl Report {
                 "{} could not be read; {first}",
                 self.tally.broken_lines()
             ));
-        }
-        if let Some(first) = &self.first_refusal {
-            losses.push(format!("{} could not be read; {first}", self.refused));
         }
         if let Some(damage) = &self.damage {
             losses.push(format!(

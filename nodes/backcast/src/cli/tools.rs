@@ -27,7 +27,7 @@ pub(crate) enum OnRecordings {
     /// Checks a recording for problems
     #[command(after_help = doctor::NOTES)]
     Doctor(doctor::Config),
-    /// Converts laser logs of CARMEN and bags in SQLite to recordings, and back to logs
+    /// Converts laser logs of CARMEN and bags in SQLite to recordings
     #[command(after_help = convert::NOTES)]
     Convert(convert::Config),
     /// Replays recordings through the graph and compares the poses with expected ones
