@@ -19,9 +19,8 @@ use recording::{GroundTruth, Recording, RecordingError};
 use super::config::{Config, Format, Kind};
 use super::errors::Judged;
 use super::field::Votes;
-use super::sheet::Panel;
 use super::subject::Subject;
-use super::{animation, errors, field, outline, scan, sheet, surface};
+use super::{animation, errors, field, outline, scan, surface};
 use crate::PlotError;
 
 /// Draws one picture and says how large it is.
@@ -130,7 +129,6 @@ impl<'a> Plot<'a> {
     fn draw(&mut self) -> Result<Scene, PlotError> {
         match self.config.kind {
             Kind::Errors => self.draw_errors(),
-            Kind::Sheet => self.draw_sheet(),
             _ => self.draw_scan(),
         }
     }
@@ -264,29 +262,6 @@ impl<'a> Plot<'a> {
         }
         Ok(subjects)
     }
-
-    fn draw_sheet(&mut self) -> Result<Scene, PlotError> {
-        let total = self.session.scans.total();
-        let wanted = u64::from(self.config.panels.unwrap_or(12)).min(total);
-        let progress = Progress::new("locating", wanted);
-        let mut panels = Vec::new();
-        let mut number = 0;
-        while let Some(scan) = self.session.scans.next() {
-            number += 1;
-            if !is_in_sheet(number, total, wanted) {
-                continue;
-            }
-            let scan = scan?;
-            panels.push(match self.subject(number, &scan) {
-                Ok(subject) => Panel::Scan(Box::new(subject)),
-                Err(error) if is_refusal(&error) => Panel::Refused(number, error.to_string()),
-                Err(error) => return Err(error),
-            });
-            progress.step();
-        }
-        let ground = self.config.ground(self.session.map()?);
-        sheet::draw(&ground, &panels, &self.name(), self.config.size())
-    }
 }
 
 /// Whether it is of one scan alone, so that the others can be drawn.
@@ -296,29 +271,4 @@ fn is_refusal(error: &PlotError) -> bool {
         error,
         PlotError::Offline(Refused(_) | Heading(_) | NoUsableMap { .. })
     )
-}
-
-/// Whether the scan of a number from 1 is one of `wanted` evenly spread ones,
-/// of which the first scan is the first.
-fn is_in_sheet(number: u64, total: u64, wanted: u64) -> bool {
-    let before = |number: u64| (number * wanted).div_ceil(total.max(1));
-    before(number) > before(number.saturating_sub(1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scans_of_a_sheet_are_evenly_spread() {
-        let taken = |total, wanted| -> Vec<u64> {
-            let all = 1..=total;
-            all.filter(|&number| is_in_sheet(number, total, wanted))
-                .collect()
-        };
-        assert_eq!(taken(9, 3), [1, 4, 7]);
-        assert_eq!(taken(10, 4), [1, 3, 6, 8]);
-        assert_eq!(taken(3, 3), [1, 2, 3]);
-        assert_eq!(taken(37, 12).len(), 12);
-    }
 }

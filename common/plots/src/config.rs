@@ -33,8 +33,6 @@ pub(super) enum Kind {
     Surface,
     /// The errors of all scans against /ground_truth, by their verdicts
     Errors,
-    /// Some scans at their places, side by side
-    Sheet,
     /// All scans at their places, one after the other: an animated PNG
     Drive,
 }
@@ -59,10 +57,6 @@ pub struct Config {
     /// line [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) scan: Option<u64>,
-
-    /// Panels of a sheet, 1..=64: this many scans, evenly spread [default: 12]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
-    pub(super) panels: Option<u8>,
 
     /// Leave out /ground_truth, which may be of another map than --map
     #[arg(long)]
@@ -115,9 +109,6 @@ impl Config {
         let is_of_scan = matches!(self.kind, Kind::Scan | Kind::Field | Kind::Surface);
         if self.scan.is_some() && !is_of_scan {
             return usage("--scan is for the pictures `scan`, `field` and `surface`".into());
-        }
-        if self.panels.is_some() && self.kind != Kind::Sheet {
-            return usage("--panels is for the picture `sheet`".into());
         }
         if self.no_truth && matches!(self.kind, Kind::Map | Kind::Errors) {
             return usage("--no-truth is for the pictures of scans".into());

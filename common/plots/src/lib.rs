@@ -8,14 +8,13 @@
 //! command ─ subject ─┬─ scan ─────┐
 //!                    ├─ field ────┤
 //!                    ├─ surface ──┼─ drawing
-//!                    ├─ sheet ────┤
 //!                    ├─ animation ┤
 //!                    └─ errors ───┘
 //! map ───────────────── outline ──┘
 //! ```
 //!
-//! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`,
-//! `curves`, `diagram` and `places_on_map` by `backcast bench paper`.
+//! `drive` is drawn by `backcast evaluate --sequence`, `curves`, `diagram` and
+//! `places_on_map` by `backcast bench paper`.
 
 mod animation;
 mod axes;
@@ -23,7 +22,6 @@ mod command;
 mod config;
 mod curves;
 mod diagram;
-mod difference;
 mod drive;
 mod error;
 mod errors;
@@ -42,7 +40,6 @@ mod places_on_map;
 mod scale;
 mod scan;
 mod shapes;
-mod sheet;
 mod subject;
 mod surface;
 #[cfg(test)]
@@ -54,7 +51,6 @@ pub use command::run;
 pub use config::{Config, NOTES};
 pub use curves::{Curve, CurvePoint, Curves, draw as draw_curves};
 pub use diagram::{Arrow, Cell, Diagram, Panel, Role, draw as draw_diagram};
-pub use difference::{Contrast, draw as draw_contrast};
 pub use drive::{Stop, draw as draw_drive};
 pub use error::PlotError;
 pub use field::{Votes, draw as draw_votes};

@@ -1,6 +1,6 @@
 //! What surrounds every picture: a title, what it says, and a legend.
 
-use drawing::{Anchor, Color, DrawingError, Path, Rect, Scene, Stroke, TextStyle};
+use drawing::{Anchor, Color, DrawingError, Path, Rect, Scene, TextStyle};
 use messages::Verdict;
 
 use super::legend::Legend;
@@ -121,12 +121,6 @@ impl Page {
         let corner = (body.x, body.bottom());
         self.legend.draw(&mut self.scene, corner, body.width, unit);
         Ok(self.scene)
-    }
-
-    /// A frame around a part of the picture.
-    pub(super) fn frame(&mut self, area: Rect) {
-        let stroke = Stroke::new(theme::FRAME, self.unit.max(1.0));
-        self.scene.stroke(Path::rect(area.shrunk(0.5)), stroke);
     }
 }
 

@@ -9,9 +9,8 @@ use geometry::Pose;
 use map::{OccupancyGrid, UNKNOWN};
 
 use super::scan::Size;
-use super::sheet::Panel;
 use super::subject::{Ground, Shown, Subject};
-use super::{animation, layout, outline, places, scan, sheet, theme};
+use super::{animation, layout, outline, places, scan, theme};
 
 const WIDTHS: [u32; 3] = [300, 600, 1200];
 
@@ -112,28 +111,6 @@ fn a_scan_with_many_places_is_legible_and_all_of_it_is_named() {
             layout::check(&scene);
             check_legend(&scene);
         }
-    }
-}
-
-#[test]
-fn a_sheet_is_legible_and_all_of_it_is_named() {
-    let map = map();
-    let rules = CellRules::default();
-    let ground = Ground { map: &map, rules };
-    let panels = [
-        Panel::Scan(Box::new(sure())),
-        Panel::Refused(2, "the scan is empty: it has no ranges".into()),
-        Panel::Scan(Box::new(ambiguous(3.0))),
-        Panel::Scan(Box::new(ambiguous(5.0))),
-    ];
-    for width in WIDTHS {
-        let size = Size {
-            width,
-            whole: false,
-        };
-        let scene = sheet::draw(&ground, &panels, "a/recording.mcap", size).unwrap();
-        layout::check(&scene);
-        check_legend(&scene);
     }
 }
 

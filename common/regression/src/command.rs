@@ -14,7 +14,6 @@ use transport::{GraphName, with_causes};
 use super::case::{self, Case};
 use super::compare::{Tolerance, differences, summary, table};
 use super::junit::{self, Outcome};
-use super::pictures::{self, Drawn};
 use super::play::{self, Played};
 use crate::RegressionError;
 
@@ -47,11 +46,6 @@ pub struct Config {
     /// Accept the results as the new expectation, and say what changed, a line a kind
     #[arg(long)]
     accept: bool,
-
-    /// Draw each scan that differs, at most 20 per recording, with the expected and the
-    /// found pose
-    #[arg(long, value_name = "FOLDER")]
-    pictures: Option<PathBuf>,
 
     /// Write a JUnit report for a build server: a suite a recording, a test case a scan
     #[arg(long, value_name = "FILE")]
@@ -147,10 +141,6 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         expected.iter_mut().for_each(|answer| answer.pose = None);
     }
     let all = differences(&expected, &found, config.tolerance);
-    if let Some(folder) = &config.pictures {
-        let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
-        print_pictures(&case.name, folder, drawn);
-    }
     if let Some(damage) = damage {
         // What is cut off would be missed for ever.
         outcome.result = Err(format!(
@@ -163,16 +153,6 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     match config.accept {
         true => case.accept(&found),
         false => Ok(()),
-    }
-}
-
-fn print_pictures(case: &str, folder: &Path, drawn: Drawn) {
-    let Drawn { pictures, scans } = drawn;
-    if scans > 0 {
-        let folder = folder.display();
-        say(&format!(
-            "{case}: {pictures} pictures in {folder}, of {scans} scans that differ"
-        ));
     }
 }
 

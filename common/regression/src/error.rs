@@ -3,10 +3,7 @@
 use std::path::PathBuf;
 
 use command_line::{CommandError, FAILED, OutputError, WRONG_USE};
-use drawing::DrawingError;
 use launcher::LauncherError;
-use map::MapError;
-use plots::PlotError;
 use recording::RecordingError;
 use transport::TransportError;
 
@@ -16,15 +13,6 @@ pub enum RegressionError {
     /// The graph cannot be run.
     #[error(transparent)]
     Launcher(#[from] LauncherError),
-    /// A picture cannot be made.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A picture cannot be made.
-    #[error(transparent)]
-    Drawing(#[from] DrawingError),
-    /// A map file cannot be used.
-    #[error(transparent)]
-    Map(#[from] MapError),
     /// A recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -67,7 +55,6 @@ impl CommandError for RegressionError {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Launcher(error) => error.exit_code(),
-            Self::Plot(error) => error.exit_code(),
             Self::NoCases { .. } => WRONG_USE,
             _ => FAILED,
         }

@@ -2,8 +2,7 @@
 //! answer with what is expected.
 //!
 //! `case` finds the recordings, `play` runs the graph, `answer` is what is
-//! compared, `compare` compares (pure), `junit` reports to a build server, `pictures`
-//! shows what differs.
+//! compared, `compare` compares (pure), `junit` reports to a build server.
 
 mod answer;
 mod case;
@@ -11,7 +10,6 @@ mod command;
 mod compare;
 mod error;
 mod junit;
-mod pictures;
 mod play;
 
 pub use command::{Config, NOTES, run};

@@ -143,7 +143,6 @@ mod tests {
             "backcast plot histogram --out p.png",
             "backcast plot --out p.png --scan 0",
             "backcast plot --out p.png --width 199",
-            "backcast plot sheet --out p.png --panels 65",
             "backcast bench",
             "backcast bench table3",
             "backcast bench search --kind caves",

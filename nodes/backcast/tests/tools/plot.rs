@@ -63,7 +63,7 @@ fn robot(picture: &RgbImage) -> (f64, f64) {
 #[test]
 fn every_picture_of_a_recording_has_the_width_that_was_asked_for() {
     let drive = drive();
-    for kind in ["map", "scan", "field", "surface", "errors", "sheet"] {
+    for kind in ["map", "scan", "field", "surface", "errors"] {
         let options = format!("{kind} --bag r.mcap --width 640");
         let picture = decoded(&plot(drive.path(), &options, "p.png"));
         assert_eq!(picture.width(), 640, "{kind}");
@@ -165,7 +165,7 @@ fn a_scan_in_which_nothing_returned_is_drawn_without_a_robot() {
 }
 
 #[test]
-fn a_sheet_shows_refused_scans_too() {
+fn a_refused_scan_leaves_no_picture() {
     let mut empty = scan(1, HERE);
     empty.ranges.clear();
     let messages = [
@@ -174,7 +174,6 @@ fn a_sheet_shows_refused_scans_too() {
         scan_at(2, HERE),
     ];
     let folder = folder(&messages);
-    plot(folder.path(), "sheet --bag r.mcap", "p.png");
     let (code, stdout, stderr) = run(folder.path(), "plot --bag r.mcap --out q.png");
     assert_eq!((code, stdout.as_str()), (1, ""));
     assert_eq!(stderr, "backcast: the scan is empty: it has no ranges\n");
@@ -237,8 +236,7 @@ fn wrong_use_is_reported_before_anything_is_opened() {
         ("errors --map m.yaml --out p.png", "--bag is missing"),
         ("--bag r.mcap --out p.jpg", "must end with .png or .svg"),
         ("--bag r.mcap --out picture", "must end with .png or .svg"),
-        ("sheet --bag r.mcap --out p.png --scan 2", "--scan is for"),
-        ("--bag r.mcap --out p.png --panels 4", "--panels is for"),
+        ("errors --bag r.mcap --out p.png --scan 2", "--scan is for"),
         ("map --bag r.mcap --out p.png --whole", "--whole is for"),
         (
             "errors --bag r.mcap --out p.png --no-truth",
