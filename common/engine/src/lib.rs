@@ -27,6 +27,8 @@
 //!
 //! The crate knows no process, socket, clock or file.
 
+#![warn(missing_docs)]
+
 pub mod accumulator;
 pub mod beams;
 pub mod boundary;

@@ -4,6 +4,8 @@
 //! both frames, target first: `map_from_laser` takes laser coordinates to the
 //! map. The crate knows no grid and no sensor.
 
+#![warn(missing_docs)]
+
 mod angle;
 mod covariance;
 mod mount;

@@ -7,6 +7,8 @@
 //! are also serde structures, field by field, for what leaves the machine. The
 //! crate holds no behaviour beyond conversions, and opens nothing.
 
+#![warn(missing_docs)]
+
 mod attention;
 mod beams;
 mod boundary;
