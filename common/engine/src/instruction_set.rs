@@ -14,17 +14,13 @@ pub enum InstructionSet {
     Portable,
     /// AVX2, BMI 1 and 2, LZCNT and POPCNT: x86-64 since Haswell and Zen.
     Avx2,
-    /// The same and AVX-512 F, BW, CD, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
-    Avx512,
 }
 
 impl InstructionSet {
     /// The best one that this processor has.
     #[must_use]
     pub fn best() -> Self {
-        if Self::Avx512.is_available() {
-            Self::Avx512
-        } else if Self::Avx2.is_available() {
+        if Self::Avx2.is_available() {
             Self::Avx2
         } else {
             Self::Portable
@@ -33,7 +29,7 @@ impl InstructionSet {
 
     /// All that this processor has, from the baseline on.
     pub fn available() -> impl Iterator<Item = Self> {
-        let all = [Self::Portable, Self::Avx2, Self::Avx512];
+        let all = [Self::Portable, Self::Avx2];
         all.into_iter().filter(|set| set.is_available())
     }
 
@@ -50,18 +46,8 @@ impl InstructionSet {
                     && is_x86_feature_detected!("lzcnt")
                     && is_x86_feature_detected!("popcnt")
             }
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => {
-                Self::Avx2.is_available()
-                    && is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512bw")
-                    && is_x86_feature_detected!("avx512cd")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512vl")
-                    && is_x86_feature_detected!("avx512vbmi")
-            }
             #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 | Self::Avx512 => false,
+            Self::Avx2 => false,
         }
     }
 
@@ -81,7 +67,6 @@ impl fmt::Display for InstructionSet {
         f.pad(match self {
             Self::Portable => "portable",
             Self::Avx2 => "AVX2",
-            Self::Avx512 => "AVX-512",
         })
     }
 }

@@ -170,18 +170,9 @@ impl Errors {
         match instructions {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: the processor has what was detected.
-            InstructionSet::Avx512 => unsafe { self.add_avx512(ranges, costs) },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the processor has what was detected.
             InstructionSet::Avx2 => unsafe { self.add_avx2(ranges, costs) },
             _ => self.add_plain(ranges, costs),
         }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn add_avx512(self, ranges: &[u16], costs: &mut [f32]) {
-        self.add_plain(ranges, costs);
     }
 
     #[cfg(target_arch = "x86_64")]

@@ -32,9 +32,6 @@ pub(super) fn fill(
     match instructions {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the processor has what was detected; offsets were checked.
-        InstructionSet::Avx512 => unsafe { x86::fill_avx512(bytes, offsets, groups, sums) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
         InstructionSet::Avx2 => unsafe { x86::fill_avx2(bytes, offsets, groups, sums) },
         _ => fill_portable(bytes, offsets, groups, sums),
     }
@@ -68,41 +65,6 @@ mod x86 {
     /// # Safety
     /// Each offset and the length of `sums` behind it must lie within `bytes`,
     /// and groups within `offsets`.
-    #[target_feature(enable = "avx512f,avx512bw")]
-    pub(super) unsafe fn fill_avx512(
-        bytes: &[u8],
-        offsets: &[usize],
-        groups: &[Group],
-        sums: &mut [u16],
-    ) {
-        let (blocks, _) = sums.as_chunks_mut::<BLOCK>();
-        for (i, block) in blocks.iter_mut().enumerate() {
-            let (mut low, mut high) = (_mm512_setzero_si512(), _mm512_setzero_si512());
-            for group in groups {
-                let mut sum = _mm512_setzero_si512();
-                for &offset in &offsets[group.start..group.end] {
-                    // SAFETY: the caller's promise.
-                    let row = unsafe { bytes.as_ptr().add(offset + i * BLOCK) };
-                    // SAFETY: as above; the load needs no alignment.
-                    sum = _mm512_add_epi8(sum, unsafe { _mm512_loadu_si512(row.cast()) });
-                }
-                let weight = _mm512_set1_epi16(group.weight as i16);
-                let first = _mm512_cvtepu8_epi16(_mm512_castsi512_si256(sum));
-                let second = _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64::<1>(sum));
-                low = _mm512_adds_epu16(low, _mm512_mullo_epi16(first, weight));
-                high = _mm512_adds_epu16(high, _mm512_mullo_epi16(second, weight));
-            }
-            let to = block.as_mut_ptr();
-            // SAFETY: a block holds 64 numbers, two stores of 32.
-            unsafe {
-                _mm512_storeu_si512(to.cast(), low);
-                _mm512_storeu_si512(to.add(BLOCK / 2).cast(), high);
-            }
-        }
-    }
-
-    /// # Safety
-    /// As of [`fill_avx512`].
     #[target_feature(enable = "avx2")]
     pub(super) unsafe fn fill_avx2(
         bytes: &[u8],

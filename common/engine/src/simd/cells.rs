@@ -93,7 +93,7 @@ mod x86 {
 
     use super::{CELLS, CellLanes, VoteTable};
     use crate::simd::table::look_up_avx2;
-    use crate::simd::{Avx2, Avx512, avx2, avx512};
+    use crate::simd::{Avx2, avx2};
 
     /// Why tables are short: with these instruction sets no others are looked up here.
     const SHORT: &str = "a table that is short";
@@ -156,38 +156,7 @@ mod x86 {
             }
         }
     }
-
-    #[derive(Clone, Copy)]
-    pub(crate) struct Avx512Cells(Avx512, __m256i);
-
-    avx512! {
-        impl CellLanes for Avx512Cells {
-            type Set = Avx512;
-
-            fn load(set: Avx512, votes: &[u16; CELLS]) -> Avx512Cells {
-                Avx512Cells(set, must_cast(*votes))
-            }
-
-            fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Avx512Cells {
-                let Avx512Cells(set, votes) = self;
-                let entries = table.short().expect(SHORT);
-                // The index is the low byte of a number; the high one looks up
-                // entry 0, which the mask leaves out.
-                let index = _mm512_castsi256_si512(places(set.avx2(), table, ranges));
-                let found = _mm512_maskz_permutexvar_epi8(0x5555_5555, index, must_cast(*entries));
-                Avx512Cells(set, _mm256_add_epi16(votes, _mm512_castsi512_si256(found)))
-            }
-
-            fn votes(self) -> [u16; CELLS] {
-                must_cast(self.1)
-            }
-
-            fn most(self, among: &[u16; CELLS]) -> u16 {
-                most(self.0.avx2(), self.1, among)
-            }
-        }
-    }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2Cells, Avx512Cells};
+pub(crate) use x86::Avx2Cells;

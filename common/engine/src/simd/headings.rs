@@ -5,7 +5,7 @@ mod x86;
 
 use crate::tables::TABLE;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2Headings, Avx512Headings};
+pub(crate) use x86::Avx2Headings;
 
 /// Headings that are bounded at a time.
 pub(crate) const HEADINGS: usize = 64;

@@ -1,14 +1,13 @@
 //! Numbers side by side in the registers of an instruction set.
 //!
-//! [`Portable`], [`Avx2`] and [`Avx512`] are tokens: whoever has one knows that the
-//! processor has the instructions, as it was asked when the first one was made
-//! ([`Simd::new`]). Vectors can only be made with a token, and nothing that takes these
+//! [`Portable`] and [`Avx2`] are tokens: each proves that the processor has the
+//! instructions, which was checked when the first one was made ([`Simd::new`]). Vectors can only be made with a token, and nothing that takes these
 //! instructions can be called without a token or a vector. So the code of the search and
 //! of the sweeps is safe, and written once for all sets: it is a [`Kernel`], generic over
 //! the [`Set`], which [`Simd::run`] runs compiled for the one at hand.
 //!
-//! What differs from set to set lies in the modules here. There the macros `avx2!` and
-//! `avx512!` compile functions for their set, in which the instructions are safe to use.
+//! The modules here hold the code that differs between the sets. There the macro `avx2!`
+//! compiles functions for AVX2, in which its instructions are safe to use.
 //! Calling such a function is all that is `unsafe`, and it happens in one place, in
 //! [`compiled!`]. Memory is read and written through arrays and slices alone.
 //!
@@ -123,17 +122,6 @@ macro_rules! avx2 {
     };
 }
 
-/// [`compiled!`] for AVX-512; the features are those of [`InstructionSet::Avx512`].
-#[cfg(target_arch = "x86_64")]
-macro_rules! avx512 {
-    ($($item:tt)*) => {
-        $crate::simd::compiled! {
-            ["avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,bmi1,bmi2,lzcnt,popcnt"]
-            $($item)*
-        }
-    };
-}
-
 /// [`compiled!`] for what every x86-64 processor has: no token is needed.
 #[cfg(target_arch = "x86_64")]
 macro_rules! sse2 {
@@ -144,7 +132,7 @@ macro_rules! sse2 {
 
 pub(crate) use compiled;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use {avx2, avx512, sse2};
+pub(crate) use {avx2, sse2};
 
 /// The baseline CPU.
 #[derive(Debug, Clone, Copy, Default)]
@@ -154,20 +142,6 @@ pub(crate) struct Portable;
 #[cfg(target_arch = "x86_64")]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Avx2(());
-
-/// Proof that the processor has [`InstructionSet::Avx512`].
-#[cfg(target_arch = "x86_64")]
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Avx512(());
-
-#[cfg(target_arch = "x86_64")]
-impl Avx512 {
-    /// What has AVX-512 has AVX2.
-    #[inline(always)]
-    pub(crate) fn avx2(self) -> Avx2 {
-        Avx2(())
-    }
-}
 
 /// A token, and what its instruction set can do.
 pub(crate) trait Set: numbers::Numbers {
@@ -195,15 +169,6 @@ impl Set for Avx2 {
     type Bytes = bytes::Avx2Bytes;
 }
 
-#[cfg(target_arch = "x86_64")]
-impl Set for Avx512 {
-    type Words = words::Avx512Words;
-    type Headings = headings::Avx512Headings;
-    type Cells = cells::Avx512Cells;
-    type Rays = rays::Avx512Rays;
-    type Bytes = bytes::Avx512Bytes;
-}
-
 /// Work that is compiled for each instruction set.
 pub(crate) trait Kernel {
     type Result;
@@ -218,8 +183,6 @@ pub(crate) enum Simd {
     Portable(Portable),
     #[cfg(target_arch = "x86_64")]
     Avx2(Avx2),
-    #[cfg(target_arch = "x86_64")]
-    Avx512(Avx512),
 }
 
 impl Default for Simd {
@@ -238,8 +201,6 @@ impl Simd {
             InstructionSet::Portable => Simd::Portable(Portable),
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx2 => Simd::Avx2(Avx2(())),
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => Simd::Avx512(Avx512(())),
             #[cfg(not(target_arch = "x86_64"))]
             _ => unreachable!("checked above"),
         }
@@ -251,8 +212,6 @@ impl Simd {
             Simd::Portable(_) => InstructionSet::Portable,
             #[cfg(target_arch = "x86_64")]
             Simd::Avx2(_) => InstructionSet::Avx2,
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx512(_) => InstructionSet::Avx512,
         }
     }
 
@@ -263,14 +222,9 @@ impl Simd {
             Simd::Portable(set) => kernel.run(set),
             #[cfg(target_arch = "x86_64")]
             Simd::Avx2(set) => set.run(kernel),
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx512(set) => set.run(kernel),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 avx2! { kernels for Avx2 }
-
-#[cfg(target_arch = "x86_64")]
-avx512! { kernels for Avx512 }

@@ -157,7 +157,7 @@ mod x86 {
     use bytemuck::must_cast;
 
     use super::{MARKED, Numbers};
-    use crate::simd::{Avx2, Avx512, avx2, avx512};
+    use crate::simd::{Avx2, avx2};
 
     const ENOUGH: &str = "as many numbers as a vector has";
 
@@ -230,62 +230,6 @@ mod x86 {
                     bits |= u64::from(inside) << (32 * half);
                 }
                 bits
-            }
-        }
-    }
-
-    avx512! {
-        impl Numbers for Avx512 {
-            type Vector = __m512i;
-            const COUNT: usize = 32;
-
-            fn splat(self, value: u16) -> __m512i {
-                _mm512_set1_epi16(value.cast_signed())
-            }
-
-            fn load(self, from: &[u16]) -> __m512i {
-                must_cast(*from.first_chunk::<32>().expect(ENOUGH))
-            }
-
-            fn store(self, vector: __m512i, to: &mut [u16]) {
-                *to.first_chunk_mut::<32>().expect(ENOUGH) = must_cast(vector);
-            }
-
-            fn store_bytes(self, vector: __m512i, to: &mut [u8]) {
-                let bytes = _mm512_cvtepi16_epi8(vector);
-                *to.first_chunk_mut::<32>().expect(ENOUGH) = must_cast(bytes);
-            }
-
-            fn add(self, a: __m512i, b: __m512i) -> __m512i { _mm512_add_epi16(a, b) }
-            fn add_saturating(self, a: __m512i, b: __m512i) -> __m512i { _mm512_adds_epu16(a, b) }
-            fn sub(self, a: __m512i, b: __m512i) -> __m512i { _mm512_sub_epi16(a, b) }
-            fn sub_saturating(self, a: __m512i, b: __m512i) -> __m512i { _mm512_subs_epu16(a, b) }
-            fn and(self, a: __m512i, b: __m512i) -> __m512i { _mm512_and_si512(a, b) }
-            fn or(self, a: __m512i, b: __m512i) -> __m512i { _mm512_or_si512(a, b) }
-            fn min(self, a: __m512i, b: __m512i) -> __m512i { _mm512_min_epu16(a, b) }
-            fn max(self, a: __m512i, b: __m512i) -> __m512i { _mm512_max_epu16(a, b) }
-            fn max_signed(self, a: __m512i, b: __m512i) -> __m512i { _mm512_max_epi16(a, b) }
-            fn mul_high(self, a: __m512i, b: __m512i) -> __m512i { _mm512_mulhi_epu16(a, b) }
-            fn average(self, a: __m512i, b: __m512i) -> __m512i { _mm512_avg_epu16(a, b) }
-            fn shift_nibble(self, a: __m512i) -> __m512i { _mm512_slli_epi16::<4>(a) }
-
-            fn at_least(self, a: __m512i, b: __m512i) -> u64 {
-                _mm512_cmpge_epu16_mask(a, b).into()
-            }
-
-            fn any_within<const N: usize>(
-                self,
-                byte: u8,
-                behind: &[[u8; MARKED]; N],
-                reaches: &[[u8; MARKED]; N],
-            ) -> u64 {
-                let byte = _mm512_set1_epi8(byte.cast_signed());
-                let mut outside = u64::MAX;
-                for (behind, reaches) in behind.iter().zip(reaches) {
-                    let beyond = _mm512_sub_epi8(byte, must_cast(*behind));
-                    outside = _mm512_mask_cmpgt_epu8_mask(outside, beyond, must_cast(*reaches));
-                }
-                !outside
             }
         }
     }

@@ -144,7 +144,7 @@ mod x86 {
     use bytemuck::must_cast;
 
     use super::{Across, BitRows, CELLS, NO_RANGE, Portable, RAYS, RayLanes, SIDE};
-    use crate::simd::{self, Avx2, Avx512, avx2, avx512};
+    use crate::simd::{self, Avx2, avx2};
 
     /// A ray a lane of 64 bits, in two registers.
     #[derive(Clone, Copy)]
@@ -221,58 +221,7 @@ mod x86 {
             }
         }
     }
-
-    /// A ray a lane of 64 bits.
-    #[derive(Clone, Copy)]
-    pub(crate) struct Avx512Rays(__m512i);
-
-    avx512! {
-        impl RayLanes for Avx512Rays {
-            type Set = Avx512;
-
-            fn none(_set: Avx512) -> Avx512Rays {
-                Avx512Rays(_mm512_set1_epi64(i64::from(NO_RANGE)))
-            }
-
-            fn word(_set: Avx512, rows: &BitRows<'_>) -> u64 {
-                let row = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
-                let further = _mm512_mullo_epi64(row, _mm512_set1_epi64(rows.slope));
-                let bit = _mm512_add_epi64(_mm512_set1_epi64(rows.bit), further);
-                let by = _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(bit));
-                let word = _mm256_cvtepi32_epi8(_mm256_srlv_epi32(must_cast(*rows.rows), by));
-                _mm_cvtsi128_si64(word).cast_unsigned()
-            }
-
-            fn note(self, word: u64, position: i64) -> (Avx512Rays, u8) {
-                let ray = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
-                let word = _mm512_set1_epi64(word.cast_signed());
-                let first = _mm512_set1_epi64(0x0101_0101_0101_0101);
-                let ends = _mm512_and_si512(_mm512_srlv_epi64(word, ray), first);
-                let negated = _mm512_sub_epi64(_mm512_setzero_si512(), ends);
-                let lowest = _mm512_and_si512(ends, negated);
-                // The lowest bit is that of place 63 less the zeros before it.
-                let row = _mm512_sub_epi64(_mm512_set1_epi64(63), _mm512_lzcnt_epi64(lowest));
-                let row = _mm512_srli_epi64::<3>(row);
-                let at = _mm512_add_epi64(_mm512_set1_epi64(position), row);
-                let ended = _mm512_test_epi64_mask(ends, ends);
-                (Avx512Rays(_mm512_mask_min_epu64(self.0, ended, self.0, at)), ended)
-            }
-
-            fn hits(self) -> [u16; RAYS] {
-                must_cast(_mm512_cvtepi64_epi16(self.0))
-            }
-
-            fn ranges(
-                set: Avx512,
-                hits: &[u16; RAYS],
-                first: &[u16; SIDE],
-                across: &Across,
-            ) -> [u16; CELLS] {
-                <Avx2Rays as RayLanes>::ranges(set.avx2(), hits, first, across)
-            }
-        }
-    }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2Rays, Avx512Rays};
+pub(crate) use x86::Avx2Rays;

@@ -5,7 +5,7 @@ mod x86;
 
 use super::Portable;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2Words, Avx512Words};
+pub(crate) use x86::Avx2Words;
 
 /// Blocks whose bits lie side by side.
 pub(crate) const QUAD: usize = 4;
@@ -23,10 +23,6 @@ pub(crate) const BYTES: usize = 16 * QUAD;
 pub(crate) trait BitWords: Copy {
     /// The token of the instruction set.
     type Set: Copy;
-
-    /// How many chunks are bounded at a time: sums and what is added to them fit into
-    /// the registers.
-    const AT_A_TIME: usize;
 
     /// Words without bits.
     fn empty(set: Self::Set) -> Self;
@@ -61,39 +57,8 @@ pub(crate) trait BitWords: Copy {
     }
 }
 
-/// Words of several chunks: what is done with one is done with all.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Several<W, const N: usize>(pub [W; N]);
-
-impl<W: BitWords, const N: usize> Several<W, N> {
-    #[inline(always)]
-    pub(crate) fn empty(set: W::Set) -> Self {
-        Several([W::empty(set); N])
-    }
-
-    #[inline(always)]
-    pub(crate) fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
-        let (mut sum, mut carry) = (self, self);
-        for i in 0..N {
-            (sum.0[i], carry.0[i]) = self.0[i].full_adder(b.0[i], c.0[i]);
-        }
-        (sum, carry)
-    }
-
-    /// Words of bytes in the order of sets, each `by` places down.
-    #[inline(always)]
-    pub(crate) fn sorted_and_down(mut self, by: u32) -> Self {
-        for words in &mut self.0 {
-            *words = words.sorted().shift_down(by);
-        }
-        self
-    }
-}
-
 impl BitWords for Words {
     type Set = Portable;
-
-    const AT_A_TIME: usize = 1;
 
     #[inline(always)]
     fn empty(_: Portable) -> Self {

@@ -5,7 +5,7 @@
 //! its carries.
 
 use super::quad_rows::{Extent, Reader, Window, Windows};
-use crate::simd::words::{BitWords, Several, Words};
+use crate::simd::words::{BitWords, Words};
 
 /// Words in one line of the processor's cache.
 #[derive(Debug, Clone, Copy)]
@@ -109,36 +109,36 @@ impl Group {
     /// Adds up what the windows see, plane by plane with carry-save adders, and
     /// adds that to the sums of all groups.
     #[inline(always)]
-    pub(in crate::search) fn add<W: BitWords, const N: usize>(
+    pub(in crate::search) fn add<W: BitWords>(
         &self,
         set: W::Set,
-        reader: Reader<'_, N>,
+        reader: Reader<'_>,
         carries: &mut Carries,
-        total: &mut [Several<W, N>],
+        total: &mut [W],
     ) {
         let windows = reader.within(&self.extent);
         let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
         let (mut carried, mut carried_next) = (0, 0);
         let mut planes = self.planes.iter();
-        let mut twos = Several::empty(set);
+        let mut twos = W::empty(set);
         // What adding to the total carries over.
-        let mut overflow = Several::empty(set);
+        let mut overflow = W::empty(set);
         let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
         for total in own {
             let mut column = Column::new(set, twos, after);
             if let Some(plane) = planes.next() {
                 column.add_windows(windows, plane);
             }
-            column.add_rows(&carries[..carried * N]);
+            column.add_rows(&carries[..carried]);
             let (ones, made) = (column.ones, column.made);
             twos = column.twos;
-            let sum = ones.sorted_and_down(self.shift);
+            let sum = ones.sorted().shift_down(self.shift);
             (*total, overflow) = total.full_adder(sum, overflow);
             (carries, next, after) = (next, after, carries);
             (carried, carried_next) = (carried_next, made);
         }
         for total in others {
-            (*total, overflow) = total.full_adder(overflow, Several::empty(set));
+            (*total, overflow) = total.full_adder(overflow, W::empty(set));
         }
     }
 
@@ -149,41 +149,36 @@ impl Group {
 }
 
 impl Aligned {
-    /// The rows of several chunks.
     #[inline(always)]
-    fn read<W: BitWords, const N: usize>(set: W::Set, rows: &[Aligned; N]) -> Several<W, N> {
-        let mut several = Several::empty(set);
-        for (words, row) in several.0.iter_mut().zip(rows) {
-            *words = W::from_words(set, &row.0);
-        }
-        several
+    fn read<W: BitWords>(&self, set: W::Set) -> W {
+        W::from_words(set, &self.0)
     }
 }
 
 /// Sums of a plane and the next one, of rows of bits four by four, with a carry for the
 /// plane after these for each.
-struct Column<'a, W: BitWords, const N: usize> {
+struct Column<'a, W: BitWords> {
     set: W::Set,
-    ones: Several<W, N>,
-    twos: Several<W, N>,
+    ones: W,
+    twos: W,
     carries: &'a mut [Aligned],
     made: usize,
 }
 
-impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
+impl<'a, W: BitWords> Column<'a, W> {
     #[inline(always)]
-    fn new(set: W::Set, ones: Several<W, N>, carries: &'a mut [Aligned]) -> Self {
+    fn new(set: W::Set, ones: W, carries: &'a mut [Aligned]) -> Self {
         Column {
             set,
             ones,
-            twos: Several::empty(set),
+            twos: W::empty(set),
             carries,
             made: 0,
         }
     }
 
     #[inline(always)]
-    fn add_windows(&mut self, windows: Windows<'_, N>, plane: &Plane) {
+    fn add_windows(&mut self, windows: Windows<'_>, plane: &Plane) {
         let set = self.set;
         // SAFETY: the extent of a group, within which the windows are, takes in all that are
         // pushed to its planes and the one that fills up.
@@ -208,42 +203,35 @@ impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
     #[inline(always)]
     fn add_rows(&mut self, rows: &[Aligned]) {
         let set = self.set;
-        let (rows, _) = rows.as_chunks::<N>();
         let (fours, rest) = rows.as_chunks::<4>();
         for four in fours {
-            let (ones, a) = self
-                .ones
-                .full_adder(Aligned::read(set, &four[0]), Aligned::read(set, &four[1]));
-            let (ones, b) =
-                ones.full_adder(Aligned::read(set, &four[2]), Aligned::read(set, &four[3]));
+            let (ones, a) = self.ones.full_adder(four[0].read(set), four[1].read(set));
+            let (ones, b) = ones.full_adder(four[2].read(set), four[3].read(set));
             self.ones = ones;
             self.carry(a, b);
         }
         let (pairs, rest) = rest.as_chunks();
         for [a, b] in pairs {
-            self.add_pair(Aligned::read(set, a), Aligned::read(set, b));
+            self.add_pair(a.read(set), b.read(set));
         }
         for row in rest {
-            self.add_pair(Aligned::read(set, row), Several::empty(set));
+            self.add_pair(row.read(set), W::empty(set));
         }
     }
 
     #[inline(always)]
-    fn add_pair(&mut self, a: Several<W, N>, b: Several<W, N>) {
+    fn add_pair(&mut self, a: W, b: W) {
         let carry;
         (self.ones, carry) = self.ones.full_adder(a, b);
-        self.carry(carry, Several::empty(self.set));
+        self.carry(carry, W::empty(self.set));
     }
 
     /// Adds two rows to the next plane.
     #[inline(always)]
-    fn carry(&mut self, a: Several<W, N>, b: Several<W, N>) {
+    fn carry(&mut self, a: W, b: W) {
         let carry;
         (self.twos, carry) = self.twos.full_adder(a, b);
-        let to = &mut self.carries[self.made * N..][..N];
-        for (to, words) in to.iter_mut().zip(carry.0) {
-            to.0 = words.to_words();
-        }
+        self.carries[self.made].0 = carry.to_words();
         self.made += 1;
     }
 }
@@ -282,18 +270,18 @@ mod tests {
         })
     }
 
-    /// Adding a group's windows in some quads one after the other; the sums of the last one
-    /// in some chunks.
-    struct Adding<'a, const N: usize> {
+    /// Adds a group's windows in some quads one after the other; the sums are those of the
+    /// last one in a chunk.
+    struct Adding<'a> {
         group: &'a Group,
         layout: &'a RowLayout,
         quads: &'a [Rows],
-        chunks: [usize; N],
+        chunk: usize,
     }
 
-    impl<const N: usize> Kernel for Adding<'_, N> {
-        /// For each chunk, plane by plane.
-        type Result = [[Words; PLANES]; N];
+    impl Kernel for Adding<'_> {
+        /// Plane by plane.
+        type Result = [Words; PLANES];
 
         #[inline(always)]
         fn run<S: Set>(self, set: S) -> Self::Result {
@@ -304,12 +292,12 @@ mod tests {
                     rows.take::<S::Words>(set, self.layout, packed);
                 });
             }
-            let carries = vec![Aligned(EMPTY); N * self.group.carries()];
+            let carries = vec![Aligned(EMPTY); self.group.carries()];
             let mut carries = [carries.clone(), carries.clone(), carries];
-            let mut total = [Several::<S::Words, N>::empty(set); PLANES];
-            let reader = Reader::new(self.layout, &rows, self.chunks);
+            let mut total = [S::Words::empty(set); PLANES];
+            let reader = Reader::new(self.layout, &rows, self.chunk);
             self.group.add(set, reader, &mut carries, &mut total);
-            std::array::from_fn(|chunk| total.map(|plane| plane.0[chunk].to_words()))
+            total.map(BitWords::to_words)
         }
     }
 
@@ -347,9 +335,8 @@ mod tests {
             let last = place.index(directions.div_ceil(CHUNK));
             for set in InstructionSet::available() {
                 let (group, layout, quads) = (&group, &layout, &quads[..]);
-                let adding = Adding { group, layout, quads, chunks: [0, last] };
-                let found = Simd::new(set).run(adding);
-                for (chunk, planes) in [0, last].into_iter().zip(found) {
+                for chunk in [0, last] {
+                    let planes = Simd::new(set).run(Adding { group, layout, quads, chunk });
                     for (lane, block) in (0..CHUNK).flat_map(|lane| (0..QUAD).map(move |block| (lane, block))) {
                         let sees = |(plane, rows, byte): &(usize, Range<usize>, usize)| {
                             let direction = chunk * CHUNK + lane + 8 * byte + shift as usize;

@@ -10,7 +10,7 @@ use crate::search::index::bins::Bins;
 use crate::search::index::bits::CHUNK;
 use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::sets::{Byte, READ, SetRows};
-use crate::simd::words::{BYTES, BitWords, QUAD, Several};
+use crate::simd::words::{BYTES, BitWords, QUAD};
 
 /// Where rows lie.
 #[derive(Debug, Clone, Default)]
@@ -61,17 +61,17 @@ pub(crate) struct Extent {
 
 /// The rows of a quad, in which windows are read that were found to lie in them.
 #[derive(Clone, Copy)]
-pub(crate) struct Windows<'a, const N: usize> {
-    reader: Reader<'a, N>,
+pub(crate) struct Windows<'a> {
+    reader: Reader<'a>,
 }
 
-/// The rows of a quad, to be read at the headings of some chunks.
+/// The rows of a quad, to be read at the headings of a chunk.
 #[derive(Clone, Copy)]
-pub(crate) struct Reader<'a, const N: usize> {
+pub(crate) struct Reader<'a> {
     layout: &'a RowLayout,
     bytes: &'a [Byte],
-    /// The first bytes of the chunks.
-    starts: [usize; N],
+    /// The first byte of the chunk.
+    start: usize,
 }
 
 impl RowLayout {
@@ -220,16 +220,16 @@ fn bytes_mut(of: &mut [Byte]) -> &mut [u8; BYTES] {
     bytemuck::cast_mut(of.first_chunk_mut::<READ>().expect("a word"))
 }
 
-impl<'a, const N: usize> Reader<'a, N> {
+impl<'a> Reader<'a> {
     #[inline(always)]
-    pub(crate) fn new(layout: &'a RowLayout, rows: &'a QuadRows, chunks: [usize; N]) -> Self {
-        let starts = chunks.map(|chunk| chunk * (CHUNK / 8));
+    pub(crate) fn new(layout: &'a RowLayout, rows: &'a QuadRows, chunk: usize) -> Self {
+        let start = chunk * (CHUNK / 8);
         let end = layout.end();
-        assert!(starts.iter().all(|&start| start < layout.stride) && rows.bytes.len() >= end);
+        assert!(start < layout.stride && rows.bytes.len() >= end);
         Reader {
             layout,
             bytes: &rows.bytes[..end],
-            starts,
+            start,
         }
     }
 
@@ -238,7 +238,7 @@ impl<'a, const N: usize> Reader<'a, N> {
     /// # Panics
     /// If the rows do not go so far.
     #[inline(always)]
-    pub(crate) fn within(self, extent: &Extent) -> Windows<'a, N> {
+    pub(crate) fn within(self, extent: &Extent) -> Windows<'a> {
         let stride = self.layout.stride;
         assert!(extent.bytes <= stride && extent.rows + stride + READ <= self.bytes.len());
         Windows { reader: self }
@@ -253,41 +253,31 @@ impl Extent {
     }
 }
 
-impl<const N: usize> Windows<'_, N> {
+impl Windows<'_> {
     /// The bits of a window that is read so often, in the order of sets, see
     /// [`BitWords::sorted`]. Reading oftener than needed changes nothing.
     ///
     /// # Safety
     /// The extent within which windows are read must have taken this one in.
     #[inline(always)]
-    pub(crate) unsafe fn read<W: BitWords>(
-        &self,
-        set: W::Set,
-        window: &Window,
-        reads: u32,
-    ) -> Several<W, N> {
+    pub(crate) unsafe fn read<W: BitWords>(&self, set: W::Set, window: &Window, reads: u32) -> W {
         let Reader {
             layout,
             bytes,
-            starts,
+            start: chunk,
         } = self.reader;
-        let mut places = [0; N];
-        for (place, start) in places.iter_mut().zip(starts) {
-            // SAFETY: a window's byte and where a chunk starts lie within a turn each, as
-            // was asserted of the extent and of the chunks.
-            *place = unsafe { *layout.turns.get_unchecked(start + window.byte as usize) } as usize;
-        }
+        // SAFETY: a window's byte and the start of a chunk are less than a turn each, as
+        // was asserted of the extent and of the chunk.
+        let place = unsafe { *layout.turns.get_unchecked(chunk + window.byte as usize) } as usize;
         let last = window.last as usize;
         let mut start = last.min(window.first as usize);
-        let mut all = Several::<W, N>::empty(set);
+        let mut all = W::empty(set);
         for i in 0..reads {
-            for (all, place) in all.0.iter_mut().zip(places) {
-                // SAFETY: `start` is at most `last` and a place less than the stride; so far
-                // and for a word more there are bytes, as was asserted of the extent.
-                let word = unsafe { bytes.get_unchecked(start + place..start + place + READ) };
-                let words = W::read(set, self::bytes(word));
-                *all = if i == 0 { words } else { all.or(words) };
-            }
+            // SAFETY: `start` is at most `last` and a place less than the stride; the bytes
+            // reach a word further, as was asserted of the extent.
+            let word = unsafe { bytes.get_unchecked(start + place..start + place + READ) };
+            let words = W::read(set, self::bytes(word));
+            all = if i == 0 { words } else { all.or(words) };
             start = last.min(start + 4 * layout.row);
         }
         all

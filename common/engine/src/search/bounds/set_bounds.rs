@@ -15,11 +15,8 @@ use super::quad_rows::{QuadRows, Reader};
 use super::set_program::{GROUPS, SetProgram};
 use crate::search::index::bits;
 use crate::search::index::sets::{Quad, RangeSets};
-use crate::simd::words::{BitWords, EMPTY, QUAD, Several};
+use crate::simd::words::{BitWords, EMPTY, QUAD};
 use crate::simd::{Kernel, Set};
-
-/// Most chunks that are bounded at a time by any instruction set.
-const MAX_AT_A_TIME: usize = 3;
 
 /// What the beams from each group on give at most, in votes: more for the first
 /// group than they can, and 0 behind the last.
@@ -53,7 +50,7 @@ impl SetBounds {
         self.rows.fit(&program.layout);
         let carries = program.groups().iter().map(Group::carries).max();
         for rows in &mut self.carries {
-            rows.resize(MAX_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
+            rows.resize(carries.unwrap_or(0), Aligned(EMPTY));
         }
     }
 }
@@ -129,13 +126,8 @@ impl SetProgram {
             bounds.rows.take::<S::Words>(set, &self.layout, &rows);
         }
         let least = known.map(|(_, least)| least.div_ceil(self.unit));
-        for chunks in chunks.chunks(S::Words::AT_A_TIME) {
-            match *chunks {
-                [a, b, c, ..] => self.run_chunks(set, least, [a, b, c], bounds),
-                [a, b] => self.run_chunks(set, least, [a, b], bounds),
-                [a] => self.run_chunks(set, least, [a], bounds),
-                [] => {}
-            }
+        for &chunk in &chunks {
+            self.run_chunk(set, least, chunk, bounds);
         }
         bounds.chunks = chunks;
     }
@@ -163,16 +155,9 @@ impl SetProgram {
         }
     }
 
-    /// Bounds blocks at the headings of some chunks, if this many units matter as long as
-    /// any may have them.
+    /// Bounds blocks at the headings of a chunk; stops once none can have `least` units.
     #[inline(always)]
-    fn run_chunks<S: Set, const N: usize>(
-        &self,
-        set: S,
-        least: Option<u16>,
-        places: [usize; N],
-        bounds: &mut SetBounds,
-    ) {
+    fn run_chunk<S: Set>(&self, set: S, least: Option<u16>, place: usize, bounds: &mut SetBounds) {
         let groups = self.groups();
         let SetBounds {
             found,
@@ -181,50 +166,36 @@ impl SetProgram {
             rows,
             ..
         } = bounds;
-        let reader = Reader::new(&self.layout, rows, places);
-        let HeadingBounds {
-            chunks, greatest, ..
-        } = found;
-        let mut total = [Several::<S::Words, N>::empty(set); bits::PLANES];
+        let reader = Reader::new(&self.layout, rows, place);
+        let chunk = &mut found.chunks[place];
+        let mut total = [S::Words::empty(set); bits::PLANES];
         let total = &mut total[..self.planes];
-        let mut valid = [S::Words::empty(set); N];
-        for (valid, place) in valid.iter_mut().zip(places) {
-            *valid = S::Words::from_words(set, &chunks[place].reach);
-        }
+        let valid = S::Words::from_words(set, &chunk.reach);
         let mut reach = valid;
         for left in (0..groups.len()).rev() {
             groups[left].add(set, reader, carries, total);
-            *reads += N as u64 * u64::from(groups[left].reads);
+            *reads += u64::from(groups[left].reads);
             let Some(least) = least else {
                 continue;
             };
             let rest: u16 = groups[..left].iter().map(|group| group.possible).sum();
             let least = least.saturating_sub(rest);
-            for (i, reach) in reach.iter_mut().enumerate() {
-                let sums = |plane: usize| total[plane].0[i];
-                *reach = bits::at_least(set, self.planes, sums, least, valid[i]);
-            }
-            if reach.iter().all(|reach| reach.is_empty()) {
+            reach = bits::at_least(set, self.planes, |plane| total[plane], least, valid);
+            if reach.is_empty() {
                 break;
             }
             if left > 0 {
-                for (i, place) in places.into_iter().enumerate() {
-                    let after = &mut chunks[place].after[groups.len() - left - 1];
-                    for (after, total) in after.iter_mut().zip(&*total) {
-                        *after = total.0[i].to_words();
-                    }
+                let after = &mut chunk.after[groups.len() - left - 1];
+                for (after, total) in after.iter_mut().zip(&*total) {
+                    *after = total.to_words();
                 }
             }
         }
-        for (i, place) in places.into_iter().enumerate() {
-            let chunk = &mut chunks[place];
-            chunk.reach = reach[i].to_words();
-            if !reach[i].is_empty() {
-                let sums = |plane: usize| total[plane].0[i];
-                chunk.greatest = bits::greatest_of_each(set, self.planes, sums, reach[i]);
-                for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
-                    *greatest = most.max(*greatest);
-                }
+        chunk.reach = reach.to_words();
+        if !reach.is_empty() {
+            chunk.greatest = bits::greatest_of_each(set, self.planes, |plane| total[plane], reach);
+            for (greatest, most) in found.greatest.iter_mut().zip(chunk.greatest) {
+                *greatest = most.max(*greatest);
             }
         }
     }

@@ -207,8 +207,6 @@ impl RangeIntervals {
         });
         match self.simd {
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx512(set) => unpack::unpack_avx2(set.avx2(), packed, ends),
-            #[cfg(target_arch = "x86_64")]
             Simd::Avx2(set) => unpack::unpack_avx2(set, packed, ends),
             Simd::Portable(_) => unpack::unpack(packed, ends),
         }

@@ -62,13 +62,6 @@ struct Rates {
 impl Rates {
     fn of(instruction_set: InstructionSet) -> Self {
         match instruction_set {
-            InstructionSet::Avx512 => Rates {
-                read: 0.9,
-                window_per_beam: 1.6,
-                sector: 40.0,
-                cast: 55.0,
-                vote: 0.015,
-            },
             InstructionSet::Avx2 => Rates {
                 read: 1.0,
                 window_per_beam: 1.8,

@@ -7,14 +7,10 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
 mod portable;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2Bytes;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use avx512::Avx512Bytes;
 pub(crate) use portable::Portable;
 
 use crate::program::Taper;

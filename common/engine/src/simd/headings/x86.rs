@@ -1,4 +1,4 @@
-//! Votes at headings in the registers of AVX-512 and AVX2.
+//! Votes at headings in the registers of AVX2.
 
 use std::arch::x86_64::*;
 
@@ -6,7 +6,7 @@ use bytemuck::must_cast;
 
 use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, TABLE};
 use crate::simd::table::look_up_avx2;
-use crate::simd::{Avx2, Avx512, avx2, avx512};
+use crate::simd::{Avx2, avx2};
 
 /// Headings of a register of AVX2.
 const HALF: usize = HEADINGS / 2;
@@ -113,84 +113,6 @@ avx2! {
                 _mm256_permute2x128_si256::<0x20>(second[0], second[1]),
                 _mm256_permute2x128_si256::<0x31>(second[0], second[1]),
             ])
-        }
-    }
-}
-
-/// A register of 64 headings.
-#[derive(Clone, Copy)]
-pub(crate) struct Avx512Headings(__m512i);
-
-avx512! {
-    /// The votes in the bin of each interval that is nearest to the centre.
-    fn look_up_at_once(
-        _set: Avx512,
-        votes: &BinVotes,
-        first: &[u8; HEADINGS],
-        last: &[u8; HEADINGS],
-    ) -> __m512i {
-        let centre = _mm512_set1_epi8(votes.centre.cast_signed());
-        let bin = _mm512_max_epu8(_mm512_min_epu8(centre, must_cast(*last)), must_cast(*first));
-        let index = _mm512_subs_epu8(bin, _mm512_set1_epi8(votes.base.cast_signed()));
-        let index = _mm512_min_epu8(index, _mm512_set1_epi8(TABLE as i8 - 1));
-        _mm512_permutexvar_epi8(index, must_cast(votes.table))
-    }
-}
-
-avx512! {
-    impl HeadingLanes for Avx512Headings {
-        type Set = Avx512;
-        /// Of the first and of the second eight headings of each 16.
-        type Sums = [__m512i; 2];
-
-        fn none(_set: Avx512) -> Avx512Headings {
-            Avx512Headings(_mm512_setzero_si512())
-        }
-
-        fn of_beam(set: Avx512, votes: &BinVotes, rows: IntervalRows<'_>) -> Avx512Headings {
-            let [near_first, near_last, far_first, far_last] = rows;
-            let near = look_up_at_once(set, votes, near_first, near_last);
-            let far = look_up_at_once(set, votes, far_first, far_last);
-            Avx512Headings(_mm512_max_epu8(near, far))
-        }
-
-        fn add(self, other: Avx512Headings) -> Avx512Headings {
-            Avx512Headings(_mm512_add_epi8(self.0, other.0))
-        }
-
-        fn present(self) -> u64 {
-            _mm512_test_epi8_mask(self.0, self.0)
-        }
-
-        fn to_bytes(self) -> [u8; HEADINGS] {
-            must_cast(self.0)
-        }
-
-        fn no_sums(_set: Avx512) -> [__m512i; 2] {
-            [_mm512_setzero_si512(); 2]
-        }
-
-        fn add_to(self, sums: [__m512i; 2]) -> [__m512i; 2] {
-            let zero = _mm512_setzero_si512();
-            [
-                _mm512_add_epi16(sums[0], _mm512_unpacklo_epi8(self.0, zero)),
-                _mm512_add_epi16(sums[1], _mm512_unpackhi_epi8(self.0, zero)),
-            ]
-        }
-
-        fn at_least(_set: Avx512, sums: [__m512i; 2], least: u16) -> u64 {
-            let least = _mm512_set1_epi16(least.cast_signed());
-            let low = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(sums[0], least));
-            let high = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(sums[1], least));
-            // Packing puts the headings back in order.
-            _mm512_movepi8_mask(_mm512_packs_epi16(low, high))
-        }
-
-        fn votes(_set: Avx512, sums: [__m512i; 2]) -> [u16; HEADINGS] {
-            // Those of each sum by eights, which take turns.
-            let eights: [[[u16; 8]; 4]; 2] = must_cast(sums);
-            let [low, high] = eights;
-            must_cast([low[0], high[0], low[1], high[1], low[2], high[2], low[3], high[3]])
         }
     }
 }

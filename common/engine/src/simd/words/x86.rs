@@ -1,95 +1,14 @@
-//! Words in the registers of AVX-512 and AVX2.
+//! Words in the registers of AVX2.
 
 use std::arch::x86_64::*;
 
 use bytemuck::must_cast;
 
 use super::{BYTES, BitWords, Words};
-use crate::simd::{Avx2, Avx512, avx2, avx512};
+use crate::simd::{Avx2, avx2};
 
 /// In each half of a register, four bytes of each block one after the other.
 const BY_BLOCKS: [u8; 16] = [0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15];
-
-/// What AVX-512 holds in one register.
-#[derive(Clone, Copy)]
-pub(crate) struct Avx512Words(__m512i);
-
-avx512! {
-    impl BitWords for Avx512Words {
-        type Set = Avx512;
-        const AT_A_TIME: usize = 3;
-
-        fn empty(_set: Avx512) -> Avx512Words {
-            Avx512Words(_mm512_setzero_si512())
-        }
-
-        fn splat(_set: Avx512, word: u128) -> Avx512Words {
-            let low = _mm512_set1_epi64((word as u64).cast_signed());
-            let high = ((word >> 64) as u64).cast_signed();
-            Avx512Words(_mm512_mask_set1_epi64(low, 0xf0, high))
-        }
-
-        fn read(_set: Avx512, bytes: &[u8; BYTES]) -> Avx512Words {
-            Avx512Words(must_cast(*bytes))
-        }
-
-        fn expand(_set: Avx512, mask: u16, bytes: &[u8; BYTES]) -> Avx512Words {
-            Avx512Words(_mm512_maskz_expand_epi32(mask, must_cast(*bytes)))
-        }
-
-        fn from_words(_set: Avx512, words: &Words) -> Avx512Words {
-            Avx512Words(must_cast(*words))
-        }
-
-        fn to_words(self) -> Words {
-            must_cast(self.0)
-        }
-
-        fn and(self, other: Avx512Words) -> Avx512Words {
-            Avx512Words(_mm512_and_si512(self.0, other.0))
-        }
-
-        fn or(self, other: Avx512Words) -> Avx512Words {
-            Avx512Words(_mm512_or_si512(self.0, other.0))
-        }
-
-        fn without(self, other: Avx512Words) -> Avx512Words {
-            Avx512Words(_mm512_andnot_si512(other.0, self.0))
-        }
-
-        fn full_adder(self, b: Avx512Words, c: Avx512Words) -> (Avx512Words, Avx512Words) {
-            // The truth tables of the odd number of bits and of the majority.
-            (
-                Avx512Words(_mm512_ternarylogic_epi64::<0x96>(self.0, b.0, c.0)),
-                Avx512Words(_mm512_ternarylogic_epi64::<0xe8>(self.0, b.0, c.0)),
-            )
-        }
-
-        fn shift_down(self, by: u32) -> Avx512Words {
-            let next = _mm512_alignr_epi64::<4>(_mm512_setzero_si512(), self.0);
-            let low = _mm512_srl_epi64(self.0, _mm_cvtsi32_si128(by as i32));
-            let high = _mm512_sll_epi64(next, _mm_cvtsi32_si128(64 - by as i32));
-            Avx512Words(_mm512_or_si512(low, high))
-        }
-
-        fn filled(self) -> Avx512Words {
-            let halves = _mm512_or_si512(self.0, _mm512_alignr_epi64::<4>(self.0, self.0));
-            let any = _mm512_test_epi64_mask(halves, halves);
-            Avx512Words(_mm512_maskz_set1_epi64(any, -1))
-        }
-
-        fn sorted(self) -> Avx512Words {
-            // Then the parts of each block side by side, half by half.
-            let parts = _mm512_shuffle_epi8(self.0, _mm512_broadcast_i32x4(must_cast(BY_BLOCKS)));
-            let order = _mm512_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15);
-            Avx512Words(_mm512_permutexvar_epi32(order, parts))
-        }
-
-        fn is_empty(self) -> bool {
-            _mm512_test_epi64_mask(self.0, self.0) == 0
-        }
-    }
-}
 
 /// Two registers of AVX2.
 #[derive(Clone, Copy)]
@@ -128,7 +47,6 @@ avx2! {
 avx2! {
     impl BitWords for Avx2Words {
         type Set = Avx2;
-        const AT_A_TIME: usize = 1;
 
         fn empty(_set: Avx2) -> Avx2Words {
             Avx2Words([_mm256_setzero_si256(); 2])

@@ -33,11 +33,11 @@ impl Kernel for Reading<'_> {
         self.windows
             .iter()
             .for_each(|(window, _)| extent.take(window));
-        let reader = Reader::new(self.layout, &rows, [self.chunk]).within(&extent);
+        let reader = Reader::new(self.layout, &rows, self.chunk).within(&extent);
         let read = |(window, reads): &(Window, u32)| {
             // SAFETY: the extent has taken in all windows.
             let words = unsafe { reader.read::<S::Words>(set, window, *reads) };
-            words.sorted_and_down(0).0[0].to_words()
+            words.sorted().to_words()
         };
         self.windows.iter().map(read).collect()
     }
@@ -96,7 +96,7 @@ fn windows_beyond_the_rows_are_refused() {
     extent.take(&large.nothing());
     let mut rows = QuadRows::default();
     rows.fit(&small);
-    let _ = Reader::new(&small, &rows, [0]).within(&extent);
+    let _ = Reader::new(&small, &rows, 0).within(&extent);
 }
 
 #[test]
@@ -109,5 +109,5 @@ fn bearings_beyond_a_turn_are_refused() {
     extent.take(&large.window(0..1, 1));
     let mut rows = QuadRows::default();
     rows.fit(&small);
-    let _ = Reader::new(&small, &rows, [0]).within(&extent);
+    let _ = Reader::new(&small, &rows, 0).within(&extent);
 }
