@@ -1,4 +1,4 @@
-//! Any file as a bag of rosbag2 in SQLite: nothing panics, whatever of it is read.
+//! Any file as a rosbag2 bag in SQLite: reading any part of it never panics.
 #![no_main]
 
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use libfuzzer_sys::fuzz_target;
 use recording::Recording;
 
 static FILE: LazyLock<PathBuf> = LazyLock::new(|| {
-    // Kept until the end of the process, which is that of the run.
+    // Kept until the end of the process, which is the end of the run.
     tempfile::tempdir().unwrap().keep().join("a.db3")
 });
 

@@ -1,5 +1,5 @@
-//! Any text as a laser log of CARMEN, converted to a recording: nothing panics, and what
-//! is written can be read.
+//! Any text as a CARMEN laser log, converted to a recording: nothing panics, and the recording can
+//! be read.
 #![no_main]
 
 use std::path::PathBuf;
@@ -17,14 +17,14 @@ struct Arguments {
 }
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
-    // Kept until the end of the process, which is that of the run.
+    // Kept until the end of the process, which is the end of the run.
     tempfile::tempdir().unwrap().keep()
 });
 
 fuzz_target!(|bytes: &[u8]| {
     let (log, recording) = (FOLDER.join("a.log"), FOLDER.join("a.mcap"));
     std::fs::write(&log, bytes).unwrap();
-    // Left by the last run, if it converted anything.
+    // Left by the previous iteration, if its conversion succeeded.
     let _ = std::fs::remove_file(&recording);
     let arguments = [PathBuf::from("convert"), log, recording.clone()];
     let arguments = Arguments::parse_from(arguments);

@@ -1,5 +1,5 @@
-//! Any stream of CoLa A: nothing panics, and what is read can be written and
-//! read again as it was.
+//! Any stream of CoLa A: nothing panics, and every telegram that is read can be written and read
+//! back unchanged.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

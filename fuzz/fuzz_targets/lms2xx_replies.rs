@@ -1,5 +1,5 @@
-//! Any stream that a device says over LMS2xx: nothing panics, and what is read can be
-//! written and read again as it was.
+//! Any LMS2xx stream from a device: nothing panics, and every telegram that is read can be written
+//! and read back unchanged.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,5 @@
-//! Any file as the description of a map, beside a sound image: nothing panics, and a map
-//! that is read is within the limits.
+//! Any file as a map description, with a valid image: nothing panics, and a map that is read is
+//! within the limits.
 #![no_main]
 
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 
 static YAML: LazyLock<PathBuf> = LazyLock::new(|| {
-    // Kept until the end of the process, which is that of the run.
+    // Kept until the end of the process, which is the end of the run.
     let folder = tempfile::tempdir().unwrap().keep();
     std::fs::write(folder.join("a.pgm"), b"P5 2 1 255\n\x00\xfe").unwrap();
     folder.join("a.yaml")

@@ -1,5 +1,5 @@
-//! Any file as the image of a map: nothing panics, no more memory is taken than is
-//! allowed, and a map that is read has as many cells as its sides say.
+//! Any file as the image of a map: nothing panics, memory stays within the limit, and a map that is
+//! read has as many cells as its sides say.
 #![no_main]
 
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 use map::MemoryOptions;
 
 static FILES: LazyLock<[PathBuf; 2]> = LazyLock::new(|| {
-    // Kept until the end of the process, which is that of the run.
+    // Kept until the end of the process, which is the end of the run.
     let folder = tempfile::tempdir().unwrap().keep();
     let yaml = "image: a\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n\
                 occupied_thresh: 0.65\nfree_thresh: 0.196\n";

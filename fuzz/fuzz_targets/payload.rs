@@ -1,5 +1,5 @@
-//! Any payload from the network, as each topic that crosses it: nothing panics, and what is
-//! accepted can be sent on.
+//! Any payload from the network, for each topic of the bridge: nothing panics, and an accepted
+//! payload can be encoded again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

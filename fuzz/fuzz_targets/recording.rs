@@ -1,4 +1,4 @@
-//! Any file as an MCAP recording: nothing panics, whatever of it is read.
+//! Any file as an MCAP recording: reading any part of it never panics.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,6 +1,6 @@
-//! Any request to the monitor's page: method, address and body, with the token. Nothing
-//! panics, every request is answered, and what is asked of the graph is sound. After
-//! `WATCH`, the body is what a viewer sends on its WebSocket.
+//! Any request to the monitor's page: method, path and body, with the token. Nothing panics, every
+//! request is answered, and requests passed to the graph are valid. After `WATCH`, the body is sent
+//! by a viewer on its WebSocket.
 #![no_main]
 
 use std::io::{ErrorKind, Read, Write};
@@ -15,7 +15,7 @@ use libfuzzer_sys::fuzz_target;
 
 const TOKEN: &str = "fuzzed-fuzzed-fuzzed";
 
-/// A page of one robot, `r`, that takes every request.
+/// Page with one robot, `r`, that accepts every request.
 struct Page {
     address: SocketAddr,
     requests: Mutex<Receiver<Request>>,
@@ -49,12 +49,13 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
     }
 });
 
-/// The answer, as far as it came; none where the connection is kept for too long.
+/// Returns the answer, or the part of it that arrived; `None` if the connection stays open too
+/// long.
 fn read_all(stream: &mut TcpStream) -> Option<Vec<u8>> {
     let mut answer = Vec::new();
     match stream.read_to_end(&mut answer) {
         Err(error) if error.kind() == ErrorKind::WouldBlock => None,
-        // Reset, where the server has read less than was sent.
+        // A reset happens if the server has not read everything that was sent.
         _ => Some(answer),
     }
 }
@@ -75,7 +76,7 @@ fn ask(method: &str, path: &[u8], body: &[u8]) {
         .as_bytes(),
     );
     request.extend_from_slice(body);
-    // A server that refuses early closes while this is written.
+    // A server that refuses early closes the connection during this write.
     let _ = stream.write_all(&request);
     let answer = read_all(&mut stream).expect("a request without an answer");
     let status = answer.get(9..12);
@@ -125,7 +126,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     let (path, body) = (&path[1..], &body[1..]);
-    // Spaces and control characters end an address.
+    // Spaces and control characters end a path.
     if path.is_empty() || path.iter().any(|&b| b <= b' ') {
         return;
     }

@@ -1,5 +1,5 @@
-//! Passes to the recorder the commit it was built from, for the metadata of its
-//! recordings; "unknown" where there is no repository.
+//! Passes the commit of the build to the recorder, for the metadata of its recordings; "unknown"
+//! without a repository.
 
 use std::process::Command;
 

@@ -1,4 +1,4 @@
-//! What a graph answered, collected while it ran.
+//! Results of a graph, collected while it runs.
 
 use std::path::Path;
 use std::time::Duration;
@@ -9,19 +9,17 @@ use transport::{Flow, Graph, Subscriber, TransportError};
 
 use crate::executables;
 
-/// The votes and the hypotheses of all scans, in the order of their coming.
+/// The votes and the hypotheses of all scans, in the order of arrival.
 #[derive(Default)]
 pub struct Answers {
-    /// Headers and items of `votes`.
     pub votes: Vec<(VotesHeader, Vec<Vote>)>,
-    /// Headers and items of `hypotheses`.
     pub hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
 }
 
-/// Plays a recording through a graph of its own, waiting for each answer, until
-/// `scans` scans are answered.
+/// Plays a recording through a graph of its own, waiting for each result, until there are results
+/// of `scans` scans.
 ///
-/// `accumulator` are more arguments of that node.
+/// `accumulator` holds further arguments of that node.
 #[must_use]
 pub fn of_graph(
     tag: &str,
@@ -41,8 +39,8 @@ pub fn of_graph(
     of_graph_fed_by(tag, map, scans, accumulator, &("replayer", &source), None)
 }
 
-/// Lets `player` feed a graph of its own, by way of `reader` where there is one,
-/// until `scans` scans are answered; the player ends by itself then.
+/// Lets `player` feed a graph of its own, through `reader` if there is one, until there are results
+/// of `scans` scans; the player ends by itself then.
 #[must_use]
 pub fn of_graph_fed_by(
     tag: &str,

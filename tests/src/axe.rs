@@ -1,5 +1,5 @@
-//! axe-core, which finds what keeps people from using a page. It is not part of this
-//! repository: npm fetches it when a test first asks.
+//! axe-core, which finds accessibility problems of a page. It is not part of this repository: npm
+//! fetches it when a test first needs it.
 
 use std::fs::File;
 use std::path::Path;
@@ -11,11 +11,11 @@ use crate::browser::Browser;
 
 const PACKAGE: &str = "axe-core@4.14.1";
 
-/// The script, kept in the target folder. Tests that ask at once wait for the one that
+/// Returns the script, which is kept in the target folder. Concurrent tests wait for the one that
 /// fetches it.
 ///
 /// # Errors
-/// What the command that failed said, as without npm or a network.
+/// Returns the output of the command that failed, for example without npm or a network.
 pub fn script() -> Result<String, String> {
     let test = std::env::current_exe().unwrap();
     let target = test.ancestors().nth(3).unwrap();
@@ -45,8 +45,8 @@ fn run(folder: &Path, program: &str, arguments: &[&str]) -> Result<(), String> {
     Err(format!("{command}: {}\n{said}", outcome.status))
 }
 
-/// What breaks the rules of WCAG 2.2, level AA, and axe's own good practice, on the page
-/// as it is: a line for each rule and each element.
+/// Returns the violations of WCAG 2.2, level AA, and of axe's best practices on the current page: a
+/// line for each rule and each element.
 ///
 /// # Panics
 /// If the script cannot be run.

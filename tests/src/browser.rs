@@ -1,4 +1,4 @@
-//! A headless Chromium that looks at a page, by way of WebDriver.
+//! A headless Chromium that looks at a page, controlled by WebDriver.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -9,7 +9,7 @@ use fantoccini::{Client, ClientBuilder};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
 
-/// A browser with a window; it ends with this.
+/// A browser with a window; it ends when this is dropped.
 pub struct Browser {
     client: Client,
     runtime: tokio::runtime::Runtime,
@@ -17,8 +17,8 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// Opens a window of this many pixels; below 500 it is that of a telephone.
-    /// `None` where Chromium or its driver is not installed.
+    /// Opens a window of this size in pixels; below a width of 500 it is that of a telephone.
+    /// Returns `None` if Chromium or its driver is not installed.
     #[must_use]
     pub fn open(width: u32, height: u32) -> Option<Self> {
         let chromium = Command::new("chromium").arg("--version").output();
@@ -42,13 +42,13 @@ impl Browser {
             .enable_all()
             .build()
             .unwrap();
-        // As root, Chromium runs without its sandbox only; the page is ours.
+        // As root, Chromium runs only without its sandbox; the page is ours.
         let mut options = json!({ "args": [
             "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
             format!("--window-size={width},{height}"),
         ] });
         if width < 500 {
-            // No window is so narrow; a telephone's page is.
+            // No window can be so narrow, but a telephone's page can.
             options["mobileEmulation"] = json!({ "deviceMetrics":
                 { "width": width, "height": height, "pixelRatio": 2.0, "touch": true } });
         }
@@ -68,7 +68,7 @@ impl Browser {
             runtime,
             driver,
         };
-        // Tests wait as long as it takes.
+        // Tests have no time limit of their own.
         let day = Some(Duration::from_secs(86_400));
         let patience = TimeoutConfiguration::new(day, day, None);
         let set = browser.client.update_timeouts(patience);
@@ -76,19 +76,18 @@ impl Browser {
         Some(browser)
     }
 
-    /// Goes to an address.
     pub fn visit(&self, url: &str) {
         self.runtime.block_on(self.client.goto(url)).unwrap();
     }
 
-    /// What a script returns.
+    /// Runs a script and returns its value.
     #[must_use]
     pub fn run(&self, script: &str) -> Value {
         let ran = self.client.execute(script, Vec::new());
         self.runtime.block_on(ran).unwrap()
     }
 
-    /// What a script passes to `done`, sooner or later.
+    /// Runs a script and returns the value that it passes to `done`, sooner or later.
     #[must_use]
     pub fn finish(&self, script: &str) -> Value {
         let script = format!("const done = arguments[0]; {script}");

@@ -1,5 +1,5 @@
-//! Buildings of upright rectangles, as they are: what a laser reads in them, and
-//! the map of them with cells of any size.
+//! Buildings made of upright rectangles: the exact readings of a laser in them, and their map with
+//! cells of any size.
 
 use std::f64::consts::TAU;
 
@@ -18,30 +18,30 @@ pub type Rectangle = [f64; 4];
 pub struct Building {
     /// Extent along x and y from the origin, metres.
     pub size_m: [f64; 2],
-    /// What a laser sees.
+    /// Obstacles that a laser sees.
     pub obstacles: Vec<Rectangle>,
 }
 
-/// Where and how far a laser looks.
+/// Beams, field of view and range of a laser.
 #[derive(Debug, Clone, Copy)]
 pub struct Laser {
-    /// Readings of a scan.
+    /// Number of readings of a scan.
     pub beams: usize,
-    /// From the first to the last bearing, radians; ahead is the middle.
+    /// Angle from the first to the last bearing, radians; ahead is the middle.
     pub field_of_view: f64,
-    /// Nothing returns from farther, metres.
+    /// Largest range that returns, metres.
     pub reach_m: f64,
 }
 
 impl Laser {
-    /// All around, a beam a degree, to 8 m.
+    /// All around, one beam per degree, up to 8 m.
     pub const AROUND: Laser = Laser {
         beams: 360,
         field_of_view: 359.0 / 360.0 * TAU,
         reach_m: 8.0,
     };
 
-    /// A scan of these readings.
+    /// Makes a scan of these readings.
     #[must_use]
     pub fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
         Scan {
@@ -55,7 +55,7 @@ impl Laser {
 }
 
 impl Building {
-    /// Open space, metres.
+    /// Makes open space of this size, metres.
     #[must_use]
     pub fn new(width_m: f64, height_m: f64) -> Self {
         Building {
@@ -64,7 +64,6 @@ impl Building {
         }
     }
 
-    /// Adds an obstacle.
     #[must_use]
     pub fn with(mut self, obstacle: Rectangle) -> Self {
         self.obstacles.push(obstacle);
@@ -81,7 +80,7 @@ impl Building {
             .with([right - THICK, bottom, right, top])
     }
 
-    /// What a laser at a pose reads: exact to the last bit.
+    /// Returns the readings of a laser at a pose, exact to the last bit.
     #[must_use]
     pub fn ranges(&self, pose: Pose, laser: Laser) -> Vec<f32> {
         let scan = laser.scan(&[]);
@@ -103,8 +102,8 @@ impl Building {
         (0..laser.beams).map(range).collect()
     }
 
-    /// The map with cells of some size, occupied where an obstacle covers any of
-    /// one.
+    /// Makes the map with cells of this size, metres; a cell is occupied if an obstacle covers any
+    /// part of it.
     #[must_use]
     pub fn map(&self, resolution_m: f64) -> BuildingMap {
         let cells = |metres: f64| (metres / resolution_m).ceil() as usize;
@@ -129,7 +128,7 @@ impl Building {
     }
 }
 
-/// How far a ray is on its way where it enters and leaves a strip.
+/// Returns the distances along a ray at which it enters and leaves a strip.
 fn crossing(start: f64, slope: f64, [low, high]: [f64; 2]) -> (f64, f64) {
     if slope == 0.0 {
         return if (low..=high).contains(&start) {
@@ -145,16 +144,15 @@ fn crossing(start: f64, slope: f64, [low, high]: [f64; 2]) -> (f64, f64) {
 /// The map of a building.
 #[derive(Debug, Clone)]
 pub struct BuildingMap {
-    /// Where its grid lies.
+    /// Resolution and pose of its grid.
     pub frame: GridFrame,
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     pub sides: (usize, usize),
-    /// Row by row from the lowest y.
+    /// Occupancy in per cent, row by row from the lowest y.
     pub occupancy: Vec<u8>,
 }
 
 impl BuildingMap {
-    /// Prepares the map.
     #[must_use]
     pub fn locator(&self, config: LocalizerConfig) -> Locator {
         let view = OccupancyView {
@@ -172,7 +170,7 @@ impl BuildingMap {
     }
 }
 
-/// The places at which a scan may have been taken.
+/// Returns the places at which a scan may have been taken.
 #[must_use]
 pub fn places(locator: &Locator, scan: &Scan<'_>) -> Places {
     let mut workspace = Workspace::default();

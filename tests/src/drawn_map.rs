@@ -1,19 +1,19 @@
-//! A map that a test draws, as a graph has it.
+//! A map that a test draws, in the form of a graph's message.
 
 use messages::{MapHeader, topic};
 use transport::Publisher;
 
-/// A map, and what its message says of it.
+/// A map with the header of its message.
 #[derive(Debug, Clone)]
 pub struct DrawnMap {
-    /// With the id of the cells.
+    /// Header of the message, with the id of the cells.
     pub header: MapHeader,
-    /// Per cent, row by row from the lowest y.
+    /// Occupancy in per cent, row by row from the lowest y.
     pub cells: Vec<u8>,
 }
 
 impl DrawnMap {
-    /// Rows of `width` cells.
+    /// Makes a map of rows of `width` cells.
     #[must_use]
     pub fn new(width: u32, resolution_m: f64, cells: Vec<u8>) -> Self {
         let mut header = MapHeader {
@@ -26,13 +26,12 @@ impl DrawnMap {
         DrawnMap { header, cells }
     }
 
-    /// Two rows of three cells: free, occupied and unknown ones.
+    /// Makes two rows of three cells: free, occupied and unknown ones.
     #[must_use]
     pub fn small() -> Self {
         DrawnMap::new(3, 0.05, vec![0, 100, 255, 0, 0, 100])
     }
 
-    /// Sends it.
     pub fn send(&self, maps: &Publisher<topic::Map>) {
         let mut loan = maps.loan(self.cells.len()).unwrap();
         *loan.header_mut() = self.header;

@@ -1,5 +1,5 @@
-//! The node executables, built by the tests that start them: a test run builds
-//! those of its own crate alone.
+//! The node executables, built by the tests that start them: a test run builds only those of its
+//! own crate.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,19 +7,19 @@ use std::sync::OnceLock;
 
 use transport::testing::allow_long;
 
-/// The path of an executable, built in the profile of the tests.
+/// Returns the path of an executable, built in the profile of the tests.
 #[must_use]
 pub fn path(name: &str) -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
-    // The tests lie in `<target>/<profile>/deps`, executables one above.
+    // The tests are in `<target>/<profile>/deps`, executables one folder above.
     let test = std::env::current_exe().unwrap();
     let folder = test.ancestors().nth(2).unwrap();
     BUILT.get_or_init(|| allow_long(|| build(folder)));
     folder.join(name)
 }
 
-/// The command, whose graphs keep prepared maps beside the executables and not in the
-/// user's own folder.
+/// Returns the command, with prepared maps cached next to the executables and not in the user's own
+/// folder.
 #[must_use]
 pub fn backcast() -> Command {
     let executable = path("backcast");
@@ -28,16 +28,16 @@ pub fn backcast() -> Command {
     command
 }
 
-/// All of them at once, as `cargo run` and the descriptor build them: cargo would
-/// build what they depend on again for each one.
+/// Builds all executables at once, like `cargo run` and the descriptor: cargo would build their
+/// dependencies again for each one.
 fn build(folder: &Path) {
-    // While a graph is joined, iceoryx2 changes the mask of the whole process;
-    // what cargo makes would not be executable.
+    // While a graph is joined, iceoryx2 changes the umask of the whole process; cargo's output
+    // would not be executable.
     let mut command = Command::new("sh");
     command.args(["-c", "umask 022 && exec \"$0\" \"$@\"", env!("CARGO")]);
     command.current_dir(crate::root());
-    // Scripts that build what others use look at these, and what cargo passes to a test
-    // differs from what it passes to them: all of zenoh would be built again each time.
+    // Build scripts depend on these variables, and cargo passes other values to a test than to
+    // build scripts: all of Zenoh would be built again each time.
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
         if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST_") {

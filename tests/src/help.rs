@@ -1,37 +1,37 @@
-//! What `--help` of a node or a command says, and tables of it in Markdown: so that the
-//! documents list what the executables take. Pure.
+//! Parser for `--help` of a node or a command, and Markdown tables of it, so that the documents
+//! list the options of the executables. Pure.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// The columns at which clap writes options, and the text below one.
+/// Indentation of clap's options, and of the text below one.
 const OPTION_INDENT: [&str; 2] = ["      --", "  -"];
 const TEXT_INDENT: &str = "          ";
 
 /// An option, or an argument without a name.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Parameter {
-    /// As it is typed, with its value: `--threads <COUNT>`.
+    /// Option as it is typed, with its value: `--threads <COUNT>`.
     pub usage: String,
-    /// Empty where there is none.
+    /// Default value; empty if there is none.
     pub default: String,
-    /// What it means, with unit and range, in one paragraph.
+    /// Meaning, with unit and range, in one paragraph.
     pub meaning: String,
 }
 
-/// What one executable says of itself.
+/// Help of one executable.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Help {
-    /// The first paragraph.
+    /// First paragraph.
     pub about: String,
-    /// In the order of the help, without `--help` and `--version`.
+    /// Parameters in the order of the help, without `--help` and `--version`.
     pub parameters: Vec<Parameter>,
-    /// What stands behind "Exit codes:"; empty where nothing does.
+    /// Text after "Exit codes:"; empty if there is none.
     pub exit_codes: String,
 }
 
 impl Help {
-    /// Reads what clap prints.
+    /// Parses the text that clap prints.
     #[must_use]
     pub fn parse(text: &str) -> Self {
         let about = text.lines().take_while(|line| !line.trim().is_empty());
@@ -84,7 +84,7 @@ fn parameters(text: &str) -> Vec<Parameter> {
 }
 
 impl Parameter {
-    /// Takes a line below the option.
+    /// Adds a line below the option.
     fn read(&mut self, line: &str) {
         if line.is_empty() || line == "Possible values:" {
             return;
@@ -117,15 +117,15 @@ impl Parameter {
     }
 }
 
-/// Tables of several executables, a section each. An option that stood before, with the
-/// same meaning and default, is only named, with the section where it is explained.
+/// Tables of several executables, a section each. An option that was listed before, with the same
+/// meaning and default, is only named, with a link to the section that explains it.
 #[derive(Debug, Default)]
 pub struct Tables {
     known: BTreeMap<String, Vec<(Parameter, String)>>,
 }
 
 impl Tables {
-    /// The section of one executable, under a heading of this level.
+    /// Returns the section of one executable, under a heading of this level.
     pub fn section(&mut self, level: usize, name: &str, help: &Help) -> String {
         let mut new = Vec::new();
         let mut again: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -170,7 +170,7 @@ impl Tables {
     }
 }
 
-/// A table of exit codes, a row for each executable.
+/// Returns a table of exit codes, a row for each executable.
 #[must_use]
 pub fn exit_codes<'a>(all: impl IntoIterator<Item = (&'a str, &'a Help)>) -> String {
     let mut text = "| command | exit codes |\n|---|---|\n".to_owned();
@@ -182,7 +182,7 @@ pub fn exit_codes<'a>(all: impl IntoIterator<Item = (&'a str, &'a Help)>) -> Str
     text
 }
 
-/// The option without its value.
+/// Returns the option without its value.
 fn flag(usage: &str) -> &str {
     usage.split(" <").next().unwrap_or(usage)
 }
@@ -195,7 +195,7 @@ fn escaped(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// Text in a cell: what stands in angle brackets would be taken for HTML.
+/// Escapes text for a cell: text in angle brackets would be taken for HTML.
 fn cell(text: &str) -> String {
     escaped(text).replace('<', "&lt;")
 }

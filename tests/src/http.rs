@@ -1,4 +1,4 @@
-//! Questions to a page's server, byte for byte as a test wants them.
+//! Requests to a page's server, byte for byte.
 
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -22,30 +22,30 @@ pub fn token_file(folder: &Path, token: &str) -> PathBuf {
     path
 }
 
-/// A server on this machine.
+/// Address of a server on this machine.
 #[derive(Debug, Clone, Copy)]
 pub struct Site(pub SocketAddr);
 
 impl Site {
-    /// A place that was free a moment ago; should somebody take it meanwhile, a node
-    /// takes another one and the test fails to find it there.
+    /// Returns an address that was free a moment ago. If another process takes it meanwhile, the
+    /// node takes another one and the test fails to find it.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no free address.
     #[must_use]
     pub fn free() -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         Site(listener.local_addr().unwrap())
     }
 
-    /// Sends a request as it stands; returns status, head and body.
+    /// Sends the request unchanged; returns status, head and body.
     ///
     /// # Panics
     /// If the server does not answer.
     #[must_use]
     pub fn raw(&self, request: &[u8]) -> (u16, String, Vec<u8>) {
         let mut stream = TcpStream::connect(self.0).unwrap();
-        // The server may have answered, and gone, before it has read all.
+        // The server may have answered, and closed the connection, before it has read everything.
         let _ = stream.write_all(request);
         let mut reader = BufReader::new(stream);
         let mut head = String::new();
@@ -58,10 +58,10 @@ impl Site {
         (status, head, body)
     }
 
-    /// Asks with these headers; returns status and body.
+    /// Sends a request with these headers; returns status and body.
     ///
     /// # Panics
-    /// As [`Site::raw`], or if the body is no text.
+    /// Like [`Site::raw`], or if the body is no text.
     #[must_use]
     pub fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> (u16, String) {
         let host = format!("Host: {}", self.0);
@@ -82,10 +82,10 @@ impl Site {
         (status, String::from_utf8(body).unwrap())
     }
 
-    /// What is there, as JSON.
+    /// Returns the JSON at a path.
     ///
     /// # Panics
-    /// If it is not there.
+    /// If the status is not 200, or the body is no JSON.
     #[must_use]
     pub fn get(&self, path: &str) -> Value {
         let (status, body) = self.ask("GET", path, &[], "");

@@ -1,5 +1,5 @@
-//! What the tests of whole graphs share: the executables, the recordings, and
-//! the answers that a graph gave.
+//! Code that the tests of whole graphs share: the executables, the recordings, and the results of a
+//! graph.
 #![allow(clippy::unwrap_used, reason = "this crate is tests and nothing else")]
 
 pub mod answers;
@@ -25,26 +25,26 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The folder of recordings of other robots, where these are at hand.
+/// Returns the folder of recordings of other robots, if there is one.
 #[must_use]
 pub fn evaluation_data() -> Option<PathBuf> {
     beside_the_project("shared/data/evaluation")
 }
 
-/// The folder of recordings with something wrong, as users had them, where these are at hand.
+/// Returns the folder of faulty recordings of users, if there is one.
 #[must_use]
 pub fn broken_recordings() -> Option<PathBuf> {
     beside_the_project("shared/cases")
 }
 
-/// A folder beside the project, or beside a folder that it is in.
+/// Finds a folder next to the project, or next to a folder that contains it.
 fn beside_the_project(name: &str) -> Option<PathBuf> {
     let folders = root().canonicalize().unwrap();
     let mut candidates = folders.ancestors().map(|f| f.join(name));
     candidates.find(|folder| folder.is_dir())
 }
 
-/// What a command that succeeds prints as JSON.
+/// Runs a command that must succeed, and returns its output as JSON.
 #[must_use]
 pub fn json_of(command: &mut Command) -> Value {
     let output = command.output().unwrap();
@@ -56,7 +56,7 @@ pub fn json_of(command: &mut Command) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The root of the repository.
+/// Returns the root of the repository.
 #[must_use]
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -1,5 +1,4 @@
-//! The repository's own graph, run by the launcher as a user runs it, while a test does
-//! it harm.
+//! The repository's own graph, run by the launcher as a user runs it, while a test disturbs it.
 
 use std::io::{BufRead, BufReader, Lines};
 use std::path::PathBuf;
@@ -14,7 +13,7 @@ use transport::GraphName;
 
 use crate::executables;
 
-/// A graph that plays a recording again and again.
+/// A graph that plays a recording in a loop.
 pub struct Live {
     launcher: Child,
     rows: Lines<BufReader<ChildStdout>>,
@@ -22,8 +21,8 @@ pub struct Live {
     _folder: TempDir,
 }
 
-/// The repository's descriptor with the executables of this test run; `more` stands in
-/// each node that is restarted, each line indented by four.
+/// Returns the repository's descriptor with the executables of this test run; `more` is inserted
+/// into each node that is restarted, each line indented by four.
 ///
 /// # Panics
 /// If it cannot be read.
@@ -86,7 +85,7 @@ impl Live {
         }
     }
 
-    /// Waits for the pose of a scan, in whatever state.
+    /// Waits for the pose of a scan, in any state.
     ///
     /// # Panics
     /// If the graph ends before.
@@ -101,7 +100,7 @@ impl Live {
         }
     }
 
-    /// Waits for `count` of them: when their scans were measured, nanoseconds.
+    /// Waits for `count` poses; returns the times of their scans, nanoseconds.
     ///
     /// # Panics
     /// If the graph ends before.
@@ -110,13 +109,13 @@ impl Live {
         (0..count).map(measured).collect()
     }
 
-    /// The launcher's process.
+    /// Process id of the launcher.
     #[must_use]
     pub fn launcher(&self) -> Pid {
         Pid::from_raw(self.launcher.id().cast_signed())
     }
 
-    /// The processes that it has started, by their executables.
+    /// Returns the processes that the launcher has started, by executable.
     ///
     /// # Panics
     /// If the system does not report it.
@@ -133,7 +132,7 @@ impl Live {
         children.split_whitespace().filter_map(node).collect()
     }
 
-    /// The process of one of them, as soon as there is one.
+    /// Waits for a process of this executable and returns it.
     #[must_use]
     pub fn node(&self, executable: &str) -> Pid {
         loop {
@@ -145,7 +144,7 @@ impl Live {
         }
     }
 
-    /// Stops it in order: how it ended, its summary and what it said.
+    /// Stops the graph in order; returns exit status, summary and log.
     ///
     /// # Panics
     /// If it prints no summary.
@@ -159,13 +158,13 @@ impl Live {
         (self.launcher.wait().unwrap(), last["summary"].take(), said)
     }
 
-    /// Kills the launcher and every node at the same time, as the end of memory would.
+    /// Kills the launcher and all nodes at the same time, as if memory ran out.
     ///
     /// # Panics
     /// If one cannot be killed.
     pub fn kill_all(mut self) {
         let nodes = self.nodes();
-        // Stopped first, nobody can react to the end of another one.
+        // They are stopped first, so that none can react to the end of another one.
         for pid in nodes.iter().map(|(_, pid)| *pid) {
             kill(pid, Signal::SIGSTOP).unwrap();
         }
@@ -175,14 +174,14 @@ impl Live {
         }
         let _ = self.log.take().unwrap().join().unwrap();
         self.launcher.wait().unwrap();
-        // They are no children of ours, and hold their locks until all of their threads have ended.
+        // They are no children of ours, and hold their locks until all their threads have ended.
         while !nodes.iter().all(|(_, pid)| has_ended(*pid)) {
             std::thread::yield_now();
         }
     }
 }
 
-/// Whether no thread of a process runs any more: they are gone, or wait to be reaped.
+/// True if no thread of a process runs any more: they are gone, or wait to be reaped.
 fn has_ended(pid: Pid) -> bool {
     let Ok(threads) = std::fs::read_dir(format!("/proc/{pid}/task")) else {
         return true;
@@ -196,16 +195,16 @@ fn has_ended(pid: Pid) -> bool {
 
 impl Drop for Live {
     fn drop(&mut self) {
-        // A test that failed; the nodes follow the launcher.
+        // After a failed test; the nodes end with the launcher.
         let _ = self.launcher.kill();
         let _ = self.launcher.wait();
     }
 }
 
-/// What a graph has in shared memory and in the temporary folder of this user.
+/// Lists the files of a graph in shared memory and in this user's temporary folder.
 ///
 /// # Panics
-/// If there can be no graph of this name.
+/// If the name is invalid.
 #[must_use]
 pub fn files_of(name: &str) -> Vec<String> {
     let files = transport::files_of(&GraphName::new(name).unwrap());

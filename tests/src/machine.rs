@@ -1,8 +1,7 @@
-//! Machines that run one graph between them: each has a part of its nodes, joined
-//! by bridges.
+//! Machines that run one graph together: each has a part of its nodes, and bridges join them.
 //!
-//! A machine is a graph of its own and, where a test wants it, a network namespace.
-//! Its bridge is started by itself, so that a run without it can be compared.
+//! A machine is a graph of its own and, if a test wants it, a network namespace. Its bridge is
+//! started separately, so that a run without it can be compared.
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +12,8 @@ use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use crate::executables;
 use crate::network::Namespace;
 
-/// The machine with the laser and the map; what comes in is for whoever waits for
-/// answers there.
+/// The machine with the laser and the map; its bridge's outputs are for subscribers to results
+/// there.
 pub const LASER: &str = "nodes:
   - {id: replayer, path: x, outputs: [scan, odometry]}
   - {id: map_server, path: x, outputs: [map]}
@@ -23,7 +22,7 @@ pub const LASER: &str = "nodes:
     inputs: {scan: replayer/scan, map: map_server/map}
     outputs: [hypotheses, health]
 ";
-/// The one with the engine.
+/// The machine with the engine.
 pub const ENGINE: &str = "nodes:
   - {id: peak_extractor, path: x, outputs: [hypotheses]}
   - id: bridge
@@ -31,32 +30,30 @@ pub const ENGINE: &str = "nodes:
     inputs: {hypotheses: peak_extractor/hypotheses}
     outputs: [scan, map]
 ";
-/// The one that watches.
+/// The machine that monitors.
 pub const MONITOR: &str = "nodes:
   - {id: bridge, path: x, outputs: [map, hypotheses, health]}
 ";
 
-/// One machine.
 pub struct Machine<'a> {
-    /// The executable of its bridge.
+    /// Executable of its bridge.
     bridge: &'a str,
-    /// What its robot is called.
+    /// Name of its robot.
     robot: &'a str,
-    /// The test's own membership of the machine's graph.
+    /// The test's own participant in the machine's graph.
     pub graph: Graph,
     place: Option<&'a Namespace>,
     folder: TempDir,
-    // Behind the graph, so that it is dropped after it.
+    // Declared after the graph, so that it is dropped after it.
     isolated: Isolated,
 }
 
 impl<'a> Machine<'a> {
-    /// A machine whose `bridge`, an executable, finds its ports in `descriptor`, in
-    /// the network that is given, else in that of the test. `tag` is as for
-    /// [`Isolated::new`].
+    /// Makes a machine whose bridge executable `bridge` finds its ports in `descriptor`. It is in
+    /// network `place`, or else in that of the test; `tag` is that of [`Isolated::new`].
     ///
     /// # Panics
-    /// If there is no place for temporary files.
+    /// If there is no room for temporary files.
     #[must_use]
     pub fn new(tag: &str, bridge: &'a str, descriptor: &str, place: Option<&'a Namespace>) -> Self {
         let isolated = Isolated::new(tag);
@@ -72,26 +69,25 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// The same of another robot than `r1`.
+    /// Changes the name of the robot, which is `r1` by default.
     #[must_use]
     pub fn of_robot(mut self, robot: &'a str) -> Self {
         self.robot = robot;
         self
     }
 
-    /// The machine's graph, for others who join it.
+    /// Returns the machine's graph, for others to join.
     #[must_use]
     pub fn isolated(&self) -> &Isolated {
         &self.isolated
     }
 
-    /// An endpoint on the test's loopback that no other machine has.
+    /// Returns an endpoint on the test's loopback that no other machine has.
     #[must_use]
     pub fn loopback(&self) -> String {
         format!("tcp/{}:7447", self.isolated.name().loopback())
     }
 
-    /// Starts a node.
     #[must_use]
     pub fn start(&self, node: &str, arguments: &[&str]) -> NodeProcess {
         let executable = executables::path(node);
@@ -105,7 +101,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Starts its bridge, with more arguments.
+    /// Starts its bridge with further arguments.
     #[must_use]
     pub fn bridge(&self, network: &[&str]) -> NodeProcess {
         let descriptor = self.folder.path().join("dataflow.yaml");
@@ -114,7 +110,7 @@ impl<'a> Machine<'a> {
         self.run(self.bridge, &[&common[..], network].concat())
     }
 
-    /// The same, and waits until it has joined the network.
+    /// Starts its bridge, and waits until it has joined the network.
     #[must_use]
     pub fn joined_bridge(&self, network: &[&str]) -> NodeProcess {
         let bridge = self.bridge(network);
@@ -122,27 +118,26 @@ impl<'a> Machine<'a> {
         bridge
     }
 
-    /// Starts the three nodes that find places.
+    /// Starts the three nodes that locate scans.
     #[must_use]
     pub fn engine(&self) -> Vec<NodeProcess> {
         let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
         nodes.map(|node| self.start(node, &[])).into()
     }
 
-    /// Starts the server of a map.
     #[must_use]
     pub fn map_server(&self, map: &Path) -> NodeProcess {
         self.start("map_server", &["--map", map.to_str().unwrap()])
     }
 
-    /// Starts the player of a recording, with more arguments.
+    /// Starts the player of a recording with further arguments.
     #[must_use]
     pub fn replayer(&self, recording: &Path, arguments: &[&str]) -> NodeProcess {
         let recording = ["--recording", recording.to_str().unwrap()];
         self.start("replayer", &[&recording[..], arguments].concat())
     }
 
-    /// A copy of a map and its image that the test may change.
+    /// Copies a map and its image, so that the test may change them.
     ///
     /// # Panics
     /// If it cannot be copied.

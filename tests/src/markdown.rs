@@ -1,9 +1,8 @@
-//! What a document links to, and what in it can be linked to. Pure; it knows as much of
-//! Markdown as the documents use.
+//! Links and anchors of a document. Pure; it knows only the Markdown that the documents use.
 
 use std::collections::BTreeMap;
 
-/// The lines outside fenced code.
+/// Returns the lines outside fenced code.
 fn prose(text: &str) -> impl Iterator<Item = &str> {
     let mut is_code = false;
     text.lines().filter(move |line| {
@@ -13,12 +12,12 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The targets of all links and pictures, as they are written.
+/// Returns the targets of all links and pictures, as they are written.
 #[must_use]
 pub fn links(text: &str) -> Vec<String> {
     let prose: Vec<&str> = prose(text).collect();
     let mut found = Vec::new();
-    // In code spans, every second piece, nothing is a link.
+    // Every second piece is a code span, in which nothing is a link.
     let text: String = prose.join("\n").split('`').step_by(2).collect();
     for after in text.split("](").skip(1) {
         let target = after.split(')').next().unwrap_or_default();
@@ -27,7 +26,7 @@ pub fn links(text: &str) -> Vec<String> {
     found
 }
 
-/// The anchors of all headings, as GitHub and mdBook make them.
+/// Returns the anchors of all headings, in the form of GitHub and mdBook.
 #[must_use]
 pub fn anchors(text: &str) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
@@ -54,8 +53,8 @@ fn anchor(title: &str) -> String {
     kept.collect::<String>().to_lowercase().replace(' ', "-")
 }
 
-/// The first cells of all rows of the tables below the first heading of this title, up to
-/// the next heading of any level: the text in their first code span.
+/// Returns the first cells of all rows of the tables below the first heading of this title, up to
+/// the next heading of any level: the text of their first code span.
 #[must_use]
 pub fn first_cells(text: &str, title: &str) -> Vec<String> {
     let mut lines = prose(text).skip_while(|line| line.trim_start_matches('#').trim() != title);

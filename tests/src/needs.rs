@@ -1,9 +1,9 @@
-//! What some tests need beside a Rust toolchain. Where it is missing a test is left out,
-//! and says so; it fails where all that it needs was required.
+//! Requirements of some tests in addition to a Rust toolchain. A test without them is left out,
+//! with a message, or fails if they must be met.
 //!
-//! `BACKCAST_REQUIRE` names what must be there: a list of [`Need::name`], `all` or `none`.
-//! Where it is not set, and `CI` is, all but overlay, root and data must be there. Each test that was
-//! left out adds a line to `target/left-out.txt`, which `.ci/run` counts at its end.
+//! `BACKCAST_REQUIRE` names the requirements that must be met: a list of [`Need::name`], `all` or
+//! `none`. If it is not set but `CI` is, all but overlay, root and data must be met. Each test that
+//! was left out adds a line to `target/left-out.txt`, which `.ci/run` counts at its end.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -19,16 +19,16 @@ pub enum Need {
     Npm,
     /// A kernel that lets this user make namespaces, for networks or mounts.
     Namespaces,
-    /// A kernel that lays a file system over that of the root.
+    /// A kernel that can mount an overlay on the root file system.
     Overlay,
     /// A superuser, who can act as other users.
     Root,
-    /// The recordings of other robots, beside the project.
+    /// The recordings of other robots, next to the project.
     Data,
 }
 
 impl Need {
-    /// Its name in `BACKCAST_REQUIRE`.
+    /// Returns its name in `BACKCAST_REQUIRE`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl Need {
         }
     }
 
-    /// Says that a test is left out, as this is missing.
+    /// Reports that a test is left out because this is missing.
     ///
     /// # Panics
     /// If it must be there.
@@ -65,7 +65,7 @@ impl Need {
             list.as_deref().unwrap_or("not set, in CI")
         );
         eprintln!("left out: {test} needs {name}: {why}");
-        // The tests lie in `<target>/<profile>/deps`.
+        // The tests are in `<target>/<profile>/deps`.
         let test_binary = std::env::current_exe().unwrap();
         let target = test_binary.ancestors().nth(3).unwrap();
         let mut file = OpenOptions::new()

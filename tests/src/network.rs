@@ -1,8 +1,7 @@
-//! Network namespaces with cables between them: each is a machine as far as the
-//! network goes.
+//! Network namespaces with cables between them: each is a separate machine on the network.
 //!
-//! They are anonymous and go with the test, even if it is killed. Shared memory and
-//! files are those of the machine that runs the test.
+//! They are anonymous and end with the test, even if it is killed. Shared memory and files are
+//! those of the machine that runs the test.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -15,16 +14,16 @@ use crate::needs::Need;
 /// Set for a test that runs in a user namespace of its own.
 const INSIDE: &str = "BACKCAST_TEST_INSIDE";
 
-/// A network namespace, which lives as long as this.
+/// A network namespace, which exists until this is dropped.
 pub struct Namespace {
-    /// Stands in the namespace, and ends when the test does, for then nobody holds
-    /// the other end of its standard input.
+    /// Process in the namespace. It ends with the test, which holds the other end of its standard
+    /// input.
     holder: Child,
 }
 
-/// Whether the calling test, which is called `test`, is to go on: it may make
-/// namespaces. Otherwise it has been run already where it may, in a user
-/// namespace, or the kernel forbids those, which is said.
+/// True if the calling test, named `test`, may make namespaces and is to go on. Otherwise it has
+/// already been run in a user namespace, where it may, or the kernel forbids those, which is
+/// reported.
 ///
 /// # Panics
 /// If the test fails there.
@@ -70,7 +69,7 @@ impl Default for Namespace {
 }
 
 impl Namespace {
-    /// A namespace with nothing but its own loopback.
+    /// Makes a namespace with nothing but its own loopback.
     ///
     /// # Panics
     /// If it cannot be made; see [`is_allowed`].
@@ -89,11 +88,11 @@ impl Namespace {
         Namespace { holder }
     }
 
-    /// Lays a cable called `name` to another namespace; the ends have these
-    /// addresses, as `10.0.1.1/24`.
+    /// Adds a cable called `name` to another namespace; the ends have these addresses, such as
+    /// `10.0.1.1/24`.
     ///
     /// # Panics
-    /// If the system refuses.
+    /// If the system rejects it.
     pub fn connect(&self, other: &Namespace, name: &str, ends: [&str; 2]) {
         let there = other.holder.id();
         self.ip(&format!(
@@ -105,18 +104,18 @@ impl Namespace {
         }
     }
 
-    /// Pulls the cable of that name.
+    /// Unplugs the cable of that name.
     ///
     /// # Panics
-    /// As [`Namespace::connect`].
+    /// Like [`Namespace::connect`].
     pub fn pull(&self, name: &str) {
         self.ip(&format!("link set {name} down"));
     }
 
-    /// Plugs it in again.
+    /// Plugs the cable of that name in again.
     ///
     /// # Panics
-    /// As [`Namespace::connect`].
+    /// Like [`Namespace::connect`].
     pub fn plug(&self, name: &str) {
         self.ip(&format!("link set {name} up"));
     }
@@ -129,7 +128,7 @@ impl Namespace {
         NodeProcess::start("nsenter", graph, inside.chain(arguments.iter().copied()))
     }
 
-    /// A program that is to run in this namespace.
+    /// Returns the command of a program in this namespace.
     #[must_use]
     pub fn command(&self, program: &str) -> Command {
         let mut command = Command::new("nsenter");
@@ -137,12 +136,12 @@ impl Namespace {
         command
     }
 
-    /// The option by which `nsenter` enters.
+    /// Returns the option by which `nsenter` enters.
     fn place(&self) -> String {
         format!("--net=/proc/{}/ns/net", self.holder.id())
     }
 
-    /// Lets `ip` do something.
+    /// Runs `ip` with these arguments.
     fn ip(&self, arguments: &str) {
         let mut ip = self.command("ip");
         let status = ip.args(arguments.split_whitespace()).status();

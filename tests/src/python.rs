@@ -1,14 +1,14 @@
-//! Python with libraries of others, to compare with.
+//! Python with third-party libraries, for comparison.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A Python with these packages in an environment called `name` in the target folder,
-/// where `imports` are there. Tests that ask at once wait for the one that makes it.
+/// Returns a Python with these packages, in an environment called `name` in the target folder, once
+/// `imports` can be imported. Concurrent tests wait for the one that makes it.
 ///
 /// # Errors
-/// What the first of the commands that failed said, as without a network.
+/// Returns the output of the first command that failed, for example without a network.
 pub fn with(name: &str, packages: &[&str], imports: &str) -> Result<PathBuf, String> {
     let test = std::env::current_exe().unwrap();
     let target = test.ancestors().nth(3).unwrap();

@@ -1,4 +1,4 @@
-//! A graph that plays a recording, and the recording that it makes of it.
+//! A graph that plays a recording, and the recording made of it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,8 +7,8 @@ use recording::Recording;
 
 use crate::executables;
 
-/// Plays `recording` through a graph with the executables of this test run, one that
-/// tracks the pose too, and records that to `output`.
+/// Plays `recording` through a graph that also tracks the pose, with the executables of this test
+/// run, and records it to `output`.
 pub fn record(recording: &Path, map: &Path, output: &Path) {
     let descriptor = output.with_extension("yaml");
     std::fs::write(&descriptor, tracking_graph(recording, map)).unwrap();
@@ -23,14 +23,13 @@ pub fn record(recording: &Path, map: &Path, output: &Path) {
     assert_eq!(outcome.status.code(), Some(0), "{said}");
 }
 
-/// The descriptor of a graph that plays `recording`, with the executables of this
-/// test run.
+/// Returns the descriptor of a graph that plays `recording`, with the executables of this test run.
 #[must_use]
 pub fn graph(recording: &Path, map: &Path) -> String {
     graph_with(recording, map, "")
 }
 
-/// The same, and a tracker that odometry helps.
+/// Adds a tracker that uses odometry.
 fn tracking_graph(recording: &Path, map: &Path) -> String {
     let tracker = executables::path("tracker");
     let graph = graph(recording, map).replace(
@@ -51,7 +50,7 @@ fn tracking_graph(recording: &Path, map: &Path) -> String {
     )
 }
 
-/// The first with lines that say more of the accumulator, each indented by four.
+/// Like [`graph`], with further lines for the accumulator, each indented by four.
 #[must_use]
 pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
     let path = |name: &str| executables::path(name).display().to_string();
@@ -94,7 +93,7 @@ pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
     )
 }
 
-/// The messages of a recording by topic: log times and bytes, in their order.
+/// Returns the messages of a recording by topic: log times and bytes, in order.
 #[must_use]
 pub fn messages(path: &Path) -> BTreeMap<String, Vec<(i64, Vec<u8>)>> {
     let recording = Recording::open(path).unwrap();

@@ -1,4 +1,4 @@
-//! A ROS 2 robot, by libraries of others in Python.
+//! A ROS 2 robot made of third-party Python libraries.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -11,32 +11,32 @@ use serde_json::{Value, json};
 use crate::needs::Need;
 use crate::python;
 
-/// What it is made of, and their versions.
+/// Libraries and their versions.
 pub const LIBRARIES: [&str; 3] = [
     "eclipse-zenoh==1.10.2",
     "rosbags==0.11.9",
     "zenoh-ros2-sdk==0.1.8",
 ];
 
-/// The robot's program: what each robot does, then what one with Nav2 does besides.
+/// Program of the robot: the part of all robots, then that of a robot with Nav2.
 const PROGRAM: &str = concat!(include_str!("robot.py"), include_str!("nav2.py"));
 
-/// How long it may say nothing that a test waits for: many times as long as its
-/// libraries take to be loaded on a busy machine.
+/// Longest silence before an event that a test waits for: many times the time that its libraries
+/// take to load on a busy machine.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
-/// A process that executes commands, killed if the test fails.
+/// A process that executes orders, killed if the test fails.
 pub struct Robot {
     process: Child,
     orders: ChildStdin,
     said: Receiver<String>,
-    /// What it has said that no call has returned yet.
+    /// Events that no call has returned yet.
     passed_over: Vec<Value>,
 }
 
 impl Robot {
-    /// A robot that has what is in the recording, in `namespace`, and joins the router
-    /// at `endpoint`; none where the libraries cannot be had, which is said.
+    /// Starts a robot in `namespace` with the data of the recording, which joins the router at
+    /// `endpoint`. Returns `None` if the libraries are not available, which is reported.
     ///
     /// # Panics
     /// If it does not start.
@@ -54,7 +54,7 @@ impl Robot {
         Some(Self::run(&mut command))
     }
 
-    /// A robot that is a program of Python, and says that it is there.
+    /// Starts a robot that is a program in Python, and waits until it is there.
     ///
     /// # Panics
     /// If it does not start.
@@ -93,10 +93,10 @@ impl Robot {
         writeln!(self.orders, "{how}").unwrap();
     }
 
-    /// The next that it says.
+    /// Returns the next event.
     ///
     /// # Panics
-    /// If the robot ends or says nothing, or a message of the gateway made it fail.
+    /// If the robot ends or says nothing, or a message of the gateway makes it fail.
     pub fn receive(&mut self) -> Value {
         if self.passed_over.is_empty() {
             self.read()
@@ -105,11 +105,11 @@ impl Robot {
         }
     }
 
-    /// The next event of that name. Others that come before it are kept: topics reach
-    /// the robot in no certain order.
+    /// Waits for the next event of that name. Events before it are kept: topics reach the robot in
+    /// no certain order.
     ///
     /// # Panics
-    /// As [`Robot::receive`].
+    /// Like [`Robot::receive`].
     pub fn wait_for(&mut self, event: &str) -> Value {
         let is_awaited = |said: &Value| said["event"] == event;
         if let Some(index) = self.passed_over.iter().position(is_awaited) {

@@ -1,5 +1,4 @@
-//! A recording and its map, and what the engine says about them when it is
-//! asked directly.
+//! A recording and its map, and the engine on that map.
 
 use std::path::{Path, PathBuf};
 
@@ -13,12 +12,11 @@ use ros::measurements::scan_header;
 
 /// One of the recordings in the repository.
 pub struct World {
-    /// Its folder.
     pub folder: PathBuf,
 }
 
 impl World {
-    /// The recording of that name.
+    /// Returns the recording of that name.
     #[must_use]
     pub fn of(name: &str) -> Self {
         World {
@@ -26,19 +24,17 @@ impl World {
         }
     }
 
-    /// Path of the recording.
     #[must_use]
     pub fn recording(&self) -> PathBuf {
         self.folder.join("recording.mcap")
     }
 
-    /// Path of the map.
     #[must_use]
     pub fn map(&self) -> PathBuf {
         self.folder.join("map.yaml")
     }
 
-    /// The map's cells and where they lie.
+    /// Returns the map's cells, and resolution and pose of their grid.
     #[must_use]
     pub fn grid(&self) -> (Grid, GridFrame) {
         let map = map::load(self.map()).unwrap();
@@ -53,21 +49,21 @@ impl World {
         )
     }
 
-    /// The engine with its default settings, on this map.
+    /// Returns the engine with its default settings, on this map.
     #[must_use]
     pub fn localizer(&self, prior: Prior) -> Localizer {
         let (grid, frame) = self.grid();
         Localizer::new(frame, grid, LocalizerConfig::default(), prior).unwrap()
     }
 
-    /// All scans, by time.
+    /// Returns all scans, by time.
     #[must_use]
     pub fn scans(&self) -> Vec<LaserScan> {
         scans_of(&self.recording())
     }
 }
 
-/// All scans of a recording, by time.
+/// Returns all scans of a recording, by time.
 #[must_use]
 pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
     let recording = Recording::open(recording).unwrap();
@@ -79,7 +75,7 @@ pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
     scans.collect()
 }
 
-/// The header of a recorded scan as the graph has it, sent now.
+/// Returns the header of a recorded scan in the graph's form, sent now.
 #[must_use]
 pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
     let mut header = scan_header(scan, FrameName::new("laser"), None);
@@ -88,7 +84,7 @@ pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
     header
 }
 
-/// A recorded scan as the engine takes it.
+/// Returns a recorded scan in the engine's form.
 #[must_use]
 pub fn as_engine_takes_it(scan: &LaserScan) -> Scan<'_> {
     Scan {

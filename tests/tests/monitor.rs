@@ -20,7 +20,7 @@ use tests::world::World;
 
 const TOKEN: &str = "0123456789abcdef";
 
-/// A graph that plays a recording again and again, with a monitor.
+/// A graph that plays a recording in a loop, with a monitor.
 struct Graph {
     launcher: Child,
     log: Option<JoinHandle<()>>,
@@ -48,7 +48,7 @@ impl Graph {
             let line = line.unwrap();
             line.split("watch it on ").nth(1).map(str::to_owned)
         });
-        // What comes later is read all the same, or its writers would wait.
+        // The rest is read as well, or its writers would wait.
         let log = std::thread::spawn(move || lines.for_each(drop));
         Graph {
             launcher,
@@ -72,8 +72,8 @@ impl Drop for Graph {
     }
 }
 
-/// The accumulator, which is killed here, is not started again before the test is
-/// over.
+/// Returns a descriptor in which the accumulator, which is killed here, is not restarted before the
+/// test is over.
 fn nodes(world: &World, token: &str) -> String {
     let later = "    restart_policy: on-failure\n    restart_delay: 3600\n";
     let graph = graph_with(&world.recording(), &world.map(), later);
@@ -86,7 +86,7 @@ fn nodes(world: &World, token: &str) -> String {
     )
 }
 
-/// The process of a node, as the API reports it.
+/// Returns the process of a node, as the API reports it.
 fn process(browser: &Browser, node: &str) -> Pid {
     browser.wait_until(&format!(
         "(window.asked ??= fetch('/api/v1/robots/r7').then((r) => r.json()).then((known) => {{
@@ -125,7 +125,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     let graph = Graph::start(&world);
     browser.visit(&format!("{}/#token={TOKEN}", graph.url));
 
-    // The map: what is free, what is a wall, and what was found there.
+    // The map shows free space, walls and the places found.
     browser.wait_until("document.getElementById('verdict').dataset.verdict === 'Unique'");
     browser.wait_until(&format!(
         "{COLORS}.has('252,253,253') && {COLORS}.size > 10"
@@ -136,13 +136,13 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
         "no token stays in the address"
     );
 
-    // The pose moves, and the graph is well.
+    // The pose moves, and all nodes are ready.
     let first = browser.run(&format!("return {POSE}"));
     browser.wait_until(&format!("{POSE} !== {first} && {POSE} !== '–'"));
-    // Six nodes, and the launcher that reports on itself.
+    // Six nodes, and the launcher, which reports on itself.
     browser.wait_until("document.querySelectorAll('.nodes [data-state=ready]').length === 7");
 
-    // A region in which to search, as an operator chooses it by keys.
+    // A region in which to search, chosen by keyboard.
     browser.wait_until("!document.getElementById('region').disabled");
     let _ = browser.run(
         "document.getElementById('region').click();
@@ -151,7 +151,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     );
     browser.wait_until("!document.getElementById('everywhere').disabled");
 
-    // It fits a telephone.
+    // The page fits a telephone.
     let telephone = Browser::open(375, 800).unwrap();
     telephone.visit(&graph.url);
     telephone.wait_until("document.getElementById('verdict').dataset.verdict === 'Unique'");
@@ -177,7 +177,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
         "document.getElementById('todo').textContent.includes('accumulator does not report')",
     );
 
-    // A monitor that hangs is a lost connection, until it continues.
+    // A monitor that hangs is shown as a lost connection until it continues.
     let monitor = process(&browser, "monitor");
     kill(monitor, Signal::SIGSTOP).unwrap();
     browser.wait_until(
@@ -205,7 +205,7 @@ fn a_terminal_sees_the_same() {
         let said = [outcome.stdout, outcome.stderr].concat();
         (outcome.status.code(), String::from_utf8(said).unwrap())
     };
-    // The first scans come when the map is prepared.
+    // The first scans come once the map is prepared.
     let shown = loop {
         let (code, shown) = top(&["--once", address]);
         assert_eq!(code, Some(0), "{shown}");

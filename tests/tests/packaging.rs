@@ -1,5 +1,5 @@
-//! The Debian package, installed where there are neither sources nor cargo: in a copy of this
-//! machine's root that is gone with the test.
+//! The Debian package, installed without sources and cargo: in a copy of this machine's root that
+//! is removed with the test.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -11,8 +11,8 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use tests::needs::Need;
 
-/// What a new user types, once the package is installed; `$1` is the folder that held the
-/// sources, `$2` the package. The first line that fails ends it.
+/// Commands of a new user once the package is installed; `$1` is the folder that held the sources,
+/// `$2` the package. The first line that fails ends it.
 const SCRIPT: &str = r#"
 set -e
 cd /home
@@ -48,8 +48,8 @@ dpkg --remove backcast >&2
 if [ -e /usr/bin/backcast ] || [ -e /usr/lib/backcast ]; then exit 7; fi
 "#;
 
-/// A root in which the file system is this machine's, but nothing that is written stays, and
-/// what is not part of the system is hidden.
+/// Root with this machine's file system, in which nothing that is written stays and everything
+/// outside the system is hidden.
 const CLEAN_ROOT: &str = r#"
 set -e
 script=$1 package=$2 hidden=$3
@@ -77,7 +77,7 @@ fn run(command: &mut Command) -> Output {
     output
 }
 
-/// The Debian package of what the tests have built.
+/// Builds the Debian package of the executables of this test run.
 fn package(folder: &Path) -> PathBuf {
     let built = tests::executables::path("backcast").with_file_name("");
     let build = tests::root().join("packaging/build");
@@ -159,7 +159,7 @@ fn the_graph_of_the_launch_file_is_sound() {
     let built = format!("path: {}/", built.display());
     std::fs::write(&file, text.replace("path: ", &built)).unwrap();
     run(tests::executables::backcast().arg("check").arg(&file));
-    // What ROS would not say is refused by the gateway itself.
+    // Arguments that are invalid in ROS are rejected by the gateway itself.
     let wrong = text
         .replace("__ns:=", "__namespace:=")
         .replace("path: ", &built);

@@ -1,5 +1,5 @@
-//! Recordings that the graph makes: the same when they are played and recorded
-//! again, and report what they have lost.
+//! Recordings that the graph makes: they stay the same when they are played and recorded again, and
+//! report what they have lost.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -18,7 +18,7 @@ use tests::executables;
 use tests::recorded::{graph, messages, record};
 use tests::world::World;
 
-/// Topics whose messages hold how long something took, or when it was sent.
+/// Topics whose messages contain durations or times of sending.
 const TIMED: [&str; 4] = [
     "/backcast/votes",
     "/backcast/hypotheses",
@@ -26,7 +26,7 @@ const TIMED: [&str; 4] = [
     "/backcast/pose",
 ];
 
-/// Topics on which nodes speak of themselves.
+/// Topics on which nodes report about themselves.
 const SPOKEN: [&str; 2] = ["/diagnostics", "/rosout"];
 
 #[test]
@@ -35,12 +35,12 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
     let folder = TempDir::new().unwrap();
     let [imported, first, second] =
         ["0.mcap", "a.mcap", "b.mcap"].map(|name| folder.path().join(name));
-    // The last bits of headings are others in the recording that comes with the
-    // repository, and the tracker computes with them.
+    // The recording of the repository has headings with other last bits, and the tracker computes
+    // with them.
     record(&world.recording(), &world.map(), &imported);
     record(&imported, &world.map(), &first);
     record(&first, &world.map(), &second);
-    // Several processes send what is of one time, in any order.
+    // Several processes send messages of the same time, in any order.
     let [first, second] = [first, second].map(|recording| {
         let mut all = messages(&recording);
         all.values_mut().for_each(|of_topic| of_topic.sort());
@@ -68,10 +68,10 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
             }
         }
     }
-    // Where the tracker believes a place.
+    // Poses are recorded only while the tracker believes a place.
     assert!(!first["/pose"].is_empty() && first["/pose"].len() < first["/scan"].len());
-    // The recording itself comes back too, but for what the graph does not
-    // carry: the height of the laser and the last bits of angles.
+    // The recording itself comes back too, except for data that the graph does not carry: the
+    // height of the laser and the last bits of angles.
     let original = messages(&world.recording());
     for topic in ["/scan", "/odom", "/ground_truth", "/map", "/tf_static"] {
         assert_eq!(first[topic].len(), original[topic].len(), "{topic}");
@@ -121,7 +121,7 @@ fn a_launcher_that_is_asked_to_save_asks_the_recorder() {
     assert!(saved.topic(Kind::Scan).unwrap().is_some());
 }
 
-/// A case whose recording ends in the middle: its folder, and the scans that are
+/// Makes a case whose recording ends in the middle; returns its folder and the number of scans
 /// left.
 fn cut_short(folder: &TempDir) -> (PathBuf, u64) {
     let world = World::of("malaga_corridor");
@@ -186,19 +186,19 @@ fn what_a_recording_has_lost_is_reported_and_drawn() {
         .unwrap();
     assert_eq!(compared.status.code(), Some(1));
     let verdict = String::from_utf8_lossy(&compared.stdout);
-    // What was played is as expected; the other scans are missing.
+    // The scans that were played are as expected; the others are missing.
     let missing = 37 - scans;
     let expected = format!("was played and compared, with {missing} differences");
     assert!(verdict.contains("the file is cut short"), "{verdict}");
     assert!(verdict.contains(&expected), "{verdict}");
 }
 
-/// Stops a process for longer than its topics hold what comes, again and again until it ends.
+/// Stops a process for longer than its topics can queue messages, repeatedly until it ends.
 fn stall(child: &mut std::process::Child) -> std::process::ExitStatus {
     let pid = Pid::from_raw(child.id().cast_signed());
     let pause = |time| std::thread::sleep(std::time::Duration::from_millis(time));
     loop {
-        // Its number is its own until it is waited for, whether it has ended or not.
+        // The process id stays its own until it is waited for, even after its end.
         if let Some(status) = child.try_wait().unwrap() {
             return status;
         }
@@ -218,7 +218,7 @@ fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
     let start = |args: &[&str]| {
         let mut command = executables::backcast();
         command.args(args).current_dir(tests::root());
-        // A pipe could fill that nobody reads meanwhile.
+        // A pipe could fill up while no one reads it.
         let [printed, said] = ["printed", "said"].map(|name| folder.path().join(name));
         command.stdout(std::fs::File::create(&printed).unwrap());
         command.stderr(std::fs::File::create(&said).unwrap());

@@ -1,5 +1,5 @@
-//! The repository's graph under faults: docs/reliability.md names these tests. A fault
-//! lasts as long as the test says; what comes after it is waited for without a limit.
+//! The repository's graph under faults: docs/reliability.md names these tests. A fault lasts for a
+//! fixed time; the recovery is waited for without a limit.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -33,7 +33,7 @@ fn a_node_that_hangs_is_ended_and_started_again() {
         while live.node(executable) == hung {
             sleep(Duration::from_millis(20));
         }
-        // Those that were under way may be among them.
+        // Poses that were in progress may be among them.
         live.poses(20);
     }
     let (status, summary, said) = live.stop();
@@ -58,7 +58,7 @@ fn nodes_that_are_killed_again_and_again_end_nothing_and_leave_nothing() {
         "peak_extractor",
         "boundary_extractor",
     ];
-    // Every node, and each with its neighbour.
+    // First every node alone, then each with its neighbour.
     for round in 0..2 {
         for (i, executable) in nodes.iter().enumerate() {
             let mut pids = vec![live.node(executable)];
@@ -99,7 +99,7 @@ fn a_launcher_that_is_killed_is_started_again_under_the_same_name() {
         let mut live = Live::start(&name, "");
         live.poses(2);
         kill(live.launcher(), Signal::SIGKILL).unwrap();
-        // The next one does not wait for the end of these nodes: it does so itself.
+        // The test does not wait for the end of these nodes: the next graph does so itself.
     }
     let mut live = Live::start(&name, "");
     live.poses(2);
@@ -158,7 +158,7 @@ fn a_graph_under_faults_meets_its_guarantees() {
     assert_eq!(report["leftovers"], json!([]), "{report}");
     assert_eq!(report["wrong"], 0, "{report}");
     assert!(output.status.success(), "{report}");
-    // A round holds seventeen, of which twelve kill nodes.
+    // A round holds seventeen faults, twelve of which kill nodes.
     let faults = report["faults"].as_array().unwrap();
     let killed = faults.iter().filter_map(|effect| effect["killed"].as_u64());
     assert!(killed.sum::<u64>() > 5, "{report}");
@@ -194,7 +194,7 @@ fn a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording() {
     let (status, summary, _) = live.stop();
     assert!(status.success(), "{status}");
     assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
-    // What came while the disk was full waited in memory.
+    // Messages that came while the disk was full waited in memory.
     let recording = Recording::open("/mnt/drive.mcap").unwrap();
     assert!(recording.damage_error().is_none(), "it has been ended");
     let scans = recording.records().map(Result::unwrap);
@@ -218,7 +218,7 @@ fn a_node_that_stands_still_for_ten_seconds_goes_on_where_the_others_are() {
         sleep(Duration::from_secs(10));
         kill(stopped, Signal::SIGCONT).unwrap();
         let goes_on = monotonic_ns();
-        // Those that waited for it come first.
+        // Poses that waited for it come first.
         while live.pose()["sent_ns"].as_i64().unwrap() < goes_on {}
         assert_eq!(live.node(executable), stopped, "it was not started anew");
     }
@@ -227,7 +227,7 @@ fn a_node_that_stands_still_for_ten_seconds_goes_on_where_the_others_are() {
     assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
 }
 
-/// Writes until nothing more fits.
+/// Writes until the file system is full.
 fn fill(path: &str) {
     let mut file = std::fs::File::create(path).unwrap();
     for size in [1 << 16, 1] {
@@ -235,11 +235,10 @@ fn fill(path: &str) {
     }
 }
 
-/// Whether the calling test, which is called `test`, runs where the file system at `path` is
-/// its own, of so many bytes. If not, it has been run there, or the kernel forbids that,
-/// which is said.
+/// True if the calling test, named `test`, runs where the file system at `path` is its own, of this
+/// size. Otherwise it has already been run there, or the kernel forbids that, which is reported.
 fn has_its_own(test: &str, path: &str, size: &str) -> bool {
-    // The executables are built before, where there is room.
+    // The executables are built in advance, where there is room.
     let _ = tests::executables::path("backcast");
     let place = OwnFileSystem::of_test(test, path, size);
     if place == OwnFileSystem::Forbidden {

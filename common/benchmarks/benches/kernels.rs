@@ -1,5 +1,5 @@
-//! The kernels one by one, on a building of 400 × 400 cells with p/n 10 %,
-//! 180 beams and noise 5 %:
+//! Benchmarks of each kernel, on a building of 400 × 400 cells with p/n 10 %, 180 beams and noise 5
+//! %:
 //!
 //! ```text
 //! cargo bench -p benchmarks
@@ -26,7 +26,7 @@ use engine::sweep::FieldSweep;
 use engine::taper::TaperShape;
 use engine::votes::CollectConfig;
 
-/// One scan of one world, ready for every method.
+/// One scan of one world, prepared for every method.
 struct Case {
     world: World,
     space: Space,
@@ -68,7 +68,7 @@ fn main() -> Result<(), BenchmarksError> {
     Ok(())
 }
 
-/// What is done once for each map, and for each scan.
+/// Work per map, and per scan.
 fn prepare(criterion: &mut Criterion, case: &Case) {
     let Case { world, space, .. } = case;
     let mut group = criterion.benchmark_group("prepare");
@@ -84,7 +84,7 @@ fn prepare(criterion: &mut Criterion, case: &Case) {
     group.finish();
 }
 
-/// The intensities of all cells at one heading.
+/// Intensities of all cells at one heading.
 fn fields(criterion: &mut Criterion, case: &Case) {
     let Case {
         world,
@@ -111,7 +111,7 @@ fn fields(criterion: &mut Criterion, case: &Case) {
     group.finish();
 }
 
-/// The best poses at all headings.
+/// Search for the best poses over all headings.
 fn searches(criterion: &mut Criterion, case: &Case) {
     let Case {
         world,
@@ -135,7 +135,7 @@ fn searches(criterion: &mut Criterion, case: &Case) {
     group.finish();
 }
 
-/// The other methods at a known heading.
+/// Baselines at a known heading.
 fn baselines(criterion: &mut Criterion, case: &Case) {
     let Case {
         world,

@@ -1,10 +1,10 @@
-//! Times preparing a generated city, reading what was prepared, and searching in it:
+//! Times the preparation of a generated city, loading it from the cache, and searching in it:
 //!
 //! ```text
 //! cargo run --release -p benchmarks --example city_time -- 5000 4000 --index-cache /tmp/city
 //! ```
 //!
-//! Without `--index-cache` nothing is written or read.
+//! Without `--index-cache` no file is written or read.
 
 use std::error::Error;
 use std::fs::read_to_string;
@@ -30,7 +30,7 @@ struct Options {
     scans: usize,
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Readings beyond this are none, metres
+    /// Maximum range, metres; longer readings count as no return
     #[arg(long, default_value_t = 30.0)]
     reach: f32,
     #[command(flatten)]
@@ -100,7 +100,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         beams: 180,
         noise_percent: 1.0,
     };
-    // Many are taken where nothing is known; robots are where something is.
+    // Many scans are taken in unknown space; robots are in known space.
     let tried = simulate(
         &world,
         localizer.space(),
@@ -138,7 +138,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The most memory that this process has had, as the system says it.
+/// Peak memory of this process, as reported by the system.
 fn peak_memory() -> String {
     let status = read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

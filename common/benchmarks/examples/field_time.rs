@@ -1,4 +1,4 @@
-//! Times the field of one heading, and all headings by brute force, with each
+//! Times the field of one heading, and the exhaustive search over all headings, with each
 //! instruction set:
 //!
 //! ```text
@@ -21,13 +21,13 @@ use engine::sweep::FieldSweep;
 use engine::taper::TaperShape;
 use engine::votes::CollectConfig;
 
-/// Times the field of one heading, and all headings by brute force.
+/// Times the field of one heading, and the exhaustive search over all headings.
 #[derive(Debug, Parser)]
 struct Options {
     kind: Kind,
-    /// Cells a side
+    /// Cells per side
     side: usize,
-    /// Boundary cells over free cells, per cent
+    /// Boundary cells per free cell, per cent
     p_over_n: f64,
     /// Standard deviation of a reading, per cent of its range
     noise: f64,
@@ -35,7 +35,7 @@ struct Options {
     beams: usize,
     #[arg(long, default_value_t = 21)]
     runs: usize,
-    /// Threads of the exhaustive search; 0 leaves it out
+    /// Threads of the exhaustive search; 0 skips it
     #[arg(long, default_value_t = 1)]
     threads: usize,
 }
@@ -98,10 +98,10 @@ fn main() -> Result<(), BenchmarksError> {
     Ok(())
 }
 
-/// Median CPU time of an accumulator, milliseconds.
+/// Median CPU time of an accumulator, in milliseconds.
 fn time(accumulator: &mut impl Accumulator, query: Query<'_>, runs: usize) -> f64 {
     let mut field = Vec::new();
     let costs = (0..=runs).map(|_| cpu_ms(|| accumulator.fill(query, &mut field, &|| false)).1);
-    // The first run pays for what is allocated once.
+    // The first run allocates the buffers, so it is excluded.
     median(costs.skip(1).collect())
 }

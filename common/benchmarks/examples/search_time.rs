@@ -19,9 +19,9 @@ use engine::votes::{CollectConfig, VoteSet};
 #[derive(Debug, Parser)]
 struct Options {
     kind: Kind,
-    /// Cells a side
+    /// Cells per side
     side: usize,
-    /// Boundary cells over free cells, per cent
+    /// Boundary cells per free cell, per cent
     p_over_n: f64,
     /// Standard deviation of a reading, per cent of its range
     noise: f64,
@@ -35,14 +35,15 @@ struct Options {
     /// Share of the best pose's votes down to which poses are collected
     #[arg(long, default_value_t = 1.0)]
     floor_share: f64,
-    /// Distinct poses that are wanted
+    /// Number of distinct poses to find
     #[arg(long, default_value_t = 0)]
     candidates: u32,
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// From the baseline CPU, 0, to the best of this processor
+    /// Index of the instruction set, from the baseline CPU (0) to the best of this processor
+    /// [default: the best]
     #[arg(long)]
     instruction_set: Option<usize>,
     /// Print a line for each scan

@@ -1,6 +1,5 @@
-//! Regions of constant depth against σ_θ of Eq. 1 and against neither, on a
-//! simulated drive of a ring of sonars; the heading is unknown:
-//!
+//! Compares regions of constant depth with the σ_θ of Eq. 1 and with neither, on a simulated drive
+//! of a ring of sonars; the heading is unknown:
 //! ```text
 //! cargo run --release -p benchmarks --example sonar_regions -- --sonar \
 //!     --map recordings/sonar_ring/map.yaml --path "0.8,4.8 2.2,4.8 2.2,2.7 5.4,2.7"
@@ -22,13 +21,13 @@ use geometry::Pose;
 use map::OccupancyGrid;
 use simulation::{Bearings, Drive, DriveConfig, Path};
 
-/// Right is a pose this near to the truth, metres and radians.
+/// Error in metres and radians up to which a pose is right.
 const RIGHT: (f64, f64) = (0.5, 10.0 * std::f64::consts::PI / 180.0);
 
-/// Places among which the truth may be in the second count.
+/// Number of best places that count for the second share.
 const PLACES: usize = 5;
 
-/// Compares what the echoes of a ring of sonars can be read as.
+/// Compares interpretations of the echoes of a ring of sonars.
 #[derive(Debug, Parser)]
 struct Options {
     /// The map, a YAML file
@@ -37,24 +36,23 @@ struct Options {
     /// Corners of the drive: "X,Y X,Y …"
     #[arg(long)]
     path: Path,
-    /// Ways by the odometry whose scans are read as one, metres
+    /// Window lengths by odometry, in metres; the scans of a window are joined
     #[arg(long, value_delimiter = ',', default_value = "0,1,2,3")]
     ways: Vec<f64>,
-    /// Standard deviation of a reading, as the votes have it, metres
+    /// Standard deviation of a reading for the votes, metres
     #[arg(long, default_value_t = 0.1)]
     sigma: f64,
     #[command(flatten)]
     drive: DriveConfig,
 }
 
-/// What echoes are made into.
+/// Interpretation of echoes.
 #[derive(Debug, Clone, Copy)]
 enum Reading {
-    /// Each on the axis of its transducer: the paper with no σ_θ.
+    /// Each echo on the axis of its transducer: the paper without σ_θ.
     Axes,
-    /// Each over its cone: σ_θ.
+    /// Each echo spread over its cone: σ_θ.
     Cones,
-    /// Regions of constant depth.
     Regions,
 }
 
@@ -84,25 +82,24 @@ impl Reading {
     }
 }
 
-/// A scan of the drive.
 struct Taken {
-    /// How far the robot had driven by its odometry, metres.
+    /// Distance travelled by odometry, in metres.
     way_m: f64,
     odom_from_laser: Pose,
     map_from_laser: Pose,
     ranges: Vec<f32>,
 }
 
-/// How the ring looks about.
+/// Properties of the ring.
 struct Ring {
     bearings: Bearings,
     range_max_m: f32,
-    /// Radians.
+    /// Half width of a cone, in radians.
     half_width: f64,
 }
 
 impl Ring {
-    /// All echoes of a window of scans, in the frame of the last.
+    /// Returns all echoes of a window of scans, in the frame of the last scan.
     fn echoes(&self, window: &[Taken]) -> Result<Vec<Echo>, EngineError> {
         let mut echoes = Vec::new();
         let Some(last) = window.last() else {
@@ -188,7 +185,7 @@ fn taken(drive: Drive, base_from_laser: Pose) -> Vec<Taken> {
     scans.collect()
 }
 
-/// The paper's votes: every beam counts the same.
+/// Prepares a localizer with the paper's votes: all beams have the same weight.
 fn localizer(map: &OccupancyGrid, sigma_m: f64) -> Result<Localizer, EngineError> {
     let mut votes = VoteConfig {
         sigma_m,
@@ -209,7 +206,7 @@ fn localizer(map: &OccupancyGrid, sigma_m: f64) -> Result<Localizer, EngineError
     Localizer::of_map(frame, sides, &map.cells, rules, config, Prior::None)
 }
 
-/// Locates at each scan that ends a window of a way.
+/// Searches at each scan that ends a full window of `way_m` metres.
 fn tally(
     localizer: &Localizer,
     ring: &Ring,
@@ -218,7 +215,7 @@ fn tally(
 ) -> Result<Tally, EngineError> {
     let (mut tally, mut workspace) = (Tally::default(), Workspace::default());
     for (i, last) in drive.iter().enumerate() {
-        // What the robot has not driven yet is no window.
+        // Skips scans before the first full window.
         if last.way_m < way_m {
             continue;
         }

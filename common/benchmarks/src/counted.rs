@@ -1,6 +1,6 @@
-//! Markov localization and reverse projection step by step as the paper writes them down
-//! (section II B), at a known heading, with every operation counted. They are for
-//! counting: the engine and the baselines do the same in less time.
+//! Markov localization and reverse projection exactly as the paper describes them (section II B),
+//! at a known heading, counting every operation. They serve only for counting: the engine and the
+//! baselines are faster.
 
 use std::ops::AddAssign;
 
@@ -12,46 +12,43 @@ use engine::reference;
 use crate::baselines::Readings;
 use crate::worlds::World;
 
-/// What Markov localization did. The paper's formulas: mn ranges, mn squarings and n
+/// Operations of Markov localization. The paper's formulas: mn ranges, mn squarings and n
 /// Gaussians, n(2m + 1) operations; 2mn additions and subtractions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MarkovCounts {
-    /// Shortest distances that were found.
+    /// Number of ranges to the nearest obstacle.
     pub ranges: u64,
-    /// Squares that were taken.
     pub squarings: u64,
-    /// Gaussians that were computed.
     pub gaussians: u64,
-    /// Additions and subtractions.
     pub additions: u64,
 }
 
 impl MarkovCounts {
-    /// What the paper calls operations.
+    /// Number of operations as the paper counts them.
     #[must_use]
     pub fn operations(&self) -> u64 {
         self.ranges + self.squarings + self.gaussians
     }
 }
 
-/// What reverse projection did. The paper's formulas for the worst case: 2mp operations
-/// and kmp additions.
+/// Operations of reverse projection. The paper's formulas for the worst case: 2mp operations and
+/// kmp additions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReverseCounts {
-    /// Nearest obstacles that were found along θ - π.
+    /// Number of nearest obstacles found along θ - π.
     pub obstacles: u64,
-    /// Readings that were turned into cells and intensities; those that end behind an
-    /// obstacle are not.
+    /// Number of readings converted to cells and intensities, without those that end behind an
+    /// obstacle.
     pub projections: u64,
-    /// Intensities that were added to a cell.
+    /// Number of intensities added to a cell.
     pub additions: u64,
-    /// Additions if nothing stood in the way: the sum of k over all boundary cells and
+    /// Number of additions without obstacles in between: the sum of k over all boundary cells and
     /// beams, the paper's kmp.
     pub worst_additions: u64,
 }
 
 impl ReverseCounts {
-    /// What the paper calls operations.
+    /// Number of operations as the paper counts them.
     #[must_use]
     pub fn operations(&self) -> u64 {
         self.obstacles + self.projections
@@ -76,8 +73,8 @@ impl AddAssign for ReverseCounts {
     }
 }
 
-/// Markov localization at one heading: the likelihood of the readings in each cell, row
-/// by row from the lowest y, 0 where the robot cannot stand; and what it took.
+/// Markov localization at one heading: returns the likelihood of the readings in each cell, row by
+/// row from the lowest y, 0 in cells that are not free; and the operations.
 #[must_use]
 pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>, MarkovCounts) {
     let mut counts = MarkovCounts::default();
@@ -109,8 +106,8 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
     (belief, counts)
 }
 
-/// Reverse projection at one heading: the intensity of each cell, row by row from the
-/// lowest y, as [`engine::scatter`] has it; and what it took.
+/// Reverse projection at one heading: returns the intensity of each cell, row by row from the
+/// lowest y, equal to that of [`engine::scatter`]; and the operations.
 #[must_use]
 pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
     let mut field = vec![0u16; world.grid.cells().len()];
@@ -120,7 +117,7 @@ pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, Reverse
     (field, counts)
 }
 
-/// The most beams that vote for one cell: by Lemma 1 no more than there are.
+/// Maximum number of beams that vote for one cell: by Lemma 1 at most the number of beams.
 #[must_use]
 pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
     let mut beams = vec![0u16; world.grid.cells().len()];
@@ -128,8 +125,8 @@ pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
     beams.into_iter().max().unwrap_or(0)
 }
 
-/// Projects all readings back from all boundary cells; `add` is called for each cell that a
-/// taper reaches, and its votes.
+/// Projects all readings back from all boundary cells; calls `add` with each cell that a taper
+/// reaches, and its votes.
 fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> ReverseCounts {
     let mut counts = ReverseCounts::default();
     let mut visible = Vec::new();
@@ -160,7 +157,7 @@ fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> R
     counts
 }
 
-/// The cells before the nearest obstacle, and before `end` steps.
+/// Collects the cells before the nearest obstacle, and before `end` steps.
 fn see_back(world: &World, from: (i64, i64), back: &Direction, end: u16, visible: &mut Vec<usize>) {
     visible.clear();
     let (mut x, mut y) = back.advance(from.0, from.1);

@@ -1,7 +1,7 @@
-//! What the engine is measured with: generated worlds, simulated scans, and
-//! the other methods of global localization that the paper compares with.
+//! Generated worlds, simulated scans and the paper's other methods of global localization, to
+//! compare the engine with.
 //!
-//! Everything is seeded: the same numbers give the same world, scan and answer.
+//! Everything is seeded: the same numbers give the same world, scan and result.
 
 pub mod baselines;
 pub mod counted;
@@ -13,5 +13,5 @@ pub mod worlds;
 
 pub use error::BenchmarksError;
 
-/// Side of a cell of every generated world, metres.
+/// Side of a cell of every generated world, in metres.
 pub const RESOLUTION_M: f64 = 0.05;

@@ -1,5 +1,5 @@
-//! Simulated scans: rays cast by the engine's own definition of a range, from
-//! random free poses on the heading grid, with normal noise.
+//! Simulated scans: rays cast by the engine's definition of a range, from random free poses on the
+//! heading grid, with normal noise.
 
 use std::f64::consts::TAU;
 
@@ -15,23 +15,22 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::BenchmarksError;
 use crate::worlds::World;
 
-/// Share of the beams that must return.
+/// Share of the beams that must have a return.
 const MIN_RETURNS: f64 = 0.9;
 
-/// Random poses that are tried before a scan is given up.
+/// Maximum number of random poses tried per scan.
 const TRIES: usize = 10_000;
 
-/// What is simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanConfig {
-    /// Beams, evenly over a whole turn; they must divide the headings.
+    /// Number of beams, evenly over a full turn; it must divide the number of headings.
     pub beams: usize,
     /// Standard deviation of a reading, per cent of its range.
     pub noise_percent: f64,
 }
 
 impl ScanConfig {
-    /// Votes to match: the same deviation, and all beams weigh the same.
+    /// Settings of the votes to match: the same standard deviation, and equal weights.
     #[must_use]
     pub fn votes(&self, taper: TaperShape) -> VoteConfig {
         let mut votes = VoteConfig {
@@ -46,28 +45,28 @@ impl ScanConfig {
     }
 }
 
-/// Bearings of a ring scan: one a degree.
+/// Number of bearings of a ring scan: one per degree.
 const RING_BEARINGS: usize = 360;
 
-/// Sets the random numbers of bearings apart from those of poses and readings.
+/// Separates the random numbers of bearings from those of poses and readings.
 const BEARING_ERRORS: u64 = 0x5f0b_3a91;
 
-/// A ring of few rangefinders, each of which looks along its axis only: the eight sonars
-/// of the paper, which neglects σ_θ (section II A).
+/// A ring of few rangefinders, each reading along its axis only: the eight sonars of the paper,
+/// which neglects σ_θ (section II A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingConfig<'a> {
-    /// Where they look, whole degrees counter-clockwise from ahead.
+    /// Bearings of the rangefinders, whole degrees counter-clockwise from ahead.
     pub bearings_deg: &'a [i32],
     /// Standard deviation of a reading, per cent of its range.
     pub noise_percent: f64,
-    /// Standard deviation of the bearing in which a reading is truly taken, degrees; it
-    /// is rounded to whole ones.
+    /// Standard deviation of the true bearing of a reading, degrees; bearings are rounded to whole
+    /// degrees.
     pub bearing_sigma_deg: f64,
 }
 
 impl RingConfig<'_> {
-    /// Votes to match: the same deviation, one taper for each rangefinder, and all of
-    /// them weigh the same.
+    /// Settings of the votes to match: the same standard deviation, one taper per rangefinder, and
+    /// equal weights.
     #[must_use]
     pub fn votes(&self, taper: TaperShape) -> VoteConfig {
         let all = ScanConfig {
@@ -78,11 +77,11 @@ impl RingConfig<'_> {
     }
 }
 
-/// Takes `count` scans of a ring at random poses: 360 readings a degree apart, NaN where
-/// no rangefinder looks. Headings are those of a grid of 360.
+/// Simulates `count` scans of a ring at random poses: 360 readings a degree apart, NaN without a
+/// rangefinder. Headings are those of a grid of 360.
 ///
 /// # Errors
-/// If the space has other headings, or nowhere enough rangefinders return.
+/// The space has other headings, or no pose has enough returns.
 pub fn simulate_ring(
     world: &World,
     space: &Space,
@@ -95,8 +94,8 @@ pub fn simulate_ring(
         let beams = RING_BEARINGS;
         return Err(BenchmarksError::Beams { beams, headings });
     }
-    // All bearings are simulated and those in between dropped: each reading is then that
-    // of a full scan with the same seed.
+    // Simulates all bearings and drops those in between, so that each reading is equal to that of a
+    // full scan with the same seed.
     let config = ScanConfig {
         beams: RING_BEARINGS,
         noise_percent: ring.noise_percent,
@@ -109,7 +108,7 @@ pub fn simulate_ring(
     Ok(scans)
 }
 
-/// What of a full scan a ring reads.
+/// Selects the readings of a ring from a full scan.
 fn looked_at(full: &[f32], ring: &RingConfig<'_>, rng: &mut Xoshiro256PlusPlus) -> Vec<f32> {
     let turn = RING_BEARINGS as i32;
     let mut ranges = vec![f32::NAN; RING_BEARINGS];
@@ -122,7 +121,7 @@ fn looked_at(full: &[f32], ring: &RingConfig<'_>, rng: &mut Xoshiro256PlusPlus) 
     ranges
 }
 
-/// A scan, and where it was taken.
+/// A scan with its true pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedScan {
     /// Column of the cell.
@@ -131,12 +130,12 @@ pub struct SimulatedScan {
     pub y: usize,
     /// Index on the heading grid.
     pub heading: usize,
-    /// Metres; infinite where nothing came back.
+    /// In metres; infinite without a return.
     pub ranges: Vec<f32>,
 }
 
 impl SimulatedScan {
-    /// As the engine takes it.
+    /// Converts to a scan of the engine.
     #[must_use]
     pub fn scan(&self) -> Scan<'_> {
         Scan {
@@ -149,10 +148,10 @@ impl SimulatedScan {
     }
 }
 
-/// Takes `count` scans at random poses.
+/// Simulates `count` scans at random poses.
 ///
 /// # Errors
-/// If the beams do not divide the headings, or nowhere enough of them return.
+/// The number of beams does not divide the headings, or no pose has enough returns.
 pub fn simulate(
     world: &World,
     space: &Space,
@@ -202,7 +201,7 @@ fn simulate_one(
     Err(BenchmarksError::NoPose { tried: TRIES })
 }
 
-/// The readings of all beams from one pose.
+/// Readings of all beams from one pose.
 fn look_out(
     world: &World,
     space: &Space,
@@ -273,7 +272,7 @@ mod tests {
         }
         let square_mean =
             errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
-        // 3600 samples give the deviation to 1.2 %; four of those are allowed.
+        // 3600 samples give the standard deviation to 1.2 %; four times that is allowed.
         assert!(
             (square_mean.sqrt() - 0.10).abs() < 0.005,
             "{}",

@@ -1,15 +1,13 @@
-//! The processor time of this thread: what a computation costs, whatever else
-//! runs on the machine.
+//! CPU time of this thread: the cost of a computation, independent of the load of the machine.
 
 use std::time::Duration;
 
 use nix::time::{ClockId, clock_gettime};
 
-/// Does `work` and returns what it gave, with the milliseconds that it cost
-/// this thread.
+/// Runs `work` and returns its result, with the CPU time of this thread in milliseconds.
 ///
 /// # Panics
-/// If the system has no clock for a thread, which Linux has.
+/// The system has no CPU clock for threads, which Linux has.
 pub fn cpu_ms<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = thread_time();
     let done = work();
@@ -17,7 +15,7 @@ pub fn cpu_ms<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (done, cost.as_secs_f64() * 1e3)
 }
 
-/// The middle one of the values, the lower of two; NaN without any.
+/// Median of the values, the lower of the two middle ones; NaN without values.
 #[must_use]
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);

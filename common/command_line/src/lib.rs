@@ -1,26 +1,26 @@
-//! What the commands of `backcast` have in common: exit codes, standard output.
+//! Common parts of the commands of `backcast`: exit codes, standard output.
 
 pub mod stdout;
 
 use std::error::Error;
 use std::io;
 
-/// The exit code of a command that failed.
+/// Exit code of a command that failed.
 pub const FAILED: u8 = 1;
-/// The exit code of what was started with the wrong options or settings.
+/// Exit code of a command with wrong options or settings.
 pub const WRONG_USE: u8 = 2;
-/// The exit code of a run that finished but lost data on the way.
+/// Exit code of a run that finished but lost data.
 pub const LOST_DATA: u8 = 3;
 
 /// An error that ends a command.
 pub trait CommandError: Error {
-    /// The exit code that it means.
+    /// Returns the exit code of this error.
     fn exit_code(&self) -> u8 {
         FAILED
     }
 }
 
-/// Standard output takes no more.
+/// Standard output cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write to standard output")]
 pub struct OutputError(#[source] pub io::Error);

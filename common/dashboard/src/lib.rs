@@ -1,18 +1,17 @@
 //! A web page to watch robots, and the API behind it.
 //!
-//! | file | what it is about |
+//! | file | contents |
 //! |---|---|
-//! | `view` | what the page is sent, from the messages of a graph; pure |
-//! | `robot` | what is known of one robot, and whoever watches it |
-//! | `robots` | those that are known |
-//! | `server` | HTTP and WebSocket: the gate, the API, the page |
-//! | `webhook` | states of the robots, posted elsewhere |
+//! | `view` | the JSON and images sent to the page, made from the messages of a graph; pure |
+//! | `robot` | state of one robot, and its viewers |
+//! | `robots` | all known robots |
+//! | `server` | HTTP and WebSocket: access control, API, page |
+//! | `webhook` | state changes of the robots, posted to another server |
 //!
-//! Where the messages come from is up to whoever uses it: a source gives a
-//! [`Robot`] what happens, and takes the requests that it is given. Nobody waits for
-//! those who watch: a message is written as text once and handed to all of them, and
-//! who is too slow loses some and is sent their number. The crate localizes nothing, and
-//! shows nothing that no node said.
+//! The caller is the source of the messages: it passes each one to a [`Robot`] and carries out the
+//! requests that it receives. No source waits for a viewer: a message is serialized once and sent
+//! to all; a slow viewer loses messages and is sent their number. The crate does not localize, and
+//! shows only what a node has published.
 
 mod error;
 mod options;

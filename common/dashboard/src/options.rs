@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use axum::http::Uri;
 
-/// Who may reach the page, and change something there.
+/// Access to the page and its write actions.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Options {
     /// Another host name under which browsers may reach the page; addresses and

@@ -1,7 +1,7 @@
-//! One robot: what is known of it, and whoever watches it.
+//! State of one robot, and its viewers.
 //!
-//! It stands between the thread of a source, which passes it messages, and
-//! the server, which asks. Both hold the lock for as long as it takes to copy.
+//! Shared by the thread of a source, which passes in messages, and the server, which reads. Both
+//! hold the lock only while they copy.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -22,18 +22,18 @@ use crate::view::{
 };
 use crate::webhook::Webhook;
 
-/// Messages that may wait for a slow reader; beyond, it loses the oldest.
+/// Queue of messages per viewer; a slow viewer loses the oldest.
 const QUEUE: usize = 64;
 
-/// Requests that may wait for the graph.
+/// Limit of requests that wait for the graph.
 const MAX_REQUESTS: usize = 8;
 
-/// What somebody with the token wants of the graph.
+/// Request of a user with the token.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Request {
-    /// Poses be searched between these corners; everywhere where there are none.
+    /// Search only between these corners; an empty list searches the whole map.
     Region(Vec<[f64; 2]>),
-    /// A black box be saved.
+    /// Save the last minutes (black box).
     Save,
 }
 
@@ -54,7 +54,7 @@ pub struct Robot {
 struct Known {
     map: Option<Arc<Map>>,
     answer: Option<Answer>,
-    /// None if there is no tracker.
+    /// `None` without a tracker.
     pose: Option<Tracked>,
     times: Times,
     history: History,
@@ -66,28 +66,28 @@ struct Known {
     abilities: Abilities,
 }
 
-/// Somebody who watches: all that is known, and what comes after it.
+/// A new viewer's snapshot, and the messages that follow it.
 pub(crate) struct Watching {
     pub(crate) snapshot: Utf8Bytes,
     pub(crate) news: broadcast::Receiver<Utf8Bytes>,
 }
 
-/// A look at the field, which is computed as long as there is one.
+/// A viewer of the intensity field, which is computed only while there is one.
 pub(crate) struct FieldView {
     robot: Arc<Robot>,
     pub(crate) images: watch::Receiver<Option<Bytes>>,
 }
 
-/// Calls of a source.
+/// Methods for a source of messages.
 impl Robot {
-    /// A robot of which nothing is known yet, and the requests for it. The name stands in
-    /// addresses.
+    /// Returns a robot without any data, and the receiver of its requests. The name is part of
+    /// URLs.
     #[must_use]
     pub fn new(name: String) -> (Arc<Self>, Receiver<Request>) {
         Self::in_graph(name, None)
     }
 
-    /// The same, and the name of its graph, if that is known.
+    /// Like [`Robot::new`], with the name of the robot's graph.
     #[must_use]
     pub fn in_graph(name: String, graph: Option<String>) -> (Arc<Self>, Receiver<Request>) {
         let (requests, requested) = sync_channel(MAX_REQUESTS);
@@ -104,7 +104,7 @@ impl Robot {
         (Arc::new(robot), requested)
     }
 
-    /// Takes a map; returns whether it could be used.
+    /// Stores and sends a map; false if it is not valid.
     pub fn on_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
         let Some(map) = Map::new(header, cells) else {
             return false;
@@ -115,7 +115,7 @@ impl Robot {
         true
     }
 
-    /// Takes the answer to a scan, at a time of the host's clock.
+    /// Stores and sends the result of a scan. `now_ns`: monotonic clock of the host.
     pub fn on_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
         let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
@@ -128,7 +128,7 @@ impl Robot {
         known.answer = Some(answer);
     }
 
-    /// Takes where the tracker has the robot, at a time of the host's clock.
+    /// Stores and sends the tracker's pose. `now_ns`: monotonic clock of the host.
     pub fn on_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
         let pose = Tracked::new(header, words, now_ns);
         let mut known = self.known();
@@ -141,7 +141,7 @@ impl Robot {
         known.pose = Some(pose);
     }
 
-    /// Takes what became of the beams of a scan.
+    /// Stores and sends the beams of a scan, each with its fate.
     pub fn on_beams(&self, header: &BeamsHeader, items: &[Beam]) {
         let beams = Beams::new(header, items);
         let mut known = self.known();
@@ -149,7 +149,7 @@ impl Robot {
         known.beams = Some(beams);
     }
 
-    /// Takes a report on a node; returns whether there was room for it.
+    /// Stores and sends a node's health report; false if there are too many nodes.
     pub fn on_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
         let mut known = self.known();
         let report = known.roster.receive(header, error);
@@ -158,7 +158,6 @@ impl Robot {
             .is_some()
     }
 
-    /// Takes a line of a node's log.
     pub fn on_log(&self, header: &LogHeader, text: &[u8]) {
         let line = LogLine::new(header, text);
         let mut known = self.known();
@@ -166,7 +165,7 @@ impl Robot {
         known.log.receive(line);
     }
 
-    /// Takes an intensity image; returns whether it could be used.
+    /// Sends an intensity image to viewers of the field; false if it is not valid.
     pub fn on_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
         let is_sound = frame.is_some();
@@ -176,14 +175,14 @@ impl Robot {
         is_sound
     }
 
-    /// Takes the region in which poses are searched from now on.
+    /// Stores and sends the corners of the current search region.
     pub fn on_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
         self.broadcast(&Message::Region(Region { corners: &corners }));
         known.region = corners;
     }
 
-    /// Takes who listens to requests.
+    /// Stores and sends which requests have a receiver.
     pub fn on_abilities(&self, abilities: Abilities) {
         let mut known = self.known();
         if known.abilities != abilities {
@@ -192,7 +191,7 @@ impl Robot {
         }
     }
 
-    /// Looks whether scans still come, and for nodes that have become silent.
+    /// Reports nodes that have become silent, and the state `NoData` if scans stay away.
     pub fn look_for_silence(&self, now_ns: i64) {
         let mut known = self.known();
         for report in known.roster.newly_silent(now_ns) {
@@ -204,7 +203,7 @@ impl Robot {
         }
     }
 
-    /// Whether anybody looks at the field.
+    /// True if a viewer has the intensity field open.
     #[must_use]
     pub fn is_field_viewed(&self) -> bool {
         self.field_viewers.load(Ordering::Relaxed) > 0
@@ -228,31 +227,30 @@ impl Robot {
         self.broadcast(&Message::State(period));
     }
 
-    /// Puts it into words once for all who watch, if there are any. The lock is
-    /// held meanwhile, so that a new viewer misses nothing and receives nothing twice.
+    /// Serializes the message once for all viewers, if there are any. The caller holds the lock, so
+    /// that a new viewer misses nothing and receives nothing twice.
     fn broadcast(&self, message: &Message<'_>) {
         if self.news.receiver_count() > 0 {
-            // Nobody may be left by now.
+            // The last viewer may have left by now.
             let _ = self.news.send(text(message));
         }
     }
 }
 
-/// What the server asks.
+/// Methods for the server.
 impl Robot {
-    /// States are posted there from now on.
+    /// Posts every following state change to the webhook.
     pub(crate) fn post_states_to(&self, webhook: &Webhook) {
-        // One that it has already is the same.
+        // There is one webhook per server: if set, it is the same.
         let _ = self.webhook.set(webhook.clone());
     }
 
-    /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// All that is known at a time of the host's clock, and all that comes from then on.
+    /// Snapshot at `now_ns`, and a subscription to all that follows.
     pub(crate) fn watch(&self, now_ns: i64) -> Watching {
         let known = self.known();
         Watching {
@@ -261,12 +259,11 @@ impl Robot {
         }
     }
 
-    /// All that is known at a time of the host's clock.
+    /// Snapshot at `now_ns`, as JSON.
     pub(crate) fn snapshot(&self, now_ns: i64) -> Utf8Bytes {
         self.snapshot_of(&self.known(), now_ns)
     }
 
-    /// The map, if there is one.
     pub(crate) fn map(&self) -> Option<Arc<Map>> {
         self.known().map.clone()
     }
@@ -275,16 +272,15 @@ impl Robot {
         self.known().abilities
     }
 
-    /// Hands a request to the source; returns whether it has room for one.
+    /// Queues a request for the source; false if the queue is full.
     pub(crate) fn request(&self, request: Request) -> bool {
         self.requests.try_send(request).is_ok()
     }
 
-    /// Looks at the field from now on.
     pub(crate) fn view_field(self: &Arc<Self>) -> FieldView {
         self.field_viewers.fetch_add(1, Ordering::Relaxed);
         let mut images = self.field.subscribe();
-        // An image from before may be of another place.
+        // An earlier image may show another place.
         images.mark_unchanged();
         FieldView {
             robot: Arc::clone(self),
@@ -321,7 +317,6 @@ impl Drop for FieldView {
     }
 }
 
-/// A message as JSON.
 pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
     json::object(message).into()
 }

@@ -1,28 +1,25 @@
-//! The robots that are known.
+//! The list of known robots.
 
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use crate::Robot;
 use crate::webhook::Webhook;
 
-/// Robots in the order of their names. Clones share them: a source adds, the server
-/// asks.
+/// Robots sorted by name. Clones share one list: the source adds robots, the server reads.
 #[derive(Debug, Clone, Default)]
 pub struct Robots(Arc<RwLock<Shared>>);
 
 #[derive(Debug, Default)]
 struct Shared {
     all: Vec<Arc<Robot>>,
-    /// Where the states of all are posted.
+    /// Receives the states of all robots.
     webhook: Option<Webhook>,
 }
 
 impl Robots {
-    /// Robots that are known at once at most.
     pub const MAX: usize = 256;
 
-    /// Adds a robot; returns whether it could: there may be one of the name, or
-    /// [`Robots::MAX`] others.
+    /// Adds a robot; false if one of this name exists or there are [`Robots::MAX`].
     pub fn add(&self, robot: Arc<Robot>) -> bool {
         let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let Shared { all, webhook } = &mut *shared;
@@ -39,7 +36,7 @@ impl Robots {
         }
     }
 
-    /// The states of all, also of those that are added later, are posted there.
+    /// Posts the state changes of all robots, including those added later.
     pub(crate) fn post_states_to(&self, webhook: Webhook) {
         let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
         shared
@@ -49,7 +46,6 @@ impl Robots {
         shared.webhook = Some(webhook);
     }
 
-    /// The robot of a name, if there is one.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Arc<Robot>> {
         let all = &self.read().all;
@@ -57,7 +53,6 @@ impl Robots {
         Some(Arc::clone(&all[place]))
     }
 
-    /// Their names.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let all = &self.read().all;

@@ -1,14 +1,14 @@
 //! HTTP and WebSocket, on a thread of its own.
 //!
-//! | address | |
+//! | address | response |
 //! |---|---|
 //! | `GET /` | the page |
 //! | `GET /api/v1/robots` | the robots' names |
-//! | `GET /api/v1/robots/{robot}` | all that is known, as the stream begins |
-//! | `GET /api/v1/robots/{robot}/map` | a byte a cell |
-//! | `GET /api/v1/robots/{robot}/stream` | WebSocket: what happens |
-//! | `PUT`, `DELETE /api/v1/robots/{robot}/region` | where to search; needs the token |
-//! | `POST /api/v1/robots/{robot}/save` | save the last minutes; needs the token |
+//! | `GET /api/v1/robots/{robot}` | snapshot, the same as at the start of a stream |
+//! | `GET /api/v1/robots/{robot}/map` | one byte per cell |
+//! | `GET /api/v1/robots/{robot}/stream` | WebSocket: a snapshot, then each change |
+//! | `PUT`, `DELETE /api/v1/robots/{robot}/region` | search region; needs the token |
+//! | `POST /api/v1/robots/{robot}/save` | saves the last minutes; needs the token |
 
 mod actions;
 mod connections;
@@ -35,17 +35,17 @@ use crate::webhook::Webhook;
 use crate::{DashboardError, Options, Robot, Robots};
 use refusal::Refusal;
 
-/// Most bytes of a request's body.
+/// Largest body of a request, in bytes.
 const MAX_BODY: usize = 64 * 1024;
 
-/// Most who watch at the same time.
+/// Maximum number of streams at the same time.
 const MAX_WATCHERS: usize = 64;
 
-/// What all requests are answered from.
+/// Shared state of all request handlers.
 pub(crate) struct Site {
     robots: Robots,
     token: Token,
-    /// Names under which browsers may reach it, beside addresses.
+    /// Host names under which browsers may reach the page, in addition to addresses.
     hosts: Vec<String>,
     watchers: Arc<Semaphore>,
 }
@@ -66,7 +66,6 @@ impl Site {
     }
 }
 
-/// All addresses.
 fn router(site: Arc<Site>) -> Router {
     let robot = "/api/v1/robots/{robot}";
     Router::new()
@@ -90,20 +89,20 @@ fn router(site: Arc<Site>) -> Router {
         .with_state(site)
 }
 
-/// The server, which ends when this is dropped.
+/// The running server; dropping it stops the server.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
-    /// What to change something by, if nobody else knows it.
+    /// Random token, to be shown in the log; `None` if it was read from a file.
     token: Option<String>,
-    /// A name under which browsers reach it.
+    /// First host name under which browsers may reach the page.
     host: Option<String>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Server {
-    /// Listens there or, where the port is taken, on the next free one, and starts the
+    /// Listens on the address or, if the port is taken, on the next free one, and starts the
     /// thread.
     ///
     /// # Errors
@@ -158,8 +157,8 @@ impl Server {
         })
     }
 
-    /// Says in the log where to `watch` and what to know of it, if it was `asked` to
-    /// listen there.
+    /// Logs the page's address, prefixed by `watch`, the link with the token, and warnings. `asked`
+    /// is the address that the user chose.
     pub fn announce(&self, watch: &str, asked: SocketAddr) {
         let address = self.address;
         tracing::info!("{watch} on http://{address}");
@@ -176,8 +175,8 @@ impl Server {
         }
     }
 
-    /// Shows on a terminal what a phone opens the page by, with the token. Files of the log
-    /// are not read by phones.
+    /// Shows the page's link with the token as a QR code, on terminals only: a phone cannot scan a
+    /// log file.
     fn announce_to_phones(&self) {
         if !node::logs_to_terminal() {
             return;
@@ -193,7 +192,7 @@ impl Server {
         }
     }
 
-    /// Whether it still does.
+    /// Returns `Ok` while the server's thread runs.
     ///
     /// # Errors
     /// If its thread has ended.

@@ -9,17 +9,17 @@ use subtle::ConstantTimeEq;
 
 use crate::DashboardError;
 
-/// Rights on a file that everybody on the machine has.
+/// Permission bits for users outside the owner and group.
 const OTHERS: u32 = 0o007;
 
-/// Something that only those who may change the graph know.
+/// Secret that write actions require.
 pub(crate) struct Token(String);
 
 impl Token {
-    /// Reads it from a file, spaces around it left out.
+    /// Reads the token from a file and trims white space.
     ///
     /// # Errors
-    /// The file cannot be read, or by everybody, or holds none.
+    /// The file cannot be read, is accessible to all users, or holds no valid token.
     pub(crate) fn read(path: &Path) -> Result<Self, DashboardError> {
         let unreadable = |source| DashboardError::TokenFile {
             path: path.to_owned(),
@@ -43,7 +43,7 @@ impl Token {
         Ok(Token(token.to_owned()))
     }
 
-    /// A new one of 128 random bits.
+    /// Returns a new token of 128 random bits, in hexadecimal.
     ///
     /// # Errors
     /// The system has no random numbers.
@@ -54,7 +54,7 @@ impl Token {
         Ok(Token(hex.collect()))
     }
 
-    /// The text, for the log and the configuration alone.
+    /// The token as text; only for the log and the configuration.
     pub(crate) fn reveal(&self) -> &str {
         &self.0
     }

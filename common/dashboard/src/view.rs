@@ -1,8 +1,8 @@
-//! What viewers are sent: the messages of the graph as JSON, and images
-//! as bytes. Pure: the time is an argument.
+//! Data sent to viewers: the messages of the graph as JSON, and images as bytes. Pure: the time is
+//! an argument.
 //!
-//! Lengths are metres, angles radians counter-clockwise, times seconds or, where
-//! the name says so, milliseconds. What is no number is `null`.
+//! Lengths are metres, angles radians counter-clockwise, times seconds or, if the name says so,
+//! milliseconds. NaN and infinity become `null`.
 
 mod ages;
 mod answer;
@@ -32,70 +32,63 @@ use geometry::Covariance;
 use messages::Pose2;
 use serde::Serialize;
 
-/// A message to those who watch a robot.
+/// A message to the viewers of a robot.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Message<'a> {
-    /// All that is known, to whoever comes or has missed something.
+    /// Everything known, for a new viewer or one that missed messages.
     Snapshot(Snapshot<'a>),
-    /// Another map is served.
     Map(&'a MapInfo),
-    /// What a scan says of the pose.
+    /// Result of a scan.
     Answer(&'a Answer),
-    /// Where the tracker has the robot.
+    /// Pose of the tracker.
     Pose(&'a Tracked),
-    /// Another state begins.
     State(Period<'a>),
-    /// What became of its beams.
     Beams(&'a Beams),
-    /// The state of a node.
     Node(&'a NodeReport),
-    /// What a node logs.
     Log(&'a LogLine),
-    /// Where poses are searched.
+    /// Search region.
     Region(Region<'a>),
-    /// Who listens to requests.
     Abilities(Abilities),
-    /// This many messages were not sent, because the reader was too slow.
+    /// This many messages were lost, because the reader was too slow.
     Missed {
-        /// Their number.
         messages: u64,
     },
-    /// What the reader has sent, back to it.
+    /// Reply to the reader's ping.
     Pong {
-        /// Its clock.
+        /// The reader's own time stamp.
         t: f64,
     },
 }
 
-/// Whether a node listens to requests.
+/// Requests that a node of the graph can receive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Abilities {
-    /// An accumulator takes regions.
+    /// An accumulator accepts search regions.
     pub region: bool,
-    /// A recorder saves its black box.
+    /// A recorder can save the last minutes.
     pub save: bool,
 }
 
-/// A region of the map, or all of it.
+/// Search region in the map.
 #[derive(Debug, Serialize)]
 pub(crate) struct Region<'a> {
-    /// The corners; none where poses are searched everywhere.
+    /// Corners in metres; empty if the whole map is searched.
     pub(crate) corners: &'a [[f64; 2]],
 }
 
-/// All that is known of a robot.
+/// All data about a robot.
 #[derive(Debug, Serialize)]
 pub(crate) struct Snapshot<'a> {
     pub(crate) robot: &'a str,
-    /// The graph's name; none where it is elsewhere.
+    /// `None` if it is not known (a graph on another machine).
     pub(crate) graph: Option<&'a str>,
     pub(crate) map: Option<&'a MapInfo>,
     pub(crate) answer: Option<&'a Answer>,
-    /// None where the graph has no tracker.
+    /// `None` if the graph has no tracker.
     pub(crate) pose: Option<&'a Tracked>,
     pub(crate) ages: Ages,
-    /// The states of the last hour, oldest first.
+    /// States of the last hour, oldest first.
     pub(crate) states: Vec<Period<'a>>,
     pub(crate) beams: Option<&'a Beams>,
     pub(crate) nodes: Vec<&'a NodeReport>,
@@ -105,7 +98,7 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) abilities: Abilities,
 }
 
-/// A pose: metres and radians in the map.
+/// A pose in the map: metres and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct PoseJson {
     pub(crate) x: f64,
@@ -119,21 +112,21 @@ impl From<Pose2> for PoseJson {
     }
 }
 
-/// The ellipse of one standard deviation, of a covariance.
+/// One-sigma ellipse of a covariance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Ellipse {
-    /// Half of the long axis.
+    /// Semi-major axis.
     pub(crate) major_m: f64,
-    /// Half of the short one.
+    /// Semi-minor axis.
     pub(crate) minor_m: f64,
-    /// Of the long axis to the map's x.
+    /// Angle of the major axis to the map's x axis.
     pub(crate) angle: f64,
     /// Standard deviation of the heading.
     pub(crate) yaw: f64,
 }
 
 impl Ellipse {
-    /// Of a covariance row by row over x, y and yaw, as far as it is one.
+    /// From a covariance over x, y and yaw, row by row; `None` if it is not a valid one.
     pub(crate) fn new(rows: [f64; 9]) -> Option<Self> {
         let is_finite = rows.iter().all(|value| value.is_finite());
         let ellipse = is_finite.then(|| Covariance::from_rows(rows).ellipse())?;
@@ -147,7 +140,7 @@ impl Ellipse {
     }
 }
 
-/// Nanoseconds in milliseconds.
+/// Converts nanoseconds to milliseconds.
 pub(crate) fn ms(ns: i64) -> f64 {
     ns as f64 / 1e6
 }

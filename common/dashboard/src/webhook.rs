@@ -1,8 +1,8 @@
-//! States of the robots, posted to a server of the user's.
+//! Posts state changes of the robots to a server of the user.
 //!
-//! A thread of its own posts one after the other over plain HTTP, each once. So many may
-//! wait; where the server is slower, the oldest are left out, for the newest says most.
-//! What was not posted is counted, and logged now and then.
+//! A separate thread posts one after the other over plain HTTP, without retries. If the server is
+//! too slow, the oldest waiting ones are dropped, since the newest matter most. Losses are counted
+//! and logged now and then.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,16 +14,16 @@ use ureq::Agent;
 
 use crate::DashboardError;
 
-/// States that may wait.
+/// Maximum number of waiting states.
 const QUEUE: usize = 64;
 
-/// How long the server may take for one, from the look-up of its name to its answer.
+/// Timeout of one post, from the DNS look-up to the response.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Between two lines on states that were not posted.
+/// Minimum time between two log lines about losses.
 const SILENCE: Duration = Duration::from_secs(60);
 
-/// Where states are posted, as long as there is a clone of it.
+/// Queue of states to post; the thread ends with its last clone.
 #[derive(Debug, Clone)]
 pub(crate) struct Webhook(Sender<String>);
 
@@ -31,7 +31,7 @@ impl Webhook {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system refuses.
+    /// The system cannot start it.
     pub(crate) fn start(server: &Uri) -> Result<Self, DashboardError> {
         let (states, waiting) = tokio::sync::broadcast::channel(QUEUE);
         let server = server.to_string();
@@ -42,14 +42,14 @@ impl Webhook {
         Ok(Webhook(states))
     }
 
-    /// Posts an object of JSON; waits for nothing.
+    /// Queues a JSON object without blocking.
     pub(crate) fn post(&self, state: String) {
-        // Its thread lives as long as this.
+        // The thread lives as long as this sender.
         let _ = self.0.send(state);
     }
 }
 
-/// Posts until nobody has a state any more.
+/// Posts until all senders are gone.
 fn post_all(server: &str, mut waiting: Receiver<String>) {
     let agent: Agent = Agent::config_builder()
         .timeout_global(Some(TIMEOUT))
@@ -66,7 +66,7 @@ fn post_all(server: &str, mut waiting: Receiver<String>) {
             Ok(()) => losses.end(),
             Err((states, reason)) => losses.add(states, &reason, Instant::now()),
         };
-        // The address may hold a secret, and is not logged.
+        // The address may contain a secret, so it is not logged.
         if let Some(line) = line {
             tracing::warn!("webhook: {line}");
         }
@@ -81,8 +81,8 @@ fn post(agent: &Agent, server: &str, state: &str) -> Result<(), String> {
         .map_err(|error| error.to_string())
 }
 
-/// States that were not posted, and when that is worth a line: the first at once, more of
-/// them once a minute, and when one is posted again.
+/// Counts lost states and limits the log lines about them: one at the first loss, then at most one
+/// per minute, and one when posting works again.
 #[derive(Debug, Default)]
 struct Losses {
     states: u64,
@@ -127,7 +127,7 @@ mod tests {
         assert!(losses.add(1, "refused", begin + SILENCE).is_some());
     }
 
-    /// Takes a request, and answers it when `ready` returns.
+    /// Accepts one request and responds after `ready` has returned.
     fn take(listener: &TcpListener, ready: impl FnOnce()) -> String {
         let (mut stream, _) = listener.accept().unwrap();
         let mut reader = BufReader::new(stream.try_clone().unwrap());

@@ -1,4 +1,4 @@
-//! What a checked descriptor says. Plain data; it starts and opens nothing.
+//! A checked descriptor. Plain data; it starts and opens nothing.
 
 use std::time::Duration;
 
@@ -7,38 +7,38 @@ use crate::Place;
 /// A whole graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataflow {
-    /// In the order of the file.
+    /// Nodes in the order of the file.
     pub nodes: Vec<Node>,
 }
 
 /// One process of the graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Its name, unique in the graph.
+    /// Name of the node, unique in the graph.
     pub id: String,
-    /// Its executable, absolute or from the descriptor's folder.
+    /// Executable: an absolute path, or relative to the descriptor's folder.
     pub path: String,
-    /// Where `path` stands in the file.
+    /// Place of `path` in the file.
     pub path_place: Place,
-    /// Its arguments, split in words.
+    /// Arguments, split into words.
     pub args: Vec<String>,
-    /// Added to its environment, and to that of its build.
+    /// Variables added to the environment of the node and of its build.
     pub env: Vec<(String, String)>,
-    /// Run one after the other before it starts.
+    /// Build commands, run in this order before the node starts.
     pub build: Vec<Command>,
-    /// The topics that it takes.
+    /// Topics that it subscribes to.
     pub inputs: Vec<Input>,
-    /// The topics that it sends, each once.
+    /// Topics that it publishes, each once.
     pub outputs: Vec<String>,
-    /// What distinguishes its outputs if it sends several of a topic: `front` and
-    /// `rear` for `scan_front` and `scan_rear`.
+    /// Suffixes of its outputs if it publishes several of a topic: `front` and `rear` for
+    /// `scan_front` and `scan_rear`.
     pub streams: Vec<String>,
-    /// What happens when it ends.
+    /// Behaviour when it ends.
     pub restart: Restart,
 }
 
 impl Node {
-    /// The file name of the executable, by which options find their node.
+    /// File name of the executable, by which options find their node.
     #[must_use]
     pub fn executable(&self) -> &str {
         self.path
@@ -47,12 +47,11 @@ impl Node {
     }
 }
 
-/// A command line, split in words; the first is the program.
+/// A command line, split into words.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Command {
-    /// Looked up in `PATH` unless it holds a slash.
+    /// Program, looked up in `PATH` unless it has a slash.
     pub program: String,
-    /// The words after it.
     pub args: Vec<String>,
 }
 
@@ -63,37 +62,34 @@ impl std::fmt::Display for Command {
     }
 }
 
-/// A topic that a node takes, and the node that sends it.
+/// A topic that a node subscribes to, and the node that publishes it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
-    /// The topic.
     pub topic: String,
-    /// The id of the node that sends it.
+    /// Id of the publishing node.
     pub from: String,
-    /// Which one, where that node sends several of the topic; else empty.
+    /// Suffix, if that node publishes several of the topic; else empty.
     pub stream: String,
 }
 
-/// What happens when a node ends by itself, or is silent for too long.
+/// Behaviour when a node ends by itself or is silent for too long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Restart {
-    /// Whether it is started again.
     pub policy: RestartPolicy,
-    /// How often at most within `window`; 0 for no limit.
+    /// Largest number of restarts within `window`; 0 for no limit.
     pub max_restarts: u32,
-    /// Before the first restart; each further restart waits twice as long.
+    /// Delay before the first restart; it doubles with each further restart.
     pub delay: Duration,
-    /// The longest wait before a restart.
+    /// Largest delay before a restart.
     pub max_delay: Duration,
-    /// Restarts that lie farther back do not count.
+    /// Time after which a restart no longer counts.
     pub window: Duration,
-    /// How long a node may be without a sign of life before it is ended, and started
-    /// again by its policy.
+    /// Longest time without a heartbeat; then the node is killed, and restarted by its policy.
     pub health_timeout: Duration,
 }
 
 impl Restart {
-    /// What holds where the descriptor says nothing.
+    /// Settings if the descriptor has none.
     pub const DEFAULT: Restart = Restart {
         policy: RestartPolicy::Never,
         max_restarts: 0,
@@ -102,7 +98,7 @@ impl Restart {
         window: Duration::from_secs(60),
         health_timeout: Duration::from_secs(15),
     };
-    /// For a node that recovers by being started again.
+    /// Settings for a node that recovers by a restart.
     pub const ON_FAILURE: Restart = Restart {
         policy: RestartPolicy::OnFailure,
         max_restarts: 15,
@@ -112,19 +108,18 @@ impl Restart {
     };
 }
 
-/// When a node that ended is started again.
+/// Condition for a restart after a node has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RestartPolicy {
-    /// Never.
     Never,
-    /// When it failed: a status other than 0, or a signal.
+    /// If it failed: by an exit code other than 0, or a signal.
     OnFailure,
-    /// Whenever it ends, also with status 0.
+    /// Whenever it ends, also with exit code 0.
     Always,
 }
 
 impl RestartPolicy {
-    /// Each policy and its name in the file.
+    /// Each policy with its name in the file.
     pub(crate) const NAMES: [(&str, RestartPolicy); 3] = [
         ("never", RestartPolicy::Never),
         ("on-failure", RestartPolicy::OnFailure),

@@ -4,34 +4,33 @@ use std::{fmt::Write as _, io, path::PathBuf};
 
 use crate::{MAX_FILE_BYTES, MAX_ID_BYTES, MAX_NODES, Problem};
 
-/// Why a descriptor could not be used.
+/// Error of a descriptor.
 #[derive(Debug, thiserror::Error)]
 pub enum DataflowError {
     /// The file could not be read.
     #[error("cannot read {}", file.display())]
     Unreadable {
-        /// As it was given.
+        /// Path as given.
         file: PathBuf,
-        /// Why not.
         source: io::Error,
     },
     /// The file is too large to be a descriptor.
     #[error("{} has more than {MAX_FILE_BYTES} bytes, which is the most that is read", file.display())]
     TooLarge {
-        /// As it was given.
+        /// Path as given.
         file: PathBuf,
     },
-    /// The file is wrong in these places.
+    /// The file has errors.
     #[error("{}", lines(file, problems))]
     Wrong {
-        /// As it was given.
+        /// Path as given.
         file: PathBuf,
-        /// In the order of the file, at least one.
+        /// Problems in the order of the file, at least one.
         problems: Vec<Problem>,
     },
 }
 
-/// A line for each problem: `file:line:column: what`.
+/// Formats a line for each problem: `file:line:column: what`.
 fn lines(file: &std::path::Path, problems: &[Problem]) -> String {
     let mut text = String::new();
     for (i, problem) in problems.iter().enumerate() {
@@ -42,214 +41,200 @@ fn lines(file: &std::path::Path, problems: &[Problem]) -> String {
     text
 }
 
-/// What is wrong in one place: what was found and what is allowed.
+/// An error at one place: what was found and what is allowed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// The text is not YAML, or uses more of YAML than a descriptor may.
     #[error("not a descriptor: {what}")]
     Yaml {
-        /// In the words of the parser.
+        /// Message of the parser.
         what: String,
     },
-    /// A key that a descriptor does not have.
+    /// The descriptor has an unknown key.
     #[error("unknown key `{key}`; allowed are {allowed}")]
     UnknownKey {
-        /// As found.
         key: String,
-        /// All that may stand there.
+        /// Allowed keys.
         allowed: String,
     },
-    /// A key that stands twice in one map.
+    /// A key appears twice in one map.
     #[error("the key `{key}` appears a second time here; each may appear once")]
     DuplicateKey {
-        /// As found.
+        /// Name of the key.
         key: String,
     },
-    /// A key without which nothing can be done.
+    /// A required key is missing.
     #[error("`{key}` is missing")]
     MissingKey {
-        /// The key.
+        /// Name of the key.
         key: &'static str,
     },
-    /// Another kind of value than the key takes.
+    /// The value has the wrong type for its key.
     #[error("found `{found}` where {allowed} belongs")]
     WrongType {
-        /// The beginning of what stands there.
+        /// First characters of the value.
         found: String,
-        /// The kind that is allowed.
+        /// Allowed type.
         allowed: &'static str,
     },
-    /// A number that is not one, or out of its range.
+    /// The value is not a number or out of range.
     #[error("`{key}` is `{found}`; allowed is {allowed}, without quotes")]
     BadNumber {
-        /// The key.
         key: &'static str,
-        /// As found.
         found: String,
-        /// The range.
+        /// Allowed range.
         allowed: &'static str,
     },
-    /// Not a restart policy.
+    /// The restart policy is unknown.
     #[error("unknown restart_policy `{found}`; allowed are never, on-failure and always")]
     UnknownPolicy {
-        /// As found.
+        /// Text as found.
         found: String,
     },
-    /// No node at all.
+    /// The descriptor has no node.
     #[error("the list of nodes is empty; a graph has at least one")]
     NoNodes,
-    /// More nodes than a graph may have.
+    /// The descriptor has too many nodes.
     #[error("{found} nodes; at most {MAX_NODES} are allowed")]
     TooManyNodes {
-        /// How many there are.
+        /// Number of nodes found.
         found: usize,
     },
-    /// An id that cannot name a node.
+    /// The id of a node is invalid.
     #[error(
         "`{found}` cannot be a node's id; allowed are 1 to {MAX_ID_BYTES} of a-z A-Z 0-9 _ . - except the reserved `dora`"
     )]
     BadId {
-        /// As found.
+        /// Text as found.
         found: String,
     },
-    /// Two nodes with one id.
+    /// Two nodes have the same id.
     #[error("a second node with the id `{id}`, first used in line {first}; ids are unique")]
     DuplicateId {
-        /// The id.
         id: String,
-        /// The line of the first.
+        /// Line of the first one.
         first: u64,
     },
-    /// A path that dora would not take as a path.
+    /// The path is one that dora would not treat as a path.
     #[error(
         "`{found}` cannot be a path: {why}; allowed is a file, absolute or from the descriptor's folder"
     )]
     BadPath {
-        /// As found.
         found: String,
-        /// What else it would mean.
+        /// Meaning for dora.
         why: &'static str,
     },
-    /// No executable there, and nothing that would build it.
+    /// The executable does not exist and is not built.
     #[error("`{path}` {state}, and nothing builds it")]
     NoExecutable {
-        /// As in the descriptor.
+        /// Path as in the descriptor.
         path: String,
-        /// What is there instead.
+        /// Actual state, e.g. `is not a file`.
         state: &'static str,
     },
-    /// Quotes that do not close.
+    /// The arguments have an unclosed quote.
     #[error(
         "`args` cannot be split in words: a quote is not closed or a backslash ends the text in `{found}`"
     )]
     BadQuotes {
-        /// As found.
+        /// Text as found.
         found: String,
     },
-    /// A build line that is not just words.
+    /// The build line has characters other than plain words.
     #[error("the build line `{found}` {why}; allowed are plain words with spaces between")]
     BadBuild {
-        /// As found.
         found: String,
-        /// What is wrong with it.
+        /// Reason.
         why: &'static str,
     },
-    /// A name that no environment variable can have.
+    /// The name of an environment variable is invalid.
     #[error("`{found}` cannot name an environment variable; allowed is a text without `=`")]
     BadEnvName {
-        /// As found.
+        /// Text as found.
         found: String,
     },
-    /// A value that would not reach the process as it is written.
+    /// The value of an environment variable would not reach the process as written.
     #[error("the value `{found}` would not reach the process as written: {why}")]
     BadEnvValue {
-        /// As found.
         found: String,
-        /// What would become of it, and what to write instead.
+        /// Value that would result, and what to write instead.
         why: String,
     },
-    /// A port that is no topic.
+    /// A port is not a topic.
     #[error("there is no topic `{found}`; allowed are {allowed}")]
     UnknownTopic {
-        /// As found.
         found: String,
         /// All topics.
         allowed: String,
     },
-    /// A node that lists an output twice.
+    /// A node lists an output twice.
     #[error("the output `{topic}` is listed a second time; each may be listed once")]
     DuplicateOutput {
-        /// The topic.
+        /// Name of the topic.
         topic: String,
     },
-    /// A topic with two senders.
+    /// A topic has two publishers.
     #[error(
         "`{topic}` is already sent by `{first}`, and a topic has one sender in a graph; remove it from one of them"
     )]
     SecondSender {
-        /// The topic.
         topic: String,
-        /// The id of the first.
+        /// Id of the first publisher.
         first: String,
     },
-    /// An input's source that is not `node/topic`.
+    /// The source of an input is not `node/topic`.
     #[error("the input `{input}` comes from `{found}`; allowed is `node/topic`")]
     BadSource {
-        /// The input.
+        /// Name of the input.
         input: String,
-        /// As found.
         found: String,
     },
-    /// An input from a node that is not there.
+    /// The source of an input is an unknown node.
     #[error("the input `{input}` comes from `{found}`, which is no node; the nodes are {allowed}")]
     NoSuchNode {
-        /// The input.
         input: String,
-        /// The id as found.
+        /// Unknown node id.
         found: String,
-        /// All ids.
+        /// All node ids.
         allowed: String,
     },
-    /// An input from an output that is not there.
+    /// The source of an input is not an output of its node.
     #[error(
         "the input `{input}` takes `{found}` from `{from}`, which does not list it; its outputs are {allowed}"
     )]
     NoSuchOutput {
-        /// The input.
         input: String,
-        /// The sender.
+        /// Publishing node.
         from: String,
-        /// The output as found.
+        /// Unknown output.
         found: String,
-        /// What the sender lists.
+        /// Outputs of the publishing node.
         allowed: String,
     },
-    /// An input under another name than its topic.
+    /// The name of an input differs from its topic.
     #[error(
         "the input `{input}` takes the topic `{topic}`; nodes find topics by the names of their ports, so write `{topic}: {from}/{topic}`"
     )]
     RenamedInput {
-        /// The input's name.
         input: String,
-        /// The topic that it is wired to.
+        /// Topic that it is wired to.
         topic: String,
-        /// The sender.
+        /// Publishing node.
         from: String,
     },
-    /// A node that takes its own output.
+    /// A node subscribes to its own output.
     #[error("the input `{input}` of `{node}` comes from `{node}` itself")]
     OwnOutput {
-        /// The input.
+        /// Name of the input.
         input: String,
-        /// The node.
         node: String,
     },
-    /// Restart settings of a node that is never restarted.
+    /// A node that is never restarted has restart settings.
     #[error(
         "`{key}` without a `restart_policy` of on-failure or always: the node is never restarted"
     )]
     NeverRestarted {
-        /// The key.
+        /// Name of the key.
         key: &'static str,
     },
 }

@@ -1,19 +1,19 @@
-//! What the descriptor says about files. It opens the descriptor, looks at the
-//! executables that it names, and changes nothing.
+//! Files of a descriptor: reads the descriptor and checks the executables that it names. It changes
+//! nothing.
 
 use std::{fs::File, io::Read, os::unix::fs::PermissionsExt, path::Path};
 
 use crate::{Dataflow, DataflowError, Fault, MAX_FILE_BYTES, Node, Problem};
 
-/// The text of the descriptor.
+/// Reads the text of the descriptor.
 pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
     let unreadable = |source| DataflowError::Unreadable {
         file: path.to_owned(),
         source,
     };
     let mut text = String::new();
-    // One byte more than allowed detects a file that is too large, also where
-    // the file has no size, as a pipe has none.
+    // Reading one byte more than allowed detects a file that is too large, even without a known
+    // size, like a pipe.
     File::open(path)
         .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_string(&mut text))
         .map_err(unreadable)?;
@@ -24,8 +24,8 @@ pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
     Ok(text)
 }
 
-/// The nodes whose executable is not there and which nothing builds. `folder`
-/// is where the descriptor lies.
+/// Returns a problem for each node whose executable does not exist and is not built. `folder` is
+/// the descriptor's folder.
 #[must_use]
 pub fn check_executables(dataflow: &Dataflow, folder: &Path) -> Vec<Problem> {
     let unbuilt = dataflow.nodes.iter().filter(|n| n.build.is_empty());

@@ -1,30 +1,29 @@
-//! The descriptor of a graph, `dataflow.yaml`: which processes there are, how
-//! they are built and started, and which topics join them.
+//! The descriptor of a graph, `dataflow.yaml`: its processes, how they are built and started, and
+//! the topics that connect them.
 //!
-//! It is a strict subset of dora's descriptor: whatever is accepted here,
-//! `dora validate` and `dora run` accept with the same meaning. Where dora
-//! guesses, replaces or ignores, this crate refuses. Every problem names its
-//! line and column, and all problems that can be found at once are reported at once. The crate
-//! starts no process and knows no topic: the caller says which there are.
+//! It is a strict subset of dora's descriptor: everything accepted here, `dora validate` and `dora
+//! run` accept with the same meaning. Where dora guesses, replaces or ignores, this crate reports
+//! an error. Every problem names its line and column, and all problems that can be found at once
+//! are reported at once. The crate starts no process and knows no topics: the caller provides them.
 //!
-//! | key | value | without it |
+//! | key | value | default |
 //! |---|---|---|
-//! | `id` | 1 to 32 of `a-z A-Z 0-9 _ . -`, not `dora` | refused |
-//! | `path` | executable, from the descriptor's folder | refused |
-//! | `args` | words, quoted as in a shell; nothing is replaced | no arguments |
-//! | `env` | map of names to texts, whole numbers, decimals or booleans | none added |
-//! | `build` | commands, one a line, words split at spaces; run in the descriptor's folder | not built |
+//! | `id` | 1 to 32 of `a-z A-Z 0-9 _ . -`, not `dora` | required |
+//! | `path` | executable, relative to the descriptor's folder | required |
+//! | `args` | words, quoted as in a shell; no expansion | no arguments |
+//! | `env` | map of names to strings, integers, decimals or booleans | none |
+//! | `build` | commands, one per line, split at spaces; run in the descriptor's folder | none |
 //! | `inputs` | map of topic to `node/topic` | none |
 //! | `outputs` | list of topics | none |
 //! | `restart_policy` | `never`, `on-failure`, `always` | `never` |
-//! | `max_restarts` | how often at most within `restart_window`, 0 for no limit | 0 |
-//! | `restart_delay` | seconds before the first restart; it doubles with each | at once |
-//! | `max_restart_delay` | seconds that it does not exceed | 5, or `restart_delay` if that is more |
+//! | `max_restarts` | maximum number within `restart_window`, 0 for no limit | 0 |
+//! | `restart_delay` | seconds before the first restart; doubles with each restart | 0 |
+//! | `max_restart_delay` | maximum delay in seconds | 5, or `restart_delay` if that is more |
 //! | `restart_window` | seconds | 60 |
-//! | `health_check_timeout` | seconds without a sign of life after which the node is ended, 2 at least | 15 |
+//! | `health_check_timeout` | seconds without a heartbeat until the node is killed, at least 2 | 15 |
 //!
-//! Where the last three are absent, dora waits ever longer, counts all restarts, and
-//! does not look for signs of life.
+//! Without the last three keys, dora lets delays grow without limit, counts all restarts, and does
+//! not check health.
 
 mod descriptor;
 mod error;
@@ -44,18 +43,17 @@ pub use wiring::Topics;
 
 use std::path::Path;
 
-/// The largest descriptor that is read, bytes.
+/// Largest size of a descriptor in bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
-/// The most nodes of a graph.
+/// Largest number of nodes in a graph.
 pub const MAX_NODES: usize = 64;
-/// The longest id of a node, bytes.
+/// Longest id of a node in bytes.
 pub const MAX_ID_BYTES: usize = 32;
 
 /// Reads and checks the descriptor at `path`.
 ///
 /// # Errors
-/// The file cannot be read, is larger than [`MAX_FILE_BYTES`], or is wrong in
-/// one or more places.
+/// The file cannot be read, is larger than [`MAX_FILE_BYTES`], or has errors.
 pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
     let text = files::read(path)?;
     parse(&text, topics).map_err(|problems| DataflowError::Wrong {
@@ -67,8 +65,8 @@ pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
 /// Checks the text of a descriptor.
 ///
 /// # Errors
-/// Everything that is wrong, in the order of the text; only the first problem
-/// where the text is not a descriptor at all.
+/// All problems in the order of the text; only the first one if the text is not a descriptor at
+/// all.
 pub fn parse(text: &str, topics: &Topics) -> Result<Dataflow, Vec<Problem>> {
     let raw = raw::parse(text).map_err(|problem| vec![problem])?;
     let mut problems = Vec::new();
@@ -118,7 +116,7 @@ mod tests {
             let _ = parse(&text, &TOPICS);
         }
 
-        /// Places lie in the text: they name a line of it.
+        /// Every problem refers to a line of the text.
         #[test]
         fn a_damaged_descriptor_is_read_or_refused_in_place(
             at in 0..SOUND.len(),

@@ -1,4 +1,4 @@
-//! From the file's entries to checked nodes, each looked at alone.
+//! Converts the entries of the file to checked nodes, each on its own.
 
 use serde_saphyr::Spanned;
 
@@ -9,7 +9,7 @@ use crate::{
     scalar, words,
 };
 
-/// All nodes; what is wrong with them goes to `problems`.
+/// Reads all nodes and adds their errors to `problems`.
 pub(crate) fn read_all(
     raw: &RawDataflow,
     source: &str,
@@ -36,8 +36,8 @@ pub(crate) fn read_all(
     Dataflow { nodes }
 }
 
-/// Reads one key after the other and notes what is wrong. Where something is,
-/// it continues with what an absent key means: the result is not used then.
+/// Reads the keys one by one and notes errors. After an error it continues with the default; the
+/// result is discarded then.
 struct Reader<'a> {
     source: &'a str,
     topics: &'a Topics<'a>,
@@ -142,7 +142,7 @@ impl Reader<'_> {
             policy,
             max_restarts,
             delay,
-            // Whoever wants a long delay gets it.
+            // A long delay raises the default maximum.
             max_delay: max_delay.unwrap_or(Restart::DEFAULT.max_delay.max(delay)),
             window: window.unwrap_or(Restart::DEFAULT.window),
             health_timeout: health_timeout.unwrap_or(Restart::DEFAULT.health_timeout),
@@ -196,7 +196,7 @@ fn read_policy(text: &Text) -> Result<RestartPolicy, Fault> {
         })
 }
 
-/// `topic: node/topic`; anything else is noted where the wiring is checked.
+/// Reads `topic: node/topic`; errors are reported by the wiring check.
 fn read_input((name, source): &(Text, Text), topics: &Topics) -> Option<Input> {
     let (from, output) = source.value.split_once('/')?;
     let (topic, stream) = match topics.split(output) {

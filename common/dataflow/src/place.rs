@@ -1,4 +1,4 @@
-//! Where in the text something is, and what is wrong there.
+//! Position in the text, and errors at a position.
 
 use std::fmt;
 
@@ -6,23 +6,23 @@ use serde_saphyr::Location;
 
 use crate::Fault;
 
-/// A line and a column, both counted from 1, columns in characters.
+/// A position in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Place {
-    /// From 1.
+    /// Line, from 1.
     pub line: u64,
-    /// From 1.
+    /// Column in characters, from 1.
     pub column: u64,
 }
 
 impl Place {
-    /// The beginning of the text.
+    /// Beginning of the text.
     pub const START: Place = Place { line: 1, column: 1 };
 }
 
 impl From<Location> for Place {
     fn from(location: Location) -> Self {
-        // The parser counts both from 1 and uses 0 where it does not know.
+        // The parser counts both from 1; 0 means unknown.
         Place {
             line: location.line().max(1),
             column: location.column().max(1),
@@ -36,12 +36,10 @@ impl fmt::Display for Place {
     }
 }
 
-/// One thing that is wrong, and where.
+/// An error at a position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// Where it is.
     pub place: Place,
-    /// What was found and what is allowed.
     pub fault: Fault,
 }
 

@@ -1,5 +1,5 @@
-//! The descriptor as it stands in the file: texts with their places. Nothing is
-//! interpreted here but the YAML itself.
+//! The descriptor as written in the file: texts with their places. Only the YAML is interpreted
+//! here.
 
 use std::fmt;
 
@@ -11,18 +11,17 @@ use serde_saphyr::{Error, Location, MergeKeyPolicy, Spanned};
 
 use crate::{Fault, Place, Problem};
 
-/// A text and where it stands.
+/// A text with its place in the file.
 pub(crate) type Text = Spanned<String>;
 
-/// The whole file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawDataflow {
     pub(crate) nodes: Spanned<Vec<Spanned<RawNode>>>,
 }
 
-/// One entry of `nodes`. Numbers and policies are kept as texts, because the
-/// parser is more generous with them than dora's.
+/// An entry of `nodes`. Numbers and policies are kept as text, because this parser accepts more
+/// spellings than dora's.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawNode {
@@ -55,23 +54,22 @@ pub(crate) struct RawNode {
 }
 
 impl RawNode {
-    /// The id, or nothing that could be one.
+    /// Returns the id; empty if it is missing.
     pub(crate) fn id(&self) -> &str {
         self.id.as_ref().map_or("", |id| &id.value)
     }
 
-    /// Input names and their sources.
+    /// Returns the input names with their sources.
     pub(crate) fn inputs(&self) -> &[(Text, Text)] {
         self.inputs.as_ref().map_or(&[], |inputs| &inputs.value.0)
     }
 
-    /// The outputs.
     pub(crate) fn outputs(&self) -> &[Text] {
         self.outputs.as_ref().map_or(&[], |outputs| &outputs.value)
     }
 }
 
-/// Keeps a key with the value `null` from passing for a missing one.
+/// Prevents a key with the value `null` from being read as missing.
 fn present<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
 where
     D: Deserializer<'de>,
@@ -80,7 +78,7 @@ where
     T::deserialize(deserializer).map(Some)
 }
 
-/// The entries of a map, in order, keys with their places.
+/// Entries of a map in order, with places of keys and values.
 #[derive(Debug)]
 pub(crate) struct Entries(pub(crate) Vec<(Text, Text)>);
 
@@ -106,14 +104,13 @@ impl<'de> Deserialize<'de> for Entries {
     }
 }
 
-/// Reads the YAML.
 pub(crate) fn parse(text: &str) -> Result<RawDataflow, Problem> {
     let options = serde_saphyr::options! {
         with_snippet: false,
         strict_booleans: true,
         merge_keys: MergeKeyPolicy::Error,
         reject_unsupported_tags: true,
-        // A descriptor within its size repeats little; a bomb repeats much.
+        // A descriptor of the allowed size has few aliases; an alias bomb has many.
         alias_limits: serde_saphyr::alias_limits! { max_total_replayed_events: 10_000 },
     };
     let raw: RawDataflow =
@@ -130,8 +127,8 @@ pub(crate) fn parse(text: &str) -> Result<RawDataflow, Problem> {
     Ok(raw)
 }
 
-/// The parser takes `null` for an empty list or map. It is refused, since it
-/// looks like something forgotten.
+/// Reports `null` as an error where the parser reads it as an empty list or map, because a value
+/// may have been forgotten.
 fn refuse_null(empty: bool, at: Location, opening: char, text: &str) -> Result<(), Problem> {
     if !empty || rest_of_line(text, at).starts_with(opening) {
         return Ok(());
@@ -144,8 +141,7 @@ fn refuse_null(empty: bool, at: Location, opening: char, text: &str) -> Result<(
     })
 }
 
-/// The text from a location to the end of its line; empty where the parser
-/// does not know the byte.
+/// Returns the text from a location to the end of its line; empty if the parser has no byte offset.
 pub(crate) fn rest_of_line(text: &str, at: Location) -> &str {
     at.span()
         .byte_offset()
@@ -154,7 +150,7 @@ pub(crate) fn rest_of_line(text: &str, at: Location) -> &str {
         .unwrap_or("")
 }
 
-/// Says in our words what the parser refused.
+/// Converts an error of the parser to our own messages.
 fn problem(error: &Error, text: &str) -> Problem {
     let at = error.location();
     let found = || match at.map_or("", |at| rest_of_line(text, at)).trim_end() {
@@ -193,7 +189,7 @@ fn wrong_type(found: String, expected: &str) -> Fault {
     Fault::WrongType { found, allowed }
 }
 
-/// The parser ends its messages with the place, which we put in front.
+/// Removes the place from the end of the parser's message; we put it in front.
 fn without_place(message: &str, at: Option<Location>) -> String {
     let place = at.map_or_else(String::new, |at| {
         format!(" at line {}, column {}", at.line(), at.column())

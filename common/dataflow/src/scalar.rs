@@ -1,6 +1,5 @@
-//! Texts that dora reads as something else: numbers and values of environment
-//! variables. What dora would respell on the way is refused, so that a process
-//! sees the same under both launchers.
+//! Texts that dora converts: numbers and values of environment variables. Values that dora would
+//! rewrite are errors, so that a process gets the same value from both launchers.
 
 use std::time::Duration;
 
@@ -9,15 +8,15 @@ use crate::{
     raw::{Text, rest_of_line},
 };
 
-/// The longest time that a key can say, seconds.
+/// Longest time of a key, in seconds.
 const MAX_SECONDS: f64 = 3600.0;
 
-/// Whether the text stands in the file as it is: not quoted, folded or tagged.
+/// True if the text is plain in the file: not quoted, folded or tagged.
 fn is_plain(text: &Text, source: &str) -> bool {
     rest_of_line(source, text.defined).starts_with(&text.value) && !text.value.is_empty()
 }
 
-/// A whole number from 0, for `max_restarts`.
+/// Reads a whole number from 0, for `max_restarts`.
 pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, Fault> {
     let digits = text.value.bytes().all(|b| b.is_ascii_digit());
     let number = text.value.parse().ok().filter(|_| digits);
@@ -30,7 +29,7 @@ pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, Fault> {
         })
 }
 
-/// Seconds, for `key`.
+/// Reads seconds for `key`.
 pub(crate) fn read_seconds(
     key: &'static str,
     text: &Text,
@@ -38,11 +37,11 @@ pub(crate) fn read_seconds(
 ) -> Result<Duration, Fault> {
     let looks_decimal = text.value.starts_with(|c: char| c.is_ascii_digit())
         && text.value.bytes().all(|b| b.is_ascii_digit() || b == b'.');
-    // `007` and `1.` are texts to some parsers of YAML.
+    // Some YAML parsers read `007` and `1.` as text.
     let ambiguous = text.value.ends_with('.')
         || (text.value.starts_with('0') && text.value.len() > 1 && !text.value.starts_with("0."));
     let (least, allowed) = match key {
-        // Nodes report each second.
+        // Nodes report every second.
         "health_check_timeout" => (2.0, "seconds from 2 to 3600, like 15"),
         _ => (0.0, "seconds from 0 to 3600, like 0.5"),
     };
@@ -59,7 +58,7 @@ pub(crate) fn read_seconds(
         })
 }
 
-/// The value of an environment variable, exactly as written.
+/// Reads the value of an environment variable, exactly as written.
 pub(crate) fn read_env_value(text: &Text, source: &str) -> Result<String, Fault> {
     let refuse = |why: String| {
         Err(Fault::BadEnvValue {
@@ -84,7 +83,7 @@ pub(crate) fn read_env_value(text: &Text, source: &str) -> Result<String, Fault>
     Ok(value.clone())
 }
 
-/// What dora makes of a text that Rust can read as a number, quoted or not.
+/// Returns the spelling that dora gives a text that Rust can parse as a number, quoted or not.
 fn respelled_number(value: &str) -> String {
     if let Ok(integer) = value.parse::<i64>() {
         return integer.to_string();
@@ -94,7 +93,7 @@ fn respelled_number(value: &str) -> String {
         .map_or_else(|_| value.to_owned(), |number| number.to_string())
 }
 
-/// Plain spellings that YAML resolves, except those that stay as they are.
+/// True for plain spellings that YAML converts to something else.
 fn yaml_reads_otherwise(value: &str) -> bool {
     let lower = value.to_ascii_lowercase();
     let unsigned = lower.trim_start_matches(['+', '-']);
@@ -108,7 +107,7 @@ fn yaml_reads_otherwise(value: &str) -> bool {
 mod tests {
     use crate::{Topics, parse};
 
-    /// Puts `value` behind `key` and returns what is wrong, if anything is.
+    /// Returns the errors for `key: value`.
     fn fault(key: &str, value: &str) -> Option<String> {
         let text = format!("nodes:\n  - id: a\n    path: x\n    {key}: {value}\n");
         let problems = parse(&text, &Topics::default()).err()?;

@@ -1,4 +1,4 @@
-//! Which node sends what to whom: the checks that look at several nodes.
+//! Checks across nodes: ids, outputs, and the sources of inputs.
 
 use std::collections::HashMap;
 
@@ -7,22 +7,20 @@ use crate::{
     raw::{RawDataflow, RawNode, Text},
 };
 
-/// The topics that ports may name.
+/// Topics that ports may name.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Topics<'a> {
-    /// All of them.
+    /// All topics.
     pub names: &'a [&'a str],
-    /// Those of them that several nodes may send.
+    /// Topics that several nodes may publish.
     pub shared: &'a [&'a str],
-    /// Those that a graph may have several of: `scan`, `scan_front`, `scan_rear`.
-    /// Several nodes may send one, and an input that is wired to one may have any
-    /// name.
+    /// Topics that a graph may have several of: `scan`, `scan_front`, `scan_rear`. Several nodes
+    /// may publish one, and an input that is wired to one may have any name.
     pub several: &'a [&'a str],
 }
 
 impl Topics<'_> {
-    /// The topic that an output stands for, and what distinguishes it from others of
-    /// that topic: `scan` and `front` for `scan_front`.
+    /// Splits an output into its topic and its suffix: `scan` and `front` for `scan_front`.
     pub(crate) fn split<'n>(&self, output: &'n str) -> (&'n str, &'n str) {
         let split = self.several.iter().find_map(|topic| {
             let suffix = output.strip_prefix(topic)?.strip_prefix('_')?;
@@ -38,7 +36,7 @@ impl Topics<'_> {
     }
 }
 
-/// Notes what is wrong with the ids, ports and wires of the graph.
+/// Adds the errors in ids, ports and wires of the graph to `problems`.
 pub(crate) fn check(raw: &RawDataflow, topics: &Topics, problems: &mut Vec<Problem>) {
     let nodes: Vec<&RawNode> = raw.nodes.value.iter().map(|n| &n.value).collect();
     let mut note = |text: &Text, fault| {
@@ -89,7 +87,7 @@ fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Tex
     }
 }
 
-/// `senders` holds the node that was last seen to send each topic.
+/// `senders` has the last node that publishes each topic.
 fn check_output<'a>(
     node: &'a RawNode,
     topic: &'a str,
@@ -169,7 +167,7 @@ fn check_source(
     Ok(())
 }
 
-/// `a, b, c`, or `none`.
+/// Formats `a, b, c`, or `none`.
 fn list<'a>(items: impl Iterator<Item = &'a str>) -> String {
     let items: Vec<&str> = items.filter(|i| !i.is_empty()).collect();
     if items.is_empty() {

@@ -1,10 +1,10 @@
-//! Command lines split in words, as dora splits them: arguments by the quoting
-//! rules of a shell, build commands at spaces. Nothing is ever replaced.
+//! Splits command lines into words like dora: arguments by the quoting rules of a shell, build
+//! commands at spaces. There is no expansion.
 
 use crate::{Command, Fault};
 
-/// The words of `args`. As in a shell, a word that begins with `#` begins a
-/// comment, up to the end of its line.
+/// Splits `args` into words. As in a shell, a word that begins with `#` starts a comment until the
+/// end of the line.
 pub(crate) fn split_args(text: &str) -> Result<Vec<String>, Fault> {
     shlex::split(text)
         .filter(|_| !text.contains('\0'))
@@ -13,10 +13,10 @@ pub(crate) fn split_args(text: &str) -> Result<Vec<String>, Fault> {
         })
 }
 
-/// The commands of `build`, one a line.
+/// Splits `build` into commands, one per line.
 ///
-/// dora knows half of a shell's quotes here, so that a quoted build line means
-/// one thing to a reader and another to dora; such lines are refused.
+/// dora handles only some of a shell's quotes here, so a quoted build line would mean one thing to
+/// a reader and another to dora; such lines are errors.
 pub(crate) fn split_build(text: &str) -> Result<Vec<Command>, Fault> {
     if text.is_empty() {
         return Err(bad_build("", "is empty"));

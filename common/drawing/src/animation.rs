@@ -1,4 +1,4 @@
-//! Scenes one after the other, as an animated PNG.
+//! Encodes scenes as an animated PNG.
 
 use std::io::Cursor;
 use std::time::Duration;
@@ -8,14 +8,14 @@ use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, Filter};
 use crate::raster::pixels;
 use crate::{DrawingError, Image, Scene};
 
-/// A scene, and how long it is shown: to a millisecond, at most 65 s.
+/// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.
 pub type Frame = (Scene, Duration);
 
-/// The bytes of an animated PNG file, which begins again when it has ended. Where only the
-/// first frame is known, that is shown. Of the others only what changes is stored.
+/// Encodes an animated PNG file that repeats forever. Programs without support for animations show
+/// the first frame. Further frames store only changed pixels.
 ///
 /// # Errors
-/// If there is no frame, one has another size than the first, or cannot be had.
+/// There is no frame, one has another size than the first, or an item of `frames` is an error.
 pub fn to_animated_png<E: From<DrawingError>>(
     mut frames: impl ExactSizeIterator<Item = Result<Frame, E>>,
 ) -> Result<Vec<u8>, E> {
@@ -44,7 +44,7 @@ pub fn to_animated_png<E: From<DrawingError>>(
         let part = Part::changed(&before, &now)?;
         let delay = milliseconds(shown);
         writer.set_frame_delay(delay, 1000).map_err(encoding)?;
-        // Positions are checked against the sizes before.
+        // The encoder checks each position against the previous size.
         writer.reset_frame_position().map_err(encoding)?;
         let (width, height) = part.sides;
         writer
@@ -59,8 +59,8 @@ pub fn to_animated_png<E: From<DrawingError>>(
     Ok(bytes)
 }
 
-/// What of an image is not as it was before: the smallest rectangle that holds it, in which
-/// what stays is transparent.
+/// Changed part of an image: the smallest rectangle around all changes, with unchanged pixels
+/// transparent.
 struct Part {
     corner: (u32, u32),
     sides: (u32, u32),
@@ -75,7 +75,7 @@ impl Part {
         }
         let differs = |x: u32, y: u32| before.pixel(x, y) != now.pixel(x, y);
         let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        // Where nothing changes, a frame still has a pixel.
+        // A frame without changes still needs one pixel.
         let mut corner = (width - 1, height - 1);
         let mut end = (1, 1);
         for (x, y) in all.filter(|&(x, y)| differs(x, y)) {
@@ -103,7 +103,7 @@ mod tests {
 
     const RED: Color = Color::rgb(0xFF_0000);
 
-    /// Red at these pixels of 9 x 7.
+    /// A scene of 9 x 7 with these pixels red.
     fn scene(red: &[(f64, f64)]) -> Scene {
         let mut scene = Scene::new(9, 7, "", Color::WHITE).unwrap();
         for &(x, y) in red {

@@ -1,20 +1,14 @@
-//! A colour with an opacity.
-
-/// A colour of sRGB and how much it covers what lies below.
+/// An sRGB colour with an opacity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Color {
-    /// 0..=255.
     pub red: u8,
-    /// 0..=255.
     pub green: u8,
-    /// 0..=255.
     pub blue: u8,
-    /// 0 lets everything through, 1 nothing.
+    /// From 0, transparent, to 1, opaque.
     pub opacity: f32,
 }
 
 impl Color {
-    /// White, opaque.
     pub const WHITE: Color = Color::rgb(0xFF_FFFF);
 
     /// An opaque colour from `0xRRGGBB`.
@@ -29,7 +23,7 @@ impl Color {
         }
     }
 
-    /// The colour with another opacity, held within 0..=1.
+    /// The colour with another opacity, clamped to 0..=1.
     #[must_use]
     pub const fn with_opacity(self, opacity: f32) -> Self {
         Color {
@@ -38,8 +32,7 @@ impl Color {
         }
     }
 
-    /// A share of the way to another colour, opacities too; `share` is held
-    /// within 0..=1.
+    /// Interpolates to another colour, including opacity; `share` is clamped to 0..=1.
     #[must_use]
     pub fn towards(self, other: Color, share: f64) -> Self {
         let share = share.clamp(0.0, 1.0);

@@ -1,42 +1,27 @@
-//! Errors of a picture.
+//! Errors of creating a picture.
 
 use crate::MAX_SIDE;
 
-/// Why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawingError {
-    /// A picture without a pixel, or with too many.
+    /// A side of the picture is 0 or too large.
     #[error("a picture of {width} x {height} pixels; allowed: 1 to {MAX_SIDE} along each side")]
-    Size {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
-    /// An image whose pixels are not as many as its sides say.
+    Size { width: u32, height: u32 },
+    /// The number of bytes does not match the sides of the image.
     #[error(
         "an image of {width} x {height} pixels came with {found} bytes; four a pixel are needed"
     )]
     Pixels {
-        /// Pixels.
         width: u32,
-        /// Pixels.
         height: u32,
-        /// Bytes that there are.
+        /// Number of bytes given.
         found: usize,
     },
-    /// An animation without a picture.
     #[error("an animation needs at least one picture")]
     NoFrame,
-    /// A picture of an animation that is not as large as the first.
+    /// A frame of an animation differs in size from the first one.
     #[error("a picture of {width} x {height} pixels in an animation of another size")]
-    FrameSize {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
-    /// The pixels could not be encoded.
+    FrameSize { width: u32, height: u32 },
     #[error("the picture cannot be encoded as PNG")]
     Encoding(#[from] png::EncodingError),
 }

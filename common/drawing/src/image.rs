@@ -1,4 +1,4 @@
-//! Images of pixels within a picture.
+//! Raster images within a picture.
 
 use std::io;
 
@@ -12,15 +12,15 @@ use crate::{Color, DrawingError};
 pub struct Image {
     width: u32,
     height: u32,
-    /// Red, green, blue and opacity of each, opacity not multiplied in.
+    /// Red, green, blue and opacity of each pixel, not premultiplied.
     rgba: Vec<u8>,
 }
 
 impl Image {
-    /// An image of `width · height` pixels, each given by its column and row.
+    /// Creates an image of `width · height` pixels from a colour for each column and row.
     ///
     /// # Errors
-    /// If a side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
+    /// A side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn from_pixels(
         width: u32,
         height: u32,
@@ -38,10 +38,10 @@ impl Image {
         Image::new(width, height, rgba)
     }
 
-    /// An image from its bytes: red, green, blue and opacity of each pixel.
+    /// Creates an image from red, green, blue and opacity of each pixel.
     ///
     /// # Errors
-    /// If a side is out of range, or the bytes are not four a pixel.
+    /// A side is out of range, or there are not four bytes per pixel.
     pub fn new(width: u32, height: u32, rgba: Vec<u8>) -> Result<Self, DrawingError> {
         check_size(width, height)?;
         if rgba.len() != 4 * width as usize * height as usize {
@@ -58,13 +58,11 @@ impl Image {
         })
     }
 
-    /// Pixels along x.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Pixels along y.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
@@ -76,19 +74,19 @@ impl Image {
         &self.rgba
     }
 
-    /// Red, green, blue and opacity of one pixel; nothing beside the image.
+    /// Red, green, blue and opacity of one pixel; all 0 outside the image.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         let first = 4 * (y as usize * self.width as usize + x as usize);
         let pixel = self.rgba.get(first..).and_then(<[u8]>::first_chunk);
         pixel.copied().unwrap_or_default()
     }
 
-    /// The bytes of a PNG file.
+    /// Encodes a PNG file.
     ///
     /// # Errors
-    /// If the encoder fails.
+    /// The encoder fails.
     pub fn to_png(&self) -> Result<Vec<u8>, DrawingError> {
-        // Opaque images, which most are, do without a fourth channel.
+        // Opaque images, the usual case, need no fourth channel.
         let is_opaque = self.rgba.iter().skip(3).step_by(4).all(|&a| a == 255);
         if !is_opaque {
             return encode(self.width, self.height, ColorType::Rgba, &self.rgba);
@@ -112,7 +110,7 @@ fn encode(
     encoder.set_color(color);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::High);
-    // Areas of one colour compress best as they are.
+    // Areas of one colour compress best without a filter.
     encoder.set_filter(Filter::NoFilter);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels)?;
@@ -124,7 +122,7 @@ fn encode(
 pub(crate) mod tests {
     use super::*;
 
-    /// Sides and bytes of a PNG file, and how many bytes a pixel has.
+    /// Size and bytes of a PNG file, and number of bytes per pixel.
     pub(crate) fn decode(bytes: &[u8]) -> ((u32, u32), Vec<u8>, usize) {
         let mut reader = png::Decoder::new(io::Cursor::new(bytes))
             .read_info()

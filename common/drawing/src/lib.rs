@@ -6,13 +6,12 @@
 //!                            └─ to_svg
 //! ```
 //!
-//! All come from the same items, so they show the same. Letters are outlines
-//! of a font that is linked in: nothing has to be installed where a picture is
-//! made or looked at, and an SVG holds no text that could come out otherwise.
-//! Coordinates are pixels from the upper left corner, y downwards.
+//! All outputs come from the same items, so they look the same. Letters are outlines of an embedded
+//! font: nothing has to be installed to create or view a picture, and an SVG contains no text that
+//! could render differently. Coordinates are pixels from the upper left corner, y downwards.
 //!
-//! The crate knows no map, robot or file. It draws with `tiny-skia` rather than
-//! through a whole SVG renderer, which takes ten times as long to build.
+//! The crate is independent of maps, robots and files. It draws with `tiny-skia` instead of a whole
+//! SVG renderer, which takes ten times as long to build.
 
 mod animation;
 mod color;

@@ -1,18 +1,16 @@
 //! Outlines of shapes.
 
-/// From the centre of a Bézier curve of a quarter circle to its handles.
+/// Distance of the handles of a quarter circle as a Bézier curve from its ends, per radius.
 const QUARTER: f64 = 0.552_284_749_8;
 
-/// A rectangle along the axes, pixels.
+/// A rectangle along the axes, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rect {
-    /// The left edge.
+    /// Left edge.
     pub x: f64,
-    /// The upper edge.
+    /// Upper edge.
     pub y: f64,
-    /// To the right edge.
     pub width: f64,
-    /// To the lower edge.
     pub height: f64,
 }
 
@@ -28,25 +26,22 @@ impl Rect {
         }
     }
 
-    /// The right edge.
     #[must_use]
     pub fn right(&self) -> f64 {
         self.x + self.width
     }
 
-    /// The lower edge.
     #[must_use]
     pub fn bottom(&self) -> f64 {
         self.y + self.height
     }
 
-    /// The middle.
     #[must_use]
     pub fn center(&self) -> (f64, f64) {
         (self.x + self.width / 2.0, self.y + self.height / 2.0)
     }
 
-    /// Whether both cover some of the same area.
+    /// True if both have a common area.
     #[must_use]
     pub fn overlaps(&self, other: &Rect) -> bool {
         self.x < other.right()
@@ -55,7 +50,7 @@ impl Rect {
             && other.y < self.bottom()
     }
 
-    /// Whether the other lies within.
+    /// True if the other rectangle is inside.
     #[must_use]
     pub fn holds(&self, other: &Rect) -> bool {
         self.x <= other.x
@@ -64,7 +59,7 @@ impl Rect {
             && other.bottom() <= self.bottom()
     }
 
-    /// The rectangle with each edge moved inwards, or outwards by less than 0.
+    /// Moves each edge inwards by this, or outwards if negative.
     #[must_use]
     pub fn shrunk(&self, by: f64) -> Self {
         Rect::new(
@@ -76,54 +71,49 @@ impl Rect {
     }
 }
 
-/// A piece of an outline; each begins where the one before ended.
+/// A segment of an outline; each begins at the end of the one before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Piece {
     Move((f64, f64)),
     Line((f64, f64)),
-    /// The handle and the end.
+    /// Handle and end.
     Quadratic((f64, f64), (f64, f64)),
-    /// Both handles and the end.
+    /// Both handles and end.
     Cubic((f64, f64), (f64, f64), (f64, f64)),
     Close,
 }
 
-/// Any number of outlines. They are filled by the nonzero rule: an outline within
-/// another is a hole where it goes the other way around.
+/// Any number of outlines. They are filled by the nonzero rule: an outline inside another is a hole
+/// if it has the opposite direction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
     pub(crate) pieces: Vec<Piece>,
 }
 
 impl Path {
-    /// Nothing yet.
     #[must_use]
     pub fn new() -> Self {
         Path::default()
     }
 
-    /// Starts an outline.
     pub fn move_to(&mut self, x: f64, y: f64) {
         self.pieces.push(Piece::Move((x, y)));
     }
 
-    /// Goes on straight.
+    /// Adds a straight line from the current point.
     pub fn line_to(&mut self, x: f64, y: f64) {
         self.pieces.push(Piece::Line((x, y)));
     }
 
-    /// Closes the outline.
     pub fn close(&mut self) {
         self.pieces.push(Piece::Close);
     }
 
-    /// Adds a straight line.
     pub fn add_line(&mut self, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) {
         self.move_to(x0, y0);
         self.line_to(x1, y1);
     }
 
-    /// Adds an open line through points.
     pub fn add_polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
         for (i, (x, y)) in points.into_iter().enumerate() {
             match i {
@@ -133,13 +123,11 @@ impl Path {
         }
     }
 
-    /// Adds a closed line through points.
     pub fn add_polygon(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
         self.add_polyline(points);
         self.close();
     }
 
-    /// Adds a rectangle.
     pub fn add_rect(&mut self, rect: Rect) {
         let (right, bottom) = (rect.right(), rect.bottom());
         self.add_polygon([
@@ -150,14 +138,12 @@ impl Path {
         ]);
     }
 
-    /// Adds a circle.
     pub fn add_circle(&mut self, center: (f64, f64), radius: f64) {
         self.add_ellipse(center, (radius, radius), 0.0);
     }
 
-    /// Adds an ellipse of two half axes, the first of them turned by `angle`
-    /// radians from the picture's x axis towards its y axis, which is clockwise
-    /// to the eye.
+    /// Adds an ellipse of two half axes, the first of them turned by `angle` radians from the
+    /// picture's x axis towards its y axis, which appears clockwise.
     pub fn add_ellipse(&mut self, (x, y): (f64, f64), (a, b): (f64, f64), angle: f64) {
         let (sin, cos) = angle.sin_cos();
         let at = |u: f64, v: f64| (x + a * u * cos - b * v * sin, y + a * u * sin + b * v * cos);
@@ -174,7 +160,6 @@ impl Path {
         self.close();
     }
 
-    /// A rectangle.
     #[must_use]
     pub fn rect(rect: Rect) -> Self {
         let mut path = Path::new();
@@ -182,7 +167,6 @@ impl Path {
         path
     }
 
-    /// A circle.
     #[must_use]
     pub fn circle(center: (f64, f64), radius: f64) -> Self {
         let mut path = Path::new();
@@ -190,7 +174,6 @@ impl Path {
         path
     }
 
-    /// A straight line.
     #[must_use]
     pub fn line(from: (f64, f64), to: (f64, f64)) -> Self {
         let mut path = Path::new();
@@ -214,8 +197,7 @@ impl Path {
         path
     }
 
-    /// The outlines turned by a quarter about a point, so that what ran to the right
-    /// runs up.
+    /// Rotates the outlines by 90° about a point, so that text to the right runs upwards.
     #[must_use]
     pub fn turned_up(&self, (x, y): (f64, f64)) -> Self {
         let turn = |(u, v): (f64, f64)| (x + (v - y), y - (u - x));
@@ -231,7 +213,6 @@ impl Path {
         }
     }
 
-    /// Whether nothing was added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()
@@ -242,7 +223,7 @@ impl Path {
 mod tests {
     use super::*;
 
-    /// The points between the pieces.
+    /// End points of the segments.
     fn corners(path: &Path) -> Vec<(f64, f64)> {
         let end = |piece: &Piece| match *piece {
             Piece::Move(to)
@@ -278,7 +259,7 @@ mod tests {
         let found = corners(&path);
         assert_eq!(found.len(), expected.len());
         for ((x, y), (ex, ey)) in found.into_iter().zip(expected) {
-            // One rotation of small numbers.
+            // Tolerance for one rotation of small numbers.
             assert!((x - ex).abs() < 1e-12 && (y - ey).abs() < 1e-12, "{x} {y}");
         }
     }

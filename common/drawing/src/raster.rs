@@ -1,4 +1,4 @@
-//! A scene as pixels.
+//! Renders a scene as pixels.
 
 use tiny_skia::{
     FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, PixmapPaint,
@@ -9,18 +9,18 @@ use crate::path::Piece;
 use crate::scene::Item;
 use crate::{Color, DrawingError, Image, Path, Rect, Scene, Stroke};
 
-/// The bytes of a PNG file, of one pixel a unit of the scene.
+/// Encodes a PNG file with one pixel per unit of the scene.
 ///
 /// # Errors
-/// If there is no room for the pixels, or the encoder fails.
+/// The pixels cannot be allocated, or the encoder fails.
 pub fn to_png(scene: &Scene) -> Result<Vec<u8>, DrawingError> {
     pixels(scene)?.to_png()
 }
 
-/// One pixel a unit of the scene.
+/// Renders one pixel per unit of the scene.
 ///
 /// # Errors
-/// If there is no room for them.
+/// The pixels cannot be allocated.
 pub(crate) fn pixels(scene: &Scene) -> Result<Image, DrawingError> {
     let (width, height) = (scene.width(), scene.height());
     let mut pixmap = Pixmap::new(width, height).ok_or(DrawingError::Size { width, height })?;
@@ -57,7 +57,7 @@ fn draw_lines(pixmap: &mut Pixmap, path: &Path, stroke: &Stroke, mask: Option<&M
         width: stroke.width as f32,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
-        // Dashes of no length are none.
+        // No dashes for a length of 0, for which this is `None`.
         dash: StrokeDash::new(vec![dash, dash], 0.0),
         ..tiny_skia::Stroke::default()
     };
@@ -95,7 +95,7 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image, over: Rect, mask: Option<&Mask
     pixmap.draw_pixmap(0, 0, source.as_ref(), &how, place, mask);
 }
 
-/// What lies within `area` and within the mask that there is.
+/// Mask for `area` within the existing mask.
 fn clipped(pixmap: &Pixmap, area: Rect, mask: Option<&Mask>) -> Option<Mask> {
     let path = built(&Path::rect(area))?;
     let rule = FillRule::Winding;
@@ -120,7 +120,7 @@ fn paint(color: Color) -> Paint<'static> {
     paint
 }
 
-/// The library's path; `None` where it is empty or not finite.
+/// Converts to the library's path; `None` if it is empty or not finite.
 fn built(path: &Path) -> Option<tiny_skia::Path> {
     let mut builder = PathBuilder::new();
     let single = |(x, y): (f64, f64)| (x as f32, y as f32);
@@ -157,7 +157,7 @@ pub(crate) mod tests {
     const RED: Color = Color::rgb(0xFF_0000);
     const BLUE: Color = Color::rgb(0x00_00FF);
 
-    /// A scene with one thing of each kind.
+    /// A scene with one item of each kind.
     pub(crate) fn everything() -> Scene {
         let mut scene = Scene::new(40, 30, "a <title>", Color::WHITE).unwrap();
         scene.fill(Path::rect(Rect::new(0.0, 0.0, 10.0, 10.0)), RED);
@@ -185,7 +185,7 @@ pub(crate) mod tests {
         assert_eq!((at(5, 5), at(12, 5)), (red, white));
         assert_eq!((at(19, 15), at(20, 15), at(22, 15)), (blue, blue, white));
         assert_eq!((at(25, 5), at(30, 5), at(30, 9)), (red, blue, white));
-        // Half red on white; outside of the clip nothing.
+        // Half red on white; nothing outside the clip.
         assert_eq!((at(32, 22), at(28, 22)), ([255, 127, 127], white));
         let letter = (2..14).flat_map(|x| (16..28).map(move |y| (x, y)));
         assert!(letter.filter(|&(x, y)| at(x, y) == blue).count() > 20);

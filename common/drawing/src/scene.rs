@@ -1,21 +1,19 @@
-//! What a picture shows, from the back to the front.
+//! Items of a picture, from back to front.
 
 use crate::size::check_size;
 use crate::{Color, DrawingError, Image, Path, Rect, TextStyle, text};
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// Its colour.
     pub color: Color,
-    /// Pixels.
+    /// In pixels.
     pub width: f64,
-    /// Length of dashes and of the gaps between them, pixels; 0 draws through.
+    /// Length of dashes and of gaps, in pixels; 0 draws a solid line.
     pub dash: f64,
 }
 
 impl Stroke {
-    /// A line without gaps.
     #[must_use]
     pub const fn new(color: Color, width: f64) -> Self {
         Stroke {
@@ -26,43 +24,41 @@ impl Stroke {
     }
 }
 
-/// What is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Item {
     Fill(Path, Color),
     Stroke(Path, Stroke),
     /// Stretched over the rectangle.
     Image(Image, Rect),
-    /// Items of which only what lies within the rectangle is seen.
+    /// Items clipped to the rectangle.
     Clip(Rect, Vec<Item>),
 }
 
-/// A line of text in a picture, and where it stands.
+/// A line of text in a picture, with its area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// What is written.
     pub text: String,
-    /// From the top of its capitals to the foot of its descenders.
+    /// From the top of capitals to the bottom of descenders.
     pub area: Rect,
 }
 
-/// A picture in the making.
+/// A picture under construction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     width: u32,
     height: u32,
     title: String,
-    /// The first is the background.
+    /// The first item is the background.
     items: Vec<Item>,
     labels: Vec<Label>,
 }
 
 impl Scene {
-    /// An empty picture of `width · height` pixels on a background. The title
-    /// is what a viewer of SVG says that it is; it is not drawn.
+    /// An empty picture of `width · height` pixels on a background. The title is shown by SVG
+    /// viewers; it is not drawn.
     ///
     /// # Errors
-    /// If a side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
+    /// A side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn new(
         width: u32,
         height: u32,
@@ -81,34 +77,32 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Pixels along x.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Pixels along y.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The whole picture.
+    /// Area of the whole picture.
     #[must_use]
     pub fn area(&self) -> Rect {
         Rect::new(0.0, 0.0, self.width.into(), self.height.into())
     }
 
-    /// All text of the picture, in the order in which it was written.
+    /// All text of the picture, in drawing order.
     #[must_use]
     pub fn labels(&self) -> &[Label] {
         &self.labels
     }
 
-    /// Cuts the picture below, or adds background there.
+    /// Crops or extends the picture at the bottom.
     ///
     /// # Errors
-    /// If the height is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
+    /// The height is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
         check_size(self.width, height)?;
         self.height = height;
@@ -127,32 +121,30 @@ impl Scene {
         &self.items
     }
 
-    /// Fills shapes.
     pub fn fill(&mut self, path: Path, color: Color) {
         if !path.is_empty() {
             self.items.push(Item::Fill(path, color));
         }
     }
 
-    /// Draws lines.
     pub fn stroke(&mut self, path: Path, stroke: Stroke) {
         if !path.is_empty() {
             self.items.push(Item::Stroke(path, stroke));
         }
     }
 
-    /// Draws an image, stretched over a rectangle; pixels stay square blocks.
+    /// Draws an image, stretched over a rectangle without smoothing.
     pub fn image(&mut self, image: Image, over: Rect) {
         self.items.push(Item::Image(image, over));
     }
 
-    /// Writes a line of text at a point of its base line.
+    /// Writes a line of text at a point of its baseline.
     pub fn text(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
         self.label(content, style.area_of(content, at));
         self.letters(text::outline(content, at, style), style);
     }
 
-    /// The same, running up.
+    /// Writes a line of text upwards from a point of its baseline.
     pub fn text_upwards(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
         let flat = style.area_of(content, at);
         let (ahead, down) = (flat.right() - at.0, flat.y - at.1);
@@ -173,7 +165,7 @@ impl Scene {
         self.fill(path, style.color);
     }
 
-    /// Draws what `draw` draws, and shows of it what lies within `area`.
+    /// Clips everything that `draw` adds to `area`.
     pub fn clipped(&mut self, area: Rect, draw: impl FnOnce(&mut Scene)) {
         let outside = std::mem::take(&mut self.items);
         draw(self);
@@ -221,7 +213,7 @@ mod tests {
         };
         assert_eq!(flat.area, Rect::new(200.0 - width, 226.0, width, 98.0));
         let expected = Rect::new(126.0, 300.0 - width, 98.0, width);
-        // Sums round.
+        // Tolerance for rounding.
         let off = (turned.area.y - expected.y).abs() + (turned.area.x - expected.x).abs();
         assert!(off < 1e-9, "{turned:?}");
         assert!((turned.area.height - width).abs() < 1e-9 && turned.area.width == 98.0);

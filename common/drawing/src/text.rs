@@ -1,5 +1,5 @@
-//! Text as outlines of DejaVu Sans, which is linked in. Letters stand side by
-//! side, from left to right; what the font lacks is an empty box.
+//! Text as outlines of the embedded DejaVu Sans, from left to right without kerning; characters
+//! missing in the font are an empty box.
 
 use std::sync::LazyLock;
 
@@ -8,44 +8,34 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 use crate::path::Piece;
 use crate::{Color, Path, Rect};
 
-/// How heavy letters are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Weight {
-    /// For most text.
     Regular,
-    /// For titles.
     Bold,
 }
 
-/// Which point of a line of text is given.
+/// Reference point of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its left end.
     Start,
-    /// Its middle.
     Middle,
-    /// Its right end.
     End,
 }
 
-/// How text is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextStyle {
-    /// The em of the font, pixels; capitals are 0.73 of it.
+    /// The em of the font, in pixels; capitals are 0.73 of it.
     pub size: f64,
-    /// How heavy.
     pub weight: Weight,
-    /// Which point is given.
+    /// Reference point.
     pub anchor: Anchor,
-    /// The letters' colour.
     pub color: Color,
-    /// A rim behind the letters and its width, which keeps them legible on
-    /// anything.
+    /// Colour and width of a rim behind the letters, for legibility on any background.
     pub halo: Option<(Color, f64)>,
 }
 
 impl TextStyle {
-    /// Regular text that starts at the point given, without a rim.
+    /// Regular text that starts at its reference point, without a rim.
     #[must_use]
     pub const fn new(size: f64, color: Color) -> Self {
         TextStyle {
@@ -57,7 +47,6 @@ impl TextStyle {
         }
     }
 
-    /// In bold.
     #[must_use]
     pub const fn bold(self) -> Self {
         TextStyle {
@@ -66,20 +55,18 @@ impl TextStyle {
         }
     }
 
-    /// With another point given.
     #[must_use]
     pub const fn anchored(self, anchor: Anchor) -> Self {
         TextStyle { anchor, ..self }
     }
 
-    /// With a rim.
     #[must_use]
     pub const fn with_halo(self, color: Color, width: f64) -> Self {
         let halo = Some((color, width));
         TextStyle { halo, ..self }
     }
 
-    /// How wide a line of text is, pixels.
+    /// Width of a line of text, in pixels.
     #[must_use]
     pub fn width_of(&self, content: &str) -> f64 {
         let face = face(self.weight);
@@ -87,8 +74,8 @@ impl TextStyle {
         advances.sum::<f64>() * self.scale(face)
     }
 
-    /// What a line of text at a point of its base line covers: from the top of its
-    /// capitals to the foot of its descenders.
+    /// Area of a line of text at a point of its baseline: from the top of capitals to the bottom of
+    /// descenders.
     #[must_use]
     pub fn area_of(&self, content: &str, (x, y): (f64, f64)) -> Rect {
         let width = self.width_of(content);
@@ -96,7 +83,7 @@ impl TextStyle {
         Rect::new(x - self.before(width), y - above, width, above + below)
     }
 
-    /// How much of a text stands left of the point given.
+    /// Part of the width to the left of the reference point.
     fn before(&self, width: f64) -> f64 {
         match self.anchor {
             Anchor::Start => 0.0,
@@ -110,7 +97,7 @@ impl TextStyle {
     }
 }
 
-/// The outlines of a line of text at a point of its base line.
+/// Outlines of a line of text at a point of its baseline.
 pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> Path {
     let face = face(style.weight);
     let mut pen = Pen {
@@ -120,7 +107,7 @@ pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> P
     };
     for letter in content.chars() {
         let (glyph, advance) = advance(face, letter);
-        // A glyph without an outline, such as a space, leaves its room free.
+        // A glyph without an outline, such as a space, only advances.
         face.outline_glyph(glyph, &mut pen);
         pen.at.0 += advance * pen.scale;
     }
@@ -140,14 +127,14 @@ fn parse(font: &'static [u8]) -> Face<'static> {
     Face::parse(font, 0).expect("the font that is linked in is sound")
 }
 
-/// The glyph of a letter, and how far the next one stands in the font's units.
+/// Glyph of a character, and its advance in the font's units.
 fn advance(face: &Face<'_>, letter: char) -> (GlyphId, f64) {
     let glyph = face.glyph_index(letter).unwrap_or(GlyphId(0));
     let advance = face.glyph_hor_advance(glyph).unwrap_or_default();
     (glyph, advance.into())
 }
 
-/// Takes a glyph's outline from the font's units, y upwards, to the picture.
+/// Converts a glyph's outline from the font's units, y upwards, to the picture.
 struct Pen {
     path: Path,
     at: (f64, f64),

@@ -1,4 +1,4 @@
-//! A scene as SVG.
+//! Encodes a scene as SVG.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -12,10 +12,10 @@ use crate::path::Piece;
 use crate::scene::Item;
 use crate::{Color, DrawingError, Path, Rect, Scene};
 
-/// The text of an SVG file. It refers to nothing outside of itself.
+/// Encodes an SVG file without external references.
 ///
 /// # Errors
-/// If an image cannot be encoded.
+/// An image cannot be encoded.
 pub fn to_svg(scene: &Scene) -> Result<String, DrawingError> {
     let (width, height) = (scene.width(), scene.height());
     let mut all = Group::new();
@@ -118,7 +118,7 @@ fn data(path: &Path) -> Data {
     data
 }
 
-/// To a hundredth of a pixel, which keeps files small.
+/// Rounds to a hundredth of a pixel, which keeps files small.
 fn rounded(value: f64) -> f32 {
     ((value * 100.0).round() / 100.0) as f32
 }

@@ -1,6 +1,6 @@
-//! The one interface of all ways to count votes at a known heading.
+//! Common interface of all ways to count votes at a known heading.
 //!
-//! Every accumulator gives the same numbers; they differ in how long they take.
+//! All accumulators give the same numbers and differ only in speed.
 
 use crate::directions::Direction;
 use crate::grid::Grid;
@@ -11,16 +11,16 @@ use crate::space::Space;
 /// One scan at one heading.
 #[derive(Debug, Clone, Copy)]
 pub struct Query<'a> {
-    /// The scan.
+    /// Scan, compiled for `space`.
     pub program: &'a ScanProgram,
-    /// The space that it was compiled for.
+    /// Space for which the scan was compiled.
     pub space: &'a Space,
-    /// Index on the heading grid.
+    /// Heading as an index on the heading grid.
     pub heading: usize,
 }
 
 impl<'a> Query<'a> {
-    /// The direction of a beam, and what it votes along rays.
+    /// Returns the direction of a beam, and its votes along rays.
     #[must_use]
     pub fn beam(&self, beam: usize) -> (&'a Direction, Taper<'a>) {
         let bearing = self.program.bearing(beam);
@@ -29,10 +29,10 @@ impl<'a> Query<'a> {
     }
 }
 
-/// A way of counting votes; it may keep what it needs from scan to scan.
+/// A method of counting votes; it may reuse buffers from scan to scan.
 pub trait Accumulator {
-    /// Fills in the intensities of all cells, row by row from the lowest y;
-    /// `None` if `stop` said so before the end.
+    /// Fills in the intensities of all cells, row by row from the lowest y; `None` if `stop`
+    /// returned true before the end.
     fn fill(
         &mut self,
         query: Query<'_>,
@@ -41,7 +41,7 @@ pub trait Accumulator {
     ) -> Option<()>;
 }
 
-/// The plain reference: every cell of every ray.
+/// The slow reference: visits every cell of every ray.
 #[derive(Debug, Clone, Copy)]
 pub struct Reference<'a> {
     /// The map.
@@ -96,7 +96,7 @@ mod tests {
             all.push(Box::new(sweeps.accumulator_with(set)));
         }
         for (i, accumulator) in all.iter_mut().enumerate() {
-            // What is left of another scan must not matter.
+            // The content left by another scan must not matter.
             let mut field = vec![7; 5];
             for _ in 0..2 {
                 prop_assert!(accumulator.fill(query, &mut field, &|| false).is_some());

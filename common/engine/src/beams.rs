@@ -1,4 +1,4 @@
-//! Which beams of a scan vote, and how much each counts.
+//! Choice of the beams of a scan that vote, and their weights.
 
 use std::f64::consts::TAU;
 
@@ -6,10 +6,10 @@ use crate::observation::{CarriedScan, Observation};
 use crate::scan::Scan;
 use crate::space::Space;
 
-/// Added to every weight, so that near beams keep a say.
+/// Added to every weight, so that near beams still count.
 const MIN_WEIGHT: f64 = 0.05;
 
-/// Which beams vote, and with what weight.
+/// Choice and weights of the beams that vote.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct BeamConfig {
@@ -32,42 +32,40 @@ impl Default for BeamConfig {
     }
 }
 
-/// A beam that votes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Beam {
-    /// Index on the heading grid.
+    /// Bearing as an index on the heading grid.
     pub bearing: usize,
-    /// What rounding to the grid left over, radians.
+    /// Rounding remainder of the bearing, in radians.
     pub rounding: f64,
-    /// The bearing in the target frame, radians, not rounded.
+    /// Bearing in the target frame, in radians, not rounded.
     pub angle: f64,
-    /// Metres.
+    /// Reading, in metres.
     pub reading_m: f64,
-    /// How much it counts; 1 weighs a beam in full.
+    /// Weight; 1 is a full vote.
     pub weight: f64,
-    /// Its number in its scan.
+    /// Index in its scan.
     pub index: usize,
 }
 
-/// The beams that vote, by bearing, and those that say nothing; filled again for
-/// each scan.
+/// The beams that vote, by bearing, and the silent sectors; reused from scan to scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Chosen {
     pub beams: Vec<Beam>,
-    /// The middles of the sectors that say nothing, radians.
+    /// Middles of the silent sectors, in radians.
     pub silent: Vec<f64>,
     sectors: Vec<Sector>,
 }
 
-/// What lies in a sector of the turn.
+/// Content of a sector of the turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 enum Sector {
     /// No beam points there.
     #[default]
     Unseen,
-    /// Beams do, and nothing returned.
+    /// Beams point there, but none returned.
     Silent,
-    /// The beam that ends nearest.
+    /// The beam with the nearest end.
     Nearest(Beam),
 }
 
@@ -92,14 +90,13 @@ impl Chosen {
         }
     }
 
-    /// Divides the scan's arc evenly into at most `max_beams` sectors and takes
-    /// from each the returned reading whose bearing lies nearest to the heading
-    /// grid; of equally near ones that nearest to the sector's middle, then the
-    /// first. A sector is silent where nothing returned, or from farther than any map
-    /// reaches: nothing explains such a reading.
+    /// Divides the scan's arc evenly into at most `max_beams` sectors and takes from each the
+    /// returned reading whose bearing is nearest to the heading grid; on a tie the one nearest to
+    /// the sector's middle, then the first. A sector is silent if nothing returned, or only from
+    /// farther than any map reaches, which no pose explains.
     ///
-    /// `end_of` is where a beam ends, seen from the target frame: its bearing
-    /// and how far it is.
+    /// `end_of` gives the end of a beam seen from the target frame: bearing (radians) and distance
+    /// (metres).
     fn thin(
         &mut self,
         scan: &Scan<'_>,
@@ -113,7 +110,7 @@ impl Chosen {
         let readings = scan.beams();
         let (sectors, arc) = thinned(scan, config);
         for sector in 0..sectors {
-            // Integer bounds: every reading lies in exactly one sector.
+            // Integer bounds put every reading in exactly one sector.
             let (start, end) = (
                 sector * readings / sectors,
                 (sector + 1) * readings / sectors,
@@ -137,9 +134,9 @@ impl Chosen {
         }
     }
 
-    /// Divides the turn, seen from the origin of the target frame, into `max_beams`
-    /// sectors and takes from each the reading that ends nearest, of equal ones the
-    /// first. A reading counts by the arc that its own laser's beam covers.
+    /// Divides the turn, seen from the origin of the target frame, into `max_beams` sectors and
+    /// takes from each the reading with the nearest end, on a tie the first. The weight of a
+    /// reading follows from the arc that its own laser's beam covers.
     fn join(&mut self, scans: &[CarriedScan<'_>], turn: f64, space: &Space, config: &BeamConfig) {
         self.sectors.clear();
         let count = config.max_beams as usize;
@@ -182,7 +179,7 @@ impl Chosen {
 }
 
 impl Beam {
-    /// A beam that ends at `(angle, reading_m)` in the target frame.
+    /// Makes a beam that ends at `(angle, reading_m)` in the target frame.
     fn new(
         index: usize,
         (angle, reading_m): (f64, f64),
@@ -202,14 +199,14 @@ impl Beam {
     }
 }
 
-/// Into how many sectors a scan is thinned, and the arc of each, radians.
+/// Returns the number of sectors into which a scan is thinned, and the arc of each in radians.
 fn thinned(scan: &Scan<'_>, config: &BeamConfig) -> (usize, f64) {
     let sectors = scan.beams().min(config.max_beams as usize);
     let arc = (scan.beams() as f64 * scan.angle_increment.abs()).min(TAU) / sectors as f64;
     (sectors, arc)
 }
 
-/// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
+/// `min(1, arc at the reading / full arc) + 0.05`, or 1 if all beams weigh the same.
 fn weight(arc_m: f64, full_arc_m: f64) -> f64 {
     if full_arc_m > 0.0 {
         (arc_m / full_arc_m).min(1.0) + MIN_WEIGHT
@@ -218,8 +215,8 @@ fn weight(arc_m: f64, full_arc_m: f64) -> f64 {
     }
 }
 
-/// Distance of a bearing from the grid in microradians: scans store angles in
-/// 32 bits, whose last bits must not decide between two beams.
+/// Distance of a bearing from the heading grid in microradians. Scans store angles in 32 bits,
+/// whose last bits must not decide between two beams.
 fn grid_distance(beam: &Beam) -> i64 {
     (beam.rounding.abs() * 1e6).round() as i64
 }

@@ -1,15 +1,14 @@
-//! The boundary of the obstacles: the cells that rays end in.
+//! The boundary of the obstacles: the cells in which rays end.
 //!
-//! These are the paper's c_i ∈ C. A cell counts with all eight neighbours,
-//! because rays step diagonally: with four, a ray could end in a cell that the
-//! reverse projection does not start from.
+//! These are the paper's c_i ∈ C. All eight neighbours of a cell count, because rays step
+//! diagonally: with four, a ray could end in a cell from which the reverse projection does not
+//! start.
 
 use messages::BoundaryCell;
 
 use crate::grid::{Cell, Grid};
 
-/// The occupied cells with an open cell among their eight neighbours, by
-/// (y, x).
+/// Returns the occupied cells with an open cell among their eight neighbours, by (y, x).
 #[must_use]
 pub fn extract(grid: &Grid) -> Vec<BoundaryCell> {
     let rows = grid.cells().chunks_exact(grid.width());

@@ -1,13 +1,12 @@
-//! Distances on a chessboard: the larger of those along x and along y.
+//! Chessboard distances: the larger of the distances along x and y.
 
-/// Lowers each inner cell to its distance from the nearest lower ones: to the least
-/// of any cell's value and its chessboard distance from there, saturated at 255. The
-/// outermost rows and columns count, and stay as they are; all of them must have the
-/// same value.
+/// Lowers each inner cell to the minimum, over all cells, of that cell's value plus its chessboard
+/// distance, saturated at 255. The outermost rows and columns take part but are not changed; all of
+/// them must have the same value.
 ///
-/// Two passes, each from the four neighbours that it has been to: with steps of one
-/// in all eight directions that is exact. Where the outermost cells differed, the
-/// shortest way might lead along them, which nothing follows.
+/// Two passes are exact, each from the four neighbours already visited, since each step may go in
+/// any of eight directions. With different values on the border the shortest path might run along
+/// the border, which the passes do not follow.
 pub fn spread(cells: &mut [u8], columns: usize) {
     if columns == 0 {
         return;

@@ -1,30 +1,30 @@
-//! Parsers of settings, so that a value out of range is refused by name.
+//! Parsers of settings; their errors name the value and the allowed range.
 
-/// A length of 0 to 2 metres: the width of a taper, the arc of a beam.
+/// Parses a length of 0 to 2 metres: the width of a taper, the arc of a beam.
 #[cfg(feature = "clap")]
 pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=2.0, "metres")
 }
 
-/// A share of the range, 0 to 0.25: no laser is worse.
+/// Parses a range error as a share of the range, 0 to 0.25; real lasers are better than that.
 #[cfg(feature = "clap")]
 pub(crate) fn parse_range_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=0.25, "as a share of the range")
 }
 
-/// A share of 0 to 1.
+/// Parses a share of 0 to 1.
 #[cfg(feature = "clap")]
 pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=1.0, "as a share")
 }
 
-/// An angle of 0 to 180 degrees.
+/// Parses an angle of 0 to 180 degrees.
 #[cfg(feature = "clap")]
 pub(crate) fn parse_degrees(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=180.0, "degrees")
 }
 
-/// A number within a range.
+/// Parses a number within a range.
 pub(crate) fn parse(
     text: &str,
     allowed: std::ops::RangeInclusive<f64>,

@@ -1,14 +1,14 @@
 //! The directions of rays, as bundles of discrete lines.
 //!
-//! For each direction every cell lies on exactly one line of the bundle, and a
-//! direction shares its lines with the opposite one. So projecting back from an
-//! obstacle and looking out from a pose meet the same cells.
+//! For each direction, every cell is on exactly one line of the bundle, and a direction shares its
+//! lines with the opposite one. So projecting back from an obstacle and looking out from a pose
+//! meet the same cells.
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use crate::EngineError;
 
-/// The headings of a turn; heading `h` is `2π h / count` in the grid's frame.
+/// All headings of a turn; heading `h` is the angle `2π h / count` in the grid's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Directions {
     all: Vec<Direction>,
@@ -16,25 +16,25 @@ pub struct Directions {
 
 /// One direction: a bundle of lines and a sense along them.
 ///
-/// A ray steps by `step` along its major axis. At the absolute index `j` there,
-/// it stands `minor(j)` beyond the line's own offset on the minor axis. It
-/// strays from the ideal line by less than one cell.
+/// A ray steps by `step` along its major axis. At the absolute index `j` there, it is `minor(j)`
+/// beyond the line's own offset on the minor axis. It deviates from the ideal line by less than one
+/// cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Direction {
-    /// Whether x is the major axis: |cos| ≥ |sin|.
+    /// True if x is the major axis: |cos| ≥ |sin|.
     pub x_major: bool,
-    /// +1 or -1 along the major axis.
+    /// Step along the major axis, +1 or -1.
     pub step: i64,
     /// Rise on the minor axis for one cell on the major, times 2³².
     slope: i64,
-    /// max(|cos|, |sin|): steps for each cell of Euclidean length.
+    /// Steps per cell of Euclidean length: max(|cos|, |sin|).
     pub steps_per_cell: f64,
     /// Index of `steps_per_cell` among its `count / 8 + 1` values.
     pub class: usize,
 }
 
 impl Directions {
-    /// The directions of `count` headings.
+    /// Lists the directions of `count` headings.
     ///
     /// # Errors
     /// If `count` is not a multiple of 8 from 8 to 3600.
@@ -48,44 +48,44 @@ impl Directions {
         })
     }
 
-    /// How many there are; a multiple of 8.
+    /// Number of headings, a multiple of 8.
     #[must_use]
     pub fn count(&self) -> usize {
         self.all.len()
     }
 
-    /// How many values `steps_per_cell` takes.
+    /// Number of distinct values of `steps_per_cell`.
     #[must_use]
     pub fn classes(&self) -> usize {
         self.all.len() / 8 + 1
     }
 
-    /// `steps_per_cell` of a class: the cosine of its angle in the first octant.
+    /// Returns `steps_per_cell` of a class: the cosine of its angle in the first octant.
     #[must_use]
     pub fn steps_per_cell(&self, class: usize) -> f64 {
         octant_cos_sin(class, self.all.len()).0
     }
 
-    /// Radians from one heading to the next.
+    /// Angle from one heading to the next, in radians.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         TAU / self.all.len() as f64
     }
 
-    /// All of them, by heading.
+    /// All directions, by heading.
     #[must_use]
     pub fn all(&self) -> &[Direction] {
         &self.all
     }
 
-    /// The direction of heading `h`, counted modulo a turn.
+    /// Returns the direction of heading `h`, modulo a turn.
     #[must_use]
     pub fn get(&self, h: usize) -> &Direction {
         &self.all[h % self.all.len()]
     }
 
-    /// The nearest heading of an angle in the grid's frame, half up, and the
-    /// rest in radians that rounding left over.
+    /// Returns the heading nearest to an angle in the grid's frame (half up), and the rounding
+    /// remainder in radians.
     #[must_use]
     pub fn nearest(&self, angle: f64) -> (usize, f64) {
         let spacing = self.spacing();
@@ -96,8 +96,8 @@ impl Directions {
 }
 
 impl Direction {
-    /// Folds the turn into its first octant, so that directions that mirror
-    /// each other have equal slopes to the last bit.
+    /// Derives the direction from the first octant, so that mirrored directions have slopes equal
+    /// to the last bit.
     fn new(d: usize, count: usize) -> Self {
         let eighth = count / 8;
         let (octant, within) = (d / eighth, d % eighth);
@@ -108,7 +108,7 @@ impl Direction {
         };
         let (cos, sin) = octant_cos_sin(class, count);
         let slope = (sin / cos * 4_294_967_296.0).round() as i64;
-        // Octants 0, 3, 4, 7 lie along x; the diagonals count as x-major too.
+        // Octants 0, 3, 4, 7 are along x; the diagonals count as x-major too.
         let x_major = matches!(octant, 0 | 3 | 4 | 7) || class == eighth;
         let (dx, dy) = quadrant_signs(d, count);
         let step = if x_major { dx } else { dy };
@@ -121,15 +121,15 @@ impl Direction {
         }
     }
 
-    /// Position on the minor axis of a line with offset 0 at major index `j`:
+    /// Returns the position on the minor axis, at major index `j`, of the line with offset 0:
     /// `(j · slope + 2³¹) >> 32`.
     #[must_use]
     pub fn minor(&self, j: i64) -> i64 {
         self.rise(j) >> 32
     }
 
-    /// The same with 32 binary places; from one index to the next it grows by
-    /// [`Direction::slope`].
+    /// Returns the same as [`Direction::minor`] with 32 fractional bits; it grows by
+    /// [`Direction::slope`] per index.
     #[inline(always)]
     pub(crate) fn rise(&self, j: i64) -> i64 {
         j * self.slope + (1 << 31)
@@ -140,7 +140,7 @@ impl Direction {
         self.slope
     }
 
-    /// The next cell of a ray.
+    /// Returns the next cell of a ray.
     #[must_use]
     pub fn advance(&self, x: i64, y: i64) -> (i64, i64) {
         let (major, minor) = self.swap((x, y));
@@ -149,13 +149,13 @@ impl Direction {
         self.swap((next_major, next_minor))
     }
 
-    /// Column and row as indices along major and minor axis, or the other way round.
+    /// Converts (column, row) to (major, minor) index, or back.
     #[inline(always)]
     pub(crate) fn swap<T>(&self, pair: (T, T)) -> (T, T) {
         swap_unless(self.x_major, pair)
     }
 
-    /// The opposite direction, on the same lines.
+    /// Returns the opposite direction, on the same lines.
     #[must_use]
     pub fn opposite(&self) -> Direction {
         Direction {
@@ -164,22 +164,21 @@ impl Direction {
         }
     }
 
-    /// Steps to a distance in cells: `floor(cells · max(|cos|, |sin|) + ½)`.
+    /// Converts a distance in cells to steps: `floor(cells · max(|cos|, |sin|) + ½)`.
     #[must_use]
     pub fn steps(&self, cells: f64) -> f64 {
         (cells * self.steps_per_cell + 0.5).floor()
     }
 }
 
-/// What belongs to x and y as what belongs to major and minor axis, or the other
-/// way round.
+/// Converts a pair (x, y) to (major, minor), or back.
 #[inline(always)]
 pub(crate) fn swap_unless<T>(x_major: bool, (a, b): (T, T)) -> (T, T) {
     if x_major { (a, b) } else { (b, a) }
 }
 
-/// Cosine and sine of `2π class / count` in the first octant, exact on the
-/// axis and on the diagonal.
+/// Cosine and sine of `2π class / count` in the first octant, exact on the axis and on the
+/// diagonal.
 fn octant_cos_sin(class: usize, count: usize) -> (f64, f64) {
     if class == count / 8 {
         return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);
@@ -188,7 +187,7 @@ fn octant_cos_sin(class: usize, count: usize) -> (f64, f64) {
     (cos, sin)
 }
 
-/// The signs of cosine and sine, +1 on an axis.
+/// Signs of cosine and sine, +1 on an axis.
 fn quadrant_signs(d: usize, count: usize) -> (i64, i64) {
     let quarter = count / 4;
     let dx = if d <= quarter || d > 3 * quarter {

@@ -1,10 +1,10 @@
-//! Errors of the engine: inputs that it rejects.
+//! Errors of the engine.
 
 use geometry::Pose;
 
 use crate::grid::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 
-/// A map, a scan or a setting that the engine cannot work with.
+/// Reason why the engine rejects a map, a scan or a setting.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EngineError {
     /// A side of the grid is out of range.
@@ -15,7 +15,7 @@ pub enum EngineError {
         /// Cells along y.
         height: usize,
     },
-    /// The grid has more cells than are believed.
+    /// The grid has more than [`MAX_CELLS`] cells.
     #[error("a grid of {width} x {height} cells: at most {MAX_CELLS} cells are allowed")]
     GridSize {
         /// Cells along x.
@@ -23,7 +23,7 @@ pub enum EngineError {
         /// Cells along y.
         height: usize,
     },
-    /// The cells do not fill the grid.
+    /// The number of occupancies is not width times height.
     #[error("a grid of {width} x {height} cells came with {cells} occupancies instead of {}", width * height)]
     GridCells {
         /// Cells along x.
@@ -33,84 +33,84 @@ pub enum EngineError {
         /// Occupancies given.
         cells: usize,
     },
-    /// A cell's side is out of range.
+    /// The side of a cell is out of range.
     #[error("a resolution of {0} m; allowed: {MIN_RESOLUTION_M}..={MAX_RESOLUTION_M} m")]
     Resolution(f64),
-    /// The grid's place in the map frame is out of range, or none.
+    /// The origin of the grid in the map frame is out of range or not finite.
     #[error(
         "an origin at x {} m, y {} m, yaw {} rad; allowed: within {MAX_ORIGIN_M} m, and a yaw of \
          at most a turn", .0.x, .0.y, .0.yaw
     )]
     Origin(Pose),
-    /// A rule by which cells are read is out of range.
+    /// A threshold of the cell rules is out of range.
     #[error(transparent)]
     Rule(#[from] messages::InvalidRule),
-    /// There is no obstacle to project from.
+    /// The map has no occupied cell to project from.
     #[error("the map has no occupied cell: there is nothing that a laser could see")]
     NoOccupiedCell,
-    /// There is no place to stand.
+    /// The map has no free cell in which the robot could be.
     #[error("the map has no free cell: there is nowhere that the robot could be")]
     NoFreeCell,
-    /// The limits leave nowhere to stand.
+    /// The limits exclude every cell.
     #[error(
         "no open cell of the map lies in the region that is searched, near enough to a free cell \
          and as far from obstacles as the robot's radius asks"
     )]
     NoCellWithin,
-    /// The limits leave no heading.
+    /// The limits exclude every heading.
     #[error("none of the {0} headings a turn lies in the interval that is searched")]
     NoHeadingWithin(u32),
-    /// More memory would be needed than is allowed.
+    /// Preparing the map needs more memory than is allowed.
     #[error(
         "preparing the map takes about {needed_mb} MB and --memory-limit allows {limit_mb}: larger \
          cells (--search-cell), fewer headings (--headings) or a part of the map (--region) take \
          less"
     )]
     Memory {
-        /// Megabytes of 10⁶ bytes.
+        /// Memory needed, in megabytes of 10⁶ bytes.
         needed_mb: u64,
-        /// The same.
+        /// Memory allowed, in megabytes of 10⁶ bytes.
         limit_mb: u32,
     },
-    /// There is no pose at which particles could start.
+    /// No pose with finite numbers is given at which particles could start.
     #[error("no pose is given, with finite numbers, at which particles could start")]
     NoStart,
     /// The number of headings is not supported.
     #[error("{0} headings a turn: it must be a multiple of 8 from 8 to 3600")]
     Headings(u32),
-    /// The scan has no readings.
+    /// The scan has no ranges.
     #[error("the scan is empty: it has no ranges")]
     EmptyScan,
-    /// The scan has more readings than a scan can have.
+    /// The scan has more than 65536 ranges.
     #[error("the scan has {0} ranges: at most 65536 are allowed")]
     TooManyRanges(usize),
-    /// The scan is none of a ring of sonars.
+    /// The scan has too many readings for a ring of sonars.
     #[error(
         "the scan has {found} readings: a ring of sonars, as which it is to be read, has at most \
          {allowed}"
     )]
     TooManyEchoes {
-        /// That returned.
+        /// Number of readings found.
         found: usize,
-        /// That are taken.
+        /// Largest number accepted.
         allowed: usize,
     },
-    /// The odometry says no pose.
+    /// A pose of the odometry is not finite.
     #[error(
         "the odometry is at x {} m, y {} m, yaw {} rad: each must be finite",
         .0.x, .0.y, .0.yaw
     )]
     Odometry(Pose),
-    /// Several lasers are to be joined, and it is not known where one sits.
+    /// Several lasers are to be joined, and the mount of one of them is unknown.
     #[error(
         "it is not known where laser {laser} sits on the base: to join several, /tf_static or \
          --mount must say so"
     )]
     NoMount {
-        /// Its name.
+        /// Name of the laser.
         laser: String,
     },
-    /// The mount says no pose.
+    /// The pose of the laser on the base is not finite.
     #[error(
         "the laser sits at x {} m, y {} m, yaw {} rad of the base: each must be finite",
         .0.x, .0.y, .0.yaw
@@ -122,15 +122,15 @@ pub enum EngineError {
          zero, the weight 0 to 2"
     )]
     Reading {
-        /// Its number in the message.
+        /// Index of the reading in the message.
         beam: usize,
     },
-    /// A carried scan lacks places of its laser.
+    /// A carried scan does not have one laser pose for each range.
     #[error("{places} places of the laser for {ranges} ranges: as many are needed")]
     Places {
-        /// Poses of the laser.
+        /// Number of laser poses.
         places: usize,
-        /// Ranges of the scan.
+        /// Number of ranges.
         ranges: usize,
     },
     /// The scan's first bearing is unusable.
@@ -149,20 +149,20 @@ pub enum EngineError {
     FieldOfView {
         /// Readings of the scan.
         beams: usize,
-        /// Radians from one to the next.
+        /// Angle from one reading to the next, in radians.
         angle_increment: f64,
-        /// What they cover.
+        /// Field of view, in turns.
         turns: f64,
     },
     /// The scan's range limits contradict each other.
     #[error("range_min {min} and range_max {max}: 0 <= range_min < range_max is needed, in metres")]
     RangeLimits {
-        /// Least range, metres.
+        /// Smallest range, in metres.
         min: f32,
-        /// Greatest range, metres.
+        /// Largest range, in metres.
         max: f32,
     },
-    /// The given heading is no number.
+    /// The given heading is not finite.
     #[error("the known heading is {0}: it must be finite, in radians")]
     Heading(f64),
 }

@@ -1,7 +1,7 @@
 //! All headings by brute force: the field of each, one after the other.
 //!
-//! What the search must beat, and what it is compared with. Several
-//! accumulators share the headings, each on a thread of its own.
+//! The baseline that the search must beat and is compared with. Several accumulators share the
+//! headings, each on its own thread.
 
 use std::sync::atomic::{AtomicU16, Ordering};
 
@@ -12,12 +12,11 @@ use crate::space::Space;
 use crate::threads;
 use crate::votes::{CollectConfig, Collector, VoteSet};
 
-/// The poses with the most votes over all headings; `None` if `stop` said so
-/// before the end.
+/// Finds the poses with the most votes over all headings; `None` if `stop` returned true before the
+/// end.
 ///
-/// Poses are searched within the limits, which are those of the grid. The outcome
-/// does not depend on how many accumulators there are; the first one works on
-/// this thread.
+/// Poses are searched within the limits, which must be those of the grid. The outcome does not
+/// depend on the number of accumulators; the first one works on this thread.
 ///
 /// # Panics
 /// If there is no accumulator, or one of them panics.
@@ -48,7 +47,7 @@ pub fn search<A: Accumulator + Send>(
     Some(found)
 }
 
-/// What one thread finds, and what it finds it with.
+/// Results and buffers of one thread.
 #[derive(Debug)]
 struct Share<'a, A> {
     accumulator: &'a mut A,
@@ -67,8 +66,8 @@ impl<'a, A: Accumulator> Share<'a, A> {
         }
     }
 
-    /// Counts the poses at every `threads`-th heading; threads share the most
-    /// votes of any pose.
+    /// Counts the poses at every `threads`-th heading; threads share the highest number of votes of
+    /// any pose.
     fn run(
         &mut self,
         (thread, threads): (usize, usize),

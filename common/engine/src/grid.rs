@@ -1,7 +1,7 @@
-//! The occupancy grid as rays see it: which cells are occupied and which block.
+//! The occupancy grid as rays see it: which cells are occupied and which block rays.
 //!
-//! A grid has its own frame: x along columns, y along rows, cell (0, 0) at the
-//! origin. [`GridFrame`] says where that frame lies in the map.
+//! A grid has its own frame: x along columns, y along rows, cell (0, 0) at the origin.
+//! [`GridFrame`] is the pose of that frame in the map.
 
 mod cell_set;
 mod frame;
@@ -14,39 +14,38 @@ pub(crate) use cell_set::{CellSet, WORD};
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
 
-/// Most cells along a side: positions fit 15 bits, and no ray is longer than
-/// what 16 bits hold.
+/// Largest number of cells along a side: positions fit in 15 bits, ray lengths in 16.
 pub const MAX_SIDE: usize = 32_767;
 
-// What follows is limited as in map files, by crate `map`, which a test compares:
-// no map that can be loaded is refused here.
+// The limits below equal those of map files in crate `map` (a test compares them), so that every
+// map that can be loaded is accepted here.
 
-/// Most cells; a damaged header that claims more must not be believed.
+/// Largest number of cells, against damaged headers.
 pub const MAX_CELLS: usize = 400_000_000;
 
-/// Shortest side of a cell, metres.
+/// Shortest side of a cell, in metres.
 pub const MIN_RESOLUTION_M: f64 = 0.001;
 
-/// Longest side of a cell, metres.
+/// Longest side of a cell, in metres.
 pub const MAX_RESOLUTION_M: f64 = 10.0;
 
-/// Farthest origin of a grid along each axis of the map, metres.
+/// Largest distance of a grid's origin from that of the map along each axis, in metres.
 pub const MAX_ORIGIN_M: f64 = 1e8;
 
-/// What a ray meets in a cell.
+/// Class of a cell, by its effect on rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::NoUninit)]
 #[repr(u8)]
 pub enum Cell {
-    /// Rays pass and the robot may stand here, as far as limits do not say otherwise:
-    /// free, or unknown where unknown cells do not block.
+    /// Rays pass, and the robot may stand here unless limits exclude it: a free cell, or an unknown
+    /// one if unknown cells do not block.
     Open,
     /// An obstacle: a ray ends here.
     Occupied,
-    /// Unknown cells block rays without a hit, and the robot cannot stand here.
+    /// An unknown cell that blocks rays without a hit; the robot cannot stand here.
     Blocked,
 }
 
-/// A grid of classed cells, row by row from the lowest y.
+/// A grid of classified cells, row by row from the lowest y.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Grid {
     width: usize,
@@ -59,7 +58,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Classes `width · height` occupancies, row by row from the lowest y.
+    /// Classifies `width · height` occupancies, row by row from the lowest y.
     ///
     /// # Errors
     /// If a side is 0 or above [`MAX_SIDE`], or the number of cells is above
@@ -76,7 +75,7 @@ impl Grid {
             () if rules.unknown_blocks && !rules.is_free(occupancy) => Cell::Blocked,
             () => Cell::Open,
         };
-        // Whole maps are classed by looking up each cell, and counted class by class.
+        // A table of all 256 values and one count per class are fastest on whole maps.
         let classes: [Cell; 1 << u8::BITS] =
             std::array::from_fn(|occupancy| class(occupancy as u8));
         let cells: Vec<Cell> = occupancy
@@ -96,13 +95,13 @@ impl Grid {
         })
     }
 
-    /// Cells along x.
+    /// Number of cells along x.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Cells along y.
+    /// Number of cells along y.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
@@ -114,42 +113,41 @@ impl Grid {
         &self.cells
     }
 
-    /// Column and row of each cell that is of a kind, row by row.
+    /// Returns column and row of each cell for which `is` returns true, row by row.
     pub(crate) fn places(&self, is: impl Fn(Cell) -> bool) -> impl Iterator<Item = (usize, usize)> {
         let cells = self.cells.iter().enumerate();
         let cells = cells.filter(move |&(_, &cell)| is(cell));
         cells.map(|(i, _)| (i % self.width, i / self.width))
     }
 
-    /// Free cells, the paper's n; unknown ones do not count.
+    /// Number of free cells, the paper's n; unknown ones do not count.
     #[must_use]
     pub fn free_cells(&self) -> usize {
         self.free_cells
     }
 
-    /// The free cells.
     pub(crate) fn free(&self) -> &CellSet {
         &self.free
     }
 
-    /// Whether an open cell is not known to be free.
+    /// True if some open cell is unknown rather than free.
     pub(crate) fn has_unknown(&self) -> bool {
         !self.has_blocked && self.free_cells + self.occupied < self.cells.len()
     }
 
-    /// Occupied cells.
+    /// Number of occupied cells.
     #[must_use]
     pub fn occupied_cells(&self) -> usize {
         self.occupied
     }
 
-    /// Whether any cell blocks rays without a hit.
+    /// True if any cell blocks rays without a hit.
     #[must_use]
     pub fn has_blocked(&self) -> bool {
         self.has_blocked
     }
 
-    /// The cell at column `x` of row `y`; `None` off the grid.
+    /// Returns the cell at column `x` of row `y`; `None` off the grid.
     #[must_use]
     pub fn get(&self, x: i64, y: i64) -> Option<Cell> {
         let x = usize::try_from(x).ok().filter(|&x| x < self.width)?;
@@ -157,13 +155,13 @@ impl Grid {
         Some(self.cells[y * self.width + x])
     }
 
-    /// Whether the robot may stand in the cell; false off the grid.
+    /// True if the robot may stand in the cell; false off the grid.
     #[must_use]
     pub fn is_open(&self, x: i64, y: i64) -> bool {
         self.get(x, y) == Some(Cell::Open)
     }
 
-    /// Whether one of the eight cells around it is open.
+    /// True if one of the eight cells around it is open.
     #[must_use]
     pub fn touches_open(&self, x: i64, y: i64) -> bool {
         (-1..=1).any(|dy| (-1..=1).any(|dx| (dx, dy) != (0, 0) && self.is_open(x + dx, y + dy)))
@@ -194,7 +192,7 @@ fn check_cells(width: usize, height: usize, occupancy: &[u8]) -> Result<(), Engi
     Ok(())
 }
 
-/// NaN lies in no range.
+/// Checks the side of a cell; NaN is out of range.
 pub(crate) fn check_resolution(metres: f64) -> Result<(), EngineError> {
     if (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres) {
         return Ok(());
@@ -202,14 +200,14 @@ pub(crate) fn check_resolution(metres: f64) -> Result<(), EngineError> {
     Err(EngineError::Resolution(metres))
 }
 
-/// Small worlds for tests: one line a row, highest y first, as one draws a map.
+/// Small worlds for tests, drawn as text: one line per row, highest y first.
 #[cfg(test)]
 pub(crate) mod drawn {
     use messages::UNKNOWN;
 
     use super::*;
 
-    /// `#` occupied, `.` free, `?` unknown.
+    /// Reads a drawing: `#` occupied, `.` free, `?` unknown.
     pub(crate) fn occupancy(rows: &[&str]) -> (usize, usize, Vec<u8>) {
         let width = rows[0].len();
         let cells = rows.iter().rev().flat_map(|row| {

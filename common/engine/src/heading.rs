@@ -1,8 +1,7 @@
-//! Where a scan's heading comes from, if it is known.
+//! Sources of a known heading of a scan.
 //!
-//! What odometry and the ground truth said is kept, and a scan picks what
-//! belongs to it, for its heading or for its pose on the way. Odometry that is too
-//! old is refused, never stretched.
+//! Odometry and ground truth are kept, and each scan picks what belongs to it, for its heading or
+//! for its pose by odometry. Odometry that is too old is rejected, never extrapolated.
 
 mod config;
 
@@ -15,34 +14,34 @@ pub use config::{HeadingConfig, HeadingFrom};
 
 use crate::localizer::Prior;
 
-/// What is known of the heading of scans.
+/// Source of the heading of scans.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HeadingSource {
-    /// Nothing: all headings are searched.
+    /// No source: all headings are searched.
     Searched,
-    /// Always the same, in the map, radians.
+    /// A fixed heading in the map, in radians.
     Fixed(f64),
     /// The newest odometry that was measured before the scan.
     Odometry {
-        /// Heading in the map where odometry says 0, radians.
+        /// Heading in the map where odometry reads 0, in radians.
         offset: f64,
-        /// Between the odometry and the scan at most, nanoseconds.
+        /// Maximum age of the odometry at its scan, in nanoseconds.
         max_age_ns: i64,
     },
     /// The ground truth that was measured with the scan.
     Truth,
 }
 
-/// Why a scan has no heading.
+/// Reason why a scan has no heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum HeadingError {
-    /// No odometry has it.
+    /// No odometry was measured before the scan.
     #[error(
         "the scan needs odometry, but none is known that was measured at {scan_ns} ns or \
          before"
     )]
     NoOdometry {
-        /// When the scan was measured, nanoseconds.
+        /// Time of the scan, in nanoseconds.
         scan_ns: i64,
     },
     /// The newest odometry is too old.
@@ -51,23 +50,23 @@ pub enum HeadingError {
          {allowed_ns} ns are allowed"
     )]
     OldOdometry {
-        /// Between the odometry and the scan, nanoseconds.
+        /// Time from the odometry to the scan, in nanoseconds.
         age_ns: i64,
-        /// By the configuration, nanoseconds.
+        /// Largest age allowed by the configuration, in nanoseconds.
         allowed_ns: i64,
     },
-    /// No true pose has it.
+    /// No true pose was measured with the scan.
     #[error(
         "the heading is to come from the ground truth, but none is known that was \
          measured at {scan_ns} ns"
     )]
     NoTruth {
-        /// When the scan was measured, nanoseconds.
+        /// Time of the scan, in nanoseconds.
         scan_ns: i64,
     },
 }
 
-/// What was said about headings.
+/// Recent odometry and ground truth.
 #[derive(Debug, Clone)]
 pub struct History {
     odometry: Recent<Driven>,
@@ -88,7 +87,7 @@ struct Truth {
 }
 
 impl History {
-    /// Keeps the last readings of each kind, this many at most.
+    /// Creates an empty history that keeps at most this many readings of each kind.
     #[must_use]
     pub fn keeping(readings: usize) -> Self {
         History {
@@ -97,7 +96,7 @@ impl History {
         }
     }
 
-    /// Takes note of odometry.
+    /// Adds an odometry sample.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
         self.odometry.push(Driven {
             measured_ns: odometry.stamp.measured_ns,
@@ -106,7 +105,7 @@ impl History {
         });
     }
 
-    /// Takes note of a true pose.
+    /// Adds a true pose.
     pub fn on_truth(&mut self, truth: &GroundTruth) {
         self.truths.push(Truth {
             measured_ns: truth.stamp.measured_ns,
@@ -114,8 +113,8 @@ impl History {
         });
     }
 
-    /// The laser's pose by the odometry when it measured `scan`; as for headings, a
-    /// laser whose mount is not known is taken to sit where the odometry is about.
+    /// Returns the pose of the laser by odometry at the time of `scan`. As for headings, a laser
+    /// without a known mount is assumed to be at the child frame of the odometry.
     ///
     /// # Errors
     /// If no odometry was measured within `max_age_ns` nanoseconds before the scan.
@@ -142,7 +141,7 @@ impl Driven {
 }
 
 impl HeadingSource {
-    /// What a localizer has to be prepared for.
+    /// Returns the kind of prior for which the localizer must be prepared.
     #[must_use]
     pub fn prior(&self) -> Prior {
         match self {
@@ -151,15 +150,14 @@ impl HeadingSource {
         }
     }
 
-    /// The laser's heading in the map when it measured `scan`, radians; `None`
-    /// where it is to be searched.
+    /// Returns the laser's heading in the map at the time of `scan`, in radians; `None` if it is to
+    /// be searched.
     ///
-    /// Odometry of another frame than the scan's is taken for that of the
-    /// robot's base, and the mount's yaw is added where the scan knows it; where
-    /// it does not, the offset has to hold it.
+    /// Odometry of another frame than the scan's is taken for that of the base, and the mount's yaw
+    /// is added if the scan states it; otherwise the offset has to include it.
     ///
     /// # Errors
-    /// If nothing in `history` belongs to the scan.
+    /// If no reading in `history` belongs to the scan.
     pub fn heading_of(
         &self,
         scan: &ScanHeader,
@@ -188,8 +186,8 @@ fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
         .ok_or(HeadingError::NoTruth { scan_ns })
 }
 
-/// Looks by the time of measuring and not of arrival, for a recording that is
-/// played over and over starts again.
+/// Selects by time of measurement, not of arrival, because a recording played in a loop starts
+/// again.
 fn odometry_of(
     scan: &ScanHeader,
     history: &History,

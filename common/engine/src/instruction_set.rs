@@ -1,15 +1,15 @@
-//! The instruction sets that hot loops are written for, chosen at run time.
+//! Instruction sets for which hot loops are compiled, chosen at run time.
 //!
-//! A released binary is built for the baseline CPU of its architecture
-//! and yet uses what it finds. Every instruction set gives the same numbers.
+//! A released binary is built for the baseline CPU of its architecture but uses the instructions
+//! that it finds. Every instruction set gives the same numbers.
 
 use std::fmt;
 
-/// A set of instructions, from the baseline on.
+/// An instruction set, in ascending order.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// What every processor of the architecture has; on aarch64 with NEON, as
-    /// far as the compiler uses it by itself.
+    /// Baseline of the architecture; on aarch64 with NEON, as far as the compiler uses it by
+    /// itself.
     #[default]
     Portable,
     /// AVX2, BMI 1 and 2, LZCNT and POPCNT: x86-64 since Haswell and Zen.
@@ -17,7 +17,7 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// The best one that this processor has.
+    /// Returns the best instruction set of this processor.
     #[must_use]
     pub fn best() -> Self {
         if Self::Avx2.is_available() {
@@ -27,13 +27,13 @@ impl InstructionSet {
         }
     }
 
-    /// All that this processor has, from the baseline on.
+    /// Instruction sets of this processor, from the baseline on.
     pub fn available() -> impl Iterator<Item = Self> {
         let all = [Self::Portable, Self::Avx2];
         all.into_iter().filter(|set| set.is_available())
     }
 
-    /// Whether this processor has it.
+    /// True if this processor has it.
     #[must_use]
     pub fn is_available(self) -> bool {
         match self {
@@ -51,7 +51,7 @@ impl InstructionSet {
         }
     }
 
-    /// The set itself.
+    /// Returns the set itself after a check.
     ///
     /// # Panics
     /// If this processor does not have it.

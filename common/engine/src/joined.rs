@@ -1,11 +1,11 @@
-//! Brings what lasers saw to one time and place: several scans become one, and the
-//! motion within a scan is taken out.
+//! Joins laser scans at one time and place: several scans become one, and the motion within a scan
+//! is compensated.
 //!
-//! Each beam is carried by the odometry from where its laser was when it measured to
-//! where the target frame was in the middle of the first laser's scan: there they are
-//! carried least far, and the pose is that which the scan gives without odometry, too.
-//! That frame is the laser's own where the graph has one, the base where several are
-//! joined. Pure: when a scan comes, and when its wait for odometry is over, others decide.
+//! Each beam is carried by odometry from the pose of its laser at the beam's time to the pose of
+//! the target frame in the middle of the first laser's scan. This keeps the carried distances
+//! short, and the resulting pose is the one that the scan gives without odometry. The target frame
+//! is the laser if the graph has one laser, and the base if several are joined. The module is pure:
+//! the caller decides when a scan arrives and when its wait for odometry is over.
 
 mod brought;
 mod config;
@@ -24,60 +24,60 @@ use crate::motion::Motion;
 use crate::observation::{CarriedScan, Observation};
 use laser::Laser;
 
-/// A scan waits so many milliseconds for odometry past its last beam: odometry comes ten times a
-/// second at least, and a process that sends it may not run for a while.
+/// Time for which a scan waits for odometry past its last beam, in milliseconds: odometry comes at
+/// least ten times a second, and its sender may be delayed by the scheduler.
 pub const ODOMETRY_WAIT_MS: u64 = 100;
 
-/// Samples of odometry that are kept: ten seconds at 100 Hz.
+/// Number of odometry samples kept: ten seconds at 100 Hz.
 const ODOMETRY_KEPT: usize = 1024;
 
-/// The newest scan of each laser, and how the robot moved.
+/// The newest scan of each laser, and the motion of the robot.
 #[derive(Debug, Clone)]
 pub struct Joiner {
     config: JoinConfig,
     motion: Motion,
-    /// The frame of the odometry, and the one that it is about.
+    /// Parent and child frame of the odometry.
     odom_frame: FrameName,
     child_frame: FrameName,
-    /// In the order in which they are configured; one where none are.
+    /// In the configured order; a single unnamed laser if none is configured.
     lasers: Vec<Laser>,
-    /// Those that the last answer joins.
+    /// Indices of the lasers that the last [`Joiner::bring`] joined.
     used: Vec<usize>,
     is_carried: bool,
 }
 
-/// What a scan that came is for.
+/// Use of a scan that arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// It is to be answered.
+    /// Scan of the first laser: it triggers an answer.
     Trigger,
-    /// It waits for a scan of the first laser.
+    /// Scan of another joined laser: it waits for a scan of the first.
     Kept,
-    /// It is of a laser that is not joined.
+    /// Scan of a laser that is not joined.
     Other,
 }
 
-/// Where the target frame was at some time by the odometry.
+/// Pose of the target frame at some time, by odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ByOdometry {
-    /// In the odometry's frame.
+    /// Pose of the target frame in the odometry's frame.
     pub odom_from_target: Pose,
-    /// Of how many starts of the odometry it is.
+    /// Number of odometry starts so far, to detect restarts.
     start: u32,
-    /// Whether the odometry has ever changed since that start.
+    /// True if the odometry has changed since that start.
     has_moved: bool,
 }
 
 impl ByOdometry {
-    /// How the target frame moved from one time to another; `None` where either is not known,
-    /// the odometry began anew in between, or it has never changed until then: so does one
-    /// that is dead, and whether the robot stands, scans say.
+    /// Returns the motion of the target frame from one time to another. `None` if either pose is
+    /// unknown, if odometry restarted in between, or if it has never changed until then: dead
+    /// odometry does not change either, and scans show if the robot stands.
     #[must_use]
     pub fn between(before: Option<Self>, now: Option<Self>) -> Option<Pose> {
         now?.moved_since(&before?)
     }
 
-    /// As [`ByOdometry::between`], of two that are known.
+    /// Does the same as [`ByOdometry::between`] for two known poses.
     #[must_use]
     pub fn moved_since(&self, before: &Self) -> Option<Pose> {
         let says_motion = self.start == before.start && self.has_moved;
@@ -90,17 +90,17 @@ impl ByOdometry {
     }
 }
 
-/// The scans of an answer.
+/// The scans that are searched together.
 #[derive(Debug)]
 pub enum Seen<'a> {
-    /// One, as it came.
+    /// A single scan without motion compensation.
     Still(crate::scan::Scan<'a>),
-    /// Some, carried into the target frame.
+    /// Scans carried into the target frame.
     Carried(Vec<CarriedScan<'a>>),
 }
 
 impl Seen<'_> {
-    /// What is to be looked for.
+    /// Returns the observation to search for.
     #[must_use]
     pub fn observation(&self) -> Observation<'_> {
         match self {
@@ -111,7 +111,7 @@ impl Seen<'_> {
 }
 
 impl Joiner {
-    /// Nothing has come yet.
+    /// Creates a joiner without scans or odometry.
     #[must_use]
     pub fn new(config: JoinConfig) -> Self {
         let lasers: Vec<Laser> = match &config.scans[..] {
@@ -132,7 +132,7 @@ impl Joiner {
         }
     }
 
-    /// Keeps all odometry, as for a recording that is read at once.
+    /// Creates a joiner that keeps all odometry, for reading a recording at once.
     #[must_use]
     pub fn keeping_all(config: JoinConfig) -> Self {
         Joiner {
@@ -141,13 +141,13 @@ impl Joiner {
         }
     }
 
-    /// Whether poses are the base's, and not the laser's.
+    /// True if poses are the base's, not the laser's.
     #[must_use]
     pub fn targets_base(&self) -> bool {
         self.lasers.len() > 1
     }
 
-    /// A heading of the first laser in the map, radians, as that of the target frame.
+    /// Converts a heading of the first laser in the map to one of the target frame, in radians.
     #[must_use]
     pub fn target_heading(&self, laser_heading: f64) -> f64 {
         match self.targets_base() {
@@ -156,7 +156,7 @@ impl Joiner {
         }
     }
 
-    /// Takes odometry.
+    /// Adds an odometry sample.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
         let stamp_ns = odometry
             .stamp
@@ -167,7 +167,7 @@ impl Joiner {
         self.motion.add(stamp_ns, odometry.odom_from_child.into());
     }
 
-    /// Takes a scan; it is checked when it is brought to one time with the others.
+    /// Stores a scan. Its content is checked later, in [`Joiner::bring`].
     pub fn on_scan(&mut self, header: &ScanHeader, ranges: &[f32]) -> Role {
         let is_meant = |laser: &Laser| self.config.scans.is_empty() || laser.name == header.laser;
         match self.lasers.iter().position(is_meant) {
@@ -183,7 +183,7 @@ impl Joiner {
         }
     }
 
-    /// Whether odometry is still to come that covers the last beam.
+    /// True if odometry that covers the last beam is still expected.
     #[must_use]
     pub fn lacks_odometry(&self) -> bool {
         let lasers = self.lasers.iter().filter(|_| self.config.motion.deskew);
@@ -198,17 +198,16 @@ impl Joiner {
         })
     }
 
-    /// Whether odometry has come.
+    /// True if any odometry has arrived.
     #[must_use]
     pub fn flows(&self) -> bool {
         self.motion.newest_ns().is_some()
     }
 
-    /// Brings the newest scans to the time of the first laser's.
+    /// Joins the newest scans at the time of the first laser's scan.
     ///
     /// # Errors
-    /// If the first laser's scan is refused or, where several are joined, it is not
-    /// known where it sits on the base.
+    /// If the first laser's scan is rejected or, with several lasers, its mount is unknown.
     pub fn bring(&mut self) -> Result<Brought, EngineError> {
         self.used.clear();
         self.is_carried = false;
@@ -260,14 +259,14 @@ impl Joiner {
         let laser = &self.lasers[index];
         laser.check_for(stamp_ns)?;
         match self.carry(index) {
-            // Where odometry says nothing, nothing says that the robot moves.
+            // Without odometry there is no sign that the robot moves.
             MotionKnown::Unknown if self.motion.is_moving() => Err(LeftOut::NoOdometry),
             motion => Ok(motion),
         }
     }
 
-    /// Notes where a laser was at each of its beams, in the target frame; where
-    /// odometry does not cover, where it sits.
+    /// Records the pose of a laser in the target frame at each of its beams; the pose at rest if
+    /// odometry does not cover them.
     fn carry(&mut self, index: usize) -> MotionKnown {
         let target_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();
@@ -305,21 +304,21 @@ impl Joiner {
         }
     }
 
-    /// The base in the frame that the odometry is about: that of a laser, or the base
+    /// Pose of the base in the child frame of the odometry, which is a laser's frame or the base
     /// itself.
     fn child_from_base(&self) -> Pose {
         let of_laser = self.lasers.iter().find(|l| l.has_frame(self.child_frame));
         of_laser.map_or(Pose::IDENTITY, |laser| laser.base_from_laser().inverse())
     }
 
-    /// Where the target frame was by the odometry when the newest scan of the first laser
-    /// was half measured, see [`Motion::until`].
+    /// Returns the pose of the target frame, by odometry, at the middle of the newest scan of the
+    /// first laser, see [`Motion::until`].
     #[must_use]
     pub fn by_odometry(&self) -> Option<ByOdometry> {
         self.at_time(self.lasers[0].middle_ns())
     }
 
-    /// Where the target frame was by the newest odometry.
+    /// Returns the pose of the target frame by the newest odometry.
     #[must_use]
     pub fn by_newest_odometry(&self) -> Option<ByOdometry> {
         self.at_time(self.motion.newest_ns()?)
@@ -334,13 +333,13 @@ impl Joiner {
         })
     }
 
-    /// The frame of the odometry; empty before the first.
+    /// Parent frame of the odometry; empty before the first sample.
     #[must_use]
     pub fn odom_frame(&self) -> FrameName {
         self.odom_frame
     }
 
-    /// Where the first laser sits on the base, if its newest scan says so.
+    /// Pose of the first laser on the base; `None` if its newest scan does not state it.
     #[must_use]
     pub fn base_from_laser(&self) -> Option<Pose> {
         let first = &self.lasers[0];
@@ -355,7 +354,7 @@ impl Joiner {
         }
     }
 
-    /// What the last [`Joiner::bring`] brought together.
+    /// Returns the scans that the last [`Joiner::bring`] joined.
     #[must_use]
     pub fn seen(&self) -> Seen<'_> {
         if !self.is_carried {

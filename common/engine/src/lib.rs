@@ -1,13 +1,13 @@
-//! Global localization by reverse projection: where on a map could this scan
-//! have been taken? Exact, pure, and the same in the graph and in the tools.
+//! Global localization by reverse projection: finds the poses on a map at which a laser scan could
+//! have been taken. The crate is exact and pure, and the same code runs in the graph and in the
+//! tools.
 //!
-//! It follows "Global Localization of Mobile Robots by Reverse Projection of
-//! Sensor Readings" (the paper): each reading is projected from every boundary
-//! cell of the obstacles back into the open space that sees it, and where the
-//! votes meet is the robot. All votes are integers, so that every fast way of
-//! counting them equals the plain one to the last bit.
+//! It follows "Global Localization of Mobile Robots by Reverse Projection of Sensor Readings" (the
+//! paper): each reading is projected from every boundary cell of the obstacles back into the open
+//! space that sees it, and the robot is where the votes meet. All votes are integers, so that every
+//! fast way of counting equals the reference to the last bit.
 //!
-//! How a scan flows through the modules:
+//! A scan flows through the modules like this:
 //!
 //! ```text
 //! occupancy ─ grid ─┬─ search: index (prepared once) ─┐
@@ -17,15 +17,15 @@
 //!                                     known heading   all headings
 //! ```
 //!
-//! Where a robot moves, or has several lasers, `joined` brings the scans to one time by
-//! odometry (`motion`), and what is searched is an `observation` of carried scans.
-//! Where the robot may be, `particles` draws poses for the start of a particle filter.
+//! For a moving robot, or one with several lasers, `joined` carries the scans to one time by
+//! odometry (`motion`), and an `observation` of carried scans is searched. From the places found,
+//! `particles` draws start poses for a particle filter.
 //!
-//! A [`locator::Locator`] is all of it in one call: start there, its example compiles. A
-//! [`map_set::MapSet`] is the same for several maps at once.
-//! `docs/engine.md` explains the method with drawings.
+//! A [`locator::Locator`] does all of it in one call: start there, its example compiles. A
+//! [`map_set::MapSet`] does the same for several maps at once. `docs/engine.md` explains the method
+//! with drawings.
 //!
-//! The crate knows no process, socket, clock or file.
+//! The crate uses no process, socket, clock or file.
 
 #![warn(missing_docs)]
 

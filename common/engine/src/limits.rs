@@ -1,8 +1,6 @@
-//! Where poses are searched: not far from free cells, in a region, at some headings, away
-//! from obstacles.
+//! Limits of a search: near free cells, in a region, at some headings, away from obstacles.
 //!
-//! Rays are not limited: they pass wherever they would. Poses outside the
-//! limits have no votes.
+//! Rays are not limited: they pass everywhere. Poses outside the limits have no votes.
 
 mod config;
 mod region;
@@ -15,19 +13,19 @@ use crate::directions::Directions;
 use crate::fit::distance;
 use crate::grid::{Cell, CellSet, Grid, GridFrame};
 
-/// The poses of a grid that are searched.
+/// Poses of a grid that are searched.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
-    /// Cells along x.
+    /// Number of cells along x.
     width: usize,
-    /// The cells in which poses are searched; `None` where they are in all.
+    /// Cells in which poses are searched; `None` for all.
     cells: Option<CellSet>,
-    /// The same for each heading.
+    /// Headings that are searched; `None` for all.
     headings: Option<CellSet>,
 }
 
 impl Limits {
-    /// No limits on a grid this many cells wide.
+    /// Creates no limits, for a grid this many cells wide.
     #[must_use]
     pub fn none(width: usize) -> Self {
         Limits {
@@ -37,10 +35,10 @@ impl Limits {
         }
     }
 
-    /// The limits that are set, on a grid.
+    /// Computes the limits of a grid from the settings.
     ///
     /// # Errors
-    /// They leave no cell of the grid, or no heading.
+    /// If they exclude every cell of the grid, or every heading.
     pub fn new(
         config: &LimitsConfig,
         frame: GridFrame,
@@ -99,29 +97,28 @@ impl Limits {
         all
     }
 
-    /// Whether poses in the cell at column `x` of row `y` are searched.
+    /// True if poses in the cell at column `x` of row `y` are searched.
     #[must_use]
     pub fn hold_cell(&self, x: usize, y: usize) -> bool {
         let cells = self.cells.as_ref();
         cells.is_none_or(|cells| cells.holds(y * self.width + x))
     }
 
-    /// The open cells of the grid in which poses are searched, in ascending order.
+    /// Open cells of the grid in which poses are searched, in ascending order.
     pub(crate) fn open_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_open = |&i: &usize| grid.cells()[i] == Cell::Open;
         let all = (0..grid.cells().len()).filter(is_open);
         all.filter(|&i| self.cells.as_ref().is_none_or(|cells| cells.holds(i)))
     }
 
-    /// Whether a heading is searched.
+    /// True if a heading is searched.
     #[must_use]
     pub fn hold_heading(&self, heading: usize) -> bool {
         let headings = self.headings.as_ref();
         headings.is_none_or(|headings| headings.holds(heading))
     }
 
-    /// Takes the votes off the cells of an image at a heading, row by row,
-    /// where none are searched.
+    /// Sets the votes of an image (row by row, at one heading) to 0 in cells that are not searched.
     pub(crate) fn clear(&self, field: &mut [u16], heading: usize) {
         if !self.hold_heading(heading) {
             field.fill(0);
@@ -131,13 +128,13 @@ impl Limits {
         }
     }
 
-    /// Cells along x of the grid.
+    /// Number of cells along x.
     pub(crate) fn width(&self) -> usize {
         self.width
     }
 
-    /// For blocks of this many cells a side, row by row, whether poses are searched in any
-    /// cell: the blocks of which an index has to know.
+    /// Returns, for blocks of `side` cells a side, row by row, true if poses are searched in any
+    /// cell. An index contains only these blocks.
     pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {
         let columns = grid.width().div_ceil(side);
         let mut blocks = vec![false; columns * grid.height().div_ceil(side)];
@@ -148,14 +145,14 @@ impl Limits {
         blocks
     }
 
-    /// Bytes that they take.
+    /// Memory in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let sets = self.sets().into_iter().flatten();
         sets.map(CellSet::bytes).sum()
     }
 
-    /// Limits of a grid and of some directions, to be filled in: by cells, by headings or
-    /// by neither.
+    /// Creates limits with empty sets to be filled in: `by` says if they are by cells and by
+    /// headings.
     pub(crate) fn unfilled(grid: &Grid, directions: &Directions, by: [bool; 2]) -> Self {
         let [by_cells, by_headings] = by;
         Limits {
@@ -165,12 +162,11 @@ impl Limits {
         }
     }
 
-    /// The cells and the headings in which poses are searched, where not in all.
+    /// Cells and headings in which poses are searched; `None` for all.
     pub(crate) fn sets(&self) -> [Option<&CellSet>; 2] {
         [self.cells.as_ref(), self.headings.as_ref()]
     }
 
-    /// The same, to be filled in.
     pub(crate) fn sets_mut(&mut self) -> [Option<&mut CellSet>; 2] {
         [self.cells.as_mut(), self.headings.as_mut()]
     }
@@ -227,7 +223,7 @@ mod tests {
             };
             drawn(&limits_on(rows, &config).unwrap())
         };
-        // Cells of 0.5 m; occupied ones are limited, too, which does not matter.
+        // Cells are 0.5 m; occupied ones are limited, too, which does not matter.
         let rows = ["??????", "?????#", "??.???", "??????"];
         let none = ["------", "------", "--+---", "------"];
         assert_eq!(drawn_at(&rows, 0.0), none);
@@ -248,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_region_is_one_of_the_map() {
-        // The grid's x runs along the map's y.
+        // The grid's x is along the map's y.
         let config = LimitsConfig {
             region: Some("8.6,20.6 9.4,21.9".parse().unwrap()),
             ..LimitsConfig::default()
@@ -267,7 +263,7 @@ mod tests {
             robot_radius,
             ..LimitsConfig::default()
         };
-        // Cells of 0.5 m: those beside the wall are that far from it.
+        // Cells are 0.5 m: those next to the wall are that far from it.
         let drawn_at = |radius| drawn(&limits(&config(radius)).unwrap());
         assert_eq!(drawn_at(0.5), ["------", "-++++-", "-++++-", "------"]);
         assert_eq!(limits(&config(0.6)).unwrap_err(), EngineError::NoCellWithin);

@@ -1,4 +1,4 @@
-//! A map and its settings, ready to be asked where scans were taken.
+//! A map and its settings, ready for searches.
 
 mod config;
 mod field;
@@ -22,16 +22,16 @@ pub use config::{FieldMethod, LocalizerConfig};
 use field::Fields;
 pub use preparation::Preparation;
 
-/// What the localizer knows of the heading beforehand.
+/// Prior knowledge of the heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Prior {
-    /// Nothing: all headings are searched.
+    /// No knowledge: all headings are searched.
     None,
     /// Each scan comes with its heading: only x and y are searched.
     Heading,
 }
 
-/// A map prepared for one kind of question.
+/// A map prepared for searches with one kind of [`Prior`].
 #[derive(Debug, Clone)]
 pub struct Localizer {
     frame: GridFrame,
@@ -48,9 +48,8 @@ enum Method {
     Field(Box<Fields>, Limits),
 }
 
-/// What answering scans takes beside the map, and the last answer. Kept from
-/// scan to scan: once its buffers are large enough, nothing is allocated any more. It
-/// may serve any localizer, one after the other.
+/// Buffers for searches, and the last outcome. Kept from scan to scan: once the buffers are large
+/// enough, nothing is allocated any more. They may serve any localizer, one after the other.
 #[derive(Debug, Default)]
 pub struct Workspace {
     program: ScanProgram,
@@ -63,44 +62,44 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// The intensities of all cells, row by row from the lowest y, at the
-    /// heading of the last [`Localizer::search_at_in`]; empty before the first.
+    /// Intensities of all cells, row by row from the lowest y, at the heading of the last
+    /// [`Localizer::search_at_in`]; empty before the first.
     #[must_use]
     pub fn intensities(&self) -> &[u16] {
         &self.field
     }
 
-    /// What the last scan said.
+    /// Outcome of the last scan.
     #[must_use]
     pub fn outcome(&self) -> &Outcome {
         &self.outcome
     }
 }
 
-/// What a scan says about the pose.
+/// Votes that one scan gives to poses, and search statistics.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     /// The poses with the most votes.
     pub found: VoteSet,
-    /// What a pose would have if every beam agreed fully.
+    /// Votes of a pose with which every beam agrees fully.
     pub highest_possible: u32,
-    /// The votes of the best pose; where several maps are searched and another one has it,
-    /// the least number that is as good here.
+    /// Votes of the best pose; if another of several maps has it, the smallest number of votes that
+    /// is as good on this map.
     pub lead: u16,
-    /// Beams that voted: those that are no longer than the map.
+    /// Number of beams that voted: those not longer than the map.
     pub beams_used: u32,
-    /// Beams whose reading says nothing.
+    /// Number of beams without a usable reading.
     pub beams_silent: u32,
-    /// The largest rounding of a bearing to the heading grid, radians.
+    /// Largest rounding of a bearing to the heading grid, in radians.
     pub bearing_rounding: f64,
-    /// Headings a turn.
+    /// Number of headings per turn.
     pub headings: u32,
-    /// The heading that was given, in the map frame, radians.
+    /// Known heading in the map frame, in radians; `None` if all headings were searched.
     pub known_heading: Option<f64>,
 }
 
 impl Outcome {
-    /// What the best pose that was collected has of what is possible.
+    /// Votes of the best collected pose as a share of the highest possible.
     #[must_use]
     pub fn best_share(&self) -> VoteShare {
         VoteShare::new(self.found.best, self.highest_possible as u16)
@@ -108,8 +107,8 @@ impl Outcome {
 }
 
 impl Localizer {
-    /// Prepares a map of `width · height` occupancies, row by row from the
-    /// lowest y; one finer than is searched is pooled.
+    /// Prepares a map of `width · height` occupancies, row by row from the lowest y; cells smaller
+    /// than the search cell are pooled.
     ///
     /// # Errors
     /// See [`Preparation::of_map`] and [`Preparation::finish`].
@@ -124,7 +123,7 @@ impl Localizer {
         Preparation::of_map(frame, sides, occupancy, rules, config, prior)?.finish()
     }
 
-    /// Prepares a grid, which is searched as it is.
+    /// Prepares a grid, which is searched at its own resolution.
     ///
     /// # Errors
     /// See [`Preparation::new`] and [`Preparation::finish`].
@@ -137,7 +136,8 @@ impl Localizer {
         Preparation::new(frame, grid, config, prior)?.finish()
     }
 
-    /// The index, where headings are searched: what is worth keeping for the next time.
+    /// Returns the search index, worth caching for the next start; `None` if prepared for known
+    /// headings.
     #[must_use]
     pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
         match &self.method {
@@ -146,37 +146,37 @@ impl Localizer {
         }
     }
 
-    /// Cells of the map along the side of a cell that is searched.
+    /// Number of map cells along the side of a search cell.
     #[must_use]
     pub fn pooling(&self) -> usize {
         self.pooling
     }
 
-    /// Where the grid that is searched lies in the map.
+    /// Cell size and pose in the map of the grid that is searched.
     #[must_use]
     pub fn frame(&self) -> GridFrame {
         self.frame
     }
 
-    /// How scans are matched.
+    /// Settings of the localizer.
     #[must_use]
     pub fn config(&self) -> &LocalizerConfig {
         &self.config
     }
 
-    /// The cells that are searched.
+    /// Cells that are searched.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Cells in which poses are searched.
+    /// Number of cells in which poses are searched.
     #[must_use]
     pub fn searchable_cells(&self) -> usize {
         self.limits().open_cells(&self.grid).count()
     }
 
-    /// Bytes of what is kept of the map for searches, beside its cells.
+    /// Memory of the search data in bytes, without the cells.
     #[must_use]
     pub fn index_bytes(&self) -> usize {
         match &self.method {
@@ -192,7 +192,7 @@ impl Localizer {
         }
     }
 
-    /// The same where beams count up to this length, see [`Space::reaching`].
+    /// Makes beams count up to this length, see [`Space::reaching`].
     #[must_use]
     pub fn reaching(self, reach_m: f64) -> Self {
         Localizer {
@@ -201,17 +201,16 @@ impl Localizer {
         }
     }
 
-    /// The space that is searched.
+    /// Space of poses that is searched.
     #[must_use]
     pub fn space(&self) -> &Space {
         &self.space
     }
 
-    /// Searches all poses with a workspace of its own, see
-    /// [`Localizer::search_in`].
+    /// Searches all poses in a new workspace, see [`Localizer::search_in`].
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
+    /// If the scan is rejected, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
@@ -225,10 +224,10 @@ impl Localizer {
         Ok(found.then_some(workspace.outcome))
     }
 
-    /// Searches all poses; `None` if `stop` said so before the end.
+    /// Searches all poses; `None` if `stop` returned true before the end.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
+    /// If the scan is rejected, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
@@ -260,11 +259,11 @@ impl Localizer {
         index
     }
 
-    /// Upper bounds of what [`Localizer::search`] can find, by block: where the
-    /// robot may be, roughly.
+    /// Returns upper bounds of the votes that [`Localizer::search`] can find, by block: a coarse
+    /// picture of where the robot may be.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
+    /// If the scan is rejected, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
@@ -285,12 +284,11 @@ impl Localizer {
         Ok(blocks)
     }
 
-    /// Searches x and y at a heading with a workspace of its own, see
-    /// [`Localizer::search_at_in`]; the intensities of all cells come with the
-    /// outcome.
+    /// Searches x and y at a heading in a new workspace, see [`Localizer::search_at_in`]; returns
+    /// the outcome and the intensities of all cells.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
     ///
     /// # Panics
     /// If the localizer was prepared for unknown headings.
@@ -306,12 +304,11 @@ impl Localizer {
         Ok(found.then_some((workspace.outcome, workspace.field)))
     }
 
-    /// Searches x and y at a heading in the map frame, radians, and leaves the
-    /// intensities of all cells in [`Workspace::intensities`]; `None` if `stop`
-    /// said so before the end.
+    /// Searches x and y at a heading in the map frame, in radians, and leaves the intensities of
+    /// all cells in [`Workspace::intensities`]; `None` if `stop` returned true before the end.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
     ///
     /// # Panics
     /// If the localizer was prepared for unknown headings.
@@ -336,7 +333,7 @@ impl Localizer {
             outcome,
             ..
         } = workspace;
-        // What the heading grid does not hold of the heading turns the beams.
+        // The beams are turned by the rest of the heading after rounding to the heading grid.
         let (index, turn) = self
             .space
             .directions
@@ -358,7 +355,7 @@ impl Localizer {
         Ok(Some(self.describe(program, Some(heading), outcome)))
     }
 
-    /// Fills in all of an outcome but what was found.
+    /// Fills in an outcome except the votes found.
     fn describe<'w>(
         &self,
         program: &ScanProgram,

@@ -1,4 +1,4 @@
-//! From a scan to the places where it may have been taken, in one call.
+//! From a scan to the places at which it may have been taken, in one call.
 //!
 //! ```text
 //! scan ── Localizer: votes ── peaks::Workspace::judge: places, verdict
@@ -16,29 +16,29 @@ use crate::observation::Observation;
 use crate::peaks::{self, Judged, PeakConfig, PeakInput, Score};
 use crate::space::Space;
 
-/// A map of occupancies.
+/// A borrowed occupancy map.
 #[derive(Debug, Clone, Copy)]
 pub struct OccupancyView<'a> {
-    /// Where the cells lie in the map frame.
+    /// Cell size and pose of the grid in the map frame.
     pub frame: GridFrame,
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     pub sides: (usize, usize),
-    /// Per cent, or [`messages::UNKNOWN`], row by row from the lowest y.
+    /// Occupancies in per cent, or [`messages::UNKNOWN`], row by row from the lowest y.
     pub occupancy: &'a [u8],
-    /// Which of them are occupied, free or unknown.
+    /// Thresholds for occupied, free and unknown cells.
     pub rules: CellRules,
 }
 
-/// How scans are located.
+/// Settings of both stages of a [`Locator`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LocatorConfig {
-    /// The first stage: which poses have the most votes.
+    /// First stage: finds the poses with the most votes.
     pub localizer: LocalizerConfig,
-    /// The second stage: which places these are, and whether one stands alone.
+    /// Second stage: groups them to places and decides if one is unambiguous.
     pub peaks: PeakConfig,
 }
 
-/// A map that is ready to be asked, by any number of threads.
+/// A map prepared for locating scans, shared by any number of threads.
 ///
 /// ```
 /// use engine::grid::{CellRules, GridFrame};
@@ -64,7 +64,7 @@ pub struct LocatorConfig {
 /// };
 /// let locator = Locator::new(map, LocatorConfig::default(), Prior::None)?;
 ///
-/// // What a laser with a beam a degree reads at 3 m, 2.5 m, turned by a radian.
+/// // Ranges of a laser with one beam per degree at 3 m, 2.5 m, turned by a radian.
 /// let truth = Pose::new(3.0, 2.5, 1.0);
 /// let ranges: Vec<f32> = (0..360)
 ///     .map(|beam| {
@@ -93,55 +93,53 @@ pub struct LocatorConfig {
 pub struct Locator {
     localizer: Localizer,
     distance_field: DistanceField,
-    /// That of the map as it is, where the localizer may search a coarser one.
+    /// Space of the map at full resolution; the localizer may search a coarser one.
     space: Space,
     peaks: PeakConfig,
 }
 
-/// What locating takes, kept from scan to scan: once its buffers are large enough, nothing is
-/// allocated any more. It may serve any locator.
+/// Buffers for locating, kept from scan to scan: once they are large enough, nothing is allocated
+/// any more. They may serve any locator.
 #[derive(Debug, Default)]
 pub struct Workspace {
     localizer: localizer::Workspace,
     peaks: peaks::Workspace,
 }
 
-/// What a scan says about the pose.
+/// Result of locating one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located<'w> {
-    /// The votes, and search statistics.
+    /// Votes and search statistics.
     pub outcome: &'w Outcome,
-    /// What they say, the verdict included.
+    /// Places and verdict.
     pub places: &'w peaks::Places,
-    /// The scan's beams as they were compared with the map; none where the votes alone
-    /// decide.
+    /// Beams of the scan as they were compared with the map; `None` if the votes alone decide.
     pub ends: Option<&'w Ends>,
 }
 
 impl Workspace {
-    /// What the first half takes.
     pub(crate) fn localizer(&mut self) -> &mut localizer::Workspace {
         &mut self.localizer
     }
 
-    /// The votes of the last scan.
+    /// Votes of the last scan.
     pub(crate) fn outcome(&self) -> &Outcome {
         self.localizer.outcome()
     }
 
-    /// What became of the beams of the last scan at its best place.
+    /// Classes of the beams of the last scan at its best place.
     pub(crate) fn classes(&self) -> &Vec<BeamClass> {
         self.peaks.classes()
     }
 
-    /// The beams of the last scan, where places are judged by them.
+    /// Beams of the last scan; `None` if the votes alone decide.
     pub(crate) fn ends(&self, score: Score) -> Option<&Ends> {
         self.peaks.judged_ends(score)
     }
 }
 
 impl Locator {
-    /// Prepares a map, which takes from milliseconds to seconds.
+    /// Prepares a map, which takes milliseconds to seconds.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
@@ -161,7 +159,7 @@ impl Locator {
         Self::with(localizer, map, peaks)
     }
 
-    /// The same with a localizer that was prepared for the map before.
+    /// Does the same with a localizer that was already prepared for the map.
     ///
     /// # Errors
     /// See [`Locator::new`].
@@ -179,7 +177,7 @@ impl Locator {
         })
     }
 
-    /// The same where beams count up to this length, see [`Space::reaching`].
+    /// Makes beams count up to this length, see [`Space::reaching`].
     #[must_use]
     pub fn reaching(self, reach_m: f64) -> Self {
         Locator {
@@ -189,16 +187,15 @@ impl Locator {
         }
     }
 
-    /// The map's diagonal, metres.
+    /// Diagonal of the map, in metres.
     pub(crate) fn longest_m(&self) -> f64 {
         self.space.longest_m
     }
 
-    /// The places at which a scan may have been taken; the locator must be prepared for
-    /// unknown headings.
+    /// Returns the places at which a scan may have been taken, at any heading.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
+    /// If the scan is rejected, see [`Observation::check`].
     ///
     /// # Panics
     /// If the locator was prepared for known headings.
@@ -211,15 +208,15 @@ impl Locator {
         Ok(found.expect("a search that nothing stops ends with an outcome"))
     }
 
-    /// The same, among all positions at a heading in the map frame, radians, where one is
-    /// given; `None` if `stop` said so before the end.
+    /// Locates a scan as [`Locator::locate`] does, or, if a heading in the map frame is given
+    /// (radians), among all positions at that heading. Returns `None` if `stop` returned true
+    /// before the end.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
     ///
     /// # Panics
-    /// If the locator was prepared for unknown headings and one is given, or the other way
-    /// round.
+    /// If the locator was prepared for unknown headings and one is given, or vice versa.
     pub fn locate_unless<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
@@ -247,8 +244,8 @@ impl Locator {
         }))
     }
 
-    /// The second half alone, for a scan whose votes the workspace has, and whether other maps
-    /// are searched together with this one.
+    /// Runs the second stage alone, for a scan whose votes are in the workspace. `how` is the
+    /// settings and true if other maps are searched together with this one.
     pub(crate) fn judge<R>(
         &self,
         workspace: &mut Workspace,
@@ -276,10 +273,10 @@ impl Locator {
         peaks.judge(&input, &self.distance_field, config, find)
     }
 
-    /// The beams of a scan, as the second stage compares them with the map.
+    /// Returns the beams of a scan as the second stage compares them with the map.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`].
+    /// If the scan is rejected, see [`Observation::check`].
     pub fn ends<'s>(&self, scan: impl Into<Observation<'s>>) -> Result<Ends, EngineError> {
         Ends::new(scan, &self.space, self.beams())
     }
@@ -294,13 +291,13 @@ impl Locator {
         &self.localizer
     }
 
-    /// The map as the second stage reads it.
+    /// Distance field of the map, for the second stage.
     #[must_use]
     pub fn distance_field(&self) -> &DistanceField {
         &self.distance_field
     }
 
-    /// How the second stage judges places.
+    /// Settings of the second stage.
     #[must_use]
     pub fn peaks(&self) -> &PeakConfig {
         &self.peaks

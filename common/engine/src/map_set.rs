@@ -1,4 +1,4 @@
-//! Several maps, searched as one: the floors of a building, or all buildings of a campus.
+//! A set of maps searched as one: the floors of a building, or the buildings of a campus.
 //!
 //! ```text
 //! scan ─┬─ map 0: votes ─ places ─┐
@@ -6,11 +6,11 @@
 //!       └─ map 2: votes ─ places ─┘
 //! ```
 //!
-//! The search is one over all maps: as soon as a good pose is known on one of them, blocks of
-//! the others are compared with its votes, so that ten maps cost far less than ten searches.
-//! Votes are compared as shares of what is possible on each map; ties go to the map that is
-//! named first. All maps are judged by the same beams, up to the diagonal of the largest: one
-//! that is too long for a map fits nothing there.
+//! One search runs over all maps: as soon as a good pose is known on one of them, blocks of the
+//! others are compared with its votes, so that ten maps cost far less than ten searches. Votes are
+//! compared as shares of the highest possible on each map; ties go to the map listed first. All
+//! maps are judged by the same beams, up to the diagonal of the largest map: a beam that is too
+//! long for a map matches nothing there.
 
 use crate::EngineError;
 use crate::fit::Ends;
@@ -19,35 +19,34 @@ use crate::locator::{self, Locator};
 use crate::observation::Observation;
 use crate::peaks::{Found, Merged, Places, merge};
 
-/// Maps that are ready to be asked, by any number of threads.
+/// Maps prepared for locating scans, shared by any number of threads.
 #[derive(Debug, Clone)]
 pub struct MapSet {
     locators: Vec<Locator>,
 }
 
-/// What locating takes, kept from scan to scan. It may serve any set.
+/// Buffers for locating, kept from scan to scan. They may serve any set.
 #[derive(Debug, Default)]
 pub struct Workspace {
     maps: Vec<locator::Workspace>,
     merged: Merged,
 }
 
-/// What a scan says about map and pose.
+/// Result of locating one scan on several maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located<'w> {
-    /// The votes on the map of the best place; of the first map where there is no place.
+    /// Votes on the map of the best place; on the first map if there is no place.
     pub outcome: &'w Outcome,
-    /// The places, each with the number of its map, and the verdict.
+    /// Places, each with the number of its map, and the verdict.
     pub places: &'w Places,
-    /// The same as it is merged with what others found on other maps.
+    /// The same in the form that is merged with results of other processes on other maps.
     pub found: &'w Found,
-    /// The scan's beams as they were compared with that map; none where the votes alone
-    /// decide.
+    /// Beams of the scan as they were compared with that map; `None` if the votes alone decide.
     pub ends: Option<&'w Ends>,
 }
 
 impl Workspace {
-    /// That of one map, for who asks it by itself.
+    /// Returns the workspace of a single map, for locating on that map alone.
     #[must_use]
     pub fn of_one(&mut self) -> &mut locator::Workspace {
         self.maps.resize_with(1, locator::Workspace::default);
@@ -56,10 +55,10 @@ impl Workspace {
 }
 
 impl MapSet {
-    /// A set of at least one map, all prepared with the same settings.
+    /// Makes a set of at least one map, all prepared with the same settings.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no map.
     #[must_use]
     pub fn new(locators: Vec<Locator>) -> Self {
         assert!(!locators.is_empty(), "a set of maps has at least one");
@@ -71,22 +70,22 @@ impl MapSet {
         }
     }
 
-    /// The maps, in the order by which ties are decided.
+    /// Maps, in the order that decides ties.
     #[must_use]
     pub fn locators(&self) -> &[Locator] {
         &self.locators
     }
 
-    /// The places at which a scan may have been taken, on any of the maps; among all positions
-    /// at a heading in the maps' frames, radians, where one is given; `None` if `stop` said so
-    /// before the end. Of one map, the places are those of [`Locator::locate_unless`].
+    /// Returns the places at which a scan may have been taken, on any of the maps; if a heading in
+    /// the maps' frames is given (radians), among all positions at that heading. `None` if `stop`
+    /// returned true before the end. With one map, the places are those of
+    /// [`Locator::locate_unless`].
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
     ///
     /// # Panics
-    /// If the locators were prepared for unknown headings and one is given, or the other way
-    /// round.
+    /// If the locators were prepared for unknown headings and one is given, or vice versa.
     pub fn locate_unless<'w, 's>(
         &self,
         workspace: &'w mut Workspace,

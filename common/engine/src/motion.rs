@@ -1,4 +1,4 @@
-//! How the robot moved by its odometry, between and a little beyond its samples.
+//! Motion of the robot by odometry, between its samples and a little beyond them.
 
 mod delay;
 
@@ -8,61 +8,61 @@ use geometry::Pose;
 
 pub use delay::Sighting;
 
-/// Two samples that lie farther apart say too little of the motion between them:
-/// within half a second a robot brakes and turns.
+/// Largest gap between two samples that tell the motion between them: within half a second a robot
+/// brakes and turns.
 const MAX_GAP_NS: i64 = 500_000_000;
 
-/// How long the last twist is taken to go on, and the first to have been there
-/// before: a scan of a slow laser (8 Hz), and what odometry may lag behind it.
+/// Time for which the last twist is extrapolated, and the first one backwards: a scan of a slow
+/// laser (8 Hz) and the lag of odometry behind it.
 const MAX_BEYOND_NS: i64 = 250_000_000;
 
-/// After so many of its usual sample periods without a sample, odometry has ended; but
-/// not before so long, for stamps are irregular.
+/// Odometry has stopped after this many of its usual sample periods without a sample, but not
+/// before the minimum time, because stamps are irregular.
 const MISSED_SAMPLES: i64 = 4;
 const MIN_SILENCE_NS: i64 = 500_000_000;
 
-/// The usual period is the median of so many.
+/// Number of periods whose median is the usual period.
 const PERIODS: usize = 8;
 
-/// Poses differ by less than this from rounding alone, metres and radians.
+/// Differences of poses that rounding alone explains, in metres and radians.
 const ROUNDING: f64 = 1e-4;
 
-/// Samples that come this much earlier than the last are of a recording that was
-/// begun again; others that are late are left out.
+/// Jump back in time at which a recording has started again; samples that are less late are
+/// dropped.
 const BEGUN_ANEW_NS: i64 = 1_000_000_000;
 
-/// No robot is faster, metres a second, and so much a sample may be off besides.
+/// Largest speed of a robot, in metres per second, and additional error of a sample, in metres.
 const FASTEST_M_S: f64 = 10.0;
 const OFF_M: f64 = 0.5;
 
-/// Odometry that was restarted counts from where the robot is. A sample that lies so near
-/// to that, metres and radians, and so far from the sample before and from where its twist
-/// leads, is its first.
+/// Odometry that restarts counts from the robot's pose at that time. A sample this near to the
+/// origin (metres and radians), and this far from the sample before and from its extrapolation, is
+/// the first after a restart.
 const START: (f64, f64) = (0.05, 0.05);
 const FROM_BEFORE: (f64, f64) = (0.2, 0.1);
 
-/// The poses of a moving frame over time, by increasing stamps.
+/// Poses of a moving frame over time, sorted by stamp.
 #[derive(Debug, Clone)]
 pub struct Motion {
     samples: VecDeque<(i64, Pose)>,
     keep: usize,
     starts: u32,
-    /// The first sample since the start, and when another pose came for the first time.
+    /// First sample since the start, and the time of the first sample with a different pose.
     first: Option<Pose>,
     moved_ns: Option<i64>,
 }
 
-/// Where the frame was at some time.
+/// Pose of the frame at some time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located {
-    /// In the odometry's frame.
+    /// Pose in the odometry's frame.
     pub odom_from_child: Pose,
-    /// Whether it lies between two samples and not beyond them.
+    /// True if the time is between two samples, not beyond them.
     pub is_between: bool,
 }
 
 impl Motion {
-    /// Keeps the newest samples, this many at most.
+    /// Creates an empty history that keeps at most this many of the newest samples.
     #[must_use]
     pub fn keeping(samples: usize) -> Self {
         Motion {
@@ -74,8 +74,8 @@ impl Motion {
         }
     }
 
-    /// Takes a sample; the stamp in nanoseconds. Where the odometry begins anew, what was
-    /// before is forgotten, for nothing says how the robot moved between.
+    /// Adds a sample with its stamp in nanoseconds. At a restart of odometry all earlier samples
+    /// are forgotten, because the motion in between is unknown.
     pub fn add(&mut self, stamp_ns: i64, odom_from_child: Pose) {
         if !odom_from_child.is_finite() {
             return;
@@ -99,7 +99,7 @@ impl Motion {
         self.samples.push_back((stamp_ns, odom_from_child));
     }
 
-    /// Whether a sample cannot go on from the newest one.
+    /// True if a sample cannot follow the newest one.
     fn begins_anew(&self, (newest_ns, newest): (i64, Pose), (stamp_ns, now): (i64, Pose)) -> bool {
         let later_ns = stamp_ns.saturating_sub(newest_ns);
         if later_ns <= 0 {
@@ -112,36 +112,35 @@ impl Motion {
         at_start || now.distance_to(newest) > OFF_M + FASTEST_M_S * later_ns as f64 / 1e9
     }
 
-    /// How often the odometry has begun anew: its poses since then say nothing of those
-    /// before.
+    /// Number of restarts of odometry; poses before and after a restart cannot be compared.
     #[must_use]
     pub fn starts(&self) -> u32 {
         self.starts
     }
 
-    /// When the newest sample was measured, nanoseconds.
+    /// Time of the newest sample, in nanoseconds.
     #[must_use]
     pub fn newest_ns(&self) -> Option<i64> {
         self.samples.back().map(|&(stamp, _)| stamp)
     }
 
-    /// Whether a sample measured at this time or later may come soon: the newest is
-    /// not long before it.
+    /// True if a sample of this time or later may arrive soon: the newest one is at most half a
+    /// second older.
     #[must_use]
     pub fn may_reach(&self, stamp_ns: i64) -> bool {
         self.newest_ns()
             .is_some_and(|newest| stamp_ns.saturating_sub(newest) <= MAX_GAP_NS)
     }
 
-    /// Whether any sample until a time differs from the first since the start: odometry
-    /// that has never changed may be dead, and says nothing of how the robot moves.
+    /// True if any sample up to a time differs from the first since the start. Odometry that has
+    /// never changed may be dead and does not tell the motion of the robot.
     #[must_use]
     pub fn has_moved(&self, stamp_ns: i64) -> bool {
         self.moved_ns.is_some_and(|moved| moved <= stamp_ns)
     }
 
-    /// Whether the newest two samples differ by more than rounding: a tenth of a
-    /// millimetre or of a milliradian.
+    /// True if the newest two samples differ by more than rounding: a tenth of a millimetre or of a
+    /// milliradian.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         let mut newest = self.samples.iter().rev().map(|&(_, pose)| pose);
@@ -151,10 +150,10 @@ impl Motion {
         }
     }
 
-    /// Where the frame was at a time, by what was measured until then alone: what comes
-    /// later changes nothing. The last twist is taken to go on for at most a quarter of a
-    /// second; beyond, the frame stays where it was. `None` before the first sample, and
-    /// where samples have stopped coming: for half a second, and four usual periods.
+    /// Returns the pose of the frame at a time from samples up to that time only, so that later
+    /// samples change nothing. The last twist is extrapolated for at most a quarter of a second;
+    /// beyond that the frame stays where it was. `None` before the first sample, and once samples
+    /// have stopped: for half a second and four usual periods.
     #[must_use]
     pub fn until(&self, stamp_ns: i64) -> Option<Pose> {
         let after = self
@@ -176,8 +175,7 @@ impl Motion {
         Some(start.towards(end, share))
     }
 
-    /// The median of the last periods between the first `count` samples, nanoseconds; 0
-    /// where there is none.
+    /// Median of the last periods between the first `count` samples, in nanoseconds; 0 without any.
     fn usual_period_ns(&self, count: usize) -> i64 {
         let first = count.saturating_sub(PERIODS + 1);
         let stamps = || self.samples.range(first..count).map(|&(stamp, _)| stamp);
@@ -192,9 +190,9 @@ impl Motion {
         periods.get(found / 2).copied().unwrap_or(0)
     }
 
-    /// Where the frame was at a time: on the arc of constant twist between the two
-    /// samples around it, or on that of the nearest two for at most a quarter of a
-    /// second beyond them. `None` if no samples cover it.
+    /// Returns the pose of the frame at a time: on the arc of constant twist between the two
+    /// samples around it, or on that of the nearest two for at most a quarter of a second beyond
+    /// them. `None` if no samples cover it.
     #[must_use]
     pub fn at(&self, stamp_ns: i64) -> Option<Located> {
         let after = self.samples.partition_point(|&(stamp, _)| stamp < stamp_ns);
@@ -276,7 +274,7 @@ mod tests {
             until(&slow, 140) && !until(&slow, 141),
             "four of its periods"
         );
-        // One hole among samples is no period.
+        // A single hole among the samples does not count as a period.
         let hole = motion(&[0, 1, 2, 90, 91, 92].map(east));
         assert!(!until(&hole, 98) && !until(&hole, 60) && until(&hole, 90));
         let single = motion(&[east(0)]);
@@ -318,7 +316,7 @@ mod tests {
         assert_eq!(next(far.then(Pose::new(1.0, 0.0, 0.5))).0, 1);
         let first = Pose::new(0.02, 0.0, 0.01);
         assert_eq!(next(first), (2, Some(first)));
-        // Drives through the origin, and stands there.
+        // The robot drives through the origin, and stands there.
         let mut through = Motion::keeping(8);
         for tenth in 0..8 {
             through.add(
@@ -331,7 +329,8 @@ mod tests {
             );
         }
         assert_eq!(through.starts(), 0);
-        // Turns on the spot where it began, 90 degrees a second, at ten samples a second.
+        // The robot turns on the spot where it started, at 90 degrees per second and ten samples
+        // per second.
         let mut turning = Motion::keeping(8);
         for tenth in 0..8 {
             turning.add(
@@ -340,7 +339,7 @@ mod tests {
             );
         }
         assert_eq!(turning.starts(), 0);
-        // Scans before the restart are not covered, and nothing lies between.
+        // Scans before the restart are not covered, and nothing is interpolated across it.
         let mut anew = motion(&[(10, far), (12, far)]);
         anew.add(13 * TENTH, Pose::IDENTITY);
         assert_eq!((anew.until(12 * TENTH), anew.at(12 * TENTH)), (None, None));

@@ -1,33 +1,30 @@
-//! The input of a search: a scan as it came, or one that was brought to one
-//! time and place.
+//! Input of a search: a scan without motion compensation, or scans carried to one time and place.
 //!
-//! A laser that moves while it turns measures each beam from another place, and
-//! several lasers measure from several. What they saw is then carried, reading by
-//! reading, into the target frame.
+//! A laser that moves during a scan measures each beam from a different pose, and several lasers
+//! measure from several. Their readings are then carried, one by one, into the target frame.
 
 use geometry::Pose;
 
 use crate::EngineError;
 use crate::scan::Scan;
 
-/// What a pose is searched for.
+/// Readings for which a pose is searched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observation<'a> {
     /// A scan whose laser stood still; the laser's pose is searched.
     Still(Scan<'a>),
-    /// Scans carried into one frame, whose pose is searched. One alone is thinned by
-    /// its own beams, as if it stood still; several are joined: seen from the
-    /// frame's origin, of the readings in a sector the nearest votes.
+    /// Scans carried into one frame, whose pose is searched. A single scan is thinned by its own
+    /// beams, as if the laser stood still. Several scans are joined: the turn, seen from the
+    /// frame's origin, is divided into sectors, and in each the nearest reading votes.
     Carried(&'a [CarriedScan<'a>]),
 }
 
-/// A scan, and where its laser was.
+/// A scan with the poses of its laser.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarriedScan<'a> {
-    /// The readings.
+    /// Scan with the readings.
     pub scan: Scan<'a>,
-    /// The laser's pose in the target frame, when it measured each of the
-    /// ranges; as many as there are ranges.
+    /// Pose of the laser in the target frame at each of the ranges, as many as there are ranges.
     pub target_from_laser: &'a [Pose],
 }
 
@@ -35,7 +32,7 @@ impl Observation<'_> {
     /// Checks all scans, see [`Scan::check`].
     ///
     /// # Errors
-    /// If a scan is refused, there is none, or a place is missing or not finite.
+    /// If a scan is rejected, there is none, or a pose is missing or not finite.
     pub fn check(&self) -> Result<(), EngineError> {
         match self {
             Observation::Still(scan) => scan.check(),
@@ -64,14 +61,14 @@ impl CarriedScan<'_> {
         }
     }
 
-    /// Where the laser was when it measured beam `i`.
+    /// Pose of the laser at beam `i`.
     pub(crate) fn laser(&self, i: usize) -> Pose {
         let pose = self.target_from_laser.get(self.scan.index(i));
         pose.copied().unwrap_or_default()
     }
 
-    /// Where beam `i` ends, seen from the origin of the target frame: bearing in
-    /// radians and distance in metres.
+    /// Returns the end of beam `i`, seen from the origin of the target frame: bearing in radians
+    /// and distance in metres; `None` if nothing returned.
     pub(crate) fn end(&self, i: usize) -> Option<(f64, f64)> {
         let reading_m = self.scan.reading(i)?;
         let (sin, cos) = self.scan.bearing(i).sin_cos();

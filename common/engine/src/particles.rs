@@ -1,4 +1,4 @@
-//! Poses around the places of a search, with which a particle filter starts.
+//! Start poses of a particle filter, drawn around the places of a search.
 
 use geometry::{Covariance, Pose, wrap_angle};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -11,8 +11,7 @@ use crate::fit::GridPose;
 use crate::grid::GridFrame;
 use crate::peaks::Place;
 
-/// The generator of all random numbers; of those in `rand`, one whose numbers do not
-/// change with its versions.
+/// Generator of all random numbers; one of `rand` whose numbers do not change between versions.
 pub type Rng = Xoshiro256PlusPlus;
 
 /// A place where the robot may be.
@@ -20,9 +19,9 @@ pub type Rng = Xoshiro256PlusPlus;
 pub struct Candidate {
     /// Pose of the target frame, in the map.
     pub map_from_target: Pose,
-    /// Its spread, in the map.
+    /// Covariance of the pose, in the map.
     pub covariance: Covariance,
-    /// How likely the robot is there, against the other candidates.
+    /// Probability of the place relative to the other candidates.
     pub weight: f64,
 }
 
@@ -36,13 +35,13 @@ impl From<&Place> for Candidate {
     }
 }
 
-/// Draws `count` poses in the map around candidates, as a start for any particle filter:
-/// as often around each as it is likely, and spread by its covariance (the paper, section
-/// VI: "those places where particles need to be initialized"). All weigh the same. The frame
-/// is that of the map's cells; the same seed gives the same poses.
+/// Draws `count` poses in the map around candidates, as the start of any particle filter: around
+/// each in proportion to its weight, and spread by its covariance (the paper, section VI: "those
+/// places where particles need to be initialized"). All poses weigh the same. `frame` is that of
+/// the map's cells; the same seed gives the same poses.
 ///
 /// # Errors
-/// If there is no candidate of finite numbers.
+/// If no candidate has finite numbers and a weight of at least 0.
 pub fn draw(
     frame: GridFrame,
     candidates: impl IntoIterator<Item = Candidate>,
@@ -55,12 +54,12 @@ pub fn draw(
     Ok((0..count).map(|_| pose(seeds.draw(&mut rng))).collect())
 }
 
-/// No candidate is surer than this, cells and degrees: it was refined by the scan that
-/// weighs the particles next, which must not count twice.
+/// Smallest standard deviations of a candidate, in cells and degrees. It was refined by the scan
+/// that weighs the particles next, and that scan must not count twice.
 const MIN_CELLS: f64 = 0.5;
 const MIN_DEG: f64 = 1.0;
 
-/// Draws poses around candidates, as often around each as it is likely.
+/// Draws poses around candidates, in proportion to their weights.
 pub struct Seeds {
     seeds: Vec<Seed>,
     total: f64,
@@ -68,18 +67,17 @@ pub struct Seeds {
 
 struct Seed {
     pose: GridPose,
-    /// Takes independent normal numbers to an error in cells and radians.
+    /// Matrix that converts independent normal numbers to an error in cells and radians.
     root: Matrix3<f64>,
     weight: f64,
 }
 
 impl Seeds {
-    /// Candidates with numbers that are not finite are left out, and such with a weight
-    /// below zero; if none weighs anything, as where votes alone judge them, all weigh
-    /// the same.
+    /// Prepares the candidates. Those with numbers that are not finite or a negative weight are
+    /// dropped; if all weights are 0, as after a judgement by votes alone, all weigh the same.
     ///
     /// # Errors
-    /// If there is no candidate of finite numbers.
+    /// If no candidate is left.
     pub fn new(
         frame: GridFrame,
         candidates: impl IntoIterator<Item = Candidate>,
@@ -96,14 +94,14 @@ impl Seeds {
         Ok(Seeds { seeds, total })
     }
 
-    /// A random pose, in cells of the grid.
+    /// Draws a random pose, in cells of the grid.
     pub fn draw(&self, rng: &mut Rng) -> GridPose {
         let mut left = self.total * rng.random::<f64>();
         let is_it = |seed: &&Seed| {
             left -= seed.weight;
             left < 0.0
         };
-        // The sum rounds; then it is the last.
+        // Rounding of the sum may leave a rest; then the last one is taken.
         let last = &self.seeds[self.seeds.len() - 1];
         let seed = self.seeds.iter().find(is_it).unwrap_or(last);
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
@@ -136,7 +134,7 @@ impl Seed {
     }
 }
 
-/// The covariance of a pose of the map in cells along the grid's axes and radians.
+/// Converts the covariance of a pose from the map to cells along the grid's axes and radians.
 fn in_cells(frame: GridFrame, covariance: Matrix3<f64>) -> Matrix3<f64> {
     let (sin, cos) = frame.map_from_grid.yaw.sin_cos();
     let scale = 1.0 / frame.resolution_m;
@@ -145,7 +143,7 @@ fn in_cells(frame: GridFrame, covariance: Matrix3<f64>) -> Matrix3<f64> {
     turn * covariance * turn.transpose()
 }
 
-/// A root of the covariance, no narrower than the least one. It may be flat, where the
+/// Root of a covariance that is widened by the smallest one. The covariance may be flat, if the
 /// heading was known.
 fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
     const MAX_STEPS: usize = 100;
@@ -186,14 +184,15 @@ mod tests {
             .map(|p| FRAME.map_from_cells(p.x, p.y, p.heading))
             .collect();
         let first: Vec<&Pose> = drawn.iter().filter(|pose| pose.x < 25.0).collect();
-        // 2000 of 8000, with a deviation of 39: within four of those.
+        // The expectation is 2000 of 8000, with a standard deviation of 39; four of those are
+        // allowed.
         assert!(first.len().abs_diff(2000) < 156, "{}", first.len());
         let deviation = |of: &dyn Fn(&Pose) -> f64| {
             let squares: f64 = first.iter().map(|pose| of(pose).powi(2)).sum();
             (squares / first.len() as f64).sqrt()
         };
-        // Half a cell and a degree are added; 2000 samples give a deviation to 1.6 %,
-        // four of which are allowed.
+        // Half a cell and a degree are added; 2000 samples give a standard deviation to 1.6 %, and
+        // four times that is allowed.
         let check = |found: f64, asked: f64, least: f64| {
             let expected = asked.hypot(least);
             assert!((found / expected - 1.0).abs() < 0.064, "{found} {expected}");
@@ -210,7 +209,7 @@ mod tests {
         assert_eq!(drawn.len(), 100);
         assert_eq!(draw(FRAME, around(), 100, 7).unwrap(), drawn);
         assert_ne!(draw(FRAME, around(), 100, 8).unwrap(), drawn);
-        // Five deviations, with half a cell added.
+        // Five standard deviations, with half a cell added.
         let near = |pose: &Pose| pose.x.abs().min((pose.x - 50.0).abs()) < 5.0 * 0.31;
         assert!(drawn.iter().all(near));
         assert_eq!(draw(FRAME, [], 1, 1), Err(EngineError::NoStart));

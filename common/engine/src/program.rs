@@ -1,8 +1,7 @@
-//! The scan program: a scan compiled for the grid that it is matched with.
+//! The scan program: a scan compiled for the grid with which it is matched.
 //!
-//! Beams are thinned by arc, weighted, rounded once to the heading grid and
-//! given their integer tapers. Every accumulator runs the same program, so all
-//! of them count the same votes.
+//! Beams are thinned by arc, weighted, rounded once to the heading grid and given integer tapers.
+//! Every accumulator runs the same program, so all of them count the same votes.
 
 use crate::EngineError;
 use crate::beams::{Beam, BeamConfig, Chosen};
@@ -10,31 +9,31 @@ use crate::observation::Observation;
 use crate::space::Space;
 use crate::taper::TaperShape;
 
-/// The range of a ray that meets no obstacle.
+/// Range of a ray that meets no obstacle.
 pub const NO_RANGE: u16 = u16::MAX;
 
 /// Highest vote of a beam with weight 1.
 const FULL_VOTE: u32 = 15;
 
-/// The widest taper: with it, no taper reaches [`NO_RANGE`] from a reading as
-/// long as the largest grid's diagonal.
+/// Widest taper, in cells: with it, no taper reaches [`NO_RANGE`] from a reading as long as the
+/// largest grid's diagonal.
 const MAX_SIGMA_CELLS: f64 = 6000.0;
 
-/// How readings become votes.
+/// Settings for the conversion of readings to votes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct VoteConfig {
-    /// Which beams vote, and with what weight.
+    /// Choice and weights of the beams that vote.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub beams: BeamConfig,
-    /// How votes fall off in front of a reading and behind it.
+    /// Shape of the decrease of votes in front of a reading and behind it.
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = TaperShape::Trapezoid))]
     pub taper: TaperShape,
     /// Standard deviation of a reading at distance 0, metres, 0..=2; the taper is never
     /// narrower than one cell.
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length))]
     pub sigma_m: f64,
-    /// What is added to the standard deviation for each metre of range, 0..=0.25.
+    /// Increase of the standard deviation per metre of range, 0..=0.25.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::parse_range_share))]
     pub sigma_per_m: f64,
 }
@@ -50,18 +49,17 @@ impl Default for VoteConfig {
     }
 }
 
-/// What one beam votes along rays of one class of directions.
+/// Votes of one beam along rays of one class of directions.
 #[derive(Debug, Clone, Copy)]
 pub struct Taper<'a> {
-    /// Steps to the reading; no reading is longer than a grid's diagonal.
+    /// Number of steps to the reading; no reading is longer than a grid's diagonal.
     pub centre: u16,
-    /// Votes at 0, 1, 2, … steps from there; nothing beyond.
+    /// Votes at 0, 1, 2, … steps from there; none beyond.
     pub profile: &'a [u8],
 }
 
 impl Taper<'_> {
-    /// Votes for a pose from which the ray is `range` steps long; none for
-    /// [`NO_RANGE`].
+    /// Returns the votes for a pose whose ray is `range` steps long; none for [`NO_RANGE`].
     #[must_use]
     pub fn votes(&self, range: u16) -> u8 {
         match self.profile.get(usize::from(range.abs_diff(self.centre))) {
@@ -70,20 +68,20 @@ impl Taper<'_> {
         }
     }
 
-    /// The least number of steps beyond the reading that has no votes.
+    /// Returns the smallest number of steps, beyond the reading, without votes.
     #[must_use]
     pub fn end(&self) -> u16 {
         self.centre.saturating_add(self.profile.len() as u16)
     }
 }
 
-/// A scan, ready to vote on a grid; by default one of which nothing votes. It
-/// can be compiled again for each scan, in the buffers of the one before.
+/// A scan that is ready to vote on a grid; the default has no beams. The buffers are reused from
+/// scan to scan.
 #[derive(Debug, Clone, Default)]
 pub struct ScanProgram {
     chosen: Chosen,
     bearings: Vec<usize>,
-    /// For beam `i` and class `c` at `i · classes + c`.
+    /// Taper of beam `i` and class `c` at `i · classes + c`.
     tapers: Vec<TaperEntry>,
     profiles: Vec<u8>,
     classes: usize,
@@ -101,11 +99,11 @@ struct TaperEntry {
 impl ScanProgram {
     /// Compiles a scan for a search space.
     ///
-    /// `turn` is added to every bearing before it is rounded: the part of a
-    /// known heading that the heading grid does not hold, else 0.
+    /// `turn` is added to every bearing before it is rounded: the rest of a known heading after
+    /// rounding to the heading grid, otherwise 0 (radians).
     ///
     /// # Errors
-    /// If [`Observation::check`] refuses the scan.
+    /// If [`Observation::check`] rejects the scan.
     pub fn new<'a>(
         scan: impl Into<Observation<'a>>,
         turn: f64,
@@ -117,8 +115,7 @@ impl ScanProgram {
         Ok(program)
     }
 
-    /// The same in the buffers of a scan before; where it is refused, that scan
-    /// stays.
+    /// Does the same in the buffers of the scan before, which is kept if the scan is rejected.
     ///
     /// # Errors
     /// See [`ScanProgram::new`].
@@ -143,7 +140,7 @@ impl ScanProgram {
             let beam = self.chosen.beams[i];
             let peak = f64::from(full_vote) * beam.weight;
             self.highest_possible += peak.round() as u32;
-            // A longer one ends on no pose's ray, and only on other maps.
+            // A longer beam ends on no ray of this map, only on other maps.
             if beam.reading_m <= space.longest_m {
                 self.push(&beam, peak, space, config);
             }
@@ -170,7 +167,7 @@ impl ScanProgram {
         self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
     }
 
-    /// Becomes a program of some of another's beams.
+    /// Replaces the program by some of another's beams.
     pub(crate) fn take_some(&mut self, of: &ScanProgram, is_taken: impl Fn(usize) -> bool) {
         self.bearings.clear();
         self.tapers.clear();
@@ -187,7 +184,7 @@ impl ScanProgram {
         self.bearing_rounding = of.bearing_rounding;
     }
 
-    /// How many beams vote, which are no longer than the grid; the paper's m.
+    /// Number of beams that vote and are no longer than the grid; the paper's m.
     #[must_use]
     pub fn beams(&self) -> usize {
         self.bearings.len()
@@ -199,7 +196,7 @@ impl ScanProgram {
         self.bearings[i]
     }
 
-    /// What beam `i` votes along rays of a class of directions.
+    /// Votes of beam `i` along rays of a class of directions.
     #[must_use]
     pub fn taper(&self, i: usize, class: usize) -> Taper<'_> {
         let TaperEntry { centre, start, len } = self.tapers[i * self.classes + class];
@@ -209,39 +206,39 @@ impl ScanProgram {
         }
     }
 
-    /// The most votes of beam `i`.
+    /// Largest number of votes of beam `i`.
     pub(crate) fn peak(&self, i: usize) -> u16 {
         let profile = self.taper(i, 0).profile;
         profile.first().map_or(0, |&peak| u16::from(peak))
     }
 
-    /// The most votes of all beams together that may end on the grid.
+    /// Largest number of votes of all beams together that may end on the grid.
     pub(crate) fn most_votes(&self) -> u32 {
         (0..self.beams()).map(|i| u32::from(self.peak(i))).sum()
     }
 
-    /// What a pose would have if every beam agreed fully, those that are too long for the
-    /// grid included; at most 65535.
+    /// Votes of a pose with which every beam agrees fully, including beams too long for the grid;
+    /// at most 65535.
     #[must_use]
     pub fn highest_possible(&self) -> u32 {
         self.highest_possible
     }
 
-    /// Beams of the thinned scan whose reading says nothing.
+    /// Number of beams of the thinned scan without a usable reading.
     #[must_use]
     pub fn silent(&self) -> usize {
         self.chosen.silent.len()
     }
 
-    /// The largest rounding of a bearing to the heading grid, radians.
+    /// Largest rounding of a bearing to the heading grid, in radians.
     #[must_use]
     pub fn bearing_rounding(&self) -> f64 {
         self.bearing_rounding
     }
 }
 
-/// The highest full vote, at most [`FULL_VOTE`], with which the votes of all
-/// beams together fit 16 bits.
+/// Returns the highest full vote, at most [`FULL_VOTE`], with which the votes of all beams together
+/// fit in 16 bits.
 fn fitting_full_vote(beams: &[Beam]) -> u32 {
     (1..=FULL_VOTE)
         .rev()

@@ -1,7 +1,7 @@
-//! The plain reference: every pose, every beam, every cell of every ray.
+//! The reference implementation: every pose, every beam, every cell of every ray.
 //!
-//! It states what the votes are and is far too slow for a real map. The fast
-//! accumulators are tested against it and must give the same numbers.
+//! It defines the votes and is far too slow for a real map. The fast accumulators are tested
+//! against it and must give the same numbers.
 
 use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
@@ -9,8 +9,8 @@ use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
 
-/// Steps from a cell to the first occupied cell along a direction; `None`
-/// where the ray leaves the map, or meets a cell that blocks unoccupied.
+/// Returns the number of steps from a cell to the first occupied cell along a direction; `None` if
+/// the ray leaves the map or meets a cell that blocks without being occupied.
 #[must_use]
 pub fn range(grid: &Grid, x: i64, y: i64, direction: &Direction) -> Option<u16> {
     let (mut x, mut y) = (x, y);
@@ -24,8 +24,8 @@ pub fn range(grid: &Grid, x: i64, y: i64, direction: &Direction) -> Option<u16> 
     None
 }
 
-/// Intensity of one pose: the sum of the votes of all beams. 0 where the robot
-/// cannot stand.
+/// Returns the intensity of one pose: the sum of the votes of all beams. 0 where the robot cannot
+/// stand.
 #[must_use]
 pub fn intensity(
     grid: &Grid,
@@ -46,7 +46,7 @@ pub fn intensity(
     votes.sum()
 }
 
-/// Intensities of all cells at one heading, row by row from the lowest y.
+/// Returns the intensities of all cells at one heading, row by row from the lowest y.
 #[must_use]
 pub fn field(grid: &Grid, program: &ScanProgram, space: &Space, heading: usize) -> Vec<u16> {
     let (width, height) = (grid.width() as i64, grid.height() as i64);
@@ -56,7 +56,7 @@ pub fn field(grid: &Grid, program: &ScanProgram, space: &Space, heading: usize) 
         .collect()
 }
 
-/// The same within limits: 0 where no pose is searched.
+/// Does the same within limits: 0 where no pose is searched.
 #[must_use]
 pub fn field_within(
     limits: &Limits,

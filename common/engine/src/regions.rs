@@ -1,13 +1,11 @@
-//! Readings of wide beams, made fit to vote: regions of constant depth.
+//! Readings of wide beams, converted to scans that can vote: regions of constant depth.
 //!
-//! A sonar says how far the nearest surface in its cone is, not in which
-//! direction. The paper names two ways out (section II A): regions of constant
-//! depth (Leonard and Durrant-Whyte, Directed Sonar Sensing for Mobile Robot
-//! Navigation, 1992), which [`regions`] finds, and σ_θ of Eq. 1, which [`spread`]
-//! stands for. A ring has too few transducers for regions within one scan, so
-//! both take the echoes of several scans, moved by the odometry into the frame of
-//! the last; [`Window`] keeps them. They make the ranges of one scan; nothing here
-//! votes.
+//! A sonar measures the distance of the nearest surface in its cone, not its direction. The paper
+//! names two solutions (section II A): regions of constant depth (Leonard and Durrant-Whyte,
+//! Directed Sonar Sensing for Mobile Robot Navigation, 1992), which [`regions`] finds, and σ_θ of
+//! Eq. 1, which [`spread`] stands for. A ring has too few transducers for regions within one scan,
+//! so both take the echoes of several scans, moved by odometry into the frame of the last;
+//! [`Window`] keeps them. The results are the ranges of one scan; nothing here votes.
 
 mod window;
 
@@ -20,41 +18,41 @@ use crate::scan::Scan;
 
 pub use window::{SonarConfig, Window};
 
-/// Bearings of a turn at which regions are searched, and of the scans that are
-/// made here, which begin behind: one a degree.
+/// Number of bearings per turn at which regions are searched, and of the scans made here, which
+/// begin behind the robot: one per degree.
 pub const BEARINGS: usize = 360;
 
-/// From one bearing to the next, radians.
+/// Angle from one bearing to the next, in radians.
 const STEP: f64 = TAU / BEARINGS as f64;
 
-/// The scan of ranges at these bearings, metres.
+/// Makes the scan with ranges at these bearings, in metres.
 #[must_use]
 pub fn scan_of(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -PI,
         angle_increment: STEP,
         range_min_m: 0.0,
-        // They reach as far as an echo from the other end of the way.
+        // Ranges extend to echoes from the other end of the path.
         range_max_m: f32::MAX,
         ranges,
     }
 }
 
-/// One reading of a wide beam, and from where.
+/// One reading of a wide beam, with the pose of its transducer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Echo {
-    /// Where the transducer was and looked, in the frame of the scan that is made.
+    /// Pose of the transducer, looking along x, in the frame of the scan that is made.
     pub scan_from_transducer: Pose,
-    /// Metres.
+    /// Range in metres.
     pub range_m: f64,
 }
 
 impl Echo {
-    /// The echoes of a scan whose transducers all sit where the laser would.
-    /// `scan_from_laser` is where that was, in the frame of the scan that is made.
+    /// Returns the echoes of a scan whose transducers are all at the laser's position.
+    /// `scan_from_laser` is the pose of the laser in the frame of the scan that is made.
     ///
     /// # Errors
-    /// If [`Scan::check`] refuses the scan.
+    /// If [`Scan::check`] rejects the scan.
     pub fn of<'s>(
         scan: &'s Scan<'_>,
         scan_from_laser: Pose,
@@ -69,38 +67,37 @@ impl Echo {
         }))
     }
 
-    /// Where the echo comes from if its surface lies in this direction, metres.
+    /// Position of the surface if it is in this direction, in metres.
     fn point(&self, bearing: f64) -> (f64, f64) {
         let Pose { x, y, .. } = self.scan_from_transducer;
         let (sin, cos) = bearing.sin_cos();
         (x + self.range_m * cos, y + self.range_m * sin)
     }
 
-    /// How far a wall whose normal has this bearing is from the frame's origin if
-    /// it made the echo, metres.
+    /// Distance from the frame's origin to a wall whose normal has this bearing, if that wall made
+    /// the echo, in metres.
     fn depth(&self, bearing: f64) -> f64 {
         let (x, y) = self.point(bearing);
         x * bearing.cos() + y * bearing.sin()
     }
 
     fn has_in_cone(&self, bearing: f64, half_width: f64) -> bool {
-        // A billionth of a radian is a margin for rounding.
+        // The margin for rounding is a billionth of a radian.
         angle_between(bearing, self.scan_from_transducer.yaw) <= half_width + 1e-9
     }
 }
 
-/// What a region of constant depth is.
+/// Definition of a region of constant depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegionConfig {
-    /// Half of a cone's width, radians.
+    /// Half of the width of a cone, in radians.
     pub half_width: f64,
-    /// Greatest difference between depths of a region, metres.
+    /// Largest difference between the depths of a region, in metres.
     pub depth_m: f64,
-    /// Fewest echoes of a region.
+    /// Smallest number of echoes of a region.
     pub least_echoes: usize,
-    /// The bearing must be known as well as this: the width of all bearings at
-    /// which the depths agree, radians. Readings that a robot repeats from one
-    /// place agree everywhere in the cone.
+    /// Largest uncertainty of the bearing: the width of all bearings at which the depths agree, in
+    /// radians. Readings repeated from one place agree everywhere in the cone.
     pub known_within: f64,
 }
 
@@ -118,10 +115,10 @@ impl Default for RegionConfig {
 /// Echoes of one wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// Of the wall's normal, away from the robot, radians.
+    /// Bearing of the wall's normal, away from the robot, in radians.
     pub bearing: f64,
-    /// From the frame's origin to the wall along that bearing, metres: the mean
-    /// of its echoes, and constant among them.
+    /// Distance from the frame's origin to the wall along that bearing, in metres: the mean of its
+    /// echoes, which agree.
     pub depth_m: f64,
     /// Indices of the echoes.
     pub echoes: Vec<usize>,
@@ -130,19 +127,19 @@ pub struct Region {
 /// Echoes whose depths agree at a bearing.
 #[derive(Debug, Default)]
 struct Group {
-    /// Index among the bearings.
+    /// Index of the bearing.
     bearing: usize,
     /// Indices of the echoes.
     echoes: Vec<usize>,
-    /// Between the least depth and the greatest, metres.
+    /// Difference between smallest and largest depth, in metres.
     spread_m: f64,
 }
 
-/// The regions of constant depth among echoes, those with most echoes first; each
-/// echo is in one at most.
+/// Finds the regions of constant depth among echoes, those with most echoes first; each echo is in
+/// at most one.
 ///
-/// Along the normal of a wall all of its echoes say the same depth, wherever the
-/// robot was. Along other bearings they do not, once it has moved or turned.
+/// Along the normal of a wall, all its echoes have the same depth, from any pose of the robot.
+/// Along other bearings they differ once the robot has moved or turned.
 #[must_use]
 pub fn regions(echoes: &[Echo], config: &RegionConfig) -> Vec<Region> {
     let mut left: Vec<usize> = (0..echoes.len()).collect();
@@ -157,7 +154,7 @@ pub fn regions(echoes: &[Echo], config: &RegionConfig) -> Vec<Region> {
     }
 }
 
-/// The largest group; of equally large ones that whose depths agree best.
+/// Finds the largest group; on a tie the one whose depths agree best.
 fn largest(echoes: &[Echo], left: &[usize], config: &RegionConfig) -> Group {
     let mut best = Group::default();
     for bearing in 0..BEARINGS {
@@ -186,8 +183,8 @@ fn largest(echoes: &[Echo], left: &[usize], config: &RegionConfig) -> Group {
     best
 }
 
-/// What a group says of a wall, if it pins down the wall's bearing: in the middle
-/// of those at which it agrees.
+/// Makes the region of a group if it determines the wall's bearing, which is the middle of the
+/// bearings at which the group agrees.
 fn region(echoes: &[Echo], group: Group, config: &RegionConfig) -> Option<Region> {
     let agrees = |offset: i64| {
         let bearing = (group.bearing as i64 + offset).rem_euclid(BEARINGS as i64);
@@ -215,8 +212,8 @@ fn region(echoes: &[Echo], group: Group, config: &RegionConfig) -> Option<Region
     })
 }
 
-/// A scan of the echoes that are in regions, each where its region says that it
-/// met the wall. Metres, NaN at bearings without any.
+/// Makes a scan of the echoes that are in regions, each at the point where its region met the wall.
+/// Ranges in metres, NaN at bearings without any.
 #[must_use]
 pub fn at_regions(echoes: &[Echo], regions: &[Region]) -> Vec<f32> {
     let mut ranges = Ranges::default();
@@ -228,11 +225,10 @@ pub fn at_regions(echoes: &[Echo], regions: &[Region]) -> Vec<f32> {
     ranges.metres()
 }
 
-/// A scan of the echoes, each at all bearings within `half_width` radians of where
-/// its transducer looked, so that a pose has its vote wherever in the cone the
-/// surface is: Eq. 1 with a box in place of the Gaussian over φ. Where several
-/// fall on a bearing, that nearest to its axis stands, and of equally near ones
-/// the shortest. Without width, all echoes lie on their axes. Metres, NaN at
+/// Makes a scan of the echoes, each at all bearings within `half_width` radians of its transducer's
+/// axis, so that a pose gets its vote wherever in the cone the surface is: Eq. 1 with a box instead
+/// of the Gaussian over φ. If several echoes are at a bearing, the one nearest to its axis counts,
+/// on a tie the shortest. With half-width 0, all echoes are on their axes. Ranges in metres, NaN at
 /// bearings without any.
 #[must_use]
 pub fn spread(echoes: &[Echo], half_width: f64) -> Vec<f32> {
@@ -249,13 +245,12 @@ pub fn spread(echoes: &[Echo], half_width: f64) -> Vec<f32> {
     ranges.metres()
 }
 
-/// A bearing by its index, radians.
+/// Converts the index of a bearing to radians.
 fn angle_of(bearing: usize) -> f64 {
     bearing as f64 * STEP - PI
 }
 
-/// By bearing, how far off its axis the point that stands there lies, in steps,
-/// and its distance.
+/// For each bearing, the distance of its point from the axis, in steps, and the range in metres.
 struct Ranges(Vec<Option<(u64, f64)>>);
 
 impl Default for Ranges {

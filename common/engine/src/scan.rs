@@ -1,4 +1,4 @@
-//! One laser scan, and what can be wrong with it.
+//! One laser scan and its checks.
 
 use std::f64::consts::TAU;
 
@@ -6,29 +6,29 @@ use messages::ScanHeader;
 
 use crate::EngineError;
 
-/// A scan in the laser's frame as it is seen from above, borrowed from wherever it
-/// lies. Beams are numbered counter-clockwise, whichever way the laser turns.
+/// A borrowed scan in the laser's frame, as seen from above. Beams are numbered counter-clockwise,
+/// for any direction of rotation of the laser.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan<'a> {
     /// Bearing of the first range, radians counter-clockwise from ahead.
     pub angle_min: f64,
-    /// From one range to the next, radians; below zero where they run clockwise.
+    /// Angle from one range to the next, in radians; negative if they run clockwise.
     pub angle_increment: f64,
-    /// Readings below are no returns, metres.
+    /// Readings below this are no returns, in metres.
     pub range_min_m: f32,
-    /// Readings at or above are no returns, metres: many drivers report this value
-    /// where nothing came back.
+    /// Readings at or above this are no returns, in metres: many drivers report this value if
+    /// nothing came back.
     pub range_max_m: f32,
-    /// Metres; NaN, infinite, zero and negative ones are no returns.
+    /// Ranges in metres; NaN, infinite, zero and negative ones are no returns.
     pub ranges: &'a [f32],
 }
 
-/// Most readings of a scan.
+/// Largest number of readings of a scan.
 pub const MAX_RANGES: usize = 65_536;
 
 impl<'a> Scan<'a> {
-    /// The scan of a message, which is not copied; [`Scan::check`] is still to
-    /// come. What a laser saw that hangs upside down is mirrored.
+    /// Makes a scan from a message without copying; [`Scan::check`] has still to be called. The
+    /// scan of a laser that hangs upside down is mirrored.
     #[must_use]
     pub fn of(header: &ScanHeader, ranges: &'a [f32]) -> Self {
         let as_measured = Scan {
@@ -41,8 +41,8 @@ impl<'a> Scan<'a> {
         as_measured.seen_from_above(header.upside_down == 1)
     }
 
-    /// What the laser measured in its own frame, as it is seen from above: mirrored
-    /// where the laser hangs upside down.
+    /// Converts a scan from the laser's own frame to the view from above: mirrors it if the laser
+    /// hangs upside down.
     #[must_use]
     pub fn seen_from_above(self, is_upside_down: bool) -> Self {
         let side = if is_upside_down { -1.0 } else { 1.0 };
@@ -53,7 +53,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Checks what all readings share; single readings may be anything.
+    /// Checks the values that all readings share; single readings may have any value.
     ///
     /// # Errors
     /// If the scan is empty or too long, an angle is not finite, the increment
@@ -74,8 +74,8 @@ impl<'a> Scan<'a> {
         if !angle_increment.is_finite() || angle_increment == 0.0 {
             return Err(EngineError::AngleIncrement(angle_increment));
         }
-        // Drivers that close the turn send its first bearing twice, and store
-        // the increment in 32 bits: half a step more than that is let through.
+        // Drivers that close the turn send its first bearing twice, and store the increment in 32
+        // bits: half a step more than that is accepted.
         let turns = (beams as f64 - 1.5) * angle_increment.abs() / TAU;
         if turns > 1.0 {
             return Err(EngineError::FieldOfView {
@@ -91,13 +91,13 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// How many beams there are.
+    /// Number of beams.
     #[must_use]
     pub fn beams(&self) -> usize {
         self.ranges.len()
     }
 
-    /// The reading of beam `i` in metres, if something came back.
+    /// Reading of beam `i` in metres; `None` if nothing came back.
     #[must_use]
     pub fn reading(&self, i: usize) -> Option<f64> {
         let range = *self.ranges.get(self.index(i))?;
@@ -112,7 +112,7 @@ impl<'a> Scan<'a> {
         self.bearing_between(i as f64)
     }
 
-    /// The bearing at a share of the way from one beam to the next, radians.
+    /// Bearing between two beams, at a fractional index, in radians.
     pub(crate) fn bearing_between(&self, i: f64) -> f64 {
         let index = match self.angle_increment < 0.0 {
             true => (self.ranges.len() as f64 - 1.0) - i,
@@ -121,8 +121,8 @@ impl<'a> Scan<'a> {
         self.angle_min + index * self.angle_increment
     }
 
-    /// Where beam `i` stands among the ranges, which is the order in which they were
-    /// measured; no beam stands behind the last range.
+    /// Index of beam `i` among the ranges, which are in the order of measurement; beyond the last
+    /// range for a beam that does not exist.
     pub(crate) fn index(&self, i: usize) -> usize {
         match self.angle_increment < 0.0 {
             true => self.ranges.len().checked_sub(i + 1).unwrap_or(usize::MAX),

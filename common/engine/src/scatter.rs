@@ -1,9 +1,8 @@
 //! The paper's method: votes go out from the boundary cells.
 //!
-//! Each reading is projected from every boundary cell back along its direction
-//! (section II A, Eq. 1), as far as cells are open: what lies behind an
-//! obstacle does not see the boundary cell. At most m votes reach any pose
-//! (Lemma 1).
+//! Each reading is projected from every boundary cell back along its direction (section II A, Eq.
+//! 1), as far as cells are open: cells behind an obstacle do not see the boundary cell. At most m
+//! votes reach any pose (Lemma 1).
 
 use messages::BoundaryCell;
 
@@ -12,8 +11,8 @@ use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
 use crate::program::Taper;
 
-/// Counts votes from the boundary cells outward; wins with few beams on maps
-/// with few boundary cells.
+/// Counts votes from the boundary cells outward; fastest with few beams on maps with few boundary
+/// cells.
 #[derive(Debug, Clone, Copy)]
 pub struct Scatter<'a> {
     grid: &'a Grid,
@@ -21,7 +20,7 @@ pub struct Scatter<'a> {
 }
 
 impl<'a> Scatter<'a> {
-    /// Takes a map and its boundary, that of [`crate::boundary::extract`].
+    /// Takes a map and its boundary from [`crate::boundary::extract`].
     #[must_use]
     pub fn new(grid: &'a Grid, boundary: &'a [BoundaryCell]) -> Self {
         Scatter { grid, boundary }
@@ -73,8 +72,8 @@ mod tests {
     proptest! {
         #[test]
         fn no_pose_has_more_votes_than_beams(grid in any_grid(), scan in any_scan(), heading in 0usize..72) {
-            // Lemma 1, with one vote for each beam that reaches a pose: no beam
-            // reaches it from two boundary cells.
+            // Lemma 1, with one vote for each beam that reaches a pose: no beam reaches it from two
+            // boundary cells.
             let space = &space_of(&grid, 72);
             let program = &scan.program(space);
             let boundary = boundary::extract(&grid);

@@ -1,4 +1,4 @@
-//! The space that is searched: the directions and the scale of the grid.
+//! The search space: the directions and the scale of the grid.
 
 use messages::MapHeader;
 
@@ -9,19 +9,19 @@ use crate::grid;
 /// Headings, cell size and extent of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Space {
-    /// The headings, which are also the directions of rays.
+    /// Headings, which are also the directions of rays.
     pub directions: Directions,
-    /// Side of a cell, metres.
+    /// Side of a cell, in metres.
     pub resolution_m: f64,
-    /// The grid's diagonal in metres; no ray in it is longer.
+    /// Diagonal of the grid in metres; no ray in it is longer.
     pub longest_m: f64,
-    /// Beams count up to this length, metres: that of the diagonal, and of maps that are
-    /// searched together that of the longest one.
+    /// Largest length of beams that count, in metres: the diagonal or, for maps that are searched
+    /// together, the longest diagonal.
     pub reach_m: f64,
 }
 
 impl Space {
-    /// The space of `headings` headings on a grid of `width · height` cells.
+    /// Makes the space of `headings` headings on a grid of `width · height` cells.
     ///
     /// # Errors
     /// If the number of headings is not supported, or the resolution is out of
@@ -42,9 +42,9 @@ impl Space {
         })
     }
 
-    /// The same where beams count up to this length, metres, if that is more. One that is
-    /// longer than the diagonal fits nothing here, for it cannot end inside the grid, and what
-    /// it would have on a larger map is missing.
+    /// Makes beams count up to this length, in metres, if that is more than the diagonal. A beam
+    /// longer than the diagonal matches nothing on this map, since it cannot end inside the grid,
+    /// and so loses the votes that it has on a larger map.
     #[must_use]
     pub fn reaching(self, reach_m: f64) -> Self {
         Space {
@@ -58,8 +58,8 @@ fn diagonal_m(resolution_m: f64, (width, height): (usize, usize)) -> f64 {
     (width as f64).hypot(height as f64) * resolution_m
 }
 
-/// How long beams may be that count on maps that are searched together, metres: the longest
-/// diagonal. So all of them are judged by the same beams.
+/// Returns the largest length of beams that count on maps that are searched together, in metres:
+/// the longest diagonal. So all maps are judged by the same beams.
 #[must_use]
 pub fn reach_m<'a>(maps: impl IntoIterator<Item = &'a MapHeader>) -> f64 {
     let diagonals = maps.into_iter().map(|map| {

@@ -1,18 +1,17 @@
-//! The tapers of a scan program as tables that can be looked up side by side.
+//! Tapers of a scan program as tables for lookups of several ranges at once.
 
 use crate::directions::Directions;
 use crate::program::ScanProgram;
 
-/// The most entries of a short table: what one instruction can look up.
+/// Largest number of entries of a short table, which one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
-/// The tables of all beams, for each class of directions; made again for each
-/// program. They lie one behind the other, as a search reads them all over again and
-/// little else then fits the processor's nearer caches.
+/// Tables of all beams for each class of directions, made for each program. They are contiguous,
+/// because a search reads them again and again and they fill most of the inner caches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VoteTables {
     classes: usize,
-    /// For beam `i` and class `c` at `i · classes + c`.
+    /// Entry of beam `i` and class `c` at `i · classes + c`.
     entries: Vec<Entry>,
     votes: Vec<u8>,
     is_short: bool,
@@ -28,12 +27,12 @@ struct Entry {
 /// Votes by distance from the reading.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VoteTable<'a> {
-    /// Steps to the reading.
+    /// Number of steps to the reading.
     pub centre: u16,
-    /// How many entries there are with votes.
+    /// Number of entries with votes.
     pub used: u16,
-    /// Votes at 0, 1, 2, … steps from there, and a 0, which farther distances look up.
-    /// What lies behind it belongs to other tables; there are [`TABLE`] bytes at least.
+    /// Votes at 0, 1, 2, … steps from there, and a 0 for larger distances. The bytes behind it
+    /// belong to other tables; there are at least [`TABLE`] bytes.
     votes: &'a [u8],
 }
 
@@ -58,7 +57,7 @@ impl VoteTables {
         self.votes.resize(self.votes.len() + TABLE, 0);
     }
 
-    /// The table of a beam for a class of directions.
+    /// Returns the table of a beam for a class of directions.
     #[inline(always)]
     pub(crate) fn get(&self, beam: usize, class: usize) -> VoteTable<'_> {
         let Entry {
@@ -73,7 +72,7 @@ impl VoteTables {
         }
     }
 
-    /// Whether no table has more than [`TABLE`] entries.
+    /// True if no table has more than [`TABLE`] entries.
     #[cfg_attr(
         not(target_arch = "x86_64"),
         expect(dead_code, reason = "only vectors of x86-64 need to know")
@@ -84,22 +83,22 @@ impl VoteTables {
 }
 
 impl<'a> VoteTable<'a> {
-    /// Its entries, if there are no more than [`TABLE`]: up to [`VoteTable::used`], where
-    /// the last one is.
+    /// Returns the entries, including the last one at [`VoteTable::used`], if there are at most
+    /// [`TABLE`].
     #[inline(always)]
     pub(crate) fn short(&self) -> Option<&'a [u8; TABLE]> {
         let is_short = usize::from(self.used) < TABLE;
         self.votes.first_chunk().filter(|_| is_short)
     }
 
-    /// Whether any of these numbers of steps, without the end, may have votes.
+    /// True if any number of steps in this range, end excluded, may have votes.
     #[inline(always)]
     pub(crate) fn has_votes_in(&self, (first, end): (u16, u16)) -> bool {
         let (centre, used) = (usize::from(self.centre), usize::from(self.used));
         usize::from(first) < centre + used && centre + 1 < usize::from(end) + used
     }
 
-    /// Adds the votes for poses from which the ray is so long, side by side.
+    /// Adds the votes for poses whose rays have these lengths.
     #[inline(always)]
     pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
         for (votes, &range) in votes.iter_mut().zip(ranges) {

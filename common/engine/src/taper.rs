@@ -1,25 +1,24 @@
-//! The taper: how the votes of a reading fall off in front of it and behind.
+//! The taper: the decrease of a reading's votes in front of it and behind it.
 //!
-//! The paper's Eq. 1 is a Gaussian, and the paper adds that any shape that is
-//! highest at the reading and tapers off does as well. All shapes here peak at
-//! 1 and never rise with the distance.
+//! The paper's Eq. 1 is a Gaussian, and the paper adds that any shape works that is highest at the
+//! reading and tapers off. All shapes here have a peak of 1 and never rise with the distance.
 
-/// The shape of a taper over the distance from the reading, in units of σ.
+/// Shape of a taper over the distance from the reading, in units of σ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum TaperShape {
     /// exp(-d²/2), Eq. 1 of the paper.
     Gaussian,
-    /// Falls evenly to zero at 2σ.
+    /// Linear to zero at 2σ.
     Linear,
-    /// Flat to σ, then evenly to zero at 2.5σ.
+    /// Flat to σ, then linear to zero at 2.5σ.
     Trapezoid,
-    /// Flat to 2σ, then nothing.
+    /// Flat to 2σ, then zero.
     Box,
 }
 
 impl TaperShape {
-    /// Height at `distance` σ, in 0..=1.
+    /// Returns the height at `distance` σ, in 0..=1.
     #[must_use]
     pub fn height(self, distance: f64) -> f64 {
         match self {
@@ -30,8 +29,8 @@ impl TaperShape {
         }
     }
 
-    /// Votes at 0, 1, 2, … steps from the reading: `round(peak · height)`, up
-    /// to and without the first zero. Empty where even the peak rounds to zero.
+    /// Returns the votes at 0, 1, 2, … steps from the reading, `round(peak · height)`, up to but
+    /// excluding the first zero. Empty if the peak itself rounds to zero.
     pub fn profile(self, peak: f64, sigma_steps: f64) -> impl Iterator<Item = u8> {
         (0..)
             .map(move |steps| (peak * self.height(f64::from(steps) / sigma_steps)).round() as u8)

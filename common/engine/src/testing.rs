@@ -20,17 +20,18 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// Side of a cell in tests, metres.
 pub(crate) const RESOLUTION_M: f64 = 0.1;
 
-/// Cells along a side of test grids, at most: fewer where Miri interprets every step.
+/// Largest number of cells along a side of test grids; smaller under Miri, which interprets every
+/// step.
 const SIDE: usize = if cfg!(miri) { 9 } else { 40 };
 
-/// Beams of test scans are fewer than these.
+/// Upper bound (exclusive) on the number of beams of test scans.
 const BEAMS: usize = if cfg!(miri) { 5 } else { 24 };
 
-/// Cells along the longer side of long grids. A byte can not count the steps along it.
+/// Number of cells along the longer side of long grids: more steps than a byte can count.
 const LONG: Range<usize> = if cfg!(miri) { 260..270 } else { 400..900 };
 
-/// Grids of 1 to [`SIDE`] cells a side, from empty to cluttered, with unknown cells
-/// that block or do not, often in one large piece.
+/// Grids of 1 to [`SIDE`] cells a side, from empty to cluttered, with unknown cells that may block
+/// and are often in one large piece.
 pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
     let cells = |count: usize| {
         (1u32..60, 0u32..30).prop_flat_map(move |(occupied, unknown)| {
@@ -65,8 +66,7 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
     )
 }
 
-/// Long and narrow grids with few obstacles: far readings need more than a byte
-/// of steps.
+/// Long and narrow grids with few obstacles, on which far readings need more than a byte of steps.
 pub(crate) fn any_long_grid() -> impl Strategy<Value = Grid> {
     let cell = prop_oneof![1 => Just(100u8), 300 => Just(0u8)];
     (LONG, 1usize..4, any::<bool>()).prop_flat_map(move |(length, breadth, upright)| {
@@ -81,13 +81,12 @@ pub(crate) fn any_long_grid() -> impl Strategy<Value = Grid> {
     })
 }
 
-/// The search space of a test grid.
+/// Search space of a test grid.
 pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
     Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
 }
 
-/// Limits of a test grid: how far from free cells, a region, a radius, some headings, or
-/// all of them.
+/// Limits of a test grid: distance from free cells, region, radius, headings, or any combination.
 pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Limits> + use<> {
     let (grid, space) = (grid.clone(), space_of(grid, headings));
     let frame = GridFrame {
@@ -114,7 +113,7 @@ pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Li
     )
 }
 
-/// All poses by the plain reference, collected as the search does it.
+/// Collects all poses by the reference implementation, as the search does.
 pub(crate) fn plain_votes(
     grid: &Grid,
     program: &ScanProgram,
@@ -125,7 +124,7 @@ pub(crate) fn plain_votes(
     plain_votes_within(&limits, grid, program, space, config)
 }
 
-/// The same of the poses within limits.
+/// Collects the poses within limits.
 pub(crate) fn plain_votes_within(
     limits: &Limits,
     grid: &Grid,
@@ -149,7 +148,7 @@ pub(crate) fn plain_votes_within(
     collector.finished(0)
 }
 
-/// What one may scan: readings from nothing to beyond the grid, any taper.
+/// An arbitrary scan: readings from nothing to beyond the grid, any taper.
 #[derive(Debug, Clone)]
 pub(crate) struct AnyScan {
     ranges: Vec<f32>,
@@ -164,7 +163,6 @@ impl AnyScan {
         self
     }
 
-    /// The scan as it comes.
     pub(crate) fn scan(&self) -> Scan<'_> {
         Scan {
             angle_min: self.angle_min,
@@ -175,18 +173,16 @@ impl AnyScan {
         }
     }
 
-    /// How it votes.
     pub(crate) fn config(&self) -> VoteConfig {
         self.config
     }
 
-    /// The scan, compiled for a space.
     pub(crate) fn program(&self, space: &Space) -> ScanProgram {
         ScanProgram::new(&self.scan(), 0.0, space, &self.config).expect("the scan is sound")
     }
 }
 
-/// Test grids with limits and a number of headings, up to this many eights.
+/// Test grids with limits and a number of headings, a multiple of 8 below `8 · eights`.
 pub(crate) fn any_limited_grid(eights: u32) -> impl Strategy<Value = (Grid, Limits, u32)> {
     (any_grid(), 1..eights).prop_flat_map(|(grid, eights)| {
         let limits = any_limits(&grid, 8 * eights);
@@ -199,7 +195,7 @@ pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
     any_scan_of(1..BEAMS)
 }
 
-/// The same with 80 to 120 beams.
+/// Scans of 80 to 120 beams.
 pub(crate) fn any_dense_scan() -> impl Strategy<Value = AnyScan> {
     any_scan_of(80..120)
 }

@@ -1,13 +1,13 @@
-//! Work that is shared by threads.
+//! Work shared by threads.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs each share on a thread of its own, the first one on this, with its number;
-/// what the first of them failed with, if one did.
+/// Runs each share on its own thread, the first one on this thread, with its number. Returns the
+/// error of the first share that failed, if any.
 ///
-/// Where the first one fails, the others are asked to stop; only it checks `stop`
-/// from outside.
+/// If the first share fails, the others are asked to stop; only the first checks the caller's
+/// `stop`.
 ///
 /// # Panics
 /// If there is no share, or one of them panics.
@@ -17,7 +17,7 @@ pub(crate) fn run<S: Send, E: Send>(
     run: impl Fn(usize, &mut S, &dyn Fn() -> bool) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
     let (own, others) = shares.split_first_mut().expect("a share");
-    // A scope allocates, be it of no thread.
+    // A scope allocates even without threads.
     if others.is_empty() {
         return run(0, own, stop);
     }
@@ -65,7 +65,7 @@ mod tests {
         };
         assert_eq!(failing(&[1, 2]), Err(1));
         assert_eq!(failing(&[2]), Err(2));
-        // The others go on until they are asked to stop.
+        // The others run until they are asked to stop.
         let end = run(&mut [(); 3], &|| true, |number, (), stop| {
             while !stop() {
                 std::thread::yield_now();

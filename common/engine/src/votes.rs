@@ -1,4 +1,4 @@
-//! The outcome of a search: the poses that have the most votes.
+//! Result of a search: the poses that have the most votes.
 
 mod config;
 mod distinct;
@@ -16,33 +16,31 @@ pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 pub use share::VoteShare;
 
-/// The poses with the most votes, and how complete they are.
+/// The poses with the most votes, and the completeness of the list.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct VoteSet {
-    /// By falling intensity, equal ones by (heading, y, x). The first is the
-    /// pose of the robot; empty where no pose has a vote.
+    /// Votes by falling intensity, equal ones by (heading, y, x). The first is the best pose; empty
+    /// if no pose has a vote.
     pub votes: Vec<Vote>,
-    /// The least intensity among them, candidates below the certified floor
-    /// included; 0 where there are none.
+    /// Smallest intensity among them, including candidates below the certified floor; 0 if empty.
     pub floor: u16,
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u16,
-    /// The highest intensity of any pose; where several maps are searched, of those at or above
-    /// the certified floor.
+    /// Highest intensity of any pose; with several maps, of those at or above the certified floor.
     pub best: u16,
-    /// Whether poses above the share asked for were left out, as they did not fit.
+    /// True if poses above the requested share were dropped for lack of room.
     pub truncated: bool,
-    /// Whether such poses may have been missed, as the search took more work than it may:
-    /// then only what stands at or above the certified floor is certain, which can be more
-    /// than the best has.
+    /// True if such poses may have been missed because the search reached its work limit. Then only
+    /// poses at or above the certified floor are certain, and that floor can be above the best
+    /// pose's votes.
     pub cut: bool,
-    /// Poses whose intensity was computed one by one.
+    /// Number of poses whose intensity was computed one by one.
     pub poses_evaluated: u64,
 }
 
 impl VoteSet {
-    /// Adds poses below the certified floor until there are this many distinct
-    /// ones, best first; none of `others` is left.
+    /// Adds poses below the certified floor, best first, until there are enough distinct ones;
+    /// empties `others`.
     pub(crate) fn add_candidates(&mut self, others: &mut Vec<Vote>, mut distinct: Distinct<'_>) {
         self.votes.iter().for_each(|vote| {
             distinct.take(vote);
@@ -54,9 +52,9 @@ impl VoteSet {
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
 
-    /// Raises the certified floor where the best pose is one of another map, and leaves out
-    /// what has fewer votes than that or, if given, than `least`. The best one's votes are
-    /// worth this many here, and the floor is that of them.
+    /// Raises the certified floor if the best pose is on another map, and drops poses with fewer
+    /// votes than the floor or, if given, than `least`. `best` is the number of votes on this map
+    /// that equals the best pose's share, and `floor` the floor that follows from it.
     pub(crate) fn confine(&mut self, (best, floor): (u16, u16), least: Option<u16>) {
         if best <= self.best {
             return;
@@ -71,7 +69,7 @@ impl VoteSet {
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
 
-    /// Notes that no more is known of some poses than that none has more votes than this.
+    /// Records that unseen poses have at most `left` votes.
     pub(crate) fn cut_at(&mut self, left: u16) {
         if left >= self.certified_floor {
             self.certified_floor = left.saturating_add(1);
@@ -79,8 +77,7 @@ impl VoteSet {
         }
     }
 
-    /// Puts the votes in order: where the search was cut, candidates can be better than
-    /// what it found.
+    /// Sorts the votes: after a search that was cut, candidates can be better than the poses found.
     pub(crate) fn put_in_order(&mut self) {
         if self.cut {
             self.votes.sort_unstable_by_key(order);
@@ -92,19 +89,19 @@ impl VoteSet {
 
 /// Takes poses in any order and keeps those that matter.
 ///
-/// The outcome does not depend on the order: the floor only rises, and only to
-/// levels that the final floor cannot lie below.
+/// The result does not depend on the order: the floor only rises, and only to levels that the final
+/// floor cannot be below.
 #[derive(Debug, Default)]
 pub(crate) struct Collector {
     config: CollectConfig,
     votes: Vec<Vote>,
-    /// The most votes of any pose, be it one seen elsewhere.
+    /// Most votes of any pose, including poses seen by other collectors.
     best: u16,
-    /// The same of those that were taken.
+    /// Most votes of any pose taken.
     best_taken: u16,
-    /// Below this intensity too many poses were seen for all to fit.
+    /// Intensity below which too many poses were seen for all to fit.
     crowded_below: u16,
-    /// The intensity of which not even all best poses fit.
+    /// Best intensity, if not even all poses with it fit.
     cut: Option<u16>,
 }
 
@@ -116,7 +113,7 @@ impl Collector {
         collector
     }
 
-    /// Starts again, in the buffers of before.
+    /// Starts again with the same buffers.
     pub(crate) fn start(&mut self, config: CollectConfig) {
         self.config = config;
         self.votes.clear();
@@ -126,7 +123,7 @@ impl Collector {
         self.cut = None;
     }
 
-    /// The least intensity that can still matter; at least 1.
+    /// Smallest intensity that can still matter; at least 1.
     pub(crate) fn floor(&self) -> u16 {
         self.share_floor().max(self.crowded_below)
     }
@@ -135,7 +132,7 @@ impl Collector {
         self.config.floor(self.best)
     }
 
-    /// Takes a pose, unless it lies below the floor.
+    /// Takes a pose unless it is below the floor.
     pub(crate) fn take(&mut self, vote: Vote) {
         if vote.intensity < self.floor() {
             return;
@@ -151,7 +148,7 @@ impl Collector {
     /// Takes the poses of an intensity image, row by row, at one heading.
     pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
         for (y, row) in (0..).zip(field.chunks_exact(width)) {
-            // Few rows hold any pose that matters, and a maximum is quick.
+            // Few rows contain a pose that matters, and a maximum is quick to compute.
             let floor = self.floor();
             if row.iter().copied().fold(0, u16::max) < floor {
                 continue;
@@ -168,21 +165,21 @@ impl Collector {
         }
     }
 
-    /// Raises the floor to what follows from a pose seen elsewhere.
+    /// Raises the floor as a pose with `best` votes, seen by another collector, requires.
     pub(crate) fn raise_best(&mut self, best: u16) {
         self.best = self.best.max(best);
         if let Some(level) = self.cut.take_if(|level| *level < best) {
-            // Some of that level were left out, and it is the best no more.
+            // Some poses of that level were dropped, and it is no longer the best.
             self.crowded_below = self.crowded_below.max(level + 1);
         }
     }
 
-    /// The most votes of any pose that was taken.
+    /// Most votes of any pose taken.
     pub(crate) fn best_taken(&self) -> u16 {
         self.best_taken
     }
 
-    /// Becomes what one collector would be that had taken the poses of both.
+    /// Merges another collector, as if one had taken the poses of both.
     pub(crate) fn merge(&mut self, other: &Collector) {
         self.crowded_below = self.crowded_below.max(other.crowded_below);
         self.raise_best(other.best);
@@ -193,8 +190,8 @@ impl Collector {
         self.raise_best(self.best);
     }
 
-    /// Drops what lies below the floor, then whole levels from below until
-    /// what is left fits. The best level stays, cut to what fits of it.
+    /// Drops poses below the floor, then whole levels from below until the rest fits. The best
+    /// level stays, cut to the number that fits.
     fn make_room(&mut self) {
         let max_votes = self.config.max_votes as usize;
         let floor = self.floor();
@@ -212,8 +209,8 @@ impl Collector {
         self.votes.truncate(kept.min(max_votes));
     }
 
-    /// The outcome, in order. Its votes are not copied: what the outcome had
-    /// before is buffer for those to come.
+    /// Moves the result, sorted, to `outcome`. Votes are swapped, not copied: the old ones of the
+    /// outcome become the next buffer.
     pub(crate) fn finish(&mut self, poses_evaluated: u64, outcome: &mut VoteSet) {
         self.make_room();
         self.votes.sort_unstable_by_key(order);
@@ -228,7 +225,6 @@ impl Collector {
         self.votes.clear();
     }
 
-    /// The outcome as a value.
     #[cfg(test)]
     pub(crate) fn finished(mut self, poses_evaluated: u64) -> VoteSet {
         let mut outcome = VoteSet::default();
@@ -237,7 +233,7 @@ impl Collector {
     }
 }
 
-/// Most votes first, equal ones by (heading, y, x).
+/// Sort key: most votes first, equal ones by (heading, y, x).
 fn order(vote: &Vote) -> (Reverse<u16>, u16, u16, u16) {
     (Reverse(vote.intensity), vote.heading, vote.y, vote.x)
 }
@@ -326,7 +322,8 @@ mod tests {
             ..CollectConfig::default()
         };
         let mut set = collect(config, &[10, 9, 3]);
-        // Near the best; far; near that; turned by more than 6.5 degrees; too many.
+        // The candidates are near the best; far; near that; turned by more than 6.5 degrees; too
+        // many.
         let others = [(2, 3, 8), (9, 0, 5), (9, 6, 4), (0, 353, 7), (50, 0, 2)];
         let others = others.map(|(x, heading, intensity)| vote(x, heading, intensity));
         let mut kept = Vec::new();
@@ -356,7 +353,7 @@ mod tests {
             }
             let backward = backward.finished(0);
             prop_assert_eq!(&backward, &forward);
-            // Nor does it who took them.
+            // The result does not depend on the number of collectors either.
             let mut parts = [Collector::new(config), Collector::new(config), Collector::new(config)];
             for (x, &intensity) in intensities.iter().enumerate() {
                 parts[x % 3].take(Vote { x: x as u16, y: 0, heading: 0, intensity });
@@ -367,7 +364,7 @@ mod tests {
             };
             let merged = parts.into_iter().reduce(merge).unwrap().finished(0);
             prop_assert_eq!(&merged, &forward);
-            // Complete down to the certified floor.
+            // The result is complete down to the certified floor.
             let certified = intensities.iter().filter(|&&i| i > 0 && i >= forward.certified_floor).count();
             let collected = forward.votes.iter().filter(|v| v.intensity >= forward.certified_floor).count();
             prop_assert_eq!(collected, certified);

@@ -1,5 +1,4 @@
-//! A hall and a closet that are searched together: what the closet cannot explain speaks
-//! against it.
+//! A hall and a closet that are searched together: beams too long for the closet count against it.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -14,13 +13,13 @@ use geometry::Pose;
 
 const CELL_M: f64 = 0.1;
 
-/// A map of so many metres, walls where this says so.
+/// A map with sides in metres and a function that tells its inner walls.
 struct Room {
     sides_m: (f64, f64),
     is_inner_wall: fn(f64, f64) -> bool,
 }
 
-/// With a screen of two metres, and pillars that make it look the same from nowhere else.
+/// A hall with a screen of two metres, and pillars that make it asymmetric.
 const HALL: Room = Room {
     sides_m: (30.0, 20.0),
     is_inner_wall: |x, y| {
@@ -61,8 +60,7 @@ impl Room {
         Locator::new(view, LocatorConfig::default(), Prior::None).unwrap()
     }
 
-    /// What a laser with 270° reads at a pose where people stand in every fourth of the long
-    /// beams.
+    /// Ranges of a 270° laser at a pose, with people in every fourth of the long beams.
     fn ranges(&self, pose: Pose) -> Vec<f32> {
         let beams = (0..180).map(|beam| {
             let bearing = f64::from(beam) * 1.5 - 135.0;
@@ -87,7 +85,7 @@ fn what_a_closet_is_too_small_for_speaks_against_it() {
     let mut workspace = Workspace::default();
     for (hall, set) in sets {
         for step in 0..5 {
-            // Along the screen, which is most of what lies near.
+            // The robot drives along the screen, which is most of what is nearby.
             let pose = Pose::new(
                 10.6 + 0.2 * f64::from(step),
                 6.8,

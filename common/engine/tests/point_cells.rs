@@ -1,10 +1,10 @@
-//! The theory of the paper (section III) on ideal point cells: the cells of a map are
-//! points of a lattice, and a ray in a primitive direction d meets just the points
-//! b - d, b - 2d, and so on. All is counted in whole numbers, so nothing is rounded.
+//! The theory of the paper (section III) on ideal point cells: the cells of a map are points of a
+//! lattice, and a ray in a primitive direction d meets exactly the points b - d, b - 2d, and so on.
+//! All counts are integers, so nothing is rounded.
 //!
-//! Observation B holds as the paper states it for boundary cells side by side. Of two
-//! that lie behind one another on the ray, visibility lets only the nearer one vote; the
-//! last test shows that without it neither the observation nor Lemma 1 would hold.
+//! Observation B holds as the paper states it for boundary cells next to each other. Of two that
+//! are behind one another on the ray, visibility lets only the nearer one vote; the last test shows
+//! that without visibility neither the observation nor Lemma 1 would hold.
 
 use std::collections::HashSet;
 
@@ -13,14 +13,14 @@ use proptest::prelude::*;
 
 type Point = (i64, i64);
 
-/// A map of point cells, and the bearings of the readings of a scan in the map.
+/// A map of point cells, and the bearings and readings of a scan in the map.
 #[derive(Debug, Clone)]
 struct PointMap {
     sides: Point,
     obstacles: HashSet<Point>,
-    /// Where the beams look: primitive vectors, each another one.
+    /// Directions of the beams: distinct primitive vectors.
     directions: Vec<Point>,
-    /// How many steps of its direction each reading is long.
+    /// Length of each reading, in steps of its direction.
     readings: Vec<i64>,
 }
 
@@ -37,16 +37,16 @@ impl PointMap {
         all.filter(|&at| self.is_free(at)).collect()
     }
 
-    /// The free points that see the obstacle `from` along a beam: the visible part of
-    /// its reverse projection, whatever the reading.
+    /// Returns the free points that see the obstacle `from` along a beam: the visible part of its
+    /// reverse projection, for any reading.
     fn seen_back(&self, from: Point, beam: usize) -> HashSet<Point> {
         let (dx, dy) = self.directions[beam];
         let ray = (1..).map(|t| (from.0 - t * dx, from.1 - t * dy));
         ray.take_while(|&at| self.is_free(at)).collect()
     }
 
-    /// The point at which a reading ends that is projected back from an obstacle; none
-    /// where something stands between.
+    /// Returns the point at which a reading projected back from an obstacle ends; `None` if
+    /// something is in between.
     fn voted_for(&self, from: Point, beam: usize) -> Option<Point> {
         let (dx, dy) = self.directions[beam];
         let reading = self.readings[beam];
@@ -66,8 +66,8 @@ fn gcd(a: i64, b: i64) -> i64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// Maps of 3 to 12 points a side, from nearly empty to fuller of obstacles than of free
-/// points, and one to eight beams.
+/// Maps of 3 to 12 points a side, from nearly empty to more obstacles than free points, with one to
+/// eight beams.
 fn any_map() -> impl Strategy<Value = PointMap> {
     let direction =
         (-3i64..=3, -3i64..=3).prop_filter("primitive", |&(x, y)| gcd(x.abs(), y.abs()) == 1);
@@ -127,8 +127,8 @@ proptest! {
         }
     }
 
-    /// The number of votes never exceeds mn, whatever p is; Markov localization takes a
-    /// subtraction and an addition for each beam of each free cell, 2mn.
+    /// The number of votes never exceeds mn for any p; Markov localization takes a subtraction and
+    /// an addition for each beam of each free cell, 2mn.
     #[test]
     fn theorem_1_never_more_computations_than_markov_has(map in any_map()) {
         let (m, n) = (map.directions.len(), map.free().len());
@@ -137,7 +137,8 @@ proptest! {
             map.obstacles.iter().filter_map(move |&cell| map.voted_for(cell, beam))
         });
         prop_assert!(votes.count() <= m * n);
-        // The same for tapers of any width: all that is seen back is at most mn, too.
+        // The same holds for tapers of any width: the number of all points seen back is at most mn,
+        // too.
         let seen = (0..m).map(|beam| {
             map.obstacles.iter().map(|&cell| map.seen_back(cell, beam).len()).sum::<usize>()
         });
@@ -147,8 +148,8 @@ proptest! {
 
 #[test]
 fn without_visibility_cells_behind_one_another_would_vote_twice() {
-    // Two obstacles in a row, both to the right of the free point, and one beam that
-    // looks there; with readings of 1 and of 2 either of them votes for the point.
+    // Two obstacles in a row, both to the right of the free point, and one beam that looks there;
+    // readings of 1 and of 2 each make one of them vote for the point.
     let map = |reading| PointMap {
         sides: (3, 1),
         obstacles: HashSet::from([(1, 0), (2, 0)]),

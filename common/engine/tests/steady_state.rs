@@ -1,9 +1,8 @@
 //! Nothing is allocated from scan to scan: once the buffers of workspaces are large enough for all
-//! scans, searching them again, and fitting them, asks for no memory.
+//! scans, searching and fitting them again allocates no memory.
 //!
-//! Allocations are counted for each thread by itself, so tests may run side by
-//! side. Starting a thread allocates in the standard library: a search on two
-//! threads is held against a bare start of as many.
+//! Allocations are counted per thread, so tests may run in parallel. Starting a thread allocates in
+//! the standard library: a search on two threads is compared with a bare start of as many.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -27,12 +26,11 @@ const FRAME: GridFrame = GridFrame {
     map_from_grid: Pose::new(-3.0, 2.0, 0.4),
 };
 
-/// Times that all scans are searched before it counts. Results lie in one of
-/// two buffers in turn: with an odd number of scans, each buffer has held each
-/// scan's results after two times.
+/// Number of passes over all scans before counting. Results alternate between two buffers: with an
+/// odd number of scans, each buffer has held each scan's results after two passes.
 const WARM_UP: usize = 2;
 
-/// Numbers from 0 to 1 that are the same each time.
+/// Reproducible pseudo-random numbers from 0 to 1.
 struct Noise(u64);
 
 impl Noise {
@@ -52,7 +50,7 @@ struct World {
 }
 
 impl World {
-    /// Rooms with pillars at random, and a scan in each of some places.
+    /// Rooms with random pillars, and a scan at each of some places.
     fn rooms() -> World {
         let (width, height) = (230, 170);
         let mut noise = Noise(1);
@@ -87,7 +85,7 @@ impl World {
         world
     }
 
-    /// Single cells at random, and scans that fit nowhere.
+    /// Random single cells, and scans that fit nowhere.
     fn clutter() -> World {
         let sides = (120, 120);
         let mut noise = Noise(7);
@@ -115,8 +113,8 @@ impl World {
         DistanceField::new(FRAME, self.sides, &self.occupancy, CellRules::default()).unwrap()
     }
 
-    /// What a laser with half a turn of view reads at a pose of the grid, within
-    /// 3 cm; one beam in twenty does not return.
+    /// Ranges of a laser with a view of half a turn at a pose of the grid, within 3 cm; one beam in
+    /// twenty does not return.
     fn scan(&self, (x, y, heading): (i64, i64, usize), noise: &mut Noise) -> Vec<f32> {
         let localizer = self.localizer(1, Prior::Heading);
         let (grid, directions) = (localizer.grid(), &localizer.space().directions);
@@ -146,8 +144,7 @@ impl World {
     }
 }
 
-/// How often memory is asked for while all scans are worked on, after a
-/// warm-up.
+/// Number of allocations while all scans are processed, after a warm-up.
 fn allocations(world: &World, mut work: impl FnMut(&Scan<'_>)) -> u64 {
     for _ in 0..WARM_UP {
         world.scans().for_each(|scan| work(&scan));
@@ -197,7 +194,7 @@ fn a_search_that_counts_every_pose_allocates_nothing() {
         let outcome = localizer.search_in(&mut workspace, scan, &|| false);
         counted = outcome.unwrap().unwrap().found.poses_evaluated;
     });
-    // Without wide vectors counting is so slow that bounds help even here.
+    // Without wide vectors, counting is so slow that bounds help even here.
     if InstructionSet::best() > InstructionSet::Portable {
         assert!(
             counted >= all,
@@ -250,8 +247,8 @@ fn a_search_on_two_threads_allocates_no_more_than_their_start() {
     let world = World::rooms();
     let localizer = world.localizer(2, Prior::None);
     let mut workspace = Workspace::default();
-    // How much room each thread takes depends on which of them is first to find
-    // the best pose, so that room is made now and then for a while.
+    // The buffer sizes of each thread depend on which of them finds the best pose first, so that
+    // buffers still grow now and then for a while.
     let searches = (0..16).map(|_| {
         allocations(&world, |scan| {
             let outcome = localizer.search_in(&mut workspace, scan, &|| false);

@@ -1,6 +1,5 @@
-//! Recordings without a graph: `locate` finds the place of each scan, `evaluate` judges
-//! the places against the truth, and `sequence` follows a drive with the tracker's part
-//! of the engine.
+//! Evaluation of recordings without a graph: `locate` finds the pose of each scan, `evaluate`
+//! compares the poses with the ground truth, and `sequence` runs the tracker over a drive.
 
 mod error;
 pub mod evaluate;

@@ -1,10 +1,10 @@
-//! Numbers as tables print them; a dash for what is not known.
+//! Formats numbers for tables; unknown values are a dash.
 
 pub(crate) fn share(count: u64, of: u64) -> Option<f64> {
     (of > 0).then(|| count as f64 / of as f64)
 }
 
-/// In per cent, with one decimal.
+/// Formats a share as per cent, with one decimal.
 pub(crate) fn percent(share: Option<f64>) -> String {
     number(share.map(|share| 100.0 * share), 1)
 }

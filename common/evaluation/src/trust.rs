@@ -1,4 +1,4 @@
-//! Whether the probabilities of answers are true. Pure.
+//! Calibration: compares the probabilities of results with how often they were right. Pure.
 
 use std::fmt;
 
@@ -6,36 +6,35 @@ use serde::Serialize;
 
 use crate::text::{percent, share};
 
-/// Upper ends of the ranges of probabilities: closer near 1, where a user decides.
+/// Upper ends of the ranges of probability; narrower near 1, where users decide.
 const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
 
-/// Answers whose best place had a probability in one range.
+/// Results whose best place had a probability in one range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Said {
-    /// The range; its upper end belongs to it.
+    /// The range: more than `from`, at most `to`.
     pub(crate) from: f64,
     pub(crate) to: f64,
-    /// This many answers.
     pub(crate) answers: u64,
-    /// Those of them that were right.
+    /// Number of results that were right.
     pub(crate) right: u64,
-    /// The mean of their probabilities.
+    /// Mean probability of these results.
     pub(crate) mean: Option<f64>,
 }
 
-/// Collects what answers say of themselves, and how it turned out.
+/// Counts of results by range of probability.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Trust {
     answers: [u64; ENDS.len()],
     right: [u64; ENDS.len()],
-    /// Sums of probabilities.
+    /// Sums of the probabilities.
     said: [f64; ENDS.len()],
 }
 
 impl Trust {
-    /// Takes note of an answer's best place.
+    /// Adds the best place of a result.
     pub(crate) fn add(&mut self, probability: f64, is_right: bool) {
-        // Rounded sums may be a trifle more than 1.
+        // Rounding may make a probability slightly more than 1.
         let i = ENDS.iter().position(|&end| probability <= end);
         let i = i.unwrap_or(ENDS.len() - 1);
         self.answers[i] += 1;
@@ -43,7 +42,6 @@ impl Trust {
         self.said[i] += probability;
     }
 
-    /// Takes over what another has collected.
     pub(crate) fn merge(&mut self, other: &Trust) {
         for i in 0..ENDS.len() {
             self.answers[i] += other.answers[i];
@@ -52,7 +50,7 @@ impl Trust {
         }
     }
 
-    /// The ranges with their answers, the lowest first.
+    /// All ranges, lowest first.
     pub(crate) fn said(&self) -> [Said; ENDS.len()] {
         std::array::from_fn(|i| {
             let answers = self.answers[i];
@@ -67,7 +65,7 @@ impl Trust {
     }
 }
 
-/// A table of the ranges that have answers, the highest probability first.
+/// Prints a table of the ranges with results, highest probability first.
 impl fmt::Display for Trust {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "probability  answers  mean %  right %")?;

@@ -2,14 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// The equal angle in `(-π, π]`. NaN and infinities give NaN.
+/// Wraps an angle to `(-π, π]`. NaN and infinities give NaN.
 #[must_use]
 pub fn wrap_angle(angle: f64) -> f64 {
     let wrapped = angle.rem_euclid(TAU);
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
-/// The unsigned angle between two headings, in `[0, π]`.
+/// Returns the unsigned angle between two headings, in `[0, π]`.
 #[must_use]
 pub fn angle_between(a: f64, b: f64) -> f64 {
     wrap_angle(a - b).abs()
@@ -24,7 +24,7 @@ mod tests {
         assert_eq!(wrap_angle(PI), PI);
         assert_eq!(wrap_angle(-PI), PI);
         assert_eq!(wrap_angle(0.0), 0.0);
-        // Three half turns less a quarter: the sum is exact to one rounding.
+        // 2.5 π less a full turn: the sum is exact to one rounding.
         assert!((wrap_angle(2.5 * PI) - 0.5 * PI).abs() < 1e-15);
         assert!(wrap_angle(f64::INFINITY).is_nan());
     }

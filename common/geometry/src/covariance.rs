@@ -1,14 +1,14 @@
-//! The uncertainty of a pose.
+//! Covariance of a pose.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::Pose;
 
-/// Standard deviations to which the ellipse of a position reaches that holds 95 %:
-/// √(-2 ln 0.05), for χ² with two degrees of freedom is exponential.
+/// Radius in standard deviations of the ellipse that contains 95 % of positions: √(-2 ln 0.05), as
+/// χ² with two degrees of freedom is exponential.
 pub const ELLIPSE_95: f64 = 2.447_746_830_680_816;
 
-/// Standard deviations of an angle on either side that hold 95 %.
+/// Deviation on either side, in standard deviations, that contains 95 % of angles.
 pub const ANGLE_95: f64 = 1.959_963_984_540_054;
 
 /// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
@@ -19,16 +19,16 @@ pub struct Covariance(pub Matrix3<f64>);
 /// The one-sigma ellipse of a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipse {
-    /// Half the longer axis, metres.
+    /// Half the longer axis in metres.
     pub major_m: f64,
-    /// Half the shorter axis, metres.
+    /// Half the shorter axis in metres.
     pub minor_m: f64,
-    /// Direction of the longer axis, radians from the frame's x axis.
+    /// Direction of the longer axis, in radians from the frame's x axis.
     pub angle: f64,
 }
 
 impl Covariance {
-    /// Independent standard deviations: metres, metres and radians.
+    /// Creates a covariance from independent standard deviations in metres, metres and radians.
     #[must_use]
     pub fn from_deviations(x_m: f64, y_m: f64, yaw: f64) -> Self {
         Covariance(Matrix3::from_diagonal(
@@ -36,8 +36,8 @@ impl Covariance {
         ))
     }
 
-    /// The covariance of pose `of`, where this one is that of pose `known` and the two
-    /// are fixed to each other: a turn about the one moves the other.
+    /// Returns the covariance of pose `of`, if this is the covariance of pose `known` and the two
+    /// are rigidly connected: the uncertain heading of one adds to the position of the other.
     #[must_use]
     pub fn carried(self, known: Pose, of: Pose) -> Self {
         if known == of {
@@ -48,7 +48,8 @@ impl Covariance {
         Covariance(jacobian * self.0 * jacobian.transpose())
     }
 
-    /// The second moment about another pose of what has this covariance about pose `mean`.
+    /// Returns the second moment about pose `other` of a distribution with this covariance and mean
+    /// `mean`.
     #[must_use]
     pub fn about(self, mean: Pose, other: Pose) -> Self {
         let yaw = crate::wrap_angle(mean.yaw - other.yaw);
@@ -56,19 +57,19 @@ impl Covariance {
         Covariance(self.0 + off * off.transpose())
     }
 
-    /// Row by row, as messages carry it.
+    /// Returns the elements row by row, as in messages.
     #[must_use]
     pub fn to_rows(self) -> [f64; 9] {
         std::array::from_fn(|i| self.0[(i / 3, i % 3)])
     }
 
-    /// The inverse of [`Covariance::to_rows`].
+    /// Creates a covariance from [`Covariance::to_rows`].
     #[must_use]
     pub fn from_rows(rows: [f64; 9]) -> Self {
         Covariance(Matrix3::from_row_slice(&rows))
     }
 
-    /// The one-sigma ellipse of the position, heading marginalised.
+    /// Returns the one-sigma ellipse of the position, with the heading marginalised.
     #[must_use]
     pub fn ellipse(self) -> Ellipse {
         let eigen = self.of_position().symmetric_eigen();
@@ -85,9 +86,8 @@ impl Covariance {
         }
     }
 
-    /// How many standard deviations an offset (x and y, metres) of the position
-    /// is long, squared: the Mahalanobis distance, heading marginalised. Infinite
-    /// where the position has no spread.
+    /// Returns the squared Mahalanobis distance of a position offset (x and y in metres), with the
+    /// heading marginalised. Infinite if the covariance of the position is singular.
     #[must_use]
     pub fn squared_deviations(self, (x, y): (f64, f64)) -> f64 {
         let off = Vector2::new(x, y);
@@ -113,7 +113,7 @@ mod tests {
         let expected = [0.01, 0.0, 0.0, 0.0, 0.05, -0.04, 0.0, -0.04, 0.04];
         let carried = covariance.carried(known, base).to_rows();
         for (found, expected) in carried.iter().zip(expected) {
-            // A few products and sums.
+            // The tolerance covers a few products and sums.
             assert!(
                 (found - expected).abs() < 1e-15,
                 "{found} is not {expected}"
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn ellipses_of_95_percent_hold_that_much() {
-        // Of a normal distribution in the plane, exp(-r²/2) lies beyond r deviations.
+        // A normal distribution in the plane has a share of exp(-r²/2) beyond r deviations.
         assert!(((-ELLIPSE_95 * ELLIPSE_95 / 2.0).exp() - 0.05).abs() < 1e-15);
     }
 
@@ -147,7 +147,7 @@ mod tests {
         let along_y = Covariance::from_deviations(0.1, 2.0, 0.01);
         assert!((along_y.squared_deviations((0.3, 0.0)) - 9.0).abs() < 1e-9);
         assert!((along_y.squared_deviations((0.1, 2.0)) - 2.0).abs() < 1e-9);
-        // Both together err along the diagonal: along it more is usual than across.
+        // Correlated errors: an offset along the diagonal is more likely than one across.
         let rows = [1.0, 0.8, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0, 1.0];
         let diagonal = Covariance::from_rows(rows);
         assert!((diagonal.squared_deviations((0.9, 0.9)) - 0.9).abs() < 1e-12);

@@ -1,8 +1,8 @@
 //! Planar geometry: poses in SE(2), angles and covariances, on nalgebra.
 //!
-//! Lengths are metres and angles radians, counter-clockwise. A transform names
-//! both frames, target first: `map_from_laser` takes laser coordinates to the
-//! map. The crate knows no grid and no sensor.
+//! Lengths are in metres and angles in radians, counter-clockwise. A transform names both frames,
+//! target first: `map_from_laser` transforms laser coordinates to the map. The crate knows neither
+//! grids nor sensors.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Where a sensor sits on the robot.
+//! Mount of a laser on the robot.
 
 use std::error::Error;
 use std::fmt::{self, Display};
@@ -6,20 +6,20 @@ use std::str::FromStr;
 
 use crate::Pose;
 
-/// How a laser sits on the robot.
+/// Mount of a laser on the robot.
 ///
-/// As text it is `X,Y,YAW_DEG`, metres ahead, metres to the left and degrees
-/// counter-clockwise; of a laser that hangs upside down `X,Y,YAW_DEG,180`.
+/// As text it is `X,Y,YAW_DEG`: metres ahead, metres to the left and degrees counter-clockwise; or
+/// `X,Y,YAW_DEG,180` for a laser mounted upside down.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mount {
-    /// Where it is, seen from above; its yaw is that of the laser's x axis.
+    /// Pose seen from above; its yaw is that of the laser's x axis.
     pub base_from_laser: Pose,
-    /// Whether it hangs upside down: rolled by half a turn about its x axis, so that
-    /// what is to its left lies to the right.
+    /// True if it is mounted upside down: rolled by half a turn about its x axis, so that its left
+    /// is on the right.
     pub is_upside_down: bool,
 }
 
-/// A text that is no mount.
+/// Error of a text that is not a mount.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MountError;
 

@@ -5,50 +5,50 @@ use serde::{Deserialize, Serialize};
 
 use crate::{angle_between, wrap_angle};
 
-/// A pose, or the rigid transform that it stands for: the frame's origin at
-/// `(x, y)` metres, turned by `yaw` radians counter-clockwise.
+/// A pose or rigid transform: the frame's origin at `(x, y)` metres, rotated by `yaw` radians
+/// counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose {
-    /// Metres along the target frame's x axis.
+    /// Position along the target frame's x axis, in metres.
     pub x: f64,
-    /// Metres along the target frame's y axis.
+    /// Position along the target frame's y axis, in metres.
     pub y: f64,
-    /// Radians, counter-clockwise from the target frame's x axis.
+    /// Heading in radians, counter-clockwise from the target frame's x axis.
     pub yaw: f64,
 }
 
 impl Pose {
-    /// The transform that changes nothing.
+    /// Identity transform.
     pub const IDENTITY: Pose = Pose::new(0.0, 0.0, 0.0);
 
-    /// A pose from metres and radians; the yaw is kept as given.
+    /// Creates a pose from metres and radians; the yaw is kept as given.
     #[must_use]
     pub const fn new(x: f64, y: f64, yaw: f64) -> Self {
         Pose { x, y, yaw }
     }
 
-    /// `a_from_b.then(b_from_c)` is `a_from_c`; its yaw lies in `(-π, π]`.
+    /// Composes transforms: `a_from_b.then(b_from_c)` is `a_from_c`. The yaw is in `(-π, π]`.
     #[must_use]
     pub fn then(self, inner: Pose) -> Pose {
         (Isometry2::from(self) * Isometry2::from(inner)).into()
     }
 
-    /// `a_from_b.inverse()` is `b_from_a`.
+    /// Returns the inverse transform: `a_from_b.inverse()` is `b_from_a`.
     #[must_use]
     pub fn inverse(self) -> Pose {
         Isometry2::from(self).inverse().into()
     }
 
-    /// Where a frame is that moves from this pose to another with constant twist, at a
-    /// share of the way; shares below 0 and above 1 lie beyond.
+    /// Interpolates from this pose to another with constant twist; `share` 0 is this pose, 1 the
+    /// other, and values outside extrapolate.
     ///
-    /// The exponential map of SE(2): the way is an arc, of which the frame keeps its
-    /// own direction.
+    /// By the exponential map of SE(2): the path is an arc with a constant angle between heading
+    /// and tangent.
     #[must_use]
     pub fn towards(self, other: Pose, share: f64) -> Pose {
         let step = self.inverse().then(other);
-        // With (x, y) = V(yaw) v, the twist is (v, yaw); see for instance Solà et al.,
-        // A micro Lie theory for state estimation in robotics, eq. 158.
+        // With (x, y) = V(yaw) v, the twist is (v, yaw); see for instance Solà et al., A micro Lie
+        // theory for state estimation in robotics, eq. 158.
         let (a, b) = arc(step.yaw);
         let norm = a * a + b * b;
         let forward = (a * step.x + b * step.y) / norm;
@@ -61,41 +61,41 @@ impl Pose {
         ))
     }
 
-    /// Takes a point of the inner frame to the outer one.
+    /// Transforms a point of the inner frame to the outer one.
     #[must_use]
     pub fn transform(self, x: f64, y: f64) -> (f64, f64) {
         let point = Isometry2::from(self) * Point2::new(x, y);
         (point.x, point.y)
     }
 
-    /// Straight distance between the two origins, in metres.
+    /// Returns the distance between the two origins, in metres.
     #[must_use]
     pub fn distance_to(self, other: Pose) -> f64 {
         (self.x - other.x).hypot(self.y - other.y)
     }
 
-    /// Unsigned difference of the two headings, in `[0, π]` radians.
+    /// Returns the unsigned difference of the two headings, in `[0, π]` radians.
     #[must_use]
     pub fn angle_to(self, other: Pose) -> f64 {
         angle_between(self.yaw, other.yaw)
     }
 
-    /// Whether the poses differ by at most `metres` and at most `radians`.
+    /// True if the poses differ by at most `metres` and at most `radians`.
     #[must_use]
     pub fn is_within(self, other: Pose, metres: f64, radians: f64) -> bool {
         self.distance_to(other) <= metres && self.angle_to(other) <= radians
     }
 
-    /// Whether all three numbers are finite.
+    /// True if all three numbers are finite.
     #[must_use]
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.yaw.is_finite()
     }
 }
 
-/// sin θ / θ and (1 - cos θ) / θ.
+/// Returns sin θ / θ and (1 - cos θ) / θ.
 fn arc(angle: f64) -> (f64, f64) {
-    // Below, the next terms of the series are lost in rounding.
+    // For smaller angles, the next terms of the series are below rounding.
     if angle.abs() < 1e-6 {
         return (1.0 - angle * angle / 6.0, angle / 2.0);
     }
@@ -129,7 +129,7 @@ mod tests {
         let map_from_base = Pose::new(1.0, 2.0, FRAC_PI_2);
         let base_from_laser = Pose::new(0.78, 0.0, 0.0);
         let map_from_laser = map_from_base.then(base_from_laser);
-        // One rotation and one sum: a few units in the last place.
+        // The tolerance covers one rotation and one sum.
         assert!(map_from_laser.distance_to(Pose::new(1.0, 2.78, 0.0)) < 1e-12);
         assert!(map_from_laser.angle_to(map_from_base) < 1e-12);
     }
@@ -151,7 +151,8 @@ mod tests {
             let start = Pose::new(x, y, yaw);
             let end = start.then(Pose::new(to_x, 0.3, turn));
             let half = start.towards(end, 0.5);
-            // A few roundings of numbers below ten, divided by a cosine above 0.5.
+            // The tolerance covers a few roundings of numbers below ten, divided by a cosine above
+            // 0.5.
             proptest::prop_assert!(half.then(start.inverse().then(half)).is_within(end, 1e-9, 1e-9));
             proptest::prop_assert!(start.towards(end, 1.0).is_within(end, 1e-9, 1e-9));
             proptest::prop_assert!(start.towards(end, 0.0).is_within(start, 1e-9, 1e-9));
@@ -165,7 +166,7 @@ mod tests {
             let pose = Pose::new(x, y, yaw);
             let (tx, ty) = pose.transform(px, py);
             let (bx, by) = pose.inverse().transform(tx, ty);
-            // Coordinates up to 1e3 carry about 1e-13 a rounding; 1e-9 is a nanometre.
+            // Coordinates up to 1e3 have rounding errors of about 1e-13; 1e-9 is a nanometre.
             proptest::prop_assert!((bx - px).hypot(by - py) < 1e-9);
             proptest::prop_assert!(pose.then(pose.inverse()).is_within(Pose::IDENTITY, 1e-9, 1e-9));
         }

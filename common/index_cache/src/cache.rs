@@ -1,4 +1,4 @@
-//! From a map to a localizer, by way of a folder of files.
+//! Prepares a map with a cached search index.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,36 +11,35 @@ use engine::search::{IndexKey, SearchIndex};
 use crate::error::{FileError, failed};
 use crate::{CacheError, file, folder};
 
-/// A folder of kept indexes. It may be used by several processes at once, and any file
-/// of it removed at any time.
+/// A folder of cached indexes. Several processes may use it at once, and any of its files may be
+/// removed at any time.
 #[derive(Debug, Clone)]
 pub struct IndexCache {
     folder: PathBuf,
-    /// Most bytes of all files together.
+    /// Largest total size of the files, in bytes.
     limit: u64,
 }
 
-/// A localizer, and what became of its file.
+/// A localizer, and the state of its cached index.
 #[derive(Debug)]
 pub struct Prepared {
-    /// Ready for scans.
     pub localizer: Localizer,
-    /// Where its index came from, and where it is to go.
+    /// State of the cached index.
     pub kept: Kept,
 }
 
-/// What is to be said of the file of an index, and to be done.
+/// State of a cached index.
 #[derive(Debug, Default)]
 pub struct Kept {
-    /// Whether the index was read.
+    /// True if the index was read from the cache.
     pub is_read: bool,
-    /// Why a file that is there could not be read.
+    /// Error of reading an existing file.
     pub problem: Option<CacheError>,
-    /// What is to be kept for the next time, whenever there is time.
+    /// Index to be saved for the next time, when there is time.
     pub unsaved: Option<Unsaved>,
 }
 
-/// An index that is not kept in a file yet.
+/// An index that is not saved yet.
 #[derive(Debug)]
 pub struct Unsaved {
     cache: IndexCache,
@@ -49,10 +48,10 @@ pub struct Unsaved {
 }
 
 impl Prepared {
-    /// Prepares a map: with the index that is kept of it, else again.
+    /// Prepares a map with the cached index, or computes the index.
     ///
     /// # Errors
-    /// If the map cannot be searched, see [`Preparation::finish`].
+    /// The map cannot be searched, see [`Preparation::finish`].
     pub fn new(cache: Option<&IndexCache>, preparation: Preparation) -> Result<Self, EngineError> {
         let mut kept = Kept::default();
         let Some((cache, key)) = cache.zip(preparation.key()) else {
@@ -80,11 +79,10 @@ impl Prepared {
 }
 
 impl Unsaved {
-    /// Writes the file, and removes those that were not used for longest where all of them
-    /// together are too large.
+    /// Writes the file, and removes the least recently used files if all together are too large.
     ///
     /// # Errors
-    /// The folder cannot be used, or the file not be written.
+    /// The folder cannot be used, or the file cannot be written.
     pub fn save(self) -> Result<(), CacheError> {
         let Unsaved { cache, key, index } = self;
         let bytes = file::size(&index);
@@ -98,8 +96,8 @@ impl Unsaved {
         let path = cache.path(key);
         let failed = failed("write", &path);
         folder::make(&cache.folder)?;
-        // Whoever reads sees the old file or the whole new one, whoever else writes. What a
-        // crash leaves half written has a wrong checksum, so nothing waits for the disk.
+        // A concurrent reader sees the old file or the complete new one. A file that a crash leaves
+        // incomplete has a wrong checksum, so there is no need to sync it to disk.
         let mut new = folder::new_file(&cache.folder).map_err(&failed)?;
         file::write(new.as_file_mut(), key, &index).map_err(&failed)?;
         new.persist(&path).map_err(|error| failed(error.error))?;
@@ -108,19 +106,19 @@ impl Unsaved {
 }
 
 impl IndexCache {
-    /// In a folder, which is made with the first file, of at most this many bytes.
+    /// Uses a folder, which is created with the first file, with at most `limit` bytes of files.
     #[must_use]
     pub fn new(folder: PathBuf, limit: u64) -> Self {
         IndexCache { folder, limit }
     }
 
-    /// The file of an index.
+    /// Returns the path of an index.
     #[must_use]
     pub fn path(&self, key: IndexKey) -> PathBuf {
         self.folder.join(format!("{key}.{}", folder::ENDING))
     }
 
-    /// Reads an index, if it is kept.
+    /// Reads an index if it is cached.
     fn read(
         &self,
         key: IndexKey,
@@ -130,7 +128,7 @@ impl IndexCache {
         if !folder::is_there(&self.folder)? {
             return Ok(None);
         }
-        // The folder may have been open to others before, and is no proof.
+        // The folder may have been accessible to others before, so the file is checked, too.
         let Some(mut file) = trusted_files::open(&path)? else {
             return Ok(None);
         };
@@ -140,7 +138,7 @@ impl IndexCache {
             path: path.clone(),
             source,
         })?;
-        // It is the last to be removed now; where that cannot be noted, so be it.
+        // Marks it as recently used; an error does not matter.
         let _ = file.set_modified(SystemTime::now());
         Ok(Some(index))
     }
@@ -168,7 +166,7 @@ mod tests {
         Prepared::new(Some(cache), preparation(seed)).unwrap()
     }
 
-    /// Prepares and saves what is new; whether something was.
+    /// Prepares a map and saves its index if it is new; returns true in that case.
     fn prepare_and_save(cache: &IndexCache, seed: usize) -> bool {
         let unsaved = prepare(cache, seed).kept.unsaved;
         let is_new = unsaved.is_some();
@@ -217,7 +215,7 @@ mod tests {
         }
     }
 
-    /// By another user while the folder was open to all, or by accident.
+    /// Planted by another user while the folder was accessible to all, or by accident.
     #[test]
     fn what_was_planted_is_not_read_but_replaced() {
         let folder = tempfile::tempdir().unwrap();
@@ -230,7 +228,7 @@ mod tests {
             &|| set_permissions(&path, Permissions::from_mode(0o666)).unwrap(),
             &|| symlink(&other, &path).unwrap(),
             &|| mkfifo(&path, Mode::S_IRWXU).unwrap(),
-            // Others than root can give files to nobody else.
+            // Only root can give files to other users.
             &|| match geteuid().is_root() {
                 true => _ = copy(&other, &path).map(|_| chown(&path, Some(65534), None).unwrap()),
                 false => symlink("/etc/hostname", &path).unwrap(),
@@ -312,7 +310,7 @@ mod tests {
         for (i, key) in keys.iter().enumerate() {
             assert!(!keys[..i].contains(key), "setting {i}");
         }
-        // The parameters of a search alone do not matter.
+        // Parameters that only affect a search do not matter.
         assert_eq!(
             other(LocalizerConfig {
                 threads: 3,

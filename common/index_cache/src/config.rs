@@ -6,30 +6,29 @@ use std::str::FromStr;
 
 use crate::{CacheError, IndexCache, folder};
 
-/// Where prepared maps are kept.
+/// Options of the index cache.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
 pub struct IndexCacheConfig {
-    /// Folder that caches prepared maps, so that the same map with the same settings is
-    /// read the next time instead of prepared: a folder that nobody else can use,
-    /// created if it is missing; "user" for $XDG_CACHE_HOME/backcast or
-    /// ~/.cache/backcast; "off" for no cache. Its files can be removed at any time.
-    /// [default: user in the accumulator, off in the tools]
+    /// Folder that caches prepared maps, so that the same map with the same settings is read the
+    /// next time instead of prepared: a folder that only this user can use, created if it is
+    /// missing; "user" for $XDG_CACHE_HOME/backcast or ~/.cache/backcast; "off" for no cache. Its
+    /// files can be removed at any time. [default: user in the accumulator, off in the tools]
     #[arg(long, value_name = "FOLDER")]
     pub index_cache: Option<CachePlace>,
-    /// Maximum size of the cache, megabytes of 10⁶ bytes, 1..=1000000: the least
-    /// recently used maps are removed.
+    /// Maximum size of the cache, megabytes of 10⁶ bytes, 1..=1000000: the least recently used maps
+    /// are removed.
     #[arg(long, value_name = "MEGABYTES", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub index_cache_limit: u32,
 }
 
-/// A folder, or none.
+/// Place of the cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CachePlace {
-    /// Nothing is kept.
+    /// No cache.
     Off,
-    /// That of the user.
+    /// The user's cache folder.
     User,
-    /// Another one.
+    /// Another folder.
     Folder(PathBuf),
 }
 
@@ -43,10 +42,10 @@ impl Default for IndexCacheConfig {
 }
 
 impl IndexCacheConfig {
-    /// The folder that is set, else `default`; `None` where nothing is kept.
+    /// Opens the configured cache, or `default`; `None` without a cache.
     ///
     /// # Errors
-    /// Nothing says where the user's folder is.
+    /// The user's cache folder is unknown.
     pub fn open(&self, default: CachePlace) -> Result<Option<IndexCache>, CacheError> {
         let place = self.index_cache.clone().unwrap_or(default);
         let folder = match place {

@@ -6,71 +6,66 @@ use std::path::{Path, PathBuf};
 use engine::search::SectionError;
 use trusted_files::TrustError;
 
-/// Why an index could not be read or kept. The map is prepared without.
+/// Error of reading or saving an index. The map is then prepared without the cache.
 #[derive(Debug, thiserror::Error)]
 pub enum CacheError {
-    /// Nothing says where the user's cache folder is.
+    /// The user's cache folder is unknown.
     #[error("neither XDG_CACHE_HOME nor HOME names a folder; --index-cache can")]
     NoHome,
-    /// The path leads to something else.
+    /// The path is not a folder.
     #[error("{0} is not a folder: indexes are kept in one; remove it, or set --index-cache")]
     NotAFolder(PathBuf),
-    /// The folder is somebody else's.
+    /// The folder belongs to another user.
     #[error(
         "folder {path} belongs to user {owner}, and this is user {user}: what lies there is not \
          trusted; set --index-cache"
     )]
     ForeignFolder {
-        /// The folder.
         path: PathBuf,
-        /// Whose it is.
+        /// User id of the owner.
         owner: u32,
-        /// Who this process acts as.
+        /// User id of this process.
         user: u32,
     },
-    /// Others may enter the folder.
+    /// Other users can access the folder.
     #[error(
         "folder {path} has mode {mode:03o}: others can use it, so what lies there is not trusted; \
          chmod 700 makes it private"
     )]
     SharedFolder {
-        /// The folder.
         path: PathBuf,
-        /// Its permissions.
+        /// Permissions of the folder.
         mode: u32,
     },
-    /// The system refuses something.
+    /// A file operation failed.
     #[error("cannot {action} {path}")]
     File {
-        /// What was tried.
+        /// Verb of what was tried.
         action: &'static str,
-        /// With which file or folder.
         path: PathBuf,
-        /// What the system says.
         source: io::Error,
     },
-    /// Another user could have written a file.
+    /// Another user could have written the file.
     #[error("the index is not read, and the map is prepared again")]
     Untrusted(#[from] TrustError),
-    /// A file is not what it should be.
+    /// The file is invalid.
     #[error("{path} cannot be used, and the map is prepared again")]
     Unusable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
         source: FileError,
     },
-    /// An index takes more than all are allowed to.
+    /// The index exceeds the size limit of the cache.
     #[error("the index takes {needed_mb} MB and --index-cache-limit allows {limit_mb}")]
     TooLarge {
-        /// Megabytes of 10⁶ bytes.
+        /// Size of the index in megabytes of 10⁶ bytes.
         needed_mb: u64,
-        /// The same.
+        /// Size limit in megabytes of 10⁶ bytes.
         limit_mb: u64,
     },
 }
 
-/// The error of what the system refuses to do with a file or folder.
+/// Returns a function that converts an error of a file operation.
 pub(crate) fn failed(
     action: &'static str,
     path: &Path,
@@ -83,41 +78,41 @@ pub(crate) fn failed(
     }
 }
 
-/// What is wrong with a file.
+/// Error in the content of a file.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// It does not begin as these files do on this machine.
+    /// The file does not have the magic number of this machine.
     #[error("not an index file")]
     Foreign,
-    /// Another release wrote it.
+    /// Another release wrote the file.
     #[error("it has version {found} and this is version {expected}")]
     Version {
-        /// That of the file.
+        /// Format version found.
         found: u32,
-        /// That of this release.
+        /// Format version expected.
         expected: u32,
     },
-    /// Another name belongs to what it holds.
+    /// The key in the file differs from its name.
     #[error("the index is of another map or other settings")]
     OtherKey,
-    /// The checksum of its header is wrong.
+    /// The checksum of the header is wrong.
     #[error("its header is damaged")]
     Header,
-    /// Its length is not what its header says.
+    /// The length differs from the one in the header.
     #[error("it has {found} bytes instead of {expected}")]
     Length {
-        /// Its bytes.
+        /// Length found in bytes.
         found: u64,
-        /// Those of all that it should hold.
+        /// Length expected in bytes.
         expected: u64,
     },
     /// The checksum of a section is wrong.
     #[error("section {0} is damaged")]
     Section(usize),
-    /// The engine refuses what it holds.
+    /// The engine rejects the content.
     #[error(transparent)]
     Sections(#[from] SectionError),
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("it cannot be read")]
     Read(#[from] io::Error),
 }

@@ -1,16 +1,16 @@
-//! The format of a file: a header, then the sections of an index one behind the other.
+//! Format of a file: a header, followed by the sections of an index.
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! |---|---|
-//! | 8 | magic, `BCINDEX` and a line feed in the byte order of the machine |
+//! | 8 | magic number, `BCINDEX` and a line feed in the byte order of the machine |
 //! | 4 | [`SearchIndex::VERSION`] |
-//! | 4 | how many sections there are |
+//! | 4 | number of sections |
 //! | 16 | the key |
 //! | 16 each | length and checksum of each section |
-//! | 8 | checksum of all before |
+//! | 8 | checksum of all the above |
 //!
 //! Numbers and sections are in the byte order of the machine, which the magic number shows.
-//! Checksums are XXH3 of 64 bits.
+//! Checksums are XXH3 with 64 bits.
 
 use std::hash::Hasher;
 use std::io::{self, Read, Write};
@@ -24,11 +24,11 @@ use crate::error::FileError;
 
 const MAGIC: u64 = u64::from_be_bytes(*b"BCINDEX\n");
 
-/// Bytes that are read and hashed at a time: they stay in the cache between.
+/// Number of bytes read and hashed at a time, so that they stay in the CPU cache.
 const PIECE: usize = 1 << 18;
 
-/// Pages of memory, bytes; on other machines they may be larger, and advice on parts of
-/// them is ignored.
+/// Sizes of memory pages in bytes. Other machines may have larger ones, and ignore advice on parts
+/// of them.
 const PAGE: usize = 1 << 12;
 const LARGE_PAGE: usize = 1 << 21;
 
@@ -67,7 +67,7 @@ impl Header {
         header
     }
 
-    /// The checksum of all but itself.
+    /// Returns the checksum of the header without its last field.
     fn sum(&self) -> u64 {
         let bytes = bytes_of(self);
         XxHash3_64::oneshot(&bytes[..bytes.len() - size_of::<u64>()])
@@ -101,13 +101,12 @@ impl Header {
     }
 }
 
-/// How many bytes a file of an index has.
+/// Returns the size of an index file in bytes.
 pub(crate) fn size(index: &SearchIndex) -> u64 {
     let sections = index.sections().map(<[u8]>::len).into_iter().sum::<usize>();
     (size_of::<Header>() + sections) as u64
 }
 
-/// Writes an index.
 pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> io::Result<()> {
     let sections = index.sections();
     to.write_all(bytes_of(&Header::of(key, &sections)))?;
@@ -116,7 +115,7 @@ pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> 
         .try_for_each(|section| to.write_all(section))
 }
 
-/// Reads the index of a map from a file of this many bytes.
+/// Reads the index of a map from a file of `file_bytes` bytes.
 pub(crate) fn read(
     from: &mut impl Read,
     file_bytes: u64,
@@ -138,21 +137,21 @@ pub(crate) fn read(
     Ok(unchecked.check()?)
 }
 
-/// Asks for large pages in what is about to be filled: making small ones takes as long as
-/// reading. Where the system has none, nothing changes.
+/// Requests huge pages for a section to be filled, as allocating small pages takes as long as
+/// reading. It has no effect on systems without them.
 fn ask_for_large_pages(section: &mut [u8]) {
     #[cfg(target_os = "linux")]
     if section.len() >= LARGE_PAGE {
         let start = section.as_ptr().align_offset(PAGE);
         let pages = &mut section[start..];
-        // SAFETY: this is advice on memory that is borrowed; what it holds stays as it is.
+        // SAFETY: this is advice on borrowed memory; its content does not change.
         unsafe {
             libc::madvise(pages.as_mut_ptr().cast(), pages.len(), libc::MADV_HUGEPAGE);
         }
     }
 }
 
-/// Fills `into`, and hashes what came.
+/// Fills `into` and returns the hash of its content.
 fn read_hashing(from: &mut impl Read, into: &mut [u8]) -> io::Result<u64> {
     let mut hash = XxHash3_64::new();
     for piece in into.chunks_mut(PIECE) {
@@ -169,7 +168,7 @@ mod tests {
     use super::*;
     use crate::testing::preparation;
 
-    /// A file of the map of seed 1.
+    /// Returns a file of the map with seed 1.
     fn file() -> Vec<u8> {
         let localizer = preparation(1).finish().unwrap();
         let index = localizer.search_index().unwrap();
@@ -227,7 +226,7 @@ mod tests {
         assert!(read_back(&bytes).is_ok(), "all is as it was");
     }
 
-    /// A file that claims what it likes, with a sound header.
+    /// Reads a file with a changed header, whose checksum is correct.
     fn claiming(change: impl FnOnce(&mut Header)) -> Result<SearchIndex, FileError> {
         let mut bytes = file();
         let (header, _) = bytes.split_at_mut(size_of::<Header>());
@@ -242,7 +241,7 @@ mod tests {
     fn a_sound_header_that_claims_too_much_is_refused_before_room_is_made() {
         assert!(claiming(|_| ()).is_ok());
         let moved = claiming(|header| {
-            // From the intervals to the searched cells: as many bytes together.
+            // From the intervals to the searched cells, with the same total size.
             header.sections[5].bytes -= 48 * 3;
             header.sections[0].bytes += 48 * 3;
         });
@@ -270,7 +269,7 @@ mod tests {
         assert_eq!(ends.pop(), Some(bytes.len()));
         for end in ends {
             assert!(read_back(&bytes[..end]).is_err(), "{end}");
-            // Cut while it is read: there is less than the file had at first.
+            // The file is cut while it is read: fewer bytes than its size at first.
             let mut cut = &bytes[..end];
             let cut = read(&mut cut, bytes.len() as u64, key(), &preparation(1));
             assert!(matches!(cut.unwrap_err(), FileError::Read(_)), "{end}");

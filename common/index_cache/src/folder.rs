@@ -1,4 +1,4 @@
-//! The folder of the files: private, and of a limited size.
+//! The cache folder: private, with a limited total size of files.
 
 use std::fs::{DirBuilder, read_dir, remove_file, symlink_metadata};
 use std::io::{self, ErrorKind};
@@ -11,16 +11,16 @@ use tempfile::NamedTempFile;
 use crate::CacheError;
 use crate::error::failed;
 
-/// How the names of all files end.
+/// Extension of all files.
 pub(crate) const ENDING: &str = "index";
 
-/// The user's own, where nothing else is set.
+/// Returns the user's cache folder, which is the default.
 pub(crate) fn of_user() -> Result<PathBuf, CacheError> {
     let folder = dirs::cache_dir().ok_or(CacheError::NoHome)?;
     Ok(folder.join("backcast"))
 }
 
-/// Makes the folder, and those above it, unless it is there.
+/// Creates the folder and its parents if they are missing.
 pub(crate) fn make(path: &Path) -> Result<(), CacheError> {
     let made = DirBuilder::new().mode(0o700).recursive(true).create(path);
     match made {
@@ -31,17 +31,17 @@ pub(crate) fn make(path: &Path) -> Result<(), CacheError> {
     }
 }
 
-/// Whether the folder is there.
+/// Returns true if the folder exists.
 ///
 /// # Errors
-/// Somebody else could have written what lies in it.
+/// Another user could have written its files.
 pub(crate) fn is_there(path: &Path) -> Result<bool, CacheError> {
     let user = nix::unistd::geteuid().as_raw();
     is_there_for(user, path)
 }
 
 fn is_there_for(user: u32, path: &Path) -> Result<bool, CacheError> {
-    // A link is not followed: it could lead into a folder of somebody else.
+    // A link is not followed: it could lead to a folder of another user.
     let found = match symlink_metadata(path) {
         Ok(found) => found,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
@@ -60,18 +60,18 @@ fn is_there_for(user: u32, path: &Path) -> Result<bool, CacheError> {
     }
 }
 
-/// A file under a name of its own, which is removed unless it is given another one.
+/// Creates a temporary file, which is removed unless it is renamed.
 pub(crate) fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.suffix(&format!(".{ENDING}")).tempfile_in(folder)
 }
 
-/// Removes the files that were not used for longest, what is left of interrupted writes
-/// among them, until all together take at most this many bytes; `spared` is not removed.
+/// Removes the least recently used files, including those of interrupted writes, until the total
+/// size is at most `limit` bytes; `spared` is not removed.
 pub(crate) fn trim(folder: &Path, spared: &Path, limit: u64) -> Result<(), CacheError> {
     let listed = read_dir(folder).map_err(failed("list", folder))?;
     let mut files: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
-    // What cannot be looked at was removed meanwhile.
+    // Files without metadata were removed meanwhile.
     for entry in listed.flatten() {
         let path = entry.path();
         if path.extension().is_some_and(|ending| ending == ENDING)

@@ -1,13 +1,13 @@
-//! Prepared maps, kept in files between runs.
+//! Cache of prepared maps in files.
 //!
-//! Preparing a map for searches takes up to seconds; a node that starts again on a map that
-//! was prepared before reads its index instead. What is read equals what would be made, to
-//! the last bit: a file is named by a hash of all that its index is made of, and holds
-//! checksums of all that is in it. A file that is damaged, cut short, foreign or old is an
-//! error to be reported, after which the map is prepared as if there were none.
+//! Preparing a map for searches takes up to seconds; a node that restarts on a map that was
+//! prepared before reads its index instead. The index read is bit-identical to the one that would
+//! be computed: the file name is a hash of all inputs of the index, and checksums protect the
+//! content. A damaged, truncated, foreign or old file is reported as an error, and then the map is
+//! prepared as if there were no file.
 //!
-//! Files are read and not mapped into memory: one that is cut while it is mapped would end
-//! the process with SIGBUS, where reading is an error like any other.
+//! Files are read, not mapped: truncation of a mapped file would end the process with SIGBUS, while
+//! reading returns an error.
 
 mod cache;
 mod config;

@@ -4,7 +4,7 @@ use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{LocalizerConfig, Preparation, Prior};
 use geometry::Pose;
 
-/// Cells along x and y.
+/// Width and height in cells.
 pub(crate) const SIDES: (usize, usize) = (61, 40);
 
 pub(crate) const FRAME: GridFrame = GridFrame {
@@ -12,7 +12,7 @@ pub(crate) const FRAME: GridFrame = GridFrame {
     map_from_grid: Pose::new(1.0, 2.0, 0.5),
 };
 
-/// A room with a pillar, a box that `seed` places, and a part that is unknown.
+/// Returns a room with a pillar, a box placed by `seed`, and an unknown part.
 pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
     let (width, height) = SIDES;
     let cell = |i: usize| {
@@ -30,13 +30,13 @@ pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
     (0..width * height).map(cell).collect()
 }
 
-/// The map of a seed, with some settings.
+/// Prepares the map of a seed with these settings.
 pub(crate) fn preparation_with(seed: usize, config: LocalizerConfig) -> Preparation {
     let (cells, rules) = (occupancy(seed), CellRules::default());
     Preparation::of_map(FRAME, SIDES, &cells, rules, config, Prior::None).unwrap()
 }
 
-/// The same with few headings.
+/// Prepares the map of a seed with few headings.
 pub(crate) fn preparation(seed: usize) -> Preparation {
     let config = LocalizerConfig {
         headings: 48,

@@ -1,4 +1,4 @@
-//! What `backcast init` does.
+//! `backcast init`: writes a descriptor.
 
 use std::ffi::OsStr;
 use std::fs::Permissions;
@@ -18,7 +18,7 @@ use crate::InitError;
 use crate::descriptor::{Served, Source, descriptor_of};
 use crate::robot::{self, Robot};
 
-/// What stands below the options.
+/// Text below the options in the help.
 pub const NOTES: &str = "\
 Examples:
   backcast init --laser 192.168.0.1 --map map.yaml --mount 0.2,0,0 --out graph.yaml
@@ -30,22 +30,22 @@ Examples:
 
 Exit codes: 0 written, 1 the laser, the robot, the map or the recording cannot be used, 2 wrong use";
 
-/// What `backcast init` takes.
+/// Options of `backcast init`.
 #[derive(Debug, clap::Args)]
 #[command(group = ArgGroup::new("source").required(true))]
 pub struct Config {
-    /// A SICK laser on the network, as 192.168.0.1, HOST:PORT or tcp://HOST:PORT; it is asked
-    /// how it speaks
+    /// A SICK laser on the network, as 192.168.0.1, HOST:PORT or tcp://HOST:PORT; its protocol is
+    /// detected
     #[arg(long, value_name = "ADDRESS", group = "source")]
     laser: Option<String>,
 
-    /// A SICK LMS2xx on a serial line, as /dev/ttyUSB0
+    /// A SICK LMS2xx on a serial line, e.g. /dev/ttyUSB0
     #[arg(long, value_name = "DEVICE", group = "source")]
     serial: Option<String>,
 
-    /// A ROS 2 robot. Its nodes are looked for on DDS and Zenoh, or by its router of Zenoh
-    /// alone, as tcp/192.168.0.5:7447; if none is found, it is taken to use rmw_zenoh with
-    /// this graph as its router
+    /// A ROS 2 robot. Its nodes are looked for on DDS and Zenoh, or only through its Zenoh router,
+    /// e.g. tcp/192.168.0.5:7447; if none is found, it is assumed to use rmw_zenoh with this graph
+    /// as its router
     #[arg(long, value_name = "ROUTER", group = "source", num_args = 0..=1)]
     ros2: Option<Option<String>>,
 
@@ -53,25 +53,25 @@ pub struct Config {
     #[arg(long, value_name = "FILE", group = "source")]
     replay: Option<PathBuf>,
 
-    /// The map of the building, as map_server of ROS 2 has it; a ROS 2 robot brings its own
+    /// The map of the building, a YAML file of map_server of ROS 2; by default a ROS 2 robot
+    /// publishes its own
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
-    /// Several maps in its place, as the floors of a building: a folder, or a file that names
-    /// them; all are searched
+    /// Several maps instead of one, such as the floors of a building: a folder, or a file that
+    /// lists them; all are searched
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     maps: Option<PathBuf>,
 
-    /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
-    /// counter-clockwise
+    /// Mount of the laser on the robot: metres ahead, metres to the left, degrees counter-clockwise
     #[arg(long, value_name = "X,Y,YAW_DEG", allow_hyphen_values = true)]
     mount: Option<String>,
 
-    /// Write without asking the laser or looking for the robot
+    /// Write without contacting the laser or looking for the robot
     #[arg(long)]
     no_probe: bool,
 
-    /// The file to write; paths in it begin at its folder
+    /// File to write; paths in it are relative to its folder
     #[arg(long, value_name = "FILE", default_value = descriptor::DEFAULT_FILE)]
     out: PathBuf,
 
@@ -83,7 +83,7 @@ pub struct Config {
 /// Writes the descriptor and checks it.
 ///
 /// # Errors
-/// The laser does not answer, map or recording cannot be used, or the file is there already.
+/// The laser does not answer, map or recording cannot be used, or the file exists already.
 pub fn run(config: &Config) -> Result<ExitCode, InitError> {
     let source = source(config)?;
     if config.out.exists() && !config.force {
@@ -110,7 +110,7 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Whole or not at all.
+/// Writes the file atomically.
 fn write(file: &Path, text: &str) -> io::Result<()> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -176,7 +176,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
     })
 }
 
-/// How the laser is read: as it answers, or as lasers are delivered.
+/// Returns the options that the laser answers to, or those of its factory settings.
 fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitError> {
     let is_serial = config.serial.is_some();
     if config.no_probe {
@@ -189,14 +189,14 @@ fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitErro
     })
 }
 
-/// The mount as it was given, if it is one.
+/// Checks the mount and returns it as one word.
 fn mount(text: &str) -> Result<String, InitError> {
     let is_mount: Result<Mount, _> = text.parse();
     is_mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
     Ok(text.replace(' ', ""))
 }
 
-/// The map's file, absolute, if it can be used.
+/// Checks the map and returns its absolute path.
 fn used_map(file: &Path) -> Result<String, InitError> {
     if file.extension() == Some(OsStr::new("mcap")) {
         return Err(InitError::Usage(format!(

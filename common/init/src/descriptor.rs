@@ -1,38 +1,38 @@
-//! The text of a descriptor.
+//! Generates the text of a descriptor.
 
 use std::borrow::Cow;
 
-/// What feeds the graph.
+/// Source of scans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// A laser of ours to read.
+    /// A laser read by `lms_reader`.
     Laser {
-        /// Options of `lms_reader` that name it and say how it speaks, a word each.
+        /// Options of `lms_reader` with the address and protocol, one word each.
         options: Vec<String>,
-        /// `X,Y,YAW_DEG`.
+        /// Mount as `X,Y,YAW_DEG`.
         mount: Option<String>,
     },
     /// A ROS 2 robot.
     Ros2 {
-        /// Options that name its middleware and its topics.
+        /// Options of the gateway for middleware and topics.
         options: Vec<String>,
-        /// Its router's address; none where the gateway is the router.
+        /// Address of its router; `None` if the gateway is the router.
         router: Option<String>,
-        /// `X,Y,YAW_DEG`.
+        /// Mount as `X,Y,YAW_DEG`.
         mount: Option<String>,
-        /// Whether the map comes from the robot.
+        /// True if the robot publishes the map.
         brings_map: bool,
     },
     /// A recording.
     Recording {
-        /// Its path.
+        /// Path of the recording.
         file: String,
-        /// Whether it has what the wheels report.
+        /// True if it has odometry.
         has_odometry: bool,
     },
 }
 
-/// How each node is supervised.
+/// Restart settings of each node.
 const RESTARTS: &str = "    restart_policy: on-failure
     max_restarts: 15
     restart_window: 60
@@ -40,7 +40,7 @@ const RESTARTS: &str = "    restart_policy: on-failure
 ";
 
 impl Source {
-    /// What it is, for people.
+    /// Description for users.
     pub(crate) fn title(&self) -> String {
         match self {
             Source::Laser { options, .. } => format!("a laser (lms_reader {})", words(options)),
@@ -52,7 +52,7 @@ impl Source {
         }
     }
 
-    /// The id of the node that sends scans.
+    /// Id of the node that publishes scans.
     fn node(&self) -> &'static str {
         match self {
             Source::Laser { .. } => "lms_reader",
@@ -61,7 +61,7 @@ impl Source {
         }
     }
 
-    /// The id of the node that sends the map.
+    /// Id of the node that publishes the map.
     fn map_node(&self) -> &'static str {
         match self {
             Source::Ros2 {
@@ -147,12 +147,12 @@ impl Source {
     }
 }
 
-/// What is served where the robot does not bring its map.
+/// Maps served by `map_server`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Served {
-    /// The map of a file.
+    /// Map of this file.
     Map(String),
-    /// The maps of a folder, or of a file that names them.
+    /// Maps of this folder, or of a file that lists them.
     Set(String),
 }
 
@@ -185,7 +185,7 @@ impl Served {
     }
 }
 
-/// The whole descriptor; `map` is what is served, where a file is.
+/// Generates the whole descriptor; `map` is served by `map_server` if it is given.
 pub(crate) fn descriptor_of(source: &Source, map: Option<&Served>) -> String {
     let from = source.node();
     let odometry = match source.has_odometry() {
@@ -194,7 +194,7 @@ pub(crate) fn descriptor_of(source: &Source, map: Option<&Served>) -> String {
     };
     let map_server = map.map_or_else(String::new, Served::yaml);
     let map_from = source.map_node();
-    // Of several maps, those who search find the boundaries themselves.
+    // With several maps, the searching nodes compute the boundaries themselves.
     let (maps, boundaries, boundary, by_map) = match map {
         Some(Served::Set(_)) => (
             "maps: map_server/maps".to_owned(),
@@ -268,19 +268,19 @@ nodes:
     )
 }
 
-/// The words of `args`, each quoted where it has to be.
+/// Joins words for `args`, each quoted if needed.
 fn words(words: &[String]) -> String {
     let words: Vec<String> = words.iter().map(|text| word(text)).collect();
     words.join(" ")
 }
 
-/// A word of `args`, quoted where it has to be.
+/// Quotes a word for `args` if needed.
 fn word(text: &str) -> String {
-    // What cannot be quoted, a zero byte, stands in no path.
+    // A zero byte cannot be quoted, but no path has one.
     shlex::try_quote(text).map_or_else(|_| text.to_owned(), Cow::into_owned)
 }
 
-/// A text of YAML on one line.
+/// Quotes a text for YAML, on one line.
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

@@ -1,4 +1,4 @@
-//! Why no descriptor was written.
+//! Errors of `backcast init`.
 
 use std::io;
 use std::path::PathBuf;
@@ -9,30 +9,29 @@ use map::MapError;
 use probe::ProbeError;
 use recording::RecordingError;
 
-/// Why no descriptor was written.
+/// Reason why no descriptor was written.
 #[derive(Debug, thiserror::Error)]
 pub enum InitError {
-    /// The laser cannot be asked.
+    /// The laser does not answer.
     #[error(
         "the laser gives no answer; --no-probe writes the descriptor without asking it, and \
          `backcast probe {device}` says more"
     )]
     Laser {
-        /// As it was given.
+        /// Address or device as given.
         device: String,
-        /// Why not.
         source: ProbeError,
     },
-    /// The robot cannot be looked at.
+    /// The robot's nodes cannot be listed.
     #[error("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")]
     Robot {
-        /// Why not.
+        /// Description of the error.
         reason: String,
     },
     /// The robot's messages cannot be recorded.
     #[error("the robot cannot be recorded: {reason}")]
     Record {
-        /// Why not.
+        /// Description of the error.
         reason: String,
     },
     /// The map cannot be used.
@@ -41,27 +40,26 @@ pub enum InitError {
     /// The recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// Two options do not go together.
+    /// Options that exclude each other or are missing.
     #[error("{0}")]
     Usage(String),
-    /// The descriptor stands already.
+    /// The descriptor exists already.
     #[error("{} is there already; --force overwrites it", file.display())]
     Exists {
-        /// The file.
+        /// Path as given.
         file: PathBuf,
     },
-    /// It cannot be written.
+    /// The descriptor cannot be written.
     #[error("cannot write {}", file.display())]
     Write {
-        /// The file.
+        /// Path as given.
         file: PathBuf,
-        /// Why not.
         source: io::Error,
     },
-    /// What was written is not sound here.
+    /// The written descriptor is invalid on this machine.
     #[error(transparent)]
     Check(#[from] LauncherError),
-    /// Standard output takes no more.
+    /// Standard output cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

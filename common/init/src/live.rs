@@ -1,4 +1,4 @@
-//! A live ROS 2 robot, recorded for a while as a graph gets it.
+//! Records a live ROS 2 robot for a while, with the messages that a graph receives.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
@@ -18,9 +18,9 @@ use crate::InitError;
 use crate::descriptor::quoted;
 use crate::robot;
 
-/// A robot's messages, until this is dropped.
+/// A recording in a temporary folder, which is removed when this is dropped.
 pub struct Recorded {
-    /// The recording.
+    /// Path of the recording.
     pub file: PathBuf,
     /// Warnings of the gateway about the robot.
     pub warnings: BTreeSet<String>,
@@ -40,17 +40,17 @@ struct Fields {
     message: String,
 }
 
-/// How long the first scan may take from the start of the graph that records it.
+/// Longest wait for the first scan from the start of the recording graph.
 const FIRST_SCAN: Duration = Duration::from_secs(30);
 
-/// Between two looks.
+/// Polling interval.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Records the scans, odometry and map of the robot with this router, or of the one that is
-/// in the network, for so long from its first scan on.
+/// Records scans, odometry and map of the robot with this router, or of the one in the network, for
+/// `length` from its first scan.
 ///
 /// # Errors
-/// No robot is found, or the graph that records it cannot be started.
+/// No robot is found, or the recording graph cannot be started.
 pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitError> {
     let failed = |reason: String| InitError::Record { reason };
     say("looking for the robot's nodes");
@@ -132,10 +132,10 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
     })
 }
 
-/// Waits until a scan has entered a graph that is starting, for as long as one may take.
+/// Waits until a scan has entered a graph that is starting, at most for [`FIRST_SCAN`].
 fn wait_for_scan(name: &GraphName) -> Result<(), TransportError> {
     let begin = Instant::now();
-    // Whoever joins before its launcher is in its way.
+    // Joining before the launcher would keep it from starting.
     while !control_socket(name).exists() {
         if begin.elapsed() >= FIRST_SCAN {
             return Ok(());
@@ -150,7 +150,7 @@ fn wait_for_scan(name: &GraphName) -> Result<(), TransportError> {
     })
 }
 
-/// The gateway's warning in a line of the graph's log, if it is one.
+/// Returns the message if the line is a warning of the gateway.
 fn warning(line: &str) -> Option<String> {
     let object = line.get(line.find('{')?..)?;
     let line: Line = serde_json::from_str(object).ok()?;

@@ -1,4 +1,4 @@
-//! A ROS 2 robot as its nodes show it: which topics the gateway is to take, by its own look.
+//! Lists the topics of a ROS 2 robot with `ros2_gateway --look`, and chooses those for the gateway.
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
@@ -8,11 +8,10 @@ use transport::GRAPH_VARIABLE;
 
 use crate::InitError;
 
-/// How long nodes are looked for on each middleware, seconds: those on DDS say every three
-/// seconds that they are there.
+/// Search time on each middleware in seconds: nodes on DDS announce themselves every three seconds.
 const LOOK_S: &str = "6";
 
-/// A topic that a node of the robot publishes, as `ros2_gateway --look` prints it.
+/// A topic published by a node of the robot, as printed by `ros2_gateway --look`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub(crate) struct Published {
     rmw: String,
@@ -22,21 +21,21 @@ pub(crate) struct Published {
     node: String,
 }
 
-/// A robot as its topics show it.
+/// Result of looking for a robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Robot {
-    /// Options of the gateway that name its middleware and its topics.
+    /// Options of the gateway for middleware and topics.
     pub(crate) options: Vec<String>,
-    /// Whether its nodes publish scans and no map.
+    /// True if its nodes publish scans but no map.
     pub(crate) lacks_map: bool,
-    /// Sentences for people about what was seen.
+    /// Sentences for the user on what was found.
     pub(crate) said: Vec<String>,
 }
 
-/// Looks at the robot with this router, or at those that are in the network.
+/// Looks for the robot with this router, or for those in the network.
 ///
 /// # Errors
-/// The gateway cannot be started, or ends with an error.
+/// The gateway cannot be started or ends with an error.
 pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
     let failed = |reason: String| InitError::Robot { reason };
     let gateway = launcher::node("ros2_gateway").ok_or_else(|| {
@@ -47,7 +46,7 @@ pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
     if let Some(router) = router {
         command.args(["--rmw", "zenoh", "--connect", router]);
     }
-    // What it says while it looks is of no interest beside what it finds.
+    // Its log is only shown if it fails.
     let output = command
         .env(GRAPH_VARIABLE, format!("look_{}", std::process::id()))
         .stderr(Stdio::piped())
@@ -65,13 +64,13 @@ pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
     Ok(robot_of(&published))
 }
 
-/// Words for a robot without a map.
+/// Message for a robot without a map.
 pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one";
 
-/// The options for what is published.
+/// Chooses the options for the published topics.
 fn robot_of(published: &[Published]) -> Robot {
     let mut robot = Robot::default();
-    // Of several robots, the one whose scans come first.
+    // With several robots, the first one with scans is used.
     let Some(first) = published.iter().find(|one| one.kind == "scan") else {
         robot.said.push(
             "no node publishes laser scans on DDS or Zenoh: start the robot, and check \

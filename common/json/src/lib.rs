@@ -1,10 +1,9 @@
-//! What is written for programs to read: objects of JSON, each with the schema that it
-//! follows (docs/json.md).
+//! Output of JSON objects for programs, each with the version of its schema (docs/json.md).
 
 use serde::Serialize;
 
-/// Raised when a field changes its meaning or goes, of any object; a field that is
-/// added raises nothing.
+/// Version of the schemas of all objects: increased when a field changes its meaning or is removed,
+/// but not when one is added.
 pub const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
@@ -14,10 +13,9 @@ struct Versioned<'a, T> {
     object: &'a T,
 }
 
-/// The object on one line, without its end; its first field is [`SCHEMA`].
+/// Formats the object on one line, without a newline; its first field is [`SCHEMA`].
 ///
-/// Plain values under fixed keys cannot fail to serialize; a fault there would show as
-/// the line's content.
+/// Plain values under fixed keys cannot fail to serialize; otherwise the line would have the error.
 pub fn object(object: &impl Serialize) -> String {
     let schema = SCHEMA;
     serde_json::to_string(&Versioned { schema, object })

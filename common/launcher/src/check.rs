@@ -1,6 +1,5 @@
-//! `backcast check`: all that is wrong with a descriptor and the arguments in it, or a
-//! picture of the graph. It builds and changes nothing; nodes are started as far as it takes
-//! them to read their arguments.
+//! `backcast check`: reports all errors in a descriptor and in its nodes' arguments, and prints the
+//! graph as text. It builds and changes nothing; nodes are started only to check their arguments.
 
 use std::{
     fmt::Write as _,
@@ -19,7 +18,6 @@ use crate::{
     run::executable,
 };
 
-/// Options of `backcast check`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The graph's descriptor
@@ -27,14 +25,14 @@ pub struct Config {
     dataflow: PathBuf,
 }
 
-/// Prints the picture.
+/// Checks the descriptor and prints the graph.
 ///
 /// # Errors
-/// The descriptor is missing or wrong, or a node does not take its arguments.
+/// The descriptor is missing or wrong, or a node rejects its arguments.
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     let nodes = descriptor.dataflow.nodes.iter();
-    // Ours end at once where only their arguments are checked.
+    // Only our nodes can end after checking their arguments.
     let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = nodes
         .filter(|node| is_ours(node))
         .partition(|node| executable(node, &descriptor.folder).is_file());
@@ -63,7 +61,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the node says of its arguments, if it does not take them.
+/// Returns the node's error message if it rejects its arguments.
 fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, LauncherError> {
     let output = Process::new(executable(node, folder))
         .args(&node.args)
@@ -79,14 +77,15 @@ fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, Launc
             source,
         })?;
     let said = String::from_utf8_lossy(&output.stderr);
-    // The first paragraph says what is wrong, those after it how the node is used.
+    // The first paragraph is the error, the rest is usage.
     let reason = said.split("\n\n").next().unwrap_or_default();
     let reason = reason.trim().trim_start_matches("error: ");
     let refused = (!output.status.success()).then(|| format!("node {}: {reason}", node.id));
     Ok(refused)
 }
 
-/// A paragraph for each node: what it takes and sends, and to whom.
+/// Returns a paragraph for each node: its inputs with their senders, its outputs with their
+/// receivers.
 fn picture(dataflow: &Dataflow) -> String {
     let mut text = String::new();
     for node in &dataflow.nodes {

@@ -1,4 +1,4 @@
-//! Finding and reading the graph's descriptor, as `run` and `check` both do.
+//! Finds and reads the graph's descriptor, for `run` and `check`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,10 +7,10 @@ use messages::{Topic, topic};
 
 use crate::{LauncherError, installed, run::supervision::is_essential};
 
-/// Where the descriptor is looked for.
+/// Default path of the descriptor.
 pub const DEFAULT_FILE: &str = "dataflow.yaml";
 
-/// The ports that a descriptor may use. Every node sends its health and its log.
+/// Topics that a descriptor may name. Every node publishes health and log.
 const TOPICS: Topics = Topics {
     names: topic::NAMES,
     shared: &[topic::Health::NAME, topic::Log::NAME],
@@ -20,28 +20,27 @@ const TOPICS: Topics = Topics {
 /// A descriptor and its folder.
 #[derive(Debug)]
 pub struct Descriptor {
-    /// The graph.
     pub dataflow: Dataflow,
-    /// As it was given.
+    /// Path as given by the user.
     pub file: PathBuf,
-    /// Where it lies; absolute. Paths in it begin here.
+    /// Absolute path of the folder of the descriptor; paths in the descriptor are relative to it.
     pub folder: PathBuf,
 }
 
-/// What is done with the build commands of a descriptor.
+/// Handling of the build commands in a descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Builds {
     /// They are run.
     Run,
-    /// They are left out: the executables must be there.
+    /// They are dropped, so the executables must exist.
     LeaveOut,
 }
 
-/// Reads and checks the descriptor `file`, and that its executables exist or
-/// are built. Without a [`DEFAULT_FILE`] here, that of the installation is meant.
+/// Reads and checks the descriptor `file`, including that its executables exist or are built. If
+/// [`DEFAULT_FILE`] is not in the current directory, the installed one is used.
 ///
 /// # Errors
-/// It is not there, or wrong.
+/// The descriptor is missing or wrong.
 pub fn load(file: &Path, builds: Builds) -> Result<Descriptor, LauncherError> {
     let is_default = file == Path::new(DEFAULT_FILE) && !file.exists();
     let installed = is_default.then(installed::demonstration).flatten();
@@ -54,7 +53,7 @@ pub fn load(file: &Path, builds: Builds) -> Result<Descriptor, LauncherError> {
         });
     }
     let mut dataflow = dataflow::load(file, &TOPICS)?;
-    // A file has a folder; the root of the file system is none.
+    // A file always has a parent; the fallback is never used.
     let folder = absolute.parent().unwrap_or(Path::new("/")).to_owned();
     for node in &mut dataflow.nodes {
         is_essential(node)?;

@@ -6,7 +6,7 @@ use command_line::{CommandError, FAILED, OutputError, WRONG_USE};
 use dataflow::DataflowError;
 use transport::TransportError;
 
-/// Why a graph cannot be run or asked.
+/// Error of a command of this crate.
 #[derive(Debug, thiserror::Error)]
 pub enum LauncherError {
     /// The descriptor cannot be used.
@@ -19,7 +19,7 @@ pub enum LauncherError {
         folder.display()
     )]
     NoDescriptor {
-        /// As it was given.
+        /// Path as given by the user.
         file: PathBuf,
         /// The current directory.
         folder: PathBuf,
@@ -30,52 +30,45 @@ pub enum LauncherError {
         file.display()
     )]
     NoNodeForOption {
-        /// The option.
         option: &'static str,
-        /// Whose option it is.
+        /// Executable that the option applies to.
         executable: String,
-        /// The descriptor.
         file: PathBuf,
-        /// What the graph has instead.
+        /// Executables of the graph's nodes, separated by commas.
         found: String,
     },
     /// An option needs an input that is not wired.
     #[error("{option} needs the input `{topic}` at node {node}, but {} wires none", file.display())]
     NotWired {
-        /// The option.
         option: &'static str,
-        /// The topic.
         topic: &'static str,
-        /// The node that should take it.
+        /// Node that needs the input.
         node: String,
-        /// The descriptor.
         file: PathBuf,
     },
-    /// No graph is there to be asked.
+    /// No graph of this user is running.
     #[error("no graph of this user is running{}", others.iter().map(|other| format!("; {other}")).collect::<String>())]
     NoGraph {
-        /// A sentence on each graph that another user runs.
+        /// A sentence for each graph that another user runs.
         others: Vec<String>,
     },
-    /// A graph that was asked to stop runs on.
+    /// A graph is still running after it was asked to stop.
     #[error(
         "graph {graph} still runs {seconds} s after it was asked to stop: `backcast status` shows what runs"
     )]
     NotStopped {
-        /// The graph's name.
         graph: String,
-        /// How long was waited.
+        /// Time waited, in seconds.
         seconds: u64,
     },
     /// No launcher answers.
     #[error("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")]
     NoLauncher {
-        /// The graph's name.
         graph: String,
-        /// Why not.
+        /// Error of the connection.
         source: io::Error,
     },
-    /// Options that do not go together.
+    /// Options that exclude each other or are invalid.
     #[error("{0}")]
     Usage(String),
     /// A build could not be started.
@@ -84,75 +77,61 @@ pub enum LauncherError {
          --no-build runs them as they are"
     )]
     BuildNotStarted {
-        /// The node.
         node: String,
-        /// Its command.
         command: String,
-        /// Why not.
         source: io::Error,
     },
-    /// What builds is not installed, and there is nothing to run.
+    /// The build program is not installed and executables are missing.
     #[error(
         "{program} is not installed, and there are no executables of {missing}: install what \
          `{command}` needs (Rust: https://rustup.rs), or get the nodes built, as a package or by \
          packaging/install elsewhere (docs/install.md), and name them in the descriptor without a folder"
     )]
     NothingToRun {
-        /// The program that builds.
+        /// The missing build program.
         program: String,
-        /// Its command.
+        /// The build command.
         command: String,
-        /// The nodes whose executables are missing.
+        /// Nodes without an executable, separated by commas.
         missing: String,
     },
     /// A build failed.
     #[error("node {node}: the build `{command}` failed with {status}")]
     BuildFailed {
-        /// The node.
         node: String,
-        /// Its command.
         command: String,
-        /// How it ended.
+        /// Exit status of the build.
         status: ExitStatus,
     },
     /// A process could not be started.
     #[error("node {node}: {} cannot be started in {}", path.display(), folder.display())]
     NotStarted {
-        /// The node.
         node: String,
-        /// Its executable.
         path: PathBuf,
-        /// Its working directory.
+        /// Working directory of the process.
         folder: PathBuf,
-        /// Why not.
         source: io::Error,
     },
-    /// Nodes do not take the arguments that the descriptor gives them.
+    /// Nodes reject the arguments that the descriptor gives them.
     #[error("{}: {refused}", file.display())]
     Arguments {
-        /// The descriptor.
         file: PathBuf,
-        /// What each of them said, a line each.
+        /// Error message of each node, one per line.
         refused: String,
     },
     /// A process could not be waited for or signalled.
     #[error("node {node}: process {pid} cannot be supervised")]
     NotSupervised {
-        /// The node.
         node: String,
-        /// Its process.
         pid: i32,
-        /// Why not.
         source: io::Error,
     },
-    /// A node failed, and is not started again.
+    /// A node failed and is not restarted.
     #[error("node {node} ended with {status}{}; see its last log lines", after(*restarts))]
     NodeFailed {
-        /// The node.
         node: String,
-        /// How it ended.
         status: ExitStatus,
-        /// How often it was started again before.
+        /// Number of restarts before.
         restarts: u32,
     },
     /// The graph cannot be joined, read or cleaned up.
@@ -161,11 +140,9 @@ pub enum LauncherError {
     /// A file cannot be read or written.
     #[error("cannot {action} {}", file.display())]
     File {
-        /// What was tried, as a verb.
+        /// Verb of what was tried.
         action: &'static str,
-        /// With what.
         file: PathBuf,
-        /// Why it failed.
         source: io::Error,
     },
     /// The service manager that started us cannot be notified.
@@ -177,7 +154,7 @@ pub enum LauncherError {
     /// Logging cannot be started.
     #[error("{0}")]
     Logging(String),
-    /// Standard output takes no more.
+    /// Standard output cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The current directory cannot be found.

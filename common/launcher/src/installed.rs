@@ -1,7 +1,7 @@
-//! Where an installation keeps what belongs to the command: nodes in `../lib/backcast`, the
-//! demonstration in `../share/backcast`, seen from the folder of the command.
+//! Paths of an installation, relative to the folder of the command: nodes are in `../lib/backcast`,
+//! the demonstration in `../share/backcast`.
 //!
-//! In a target folder, the nodes lie beside the command.
+//! In a cargo target folder, the nodes are next to the command.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ const NODES: [&str; 15] = [
     "tracker",
 ];
 
-/// Whether a node runs one of our programs, by its name.
+/// True if the node's executable is one of our nodes.
 pub(crate) fn is_ours(node: &Node) -> bool {
     NODES.contains(&node.executable())
 }
@@ -38,9 +38,9 @@ pub(crate) fn demonstration() -> Option<PathBuf> {
     file.is_file().then_some(file)
 }
 
-/// Where the executable of a bare name is, absolute: not in `folder`, where a path of the
-/// descriptor begins, but beside the command, in the installation's folder of nodes, or on
-/// the `PATH`, where dora looks too. None for every other path.
+/// Returns the absolute path of the executable with a bare name: next to the command, in the
+/// installation's folder of nodes, or on the `PATH` (dora also searches there). `None` for a path
+/// with `/`, or if `folder`, the folder of the descriptor, has a file of this name.
 pub(crate) fn find(path: &str, folder: &Path) -> Option<String> {
     if path.contains('/') || folder.join(path).exists() {
         return None;
@@ -50,12 +50,12 @@ pub(crate) fn find(path: &str, folder: &Path) -> Option<String> {
     found.next()?.into_os_string().into_string().ok()
 }
 
-/// The executable of a node, by its name, beside the command or where it is installed.
+/// Returns the executable of the node `name`, next to the command or where it is installed.
 pub fn node(name: &str) -> Option<PathBuf> {
     find(name, Path::new("/")).map(PathBuf::from)
 }
 
-/// Where a bare name is looked for.
+/// Folders in which a bare name is searched, in this order.
 fn folders() -> impl Iterator<Item = PathBuf> {
     let nodes = prefix().map(|prefix| prefix.join("lib/backcast"));
     let own = command().and_then(|command| command.parent().map(Path::to_owned));
@@ -68,7 +68,7 @@ fn prefix() -> Option<PathBuf> {
     Some(command()?.parent()?.parent()?.to_owned())
 }
 
-/// The command, links followed.
+/// Path of the running command, with links resolved.
 fn command() -> Option<PathBuf> {
     env::current_exe().ok()?.canonicalize().ok()
 }
@@ -97,7 +97,7 @@ mod tests {
             command.to_str().map(str::to_owned)
         );
         assert!(find("sh", folder.path()).unwrap().ends_with("/sh"));
-        // What the descriptor's folder has, a path, and what is nowhere stay as they are.
+        // These stay unchanged: a file in the descriptor's folder, paths, and unknown names.
         std::fs::write(folder.path().join("sh"), "").unwrap();
         for path in ["sh", "./sh", "/bin/sh", "no-such-executable"] {
             assert_eq!(find(path, folder.path()), None, "{path}");

@@ -1,6 +1,6 @@
-//! A graph as its user starts and asks it: `run` builds, starts and supervises its
-//! processes, `check` says what is wrong with its descriptor, and `control` speaks with
-//! a launcher that runs. It localizes nothing and links none of the nodes.
+//! Starts and controls a graph for its user: `run` builds, starts and supervises the processes,
+//! `check` reports errors in the descriptor, and `control` talks to a running launcher. This crate
+//! localizes nothing and links none of the nodes.
 
 pub mod check;
 pub mod control;

@@ -1,7 +1,7 @@
-//! Windows bitmaps, through the image library.
+//! Decodes Windows bitmaps with the image library.
 //!
-//! What the header claims is checked against the crate's limits, and against the
-//! bytes that are there, before the library or this file reserves anything for it.
+//! The sizes in the header are checked against the crate's limits and the size of the file before
+//! any memory is reserved for them.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -14,13 +14,13 @@ use crate::claim::{Claim, HEAD_BYTES};
 use crate::limits::size_is_allowed;
 use crate::raster::{Channels, Raster, Samples};
 
-/// The bytes that every such file starts with.
+/// First bytes of every such file.
 pub(crate) const SIGNATURE: &[u8] = b"BM";
 
-/// Most pixels that two bytes of a packed bitmap stand for.
+/// Largest number of pixels encoded by two bytes of a packed bitmap.
 const MAX_RUN: u64 = 255;
 
-/// What a file claims that begins with `head`.
+/// Reads the header of a file that begins with `head`.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let Some(claims) = Claims::read(head) else {
         return Ok(Claim {
@@ -54,7 +54,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     }
     let channels = match decoder.color_type() {
         ColorType::Rgba8 => Channels::RgbAlpha,
-        // All others, palettes too, are handed out as colours.
+        // The decoder returns all others, including palettes, as RGB.
         _ => Channels::Rgb,
     };
     // The sides are within the limits, so the product fits.
@@ -68,18 +68,18 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     })
 }
 
-/// What a header says of the pixels. Offsets are from the start of the file, all
-/// numbers low byte first; the short header of OS/2 has 12 bytes and sides of 16
-/// bits, all later ones begin as Windows' of 40 bytes does:
+/// Sizes in the header. Offsets are from the start of the file, all numbers are little-endian. The
+/// short header of OS/2 has 12 bytes and sides of 16 bits (offsets and sizes in brackets); all
+/// later ones begin like Windows' of 40 bytes:
 ///
 /// | offset | bytes | field |
 /// |---|---|---|
-/// | 10 | 4 | where the pixels begin |
-/// | 14 | 4 | bytes of the header that follows |
+/// | 10 | 4 | offset of the pixels |
+/// | 14 | 4 | size of the header that follows |
 /// | 18 | 4 (2) | width |
-/// | 22 (20) | 4 (2) | height; negative where the top row comes first |
-/// | 28 (24) | 2 | bits a pixel |
-/// | 30 (none) | 4 | 1 and 2: runs of pixels are packed |
+/// | 22 (20) | 4 (2) | height; negative if the top row comes first |
+/// | 28 (24) | 2 | bits per pixel |
+/// | 30 (none) | 4 | 1 and 2: run-length encoding |
 struct Claims {
     first_pixel: u64,
     width: u32,
@@ -89,7 +89,7 @@ struct Claims {
 }
 
 impl Claims {
-    /// `None` where the file is too short for a header: the decoder says so.
+    /// Returns `None` if the file is too short for a header; then the decoder returns the error.
     fn read(bytes: &[u8]) -> Option<Self> {
         let short = |at: usize| Some(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
         let long = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
@@ -119,7 +119,7 @@ impl Claims {
         }
         let needed = match self.is_packed {
             true => (u64::from(width) * u64::from(height) * 2).div_ceil(MAX_RUN),
-            // Rows are filled up to 32 bits.
+            // Rows are padded to 32 bits.
             false => (u64::from(width) * self.bits).div_ceil(32) * 4 * u64::from(height),
         };
         let found = (bytes.len() as u64).saturating_sub(self.first_pixel);
@@ -149,8 +149,7 @@ mod tests {
     use super::*;
     use crate::raster::Pixel;
 
-    /// A file with Windows' header of 40 bytes, as it is documented. `tail` is all
-    /// that follows the header: palette and pixels.
+    /// Creates a file with Windows' header of 40 bytes, followed by palette and pixels.
     fn file(
         width: i32,
         height: i32,
@@ -183,13 +182,13 @@ mod tests {
         Ok((0..raster.height).flat_map(|y| raster.row(y)).collect())
     }
 
-    /// The first channel of each pixel, of 255.
+    /// Returns the first channel of each pixel, of 255.
     fn reds(bytes: &[u8]) -> Vec<u16> {
         let pixels = pixels(bytes).unwrap();
         pixels.iter().map(|pixel| pixel.colour[0] / 257).collect()
     }
 
-    /// Black, grey and white: blue, green, red and a byte that means nothing.
+    /// Black, grey and white as blue, green, red and an unused byte.
     const GREYS: [u8; 12] = [0, 0, 0, 0, 205, 205, 205, 0, 254, 254, 254, 0];
 
     #[test]
@@ -223,7 +222,7 @@ mod tests {
             panic!("one pixel");
         };
         assert_eq!((pixel.colour, pixel.alpha), ([771, 514, 257], None));
-        // The fourth byte is no opacity.
+        // The fourth byte is not opacity.
         let [pixel] = pixels(&file(1, 1, 32, 0, &[], &[1, 2, 3, 0])).unwrap()[..] else {
             panic!("one pixel");
         };
@@ -289,10 +288,10 @@ mod tests {
                 "{width} {height}"
             );
         }
-        // Allowed, but the pixels are not there.
+        // Allowed, but the pixels are missing.
         assert!(refusal(16_384, 16_384, 32, 0).contains("cut short"));
         assert!(refusal(16_384, -16_384, 1, 0).contains("cut short"));
-        // Packed, but not even the longest runs would fill it.
+        // Packed, but even the longest runs would not fill it.
         assert!(refusal(16_384, 16_384, 8, 1).contains("cut short"));
         assert!(refusal(16_384, 16_384, 4, 2).contains("cut short"));
     }

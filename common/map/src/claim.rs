@@ -1,14 +1,13 @@
-//! What the first bytes of an image say: its sides, or a kind that is not read.
+//! Reads the sides and size limits of an image from its first bytes, or its unsupported format.
 
 use std::path::Path;
 
 use crate::MapError;
 
-/// What is read of an image to see what it claims to be: more than its header takes.
+/// Number of bytes read to check the header; no header is longer.
 pub(crate) const HEAD_BYTES: u64 = 64 << 10;
 
-/// First bytes of kinds that are not read, beyond those that the image library
-/// knows by name.
+/// First bytes of unsupported formats, in addition to those known to the image library.
 const OTHERS: &[(&[u8], &str)] = &[
     (b"P1", "a PBM (P1)"),
     (b"P4", "a PBM (P4)"),
@@ -20,16 +19,16 @@ const OTHERS: &[(&[u8], &str)] = &[
     (b"%PDF", "a PDF"),
 ];
 
-/// What the header of an image claims.
+/// Size of an image according to its header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Claim {
-    /// Pixels along x and y; 0 where the header is cut off.
+    /// Width and height in pixels; 0 if the header is cut off.
     pub(crate) sides: (u32, u32),
-    /// The most bytes that such an image may have.
+    /// Largest valid file size in bytes.
     pub(crate) most_bytes: u64,
 }
 
-/// The error for a file of another kind.
+/// Returns the error for an unsupported format.
 pub(crate) fn wrong_kind(bytes: &[u8], path: &Path) -> MapError {
     MapError::ImageKind {
         path: path.to_owned(),

@@ -1,9 +1,8 @@
-//! The YAML beside a map's image: parsed, and every value checked.
+//! The YAML description of a map: parsing, and checks of every value.
 //!
-//! The keys are those of `map_server`: image, resolution, origin, negate,
-//! occupied_thresh, free_thresh, and mode where it is not trinary (ROS 1 has no
-//! mode). Other programs add keys of their own: they are returned, so that a
-//! misspelt one is not lost without a word. The image is named here, not opened.
+//! The keys are those of `map_server`: image, resolution, origin, negate, occupied_thresh,
+//! free_thresh, and mode, which is trinary by default (ROS 1 has no mode). Keys of other programs
+//! are returned as unknown, so that a misspelt key can be reported. The image is not opened here.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -19,17 +18,17 @@ use crate::limits::{origin_is_allowed, resolution_is_allowed};
 use crate::rules::{Mode, Rules, Thresholds};
 use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError, UnknownKey};
 
-/// What a description says.
+/// Content of a description.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Description {
-    /// The image file, relative to nothing but the working directory.
+    /// Path of the image file, with a relative name resolved against the description's folder.
     pub(crate) image: PathBuf,
-    /// Line and column of its name.
+    /// Line and column of the image's name.
     pub(crate) image_named_at: (u64, u64),
     pub(crate) resolution_m: f64,
     pub(crate) map_from_grid: Pose,
     pub(crate) rules: Rules,
-    /// Keys that mean nothing here, in their order.
+    /// Unknown keys in the order of the file.
     pub(crate) unknown: Vec<UnknownKey>,
 }
 
@@ -62,8 +61,7 @@ impl Description {
     }
 }
 
-/// Whether a text is YAML that describes something else than a map: keys without `image`, or a
-/// list.
+/// True if a text is YAML of something other than a map: keys without `image`, or a list.
 pub(crate) fn is_of_something_else(text: &str) -> bool {
     let text = without_mark(text);
     let keys: Result<BTreeMap<String, IgnoredAny>, _> = serde_saphyr::from_str(text);
@@ -74,7 +72,7 @@ pub(crate) fn is_of_something_else(text: &str) -> bool {
     list.is_ok_and(|list| !list.is_empty())
 }
 
-/// Editors of Windows begin a text with a byte order mark.
+/// Removes the byte order mark that Windows editors put at the start of a text.
 fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
@@ -85,7 +83,7 @@ fn image_of(name: &Spanned<Scalar>, path: &Path) -> Result<PathBuf, MapError> {
         let allowed = "the name of a PGM, PNG or BMP file";
         return Err(refuse(path, name, "image", "empty", allowed));
     }
-    // Joining an absolute name gives that name.
+    // Joining an absolute path gives that path.
     Ok(path.parent().unwrap_or(Path::new("")).join(text))
 }
 
@@ -119,7 +117,7 @@ fn origin_of(numbers: &Spanned<Vec<Scalar>>, path: &Path) -> Result<Pose, MapErr
     Ok(origin)
 }
 
-/// 0 and 1 as the map savers write it, or a word.
+/// Accepts 0 and 1, as map savers write it, or a boolean word.
 fn negate_of(negate: &Spanned<Scalar>, path: &Path) -> Result<bool, MapError> {
     match negate.value.text().to_ascii_lowercase().as_str() {
         "true" | "yes" | "on" => return Ok(true),

@@ -1,4 +1,4 @@
-//! Errors in a map: the value found, where, and what is allowed.
+//! Errors of maps, with the value found, its place, and what is allowed.
 
 use std::io;
 use std::path::PathBuf;
@@ -7,222 +7,191 @@ use geometry::Pose;
 
 use crate::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 
-/// Why a map could not be read, built or written.
+/// Error of reading, building or writing a map.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
-    /// The description is not there or not readable.
+    /// The description does not exist or cannot be read.
     #[error("cannot read the map description {}", path.display())]
     Description {
-        /// The YAML file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
         source: io::Error,
     },
-    /// A set of maps is none.
+    /// A set of maps is invalid.
     #[error("{}: {reason}", path.display())]
     Set {
-        /// The folder or the file.
+        /// Folder or file of the set.
         path: PathBuf,
-        /// What is wrong, and what is allowed.
+        /// Error, with what is allowed.
         reason: String,
     },
-    /// One of the maps of a set cannot be used.
+    /// A map of a set cannot be used.
     #[error("map {name}")]
     OfSet {
-        /// Which one.
+        /// Name of the map.
         name: String,
-        /// What is wrong with it.
         source: Box<MapError>,
     },
-    /// The graph could not hold the map.
+    /// The map needs more memory than the graph may use.
     #[error(
         "a map of {width} x {height} cells takes about {needed_mb} MB in the graph{}; allowed are {limit_mb} MB (--memory-limit)",
         beside(*others_mb)
     )]
     Memory {
-        /// Cells along x.
         width: u32,
-        /// Cells along y.
         height: u32,
-        /// What it takes, megabytes.
+        /// Memory needed in megabytes.
         needed_mb: u64,
-        /// What the maps of its set that come before it take, megabytes.
+        /// Memory of the maps before it in its set, in megabytes.
         others_mb: u64,
-        /// What the graph may use.
+        /// Memory limit in megabytes.
         limit_mb: u64,
     },
-    /// The file is larger than any sound one of its kind.
+    /// The file exceeds the largest valid size of its format.
     #[error("{} has {found} bytes; at most {allowed} are allowed", path.display())]
     FileSize {
-        /// The file.
         path: PathBuf,
-        /// Its bytes.
+        /// Size found, in bytes.
         found: u64,
-        /// The most that are read.
+        /// Largest size allowed, in bytes.
         allowed: u64,
     },
-    /// The description is not YAML of the expected form: bad syntax, a
-    /// missing or repeated key, a list where a value should stand.
+    /// The description is not YAML of the expected form: a syntax error, a missing or repeated key,
+    /// or a list in place of a value.
     #[error("{}:{line}:{column}: {reason}", path.display())]
     Yaml {
-        /// The YAML file.
         path: PathBuf,
-        /// Line, from 1; 0 where the whole document is meant.
+        /// Line, from 1; 0 for the whole document.
         line: u64,
         /// Column, from 1.
         column: u64,
-        /// What is wrong, and the keys or types that are allowed.
+        /// Error, with the allowed keys or types.
         reason: String,
     },
     /// A value of the description is not allowed.
     #[error("{}:{line}:{column}: {key} is {found}; allowed: {allowed}", path.display())]
     Value {
-        /// The YAML file.
         path: PathBuf,
         /// Line, from 1.
         line: u64,
         /// Column, from 1.
         column: u64,
-        /// The key.
         key: &'static str,
-        /// Its value.
         found: String,
-        /// What it may be.
+        /// Description of the allowed values.
         allowed: String,
     },
-    /// The image that the description names is not there or not readable.
+    /// The image of a description does not exist or cannot be read.
     #[error("cannot read the image {}, named by {}:{line}:{column}", image.display(), yaml.display())]
     Image {
-        /// The image file.
         image: PathBuf,
-        /// The YAML file that names it.
+        /// Path of the description.
         yaml: PathBuf,
-        /// Line of the name, from 1.
+        /// Line of the image's name, from 1.
         line: u64,
-        /// Column of the name, from 1.
+        /// Column of the image's name, from 1.
         column: u64,
-        /// What the system says.
         source: io::Error,
     },
-    /// The image is of a kind that is not read.
+    /// The image has an unsupported format.
     #[error("{} holds {found}; allowed: PGM (P2 or P5), PNG and BMP", path.display())]
     ImageKind {
-        /// The image file.
         path: PathBuf,
-        /// The kind by its first bytes, or these.
+        /// Format by the first bytes, or these bytes.
         found: String,
     },
-    /// The image claims a size that is not allowed.
+    /// The image has an invalid size in its header.
     #[error("{} claims {width} x {height} cells; allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells", path.display())]
     ImageSize {
-        /// The image file.
         path: PathBuf,
-        /// Its columns.
         width: u32,
-        /// Its rows.
         height: u32,
     },
-    /// The image ends before its pixels do.
+    /// The image ends before its last pixel.
     #[error("{} is cut short: {width} x {height} cells need at least {needed} bytes, {found} are there", path.display())]
     ImageTruncated {
-        /// The image file.
         path: PathBuf,
-        /// Its columns.
         width: u32,
-        /// Its rows.
         height: u32,
-        /// Bytes that its pixels need.
+        /// Bytes needed for the pixels.
         needed: u64,
-        /// Bytes that follow its header.
+        /// Bytes after the header.
         found: u64,
     },
-    /// The image continues after its pixels: its header is most likely damaged.
+    /// The image has data after its last pixel: its header is probably damaged.
     #[error("{} goes on for {surplus} bytes after the last of {width} x {height} cells; allowed: white space", path.display())]
     ImageSurplus {
-        /// The image file.
         path: PathBuf,
-        /// Its columns.
         width: u32,
-        /// Its rows.
         height: u32,
-        /// Bytes after the last pixel.
+        /// Number of these bytes.
         surplus: u64,
     },
-    /// A pixel of the image is not a number within its range.
+    /// A pixel of the image is not a number or out of range.
     #[error("{}: pixel {x}, {y} from the top left is {found}; allowed: 0..={allowed}", path.display())]
     ImagePixel {
-        /// The image file.
         path: PathBuf,
         /// Column of the pixel.
         x: u64,
-        /// Row of the pixel, from the top.
+        /// Row of the pixel from the top.
         y: u64,
-        /// What stands there.
         found: String,
-        /// The highest value that the header allows.
+        /// Highest value by the header.
         allowed: u32,
     },
     /// The image could not be decoded.
     #[error("{} is damaged or cut short", path.display())]
     ImageDecode {
-        /// The image file.
         path: PathBuf,
-        /// What the decoder says.
         source: image::ImageError,
     },
-    /// A grid's sides are not allowed.
+    /// A grid has invalid sides.
     #[error(
         "a grid of {width} x {height} cells; allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells"
     )]
     GridSize {
-        /// Cells along x.
+        /// Width in cells (along x).
         width: u32,
-        /// Cells along y.
         height: u32,
     },
-    /// A grid's cells are not as many as its sides say.
+    /// The number of cells differs from the sides of the grid.
     #[error("{found} cells for a grid of {width} x {height}; allowed: width times height")]
     CellCount {
-        /// Cells along x.
         width: u32,
-        /// Cells along y.
         height: u32,
-        /// Cells given.
         found: usize,
     },
-    /// A cell's occupancy is not allowed.
+    /// A cell has an invalid occupancy.
     #[error("cell {x}, {y} is {found}; allowed: 0..=100, and 255 for unknown")]
     CellValue {
-        /// Column of the cell.
         x: u32,
-        /// Row of the cell, from the lowest y.
+        /// Row of the cell from the lowest y.
         y: u32,
-        /// Its occupancy.
+        /// Occupancy of the cell.
         found: u8,
     },
-    /// A cell's side is not allowed.
+    /// The side of a cell is out of range.
     #[error("a resolution of {found} m; allowed: {MIN_RESOLUTION_M}..={MAX_RESOLUTION_M} m")]
     Resolution {
-        /// The side, metres.
+        /// Side of a cell in metres.
         found: f64,
     },
-    /// A grid's place in the map frame is not allowed.
+    /// The origin of a grid is out of range.
     #[error("an origin at x {} m, y {} m, yaw {} rad; allowed: within {MAX_ORIGIN_M} m, and a yaw of at most a turn", found.x, found.y, found.yaw)]
     Origin {
-        /// The place.
+        /// Pose of the grid in the map frame.
         found: Pose,
     },
     /// A map file could not be written.
     #[error("cannot write {}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
         source: io::Error,
     },
 }
 
-/// What the maps take that come before one, in words.
+/// Describes the memory of the maps before one; empty without any.
 fn beside(others_mb: u64) -> String {
     match others_mb {
         0 => String::new(),

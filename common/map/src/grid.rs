@@ -1,4 +1,4 @@
-//! The occupancy grid and its identity.
+//! Occupancy grid and its id.
 
 use geometry::Pose;
 
@@ -10,24 +10,24 @@ pub use messages::UNKNOWN;
 /// A map of square cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
-    /// Cells along x, 1..=[`crate::MAX_SIDE`].
+    /// Width in cells (along x), 1..=[`crate::MAX_SIDE`].
     pub width: u32,
-    /// Cells along y, 1..=[`crate::MAX_SIDE`].
+    /// Height in cells (along y), 1..=[`crate::MAX_SIDE`].
     pub height: u32,
-    /// Side of a cell, metres.
+    /// Side of a cell in metres.
     pub resolution_m: f64,
-    /// The lower left corner of cell (0, 0) in the map frame, and the turn of
+    /// Pose of the grid in the map frame: the lower left corner of cell (0, 0), and the rotation of
     /// the grid's axes.
     pub map_from_grid: Pose,
-    /// Row by row from the lowest y: 0 free to 100 occupied, [`UNKNOWN`].
+    /// Cells row by row from the lowest y: 0 free to 100 occupied, or [`UNKNOWN`].
     pub cells: Vec<u8>,
 }
 
 impl OccupancyGrid {
-    /// A grid from its parts, each checked against the crate's limits.
+    /// Creates a grid and checks each part against the crate's limits.
     ///
     /// # Errors
-    /// Says which part is not allowed.
+    /// A part is invalid.
     pub fn from_parts(
         width: u32,
         height: u32,
@@ -66,15 +66,15 @@ impl OccupancyGrid {
         Ok(grid)
     }
 
-    /// The id of the map, by its geometry and cells: see [`messages::map_id`].
+    /// Returns the id of the map from its geometry and cells: see [`messages::map_id`].
     #[must_use]
     pub fn id(&self) -> u64 {
         let (sides, origin) = ((self.width, self.height), self.map_from_grid.into());
         messages::map_id(sides, self.resolution_m, origin, &self.cells)
     }
 
-    /// The centre of a cell in the map frame, metres; cells off the grid go on
-    /// in the same raster.
+    /// Returns the centre of a cell in the map frame, in metres; cells off the grid are
+    /// extrapolated.
     #[must_use]
     pub fn cell_center(&self, x: u32, y: u32) -> (f64, f64) {
         self.map_from_grid.transform(
@@ -83,8 +83,8 @@ impl OccupancyGrid {
         )
     }
 
-    /// The column and row of the cell that holds a point of the map frame, if
-    /// the point is on the grid.
+    /// Returns the column and row of the cell with a point of the map frame, if the point is on the
+    /// grid.
     #[must_use]
     pub fn cell_at(&self, x_m: f64, y_m: f64) -> Option<(u32, u32)> {
         let (x, y) = self.map_from_grid.inverse().transform(x_m, y_m);
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn equal_maps_have_equal_ids_and_others_do_not() {
         let map = grid(&[0, 0, 100, 0, UNKNOWN, 100]);
-        // A constant, so that a change of the hash shows: it must never change.
+        // A constant detects a change of the hash, which must never change.
         assert_eq!(map.id(), 0x3B8F_579C_0E05_75CE);
 
         let rounded = OccupancyGrid {
@@ -208,7 +208,7 @@ mod tests {
         // The grid's x axis now points along the map's y: column 2 is 1.25 m up,
         // row 1 is 0.75 m to the left.
         let (x, y) = map.cell_center(2, 1);
-        // One rotation of numbers near 20: a few units in the last place.
+        // The tolerance covers one rotation of numbers near 20.
         assert!((x - 9.25).abs() < 1e-12 && (y - 21.25).abs() < 1e-12);
         assert_eq!(map.cell_at(x, y), Some((2, 1)));
         assert_eq!(map.cell_at(10.1, 20.1), None, "behind the turned grid");

@@ -1,15 +1,15 @@
-//! The keys of a map's description, with their values as the file spells them.
+//! Keys of a map's description, with their values as spelled in the file.
 //!
-//! Numbers may stand in quotes, as some programs write them, and as YAML's or
-//! C's words for what is not finite; whether a value is allowed is not judged
-//! here. Keys that are not known are collected with their place.
+//! Numbers may be in quotes, as some programs write them, and non-finite ones are accepted in the
+//! spelling of YAML or C; values are checked elsewhere. Unknown keys are collected with their
+//! place.
 
 use std::fmt::{self, Display, Formatter};
 
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, Visitor};
 use serde_saphyr::Spanned;
 
-/// All keys that have a meaning.
+/// Known keys.
 const KNOWN: &[&str] = &[
     "image",
     "resolution",
@@ -20,7 +20,7 @@ const KNOWN: &[&str] = &[
     "mode",
 ];
 
-/// The values of a description.
+/// Values of a description.
 pub(crate) struct Keys {
     pub(crate) image: Spanned<Scalar>,
     pub(crate) resolution: Spanned<Scalar>,
@@ -29,12 +29,11 @@ pub(crate) struct Keys {
     pub(crate) occupied_thresh: Spanned<Scalar>,
     pub(crate) free_thresh: Spanned<Scalar>,
     pub(crate) mode: Option<Spanned<Scalar>>,
-    /// Other keys, in their order.
+    /// Unknown keys in the order of the file.
     pub(crate) unknown: Vec<Spanned<String>>,
 }
 
-/// A value that is no list and no mapping: the text of the file without quotes,
-/// or nothing.
+/// A value that is neither a list nor a map: the text without quotes, or null.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Scalar(Option<String>);
@@ -44,11 +43,11 @@ impl Scalar {
         self.0.as_deref().unwrap_or_default().trim()
     }
 
-    /// The number that the text is, which need not be finite.
+    /// Parses the text as a number, which may be non-finite.
     pub(crate) fn number(&self) -> Option<f64> {
         let text = self.text();
         let unsigned = text.trim_start_matches(['+', '-']);
-        // YAML's words for what Rust and C call inf and nan.
+        // YAML's spelling of inf and nan.
         match unsigned.to_ascii_lowercase().as_str() {
             ".inf" if text.starts_with('-') => Some(f64::NEG_INFINITY),
             ".inf" => Some(f64::INFINITY),
@@ -86,7 +85,7 @@ impl<'de> Visitor<'de> for Mapping {
         let (mut image, mut resolution, mut origin, mut mode) = (None, None, None, None);
         let (mut negate, mut occupied, mut free) = (None, None, None);
         let mut unknown = Vec::new();
-        // A key that stands twice is refused by the parser.
+        // The parser rejects duplicate keys.
         while let Some(key) = map.next_key::<Spanned<String>>()? {
             match key.value.as_str() {
                 "image" => image = Some(map.next_value()?),
@@ -116,17 +115,16 @@ impl<'de> Visitor<'de> for Mapping {
     }
 }
 
-/// A key of a description that means nothing to this program: it may be another
-/// program's, or a known one misspelt.
+/// An unknown key of a description: a key of another program, or a misspelt one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
-    /// The YAML file.
+    /// Path of the description.
     pub path: std::path::PathBuf,
     /// Line, from 1.
     pub line: u64,
     /// Column, from 1.
     pub column: u64,
-    /// The key.
+    /// Name of the key.
     pub key: String,
 }
 

@@ -1,5 +1,5 @@
-//! Which kind of image a file holds, by its first bytes: names lie, and what reads
-//! maps elsewhere goes by content as well.
+//! Detects the format of an image by its first bytes, as file names can be wrong and other readers
+//! of maps do the same.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::claim::{Claim, wrong_kind};
 use crate::raster::Raster;
 use crate::{MapError, bmp, pgm, png};
 
-/// Decodes an image of any kind that is read; `path` is for errors.
+/// Decodes an image of any supported format; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     if bytes.starts_with(png::SIGNATURE) {
         png::decode(bytes, path)
@@ -20,7 +20,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     }
 }
 
-/// What an image claims that begins with `head`; `path` is for errors.
+/// Reads the header of an image that begins with `head`; `path` is for errors.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     if head.starts_with(png::SIGNATURE) {
         png::claim(head, path)

@@ -1,11 +1,10 @@
-//! Occupancy grids, and the map files of ROS that hold them.
+//! Occupancy grids, and ROS map files.
 //!
-//! [`load`] reads what `map_server` reads: a YAML description beside a PGM,
-//! PNG or BMP image, in trinary, scale or raw mode; [`save`] writes such a pair.
-//! [`set_of`] lists the maps of a building; [`OccupancyGrid::from_parts`] takes a grid from
-//! anywhere else. Every grid that the crate hands out is within the limits that it states. It knows no
-//! topic and no engine, and repairs nothing: a map that is not sound is refused
-//! with file, place and what is allowed.
+//! [`load`] reads the files of `map_server`: a YAML description and a PGM, PNG or BMP image, in
+//! trinary, scale or raw mode; [`save`] writes such a pair. [`set_of`] lists the maps of a
+//! building; [`OccupancyGrid::from_parts`] creates a grid from other data. Every grid of this crate
+//! is within its limits. The crate knows no topics and no engine, and repairs nothing: an invalid
+//! map is an error with file, place and what is allowed.
 
 mod bmp;
 mod claim;

@@ -1,4 +1,4 @@
-//! From a description and its image to a grid.
+//! Loads a grid from a description and its image.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -9,27 +9,26 @@ use crate::description::Description;
 use crate::raster::Raster;
 use crate::{MapError, MemoryLimit, OccupancyGrid, UnknownKey, kind};
 
-/// Most bytes of a description; a sound one has a few hundred.
+/// Largest size of a description in bytes; a valid one has a few hundred.
 const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
 
-/// Most bytes of an image: the largest map as plain text of five digits a cell
-/// comes to 1.6 GB, as 16-bit colour with alpha to 2.1 GB.
+/// Largest size of an image in bytes. 16-bit colour with alpha reaches it at 268 million cells.
 const MAX_IMAGE_BYTES: u64 = 1 << 31;
 
-/// Reads a map as `map_server` does: the YAML file at `yaml`, and the image that
-/// it names, relative to the YAML file's folder.
+/// Loads a map like `map_server`: the YAML file at `yaml`, and its image, whose name is relative to
+/// the YAML file's folder.
 ///
 /// # Errors
-/// Says which file is not there, or what in it is not sound and what is allowed.
+/// A file does not exist or is invalid.
 pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
     load_noting(yaml, |_| {})
 }
 
-/// As [`load_noting`], unless the graph could not hold the map: its sides are looked at
-/// before memory is taken for it, and then where poses are searched.
+/// Like [`load_noting`], but fails if the graph cannot hold the map. This is checked with the sides
+/// before memory is allocated, and again with the cells to be searched.
 ///
 /// # Errors
-/// As [`load`], and [`MapError::Memory`].
+/// See [`load`]; also [`MapError::Memory`].
 pub fn load_within(
     limit: MemoryLimit,
     yaml: impl AsRef<Path>,
@@ -38,11 +37,11 @@ pub fn load_within(
     load_from(yaml.as_ref(), limit, note)
 }
 
-/// As [`load`], and hands each key of the description that is not known to `note`,
-/// to be shown to the user.
+/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
+/// user.
 ///
 /// # Errors
-/// As [`load`].
+/// See [`load`].
 pub fn load_noting(
     yaml: impl AsRef<Path>,
     note: impl FnMut(&UnknownKey),
@@ -72,7 +71,7 @@ fn load_from(
     Ok(grid)
 }
 
-/// What there is to say where the image that a description names cannot be read.
+/// Returns a function that converts an error of reading the image.
 pub(crate) fn unreadable(description: &Description, yaml: &Path) -> impl Fn(io::Error) -> MapError {
     let (line, column) = description.image_named_at;
     move |source| MapError::Image {
@@ -84,23 +83,23 @@ pub(crate) fn unreadable(description: &Description, yaml: &Path) -> impl Fn(io::
     }
 }
 
-/// The image that the description at `yaml` names, which need not be there.
+/// Returns the path of the image in the description at `yaml`; the image may be missing.
 ///
 /// # Errors
-/// Says what about the description is not sound.
+/// The description cannot be read or is invalid.
 pub fn image_of(yaml: impl AsRef<Path>) -> Result<PathBuf, MapError> {
     let yaml = yaml.as_ref();
     Ok(Description::parse(&read_text(yaml)?, yaml)?.image)
 }
 
-/// Images run from the top down, grids from the lowest y up.
+/// Converts pixels to cells. Images run from the top down, grids from the lowest y up.
 fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
     let rules = description.rules;
     let rows = (0..raster.height).rev().map(|y| raster.row(y));
     rows.flatten().map(|pixel| rules.occupancy(pixel)).collect()
 }
 
-/// The text of a description.
+/// Reads the text of a description.
 pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
     let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
         MapError::Description {
@@ -125,8 +124,8 @@ pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
     })
 }
 
-/// Reads no more than the image's own header makes room for: what it claims is looked at
-/// before memory is taken for it.
+/// Reads an image, at most as many bytes as its header allows. The header is checked before memory
+/// is allocated.
 fn read_image(
     path: &Path,
     limit: MemoryLimit,
@@ -151,12 +150,12 @@ fn read_image(
     Ok(bytes)
 }
 
-/// An image whose head was read.
+/// Opens an image and reads its first bytes.
 pub(crate) fn open_image(
     path: &Path,
     unreadable: impl Fn(io::Error) -> MapError,
 ) -> Result<(File, Vec<u8>), MapError> {
-    // Whoever opens a pipe that nobody writes to waits for ever.
+    // Opening a pipe without a writer would block forever.
     if !fs::metadata(path).map_err(&unreadable)?.is_file() {
         let problem = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
         return Err(unreadable(problem));
@@ -177,8 +176,8 @@ fn read_file(
 ) -> Result<Vec<u8>, MapError> {
     let file = File::open(path).map_err(&unreadable)?;
     let mut bytes = Vec::new();
-    // One byte more than allowed shows that there are too many, also where the
-    // system does not know the length.
+    // Reading one byte more than allowed detects a file that is too large, even without a known
+    // size.
     let found = file
         .take(allowed + 1)
         .read_to_end(&mut bytes)
@@ -206,7 +205,7 @@ mod tests {
     const YAML: &str = "image: floor.pgm\nresolution: 0.5\norigin: [1, 2, 0.25]\n\
                         negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-    /// A folder with a description and an image of the given name.
+    /// Creates a folder with a description and an image of this name.
     fn folder(yaml: &str, name: &str, image: &[u8]) -> TempDir {
         let folder = TempDir::new().unwrap();
         fs::write(folder.path().join("floor.yaml"), yaml).unwrap();
@@ -225,10 +224,10 @@ mod tests {
         assert_eq!((map.width, map.height, map.resolution_m), (3, 2, 0.5));
         assert_eq!(map.map_from_grid, Pose::new(1.0, 2.0, 0.25));
         assert_eq!(map.cells, [0, 0, 100, 100, 0, UNKNOWN]);
-        // The picture's top left pixel, in the map frame.
+        // The image's top left pixel in the map frame.
         let (x, y) = map.cell_center(0, 1);
         let (sin, cos) = 0.25f64.sin_cos();
-        // The same sums in another order: a few units in the last place.
+        // The tolerance covers the same sums in another order.
         assert!((x - (1.0 + 0.25 * cos - 0.75 * sin)).abs() < 1e-12);
         assert!((y - (2.0 + 0.25 * sin + 0.75 * cos)).abs() < 1e-12);
     }
@@ -241,7 +240,7 @@ mod tests {
             load_from(&folder(&yaml, "floor.pgm", image)).unwrap().cells
         };
         assert_eq!(read("mode: trinary\n"), [100, 100, UNKNOWN, 0]);
-        // 1 - 128/255 lies 66.4 % of the way from 0.196 to 0.65.
+        // 1 - 128/255 is 66.4 % of the way from 0.196 to 0.65.
         assert_eq!(read("mode: scale\n"), [100, 100, 67, 0]);
         assert_eq!(read("mode: raw\n"), [0, 50, UNKNOWN, UNKNOWN]);
     }
@@ -304,7 +303,7 @@ mod tests {
     fn a_map_that_the_graph_could_not_hold_is_refused_by_its_header() {
         let memory_limit = Some(100);
         let limit = MemoryOptions { memory_limit }.limit();
-        // Nothing but headers: whoever decodes them finds no pixels.
+        // Only headers; a decoder would find no pixels.
         let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR".to_vec();
         png.extend([0, 0, 0x10, 0, 0, 0, 0x10, 0]);
         for image in [&png[..], b"P5 4096 4096 255\n", b"P2 4096 4096 255\n"] {
@@ -366,7 +365,7 @@ mod tests {
         claims.resize(1 << 20, 0);
         let error = refused(&claims);
         assert!(error.contains("claims 32767 x 32767"), "{error}");
-        // Of what is no image, the head alone is read.
+        // Without an image format, only the first bytes are read.
         let error = refused(&vec![0; 1 << 20]);
         assert!(error.contains("at its start"), "{error}");
     }

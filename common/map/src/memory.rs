@@ -1,44 +1,43 @@
-//! How large a map may be, so that the graph can hold it.
+//! Limits the size of a map to the memory of the graph.
 //!
-//! A file or a message of a few kilobytes can be a map that no search index fits into
-//! memory for. Nothing is measured here: the bytes that a cell takes are known, and so is
-//! where poses are searched.
+//! A file or message of a few kilobytes can be a map whose search index does not fit into memory.
+//! Nothing is measured: the memory is estimated from the number of cells and the area to be
+//! searched.
 
 use std::path::{Path, PathBuf};
 
 use crate::{MapError, OccupancyGrid};
 
-/// What the nodes of a graph take for each cell of any map together: the map on its way
-/// and a copy of it in each of them, and the distances of two.
+/// Memory of all nodes of a graph for each cell of any map, in bytes: the message, a copy in each
+/// node, and two distance fields.
 const BYTES_A_CELL: u64 = 25;
 
-/// What they take besides for each cell of the blocks in which poses are searched: the
-/// search index, and what making it takes.
+/// Additional memory for each cell of the searched blocks, in bytes: the search index and its
+/// preparation.
 const BYTES_A_SEARCHED_CELL: u64 = 125;
 
-/// What they take with any map.
+/// Memory independent of the map, in bytes.
 const BYTES_OF_ALL: u64 = 64 << 20;
 
-/// Cells along a side of such a block.
+/// Cells along a side of a search block.
 const BLOCK: usize = 4;
 
-/// Cells up to this occupancy are free, as the boundary's rules have it by default.
+/// Occupancy up to which cells are free: the default of the cell rules.
 const FREE_TO: u8 = 25;
 
-/// So far from free cells poses are searched by default, metres.
+/// Default distance from free cells up to which poses are searched, in metres.
 const REACH_M: f64 = 1.0;
 
-/// The option by which a user says what a graph may use.
+/// Option for the memory limit.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct MemoryOptions {
-    /// Memory limit of the graph, megabytes; a map that needs more is rejected, and the
-    /// previous one stays [default: the limit of the control group, or all memory of
-    /// the machine]
+    /// Memory limit of the graph, megabytes; a map that needs more is rejected, and the previous
+    /// one stays [default: the limit of the control group, or all memory of the machine]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
     pub memory_limit: Option<u64>,
 }
 
-/// What the graph may use, and what other maps take of it.
+/// Memory limit of the graph, and the memory taken by other maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemoryLimit {
     bytes: u64,
@@ -46,7 +45,7 @@ pub struct MemoryLimit {
 }
 
 impl MemoryOptions {
-    /// As the option says, or else what there is.
+    /// Returns the given limit, or that of the control group or machine.
     #[must_use]
     pub fn limit(&self) -> MemoryLimit {
         let given = self.memory_limit.map(|megabytes| megabytes << 20);
@@ -55,14 +54,14 @@ impl MemoryOptions {
 }
 
 impl MemoryLimit {
-    /// For tools that hold a map and no index of it.
+    /// No limit, for tools that hold a map without an index.
     pub const NONE: MemoryLimit = MemoryLimit::of(u64::MAX);
 
     const fn of(bytes: u64) -> Self {
         MemoryLimit { bytes, taken: 0 }
     }
 
-    /// The same for the next map, beside this one.
+    /// Returns the limit for further maps in addition to `grid`.
     #[must_use]
     pub fn without(self, grid: &OccupancyGrid) -> Self {
         let sides = (grid.width, grid.height);
@@ -74,28 +73,28 @@ impl MemoryLimit {
         }
     }
 
-    /// Whether the graph can hold a map with these sides in which hardly a cell is free:
-    /// what is known before the cells are.
+    /// Checks a map by its sides alone, as if no cell were searched: for use before the cells are
+    /// known.
     ///
     /// # Errors
-    /// It cannot.
+    /// The map needs more memory.
     pub fn check(self, sides: (u32, u32)) -> Result<(), MapError> {
         self.check_searched(sides, 0)
     }
 
-    /// Whether the graph can hold this map.
+    /// Checks a map.
     ///
     /// # Errors
-    /// It cannot.
+    /// The map needs more memory.
     pub fn check_grid(self, grid: &OccupancyGrid) -> Result<(), MapError> {
         let sides = (grid.width, grid.height);
         self.check_cells(sides, grid.resolution_m, &grid.cells)
     }
 
-    /// Whether the graph can hold a map of these cells, row by row.
+    /// Checks a map with these cells, row by row.
     ///
     /// # Errors
-    /// It cannot.
+    /// The map needs more memory.
     pub fn check_cells(
         self,
         (width, height): (u32, u32),
@@ -121,22 +120,22 @@ impl MemoryLimit {
     }
 }
 
-/// Bytes that a map takes of which so many cells are searched.
+/// Returns the memory of a map with this number of searched cells, in bytes.
 fn needed((width, height): (u32, u32), searched: u64) -> u64 {
     let cells = u64::from(width) * u64::from(height);
     let of_all = BYTES_OF_ALL + cells.saturating_mul(BYTES_A_CELL);
     of_all.saturating_add(searched.saturating_mul(BYTES_A_SEARCHED_CELL))
 }
 
-/// Cells of the blocks in which poses are searched.
+/// Returns the number of cells in the searched blocks.
 fn searched_cells((width, _): (u32, u32), resolution_m: f64, cells: &[u8]) -> u64 {
     let reach = (REACH_M / resolution_m / BLOCK as f64).ceil() as usize;
     let blocks = near_free(width.max(1) as usize, cells, reach);
     blocks.saturating_mul(BLOCK * BLOCK).min(cells.len()) as u64
 }
 
-/// How many blocks hold a free cell, or lie at most `reach` blocks from one that does, in
-/// rows and columns.
+/// Counts the blocks that have a free cell, or are at most `reach` rows and columns of blocks from
+/// one.
 fn near_free(width: usize, cells: &[u8], reach: usize) -> usize {
     let columns = width.div_ceil(BLOCK);
     let rows: Vec<Vec<bool>> = cells
@@ -159,10 +158,10 @@ fn near_free(width: usize, cells: &[u8], reach: usize) -> usize {
         .sum()
 }
 
-/// Those that are at most `reach` places from one that is set.
+/// Returns which places are at most `reach` from a set one.
 fn spread(set: &[bool], reach: usize) -> Vec<bool> {
     let mut near = vec![false; set.len()];
-    // Up to here it is done.
+    // Places before this index are done.
     let mut end = 0;
     for (at, _) in set.iter().enumerate().filter(|(_, is)| **is) {
         let next = at.saturating_add(reach).saturating_add(1).min(set.len());
@@ -172,8 +171,8 @@ fn spread(set: &[bool], reach: usize) -> Vec<bool> {
     near
 }
 
-/// What this process and its neighbours may use: the least limit of its control group and
-/// those that hold it, where there is one, else the memory of the machine.
+/// Returns the memory that this process may use: the minimum of the limits of its control group and
+/// its ancestors, and the memory of the machine.
 fn available() -> u64 {
     let read = |path: &Path| std::fs::read_to_string(path).unwrap_or_default();
     let files = limit_files(&read(Path::new("/proc/self/cgroup")));
@@ -181,9 +180,9 @@ fn available() -> u64 {
     decide(&limits, &read(Path::new("/proc/meminfo")))
 }
 
-/// Where the limits of these control groups stand, as `/proc/self/cgroup` lists them: in
-/// version 2 a line `0::PATH`, in version 1 one whose controllers have `memory`. A
-/// container has a file system of its own, in which its group is the root.
+/// Returns the limit files of control groups, which are listed as in `/proc/self/cgroup`: in
+/// version 2 a line `0::PATH`, in version 1 one whose controllers have `memory`. In a container,
+/// the group is the root of its own file system.
 fn limit_files(groups: &str) -> Vec<PathBuf> {
     let of_line = |line: &str| {
         let (_, rest) = line.split_once(':')?;
@@ -196,7 +195,7 @@ fn limit_files(groups: &str) -> Vec<PathBuf> {
             _ => return None,
         };
         let path = Path::new(path.trim_start_matches('/'));
-        // The last of the ancestors is the empty path.
+        // The last ancestor is the empty path.
         let folders = path.ancestors().map(|folder| Path::new(root).join(folder));
         Some(folders.map(|folder| folder.join(file)).collect::<Vec<_>>())
     };
@@ -286,7 +285,7 @@ mod tests {
         assert!(limit.check_grid(&free).is_ok());
         limit = limit.without(&free);
         let error = limit.check_grid(&free).unwrap_err().to_string();
-        // 22.9 MB each, and 64.
+        // 22.9 MB each, and 64 MB.
         let expected = "a map of 400 x 400 cells takes about 86 MB in the graph, and the maps \
                         before it 22 MB; allowed are 100 MB (--memory-limit)";
         assert_eq!(error, expected);
@@ -301,7 +300,7 @@ mod tests {
         assert!(limit.check_cells(sides, 0.05, &cells).is_ok());
         cells[..800 * 400].fill(0);
         let error = limit.check_cells(sides, 0.05, &cells).unwrap_err();
-        // 15.3 MB, 40.1 of the half that is free and of a metre beyond it, and 64.
+        // 15.3 MB, 40.1 MB of the free half and of a metre beyond it, and 64 MB.
         let expected = "a map of 800 x 800 cells takes about 119 MB in the graph; allowed are \
                         100 MB (--memory-limit)";
         assert_eq!(error.to_string(), expected);
@@ -313,12 +312,12 @@ mod tests {
     fn blocks_near_free_cells_are_counted() {
         let mut cells = vec![UNKNOWN; 42 * 23];
         assert_eq!(near_free(42, &cells, 2), 0);
-        // In block (5, 3) of 11 times 6.
+        // In block (5, 3) of 11 x 6.
         cells[13 * 42 + 22] = 0;
         assert_eq!(near_free(42, &cells, 0), 1);
         assert_eq!(near_free(42, &cells, 2), 5 * 5);
         assert_eq!(near_free(42, &cells, 9), 11 * 6);
-        // The last, which is cut.
+        // The last block, which is cut.
         cells[42 * 23 - 1] = 0;
         assert_eq!(near_free(42, &cells, 1), 9 + 4);
     }

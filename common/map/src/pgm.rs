@@ -1,8 +1,8 @@
-//! Portable grey maps: the header by the image library, the pixels here.
+//! Decodes portable grey maps: the header with the image library, the pixels here.
 //!
-//! The library scales pixels to eight bits before it hands them out, reserves
-//! what a header claims and takes values above the header's highest; here every
-//! pixel keeps its value, and memory is taken only for pixels that are there.
+//! The library scales pixels to eight bits, reserves the size in the header and accepts values
+//! above the header's maximum. Here pixels keep their precision, and memory is allocated only for
+//! existing pixels.
 //!
 //! | field | P2 | P5 |
 //! |---|---|---|
@@ -19,14 +19,14 @@ use crate::claim::{Claim, HEAD_BYTES, wrong_kind};
 use crate::limits::size_is_allowed;
 use crate::raster::{Channels, FULL, Raster, Samples};
 
-/// What a file claims that begins with `head`, P2 or P5.
+/// Reads the header of a file that begins with `head`, P2 or P5.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let (_, header) = read_header(head, path)?;
     let pixel = match header.as_graymap() {
         Some(grey) if header.subtype().sample_encoding() == SampleEncoding::Binary => {
             1 + u64::from(grey.maxwhite > 255)
         }
-        // Five digits, and white space that fills columns.
+        // Up to five digits, and white space to align columns.
         _ => 8,
     };
     let pixels = u64::from(header.width()) * u64::from(header.height());
@@ -36,7 +36,7 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     })
 }
 
-/// The header, whose sides are allowed, and where the pixels begin.
+/// Reads the header, checks its sides, and returns it with the offset of the pixels.
 fn read_header(bytes: &[u8], path: &Path) -> Result<(usize, PnmHeader), MapError> {
     let damaged = |source| MapError::ImageDecode {
         path: path.to_owned(),
@@ -79,7 +79,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     })
 }
 
-/// The part of a file after its header.
+/// Pixels of a file, after its header.
 struct Pixels<'a> {
     header: &'a GraymapHeader,
     bytes: &'a [u8],
@@ -87,7 +87,7 @@ struct Pixels<'a> {
 }
 
 impl Pixels<'_> {
-    /// Sides are within the limits, so the product fits.
+    /// Returns the number of pixels. The sides are within the limits, so the product fits.
     fn count(&self) -> usize {
         self.header.width as usize * self.header.height as usize
     }
@@ -115,7 +115,7 @@ impl Pixels<'_> {
     }
 
     fn plain(&self) -> Result<Samples, MapError> {
-        // Each pixel takes a digit, and white space between it and the next.
+        // Each pixel has at least a digit, and white space before the next one.
         let needed = 2 * self.count() - 1;
         if self.bytes.len() < needed {
             return Err(self.truncated(needed));
@@ -143,7 +143,7 @@ impl Pixels<'_> {
         })
     }
 
-    /// A value in 16-bit steps, rounded half up.
+    /// Scales a value to 16 bits, rounding half up.
     fn scaled(&self, index: usize, value: u32) -> Result<u16, MapError> {
         let highest = self.header.maxwhite;
         if value > highest {
@@ -151,7 +151,7 @@ impl Pixels<'_> {
         }
         let full = u64::from(FULL);
         let scaled = (u64::from(value) * full + u64::from(highest) / 2) / u64::from(highest);
-        // At most FULL, because the value is at most the highest.
+        // At most FULL, because the value is at most the maximum.
         Ok(scaled as u16)
     }
 
@@ -217,7 +217,7 @@ mod tests {
             samples(b"P5 2 1 65535\n\x12\x34\xff\xff").unwrap(),
             [0x1234, 65_535]
         );
-        // Other highest values are scaled: half of 100, and 300 of 600.
+        // Other maxima are scaled: half of 100, and 300 of 600.
         assert_eq!(samples(b"P5 2 1 100\n\x32\x64").unwrap(), [32_768, 65_535]);
         assert_eq!(samples(b"P5 1 1 600\n\x01\x2c\n").unwrap(), [32_768]);
     }
@@ -273,7 +273,7 @@ mod tests {
         for header in ["P5 0 3 255\n", "P2 3 0 255\n", "P5 32768 1 255\n"] {
             assert!(refusal(header.as_bytes()).contains("claims"), "{header}");
         }
-        // Within the limits, but the pixels are not there.
+        // Within the limits, but the pixels are missing.
         assert!(refusal(b"P5 16384 16384 65535\n").contains("cut short"));
         for header in ["P5 3 2 0\n", "P5 3 2 65536\n", "P5 99999999999 2 255\n"] {
             assert!(samples(header.as_bytes()).is_err(), "{header}");

@@ -1,8 +1,7 @@
-//! Portable network graphics, through the image library.
+//! Decodes PNG images with the image library.
 //!
-//! What the header claims is checked against the crate's limits, and against
-//! what that many compressed bytes can hold, before the library or this file
-//! reserves anything for it.
+//! The sizes in the header are checked against the crate's limits, and against the largest content
+//! of that many compressed bytes, before any memory is reserved for them.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -15,22 +14,22 @@ use crate::limits::size_is_allowed;
 use crate::raster::{Channels, Raster, Samples};
 use crate::{MAX_SIDE, MapError};
 
-/// The bytes that every such file starts with.
+/// First bytes of every such file.
 pub(crate) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The chunk that ends every such file: its length, name and checksum.
+/// Last chunk of every such file: its length, name and checksum.
 const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
-/// Deflate's highest ratio: 258 bytes for a length and a distance of one bit.
+/// Highest compression ratio of deflate: 258 bytes for a length and a distance of one bit each.
 const MAX_RATIO: u64 = 1032;
 
-/// Most bytes of the decoder's own tables and notes, apart from the pixels.
+/// Largest memory of the decoder in bytes, apart from the pixels.
 const DECODER_BYTES: u64 = 64 << 20;
 
-/// Most bytes of what a file says beside its pixels: colour profiles, say.
+/// Largest size of other chunks in a file in bytes, e.g. colour profiles.
 const BESIDE_BYTES: u64 = 16 << 20;
 
-/// What a file claims that begins with `head`; its pixels may be such that do not shrink.
+/// Reads the header of a file that begins with `head`; its pixels may be incompressible.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let side = |at: usize| Some(u32::from_be_bytes(*head.get(at..)?.first_chunk()?));
     let (Some(width), Some(height)) = (side(16), side(20)) else {
@@ -46,7 +45,7 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
             height,
         });
     }
-    // Four samples of two bytes each, and a byte for how a row is filtered.
+    // Four samples of two bytes each, and a filter byte for each row.
     let pixels = (u64::from(width) * 8 + 1) * u64::from(height);
     Ok(Claim {
         sides: (width, height),
@@ -92,14 +91,14 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     })
 }
 
-/// The first chunk, by offset from the start of the file:
+/// Checks the sizes in the first chunk. Its fields, by offset from the start of the file:
 ///
 /// | offset | bytes | field |
 /// |---|---|---|
 /// | 8 | 8 | length and name of the chunk, `IHDR` |
-/// | 16 | 4 | width, high byte first |
+/// | 16 | 4 | width, big-endian |
 /// | 20 | 4 | height |
-/// | 24 | 1 | bits a sample |
+/// | 24 | 1 | bits per sample |
 /// | 25 | 1 | colour type: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA |
 fn check_claims(bytes: &[u8], path: &Path) -> Result<(), MapError> {
     let number = |at: usize| -> Option<u32> {
@@ -109,7 +108,7 @@ fn check_claims(bytes: &[u8], path: &Path) -> Result<(), MapError> {
     let (Some(width), Some(height), Some(&bits), Some(&colour)) =
         (number(16), number(20), bytes.get(24), bytes.get(25))
     else {
-        // Too short for a header: the decoder says so.
+        // Too short for a header: the decoder returns the error.
         return Ok(());
     };
     if !size_is_allowed(width, height) {
@@ -133,8 +132,8 @@ fn check_claims(bytes: &[u8], path: &Path) -> Result<(), MapError> {
     Ok(())
 }
 
-/// The decoder stops at the last pixel; without the end the file was cut, and
-/// with it the checksum of the pixels.
+/// Checks that the file has its last chunk. The decoder stops at the last pixel; a cut file may
+/// lack the checksum of the pixels.
 fn check_end(bytes: &[u8], path: &Path, width: u32, height: u32) -> Result<(), MapError> {
     if bytes.windows(END.len()).rev().any(|window| window == END) {
         return Ok(());
@@ -153,7 +152,7 @@ fn truncated(bytes: &[u8], path: &Path, width: u32, height: u32, needed: u64) ->
     }
 }
 
-/// The decoder expands palettes and samples of fewer than eight bits.
+/// Returns the layout after the decoder has expanded palettes and samples of fewer than eight bits.
 fn layout(colour: ColorType, path: &Path) -> Result<(Channels, bool), MapError> {
     Ok(match colour {
         ColorType::L8 => (Channels::Grey, false),
@@ -180,8 +179,8 @@ mod tests {
     use super::*;
     use crate::raster::Pixel;
 
-    /// A file of `rows` as they stand in the format, with an optional palette
-    /// and its transparency.
+    /// Creates a file of `rows` in the format's own layout, with an optional palette and its
+    /// transparency.
     fn file(
         (width, height): (u32, u32),
         colour: Colour,
@@ -269,7 +268,7 @@ mod tests {
         for length in 0..whole.len() {
             assert!(pixels(&whole[..length]).is_err(), "cut at {length}");
         }
-        // Past the signature and the header every chunk carries a checksum.
+        // After the signature and the header, every chunk has a checksum.
         for at in (33..whole.len() - END.len()).step_by(7) {
             let mut flipped = whole.clone();
             flipped[at] ^= 0x10;
@@ -294,7 +293,7 @@ mod tests {
         );
         assert!(claim(0, 1).contains("claims 0 x 1 cells"));
         assert!(claim(u32::MAX, u32::MAX).contains("claims"));
-        // Allowed, but deflate cannot pack that many into so few bytes.
+        // Allowed, but deflate cannot compress that much into so few bytes.
         assert!(claim(16_384, 16_384).contains("cut short"));
     }
 

@@ -1,13 +1,12 @@
-//! A decoded image, before it means occupancy.
+//! A decoded image, before conversion to occupancy.
 //!
-//! Pixels are given in 16-bit steps whatever the file holds, as the image
-//! library of `map_server` does; so every threshold falls between the same
-//! values.
+//! Pixels have 16 bits regardless of the file, like in the image library of `map_server`, so that
+//! every threshold separates the same values.
 
-/// The full brightness or opacity of a channel.
+/// Full brightness or opacity of a channel.
 pub(crate) const FULL: u16 = u16::MAX;
 
-/// Rows from the top, pixels from the left, channels together.
+/// Image with rows from the top, pixels from the left, and interleaved channels.
 pub(crate) struct Raster {
     pub(crate) width: u32,
     pub(crate) height: u32,
@@ -15,7 +14,7 @@ pub(crate) struct Raster {
     pub(crate) samples: Samples,
 }
 
-/// What a pixel's samples are, in their order.
+/// Channels of a pixel in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Channels {
     Grey,
@@ -24,11 +23,11 @@ pub(crate) enum Channels {
     RgbAlpha,
 }
 
-/// The samples as wide as the file has them.
+/// Samples with the width of the file.
 pub(crate) enum Samples {
-    /// 255 is full.
+    /// Maximum 255.
     Eight(Vec<u8>),
-    /// 65535 is full.
+    /// Maximum 65535.
     Sixteen(Vec<u16>),
 }
 
@@ -37,7 +36,7 @@ pub(crate) enum Samples {
 pub(crate) struct Pixel {
     /// Red, green and blue; equal for grey.
     pub(crate) colour: [u16; 3],
-    /// Opacity, where the image has such a channel.
+    /// Opacity, if the image has an alpha channel.
     pub(crate) alpha: Option<u16>,
 }
 
@@ -53,7 +52,7 @@ impl Channels {
 }
 
 impl Raster {
-    /// The pixels of a row, from the left; `y` counts from the top.
+    /// Returns the pixels of a row from the left; `y` counts from the top.
     pub(crate) fn row(&self, y: u32) -> impl Iterator<Item = Pixel> {
         let start = y as usize * self.width as usize;
         (start..start + self.width as usize).map(|index| self.pixel(index))
@@ -84,7 +83,7 @@ impl Raster {
 }
 
 impl Samples {
-    /// Decoders fill as many samples as the size says, so the index is valid.
+    /// Decoders return as many samples as the size requires, so the index is valid.
     fn get(&self, index: usize) -> u16 {
         match self {
             Samples::Eight(samples) => u16::from(samples[index]) * 257,

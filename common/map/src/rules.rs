@@ -1,11 +1,10 @@
-//! From a pixel's shade to a cell's occupancy.
+//! Converts the shade of a pixel to the occupancy of a cell.
 //!
-//! The rules are those of `map_server` in ROS 1 and of `nav2_map_server` up to
-//! Jazzy: `occ = 1 - shade`, or the shade itself with `negate`; above
-//! `occupied_thresh` occupied, below `free_thresh` free, both strictly. Later
-//! nav2 counts a shade exactly at a threshold as reached, weighs the colours by
-//! luminance and takes whatever is transparent for unknown; for opaque grey
-//! images off the thresholds both agree.
+//! The rules are those of `map_server` in ROS 1 and of `nav2_map_server` up to Jazzy: `occ = 1 -
+//! shade`, or the shade itself with `negate`; strictly above `occupied_thresh` a cell is occupied,
+//! strictly below `free_thresh` free. Later nav2 includes a shade equal to a threshold, weights the
+//! colours by luminance and reads any transparency as unknown; for opaque grey images without
+//! shades equal to a threshold both agree.
 
 use crate::UNKNOWN;
 use crate::raster::{FULL, Pixel};
@@ -13,43 +12,42 @@ use crate::raster::{FULL, Pixel};
 const FREE: u8 = 0;
 const OCCUPIED: u8 = 100;
 
-/// How the shades of an image become occupancy.
+/// Conversion of the shades of an image to occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Occupied, free or unknown by the thresholds.
     #[default]
     Trinary,
-    /// As trinary, but between the thresholds 0..=100; transparent is unknown.
+    /// Like trinary, but 0..=100 between the thresholds; transparent pixels are unknown.
     Scale,
-    /// The shade itself, 0..=100; brighter is unknown.
+    /// The shade itself, 0..=100; brighter pixels are unknown.
     Raw,
 }
 
-/// Where shares of occupancy, 0..=1, turn occupied and free.
+/// Thresholds of occupancy, 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Thresholds {
-    /// Above it a cell is occupied.
+    /// Cells above it are occupied.
     pub(crate) occupied: f64,
-    /// Below it a cell is free.
+    /// Cells below it are free.
     pub(crate) free: f64,
 }
 
-/// How the pixels of an image are read.
+/// Rules for the pixels of an image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rules {
     pub(crate) mode: Mode,
-    /// Whether bright pixels are the occupied ones.
+    /// True if bright pixels are occupied.
     pub(crate) negate: bool,
     pub(crate) thresholds: Thresholds,
 }
 
 impl Rules {
-    /// The occupancy that a pixel stands for.
+    /// Returns the occupancy of a pixel.
     pub(crate) fn occupancy(self, pixel: Pixel) -> u8 {
         match self.mode {
             Mode::Trinary => {
-                // The alpha channel counts as one more colour: what is
-                // transparent is darker.
+                // The alpha channel counts as another colour: transparent pixels are darker.
                 let occ = self.occupied_share(shade(&pixel.colour, pixel.alpha));
                 self.beyond_thresholds(occ).unwrap_or(UNKNOWN)
             }
@@ -86,7 +84,7 @@ impl Rules {
     }
 }
 
-/// How bright a pixel is, 0..=1: the mean of its channels.
+/// Returns the brightness of a pixel, 0..=1: the mean of its channels.
 fn shade(colour: &[u16; 3], alpha: Option<u16>) -> f64 {
     let channels = colour.iter().copied().chain(alpha);
     let (count, sum) = channels.fold((0.0, 0.0), |(count, sum), channel| {
@@ -122,7 +120,7 @@ mod tests {
             negate: false,
             thresholds: MAP_SAVER,
         };
-        // 205 is what map_saver writes for unknown: 50/255 is just above 0.196.
+        // 205 is the shade of unknown in map_saver: 50/255 is just above 0.196.
         assert_eq!(
             cells(rules, &[0, 89, 90, 205, 206, 254, 255]),
             [100, 100, 255, 255, 0, 0, 0]
@@ -160,7 +158,7 @@ mod tests {
                 free: 0.0,
             },
         };
-        // 255 is not beyond 1.0, it is interpolated to 100; 127/255 is 49.8 %.
+        // 255 is not above 1.0, so it is interpolated to 100; 127/255 is 49.8 %.
         assert_eq!(cells(rules, &[0, 51, 127, 128, 255]), [0, 20, 50, 50, 100]);
         let faint = Pixel {
             alpha: Some(FULL - 1),

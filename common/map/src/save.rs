@@ -1,4 +1,4 @@
-//! From a grid to a description and its image.
+//! Saves a grid as a description and an image.
 
 use std::fs::{File, Permissions};
 use std::io::{self, Write};
@@ -12,7 +12,7 @@ use serde_saphyr::{DoubleQuoted, FlowSeq};
 
 use crate::{MapError, OccupancyGrid, UNKNOWN};
 
-/// The shades that every map saver writes for occupied, free and unknown.
+/// Shades of occupied, free and unknown in the files of map savers.
 const TRINARY_SHADES: [u8; 3] = [0, 254, 205];
 
 #[derive(Serialize)]
@@ -26,15 +26,15 @@ struct Keys<'a> {
     free_thresh: f64,
 }
 
-/// Writes a map as the YAML file at `yaml` and a PNG of the same stem beside it,
-/// so that [`crate::load`] gives the same grid: trinary, or raw where a cell is
-/// neither free nor occupied nor unknown.
+/// Writes a map as the YAML file at `yaml` and a PNG of the same stem next to it, so that
+/// [`crate::load`] returns the same grid. The mode is trinary, or raw if a cell is neither free nor
+/// occupied nor unknown.
 ///
-/// Each file is replaced in one step, the image first: whoever reads meanwhile
-/// never meets half a file, but may meet the new image with the old description.
+/// Each file is replaced atomically, the image first: a concurrent reader never reads a partial
+/// file, but may read the new image with the old description.
 ///
 /// # Errors
-/// Names the file that could not be written.
+/// A file could not be written.
 pub fn save(grid: &OccupancyGrid, yaml: impl AsRef<Path>) -> Result<(), MapError> {
     let yaml = yaml.as_ref();
     let image = yaml.with_extension("png");
@@ -84,14 +84,14 @@ fn write_png(grid: &OccupancyGrid, shade: fn(u8) -> u8, file: &File) -> io::Resu
         .map_err(io::Error::other)
 }
 
-/// Writes beside `path`, then renames: the file is the old one or the new one.
+/// Writes to a temporary file next to `path`, then renames it.
 fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) -> Result<(), MapError> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder.to_owned(),
         _ => PathBuf::from("."),
     };
     let written = tempfile::Builder::new()
-        // As for any new file, the process's umask decides who may read it.
+        // The process's umask decides who may read it, as for any new file.
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)
         .and_then(|file| {

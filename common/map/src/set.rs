@@ -1,6 +1,6 @@
 //! Sets of maps: the floors of a building, or the buildings of a campus.
 //!
-//! A set is a folder of maps, or a file that names them:
+//! A set is a folder of maps, or a file that lists them:
 //!
 //! ```yaml
 //! maps:
@@ -17,8 +17,7 @@
 //!       first: [11.8, 3.6, 90]
 //! ```
 //!
-//! The order counts: of equally good poses, that on the map which is named first is the
-//! better one.
+//! The order decides ties: of equally good poses, the one on the earlier map wins.
 
 mod transition;
 
@@ -35,36 +34,36 @@ use crate::load::read_text;
 pub use transition::Transition;
 use transition::TransitionEntry;
 
-/// The file of a folder that says which maps it has.
+/// File in a folder that lists its maps.
 const LIST: &str = "maps.yaml";
 
-/// What is said of a set without a map.
+/// Error of a set without maps.
 const NO_MAPS: &str = "there are no maps: allowed are a folder with maps (*.yaml, or */map.yaml) \
                        and a file like maps.yaml";
 
-/// Most maps of a set.
+/// Largest number of maps in a set.
 pub const MAX_MAPS: usize = 1000;
 
-/// Most bytes of a file that names maps.
+/// Largest size of a file that lists maps, in bytes.
 const MAX_LIST_BYTES: u64 = 1 << 20;
 
-/// The maps of a building or a campus.
+/// Maps of a building or a campus.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapSet {
-    /// In the order by which ties are decided.
+    /// Maps in the order that decides ties.
     pub maps: Vec<MapFile>,
-    /// Where a robot may go from one of them to another.
+    /// Connections between the maps.
     pub transitions: Vec<Transition>,
 }
 
 /// A map of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapFile {
-    /// What it is called; no two maps of a set have the same name.
+    /// Name, unique in its set.
     pub name: String,
-    /// Its description, a YAML file as map_server reads it.
+    /// Path of its description, a YAML file of map_server.
     pub yaml: PathBuf,
-    /// The floor, where the set says so.
+    /// Floor, if the set gives one.
     pub floor: Option<String>,
 }
 
@@ -85,22 +84,21 @@ struct Entry {
     floor: Option<Scalar>,
 }
 
-/// The maps of a set: those that a file names, or those in a folder. There, `maps.yaml` says
-/// which; without it they are all YAML files in the folder that name an image and, in each folder
-/// below, `map.yaml`, by their names.
+/// Returns the maps of a set: those that a file lists, or those in a folder. A folder's `maps.yaml`
+/// is its list; without it these are all YAML files in the folder with the key `image` and the
+/// `map.yaml` of each subfolder, sorted by name.
 ///
 /// # Errors
-/// Says what cannot be read, or what is wrong and what is allowed. The images of the maps are
-/// not opened.
+/// A file cannot be read or is invalid. The images of the maps are not opened.
 pub fn set_of(path: impl AsRef<Path>) -> Result<MapSet, MapError> {
     set_of_noting(path, |_| {})
 }
 
-/// As [`set_of`], and hands a line on each YAML file that is left out, because it is no map, to
-/// `note`, to be shown to the user.
+/// Like [`set_of`], and calls `note` with a line for each YAML file that is left out because it is
+/// not a map, to be shown to the user.
 ///
 /// # Errors
-/// As [`set_of`].
+/// See [`set_of`].
 pub fn set_of_noting(path: impl AsRef<Path>, note: impl FnMut(&str)) -> Result<MapSet, MapError> {
     let path = path.as_ref();
     let list = list_of(path);
@@ -112,7 +110,7 @@ pub fn set_of_noting(path: impl AsRef<Path>, note: impl FnMut(&str)) -> Result<M
     Ok(set)
 }
 
-/// The file that names the maps of a set; in a folder it need not be there.
+/// Returns the file that lists the maps of a set; it may be missing in a folder.
 #[must_use]
 pub fn list_of(path: &Path) -> PathBuf {
     match path.is_dir() {
@@ -121,11 +119,11 @@ pub fn list_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Maps that are given one by one, as a set: each is called by its file, or by its folder
-/// where the file is `map.yaml`.
+/// Returns a set of individual maps; each is named by its file, or by its folder if the file is
+/// `map.yaml` or `recording.yaml`.
 ///
 /// # Errors
-/// There is none, more than [`MAX_MAPS`], or two have one name.
+/// There are no maps, more than [`MAX_MAPS`], or two with the same name.
 pub fn set_of_files(files: &[PathBuf]) -> Result<MapSet, MapError> {
     let maps: Vec<MapFile> = files.iter().map(|yaml| named(yaml)).collect();
     check(Path::new("--map"), &maps)?;
@@ -140,11 +138,11 @@ impl MapSet {
         }
     }
 
-    /// Those of the maps that are asked for, each by its name or by its floor's, in the order
-    /// of the set, and the transitions between them; all of them where none is.
+    /// Keeps only the maps with a name or floor in `on`, in the order of the set, and the
+    /// transitions between them; an empty `on` keeps all.
     ///
     /// # Errors
-    /// A name is neither a map's nor a floor's; says which there are.
+    /// A name is neither a map's nor a floor's; the error lists the allowed ones.
     pub fn select(self, on: &[String]) -> Result<Self, MapError> {
         let MapSet { maps, transitions } = self;
         let is_kept = selected(&maps, on)?;
@@ -165,7 +163,7 @@ impl MapSet {
     }
 }
 
-/// Which of the maps are asked for.
+/// Returns for each map if it is selected.
 fn selected(maps: &[MapFile], on: &[String]) -> Result<Vec<bool>, MapError> {
     let is_called =
         |map: &MapFile, name: &String| map.name == *name || map.floor.as_ref() == Some(name);
@@ -182,7 +180,7 @@ fn selected(maps: &[MapFile], on: &[String]) -> Result<Vec<bool>, MapError> {
     Ok(maps.iter().map(is_asked).collect())
 }
 
-/// The maps, each with its floor where it has one.
+/// Formats the names of maps, with their floors.
 fn all_names(maps: &[MapFile]) -> String {
     let names = maps.iter().map(|MapFile { name, floor, .. }| match floor {
         Some(floor) => format!("{name} (floor {floor})"),
@@ -226,7 +224,7 @@ fn listed(path: &Path) -> Result<MapSet, MapError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let maps = list.maps.into_iter().map(|entry| MapFile {
         name: entry.name.text().to_owned(),
-        // Joining an absolute name gives that name.
+        // Joining an absolute path gives that path.
         yaml: folder.join(entry.map.text()),
         floor: entry.floor.map(|floor| floor.text().to_owned()),
     });
@@ -257,7 +255,8 @@ fn in_folder(folder: &Path, mut note: impl FnMut(&str)) -> Result<Vec<MapFile>, 
         if path.is_dir() && below.is_file() {
             maps.push(named(&below));
         } else if is_yaml && path.is_file() {
-            // What cannot be read may be a map that is being written, and loading it says more.
+            // An unreadable file may be a map that is being written, and loading it gives a better
+            // error.
             match read_text(&path).is_ok_and(|text| is_of_something_else(&text)) {
                 true => others.push(path),
                 false => maps.push(named(&path)),

@@ -1,4 +1,4 @@
-//! What the tracker wants searched.
+//! Search requests of the tracker.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use crate::Stamp;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// The message of topic `attention`: a scan that is to be searched.
+/// The message of topic `attention`: requests a search of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -16,7 +16,7 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct AttentionHeader {
-    /// Of the scan; of the first laser's, where several are joined.
+    /// Stamp of the scan; with several lasers, of the first laser's scan.
     pub stamp: Stamp,
 }
 

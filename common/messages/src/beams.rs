@@ -1,4 +1,4 @@
-//! What became of each beam of a scan.
+//! Comparison of each beam of a scan with the map.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
-/// Header of topic `beams`; the items are the beams that voted, by bearing, and
-/// behind them those of which nothing returned.
+/// Header of topic `beams`; the items are the beams that voted, by bearing, followed by those
+/// without a return.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -17,47 +17,47 @@ use crate::{Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct BeamsHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
-    /// The map that the beams were compared with; 0 where there was none.
+    /// Map that the beams were compared with; 0 without a map.
     pub map_id: u64,
-    /// The pose of the laser in the map at which they were: the best hypothesis.
+    /// Pose of the laser in the map for the comparison: the best hypothesis.
     pub map_from_laser: Pose2,
 }
 
-/// One beam.
+/// One beam of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Beam/v1"))]
 #[repr(C)]
 pub struct Beam {
-    /// In the laser's frame, counter-clockwise from ahead, radians.
+    /// Bearing in the laser's frame, in radians counter-clockwise from ahead.
     pub bearing: f32,
-    /// Metres; infinity where nothing returned.
+    /// Range in metres; infinity without a return.
     pub range_m: f32,
-    /// How much it counted, 0..=1.05; 0 where nothing returned.
+    /// Weight of the vote, 0..=1.05; 0 without a return.
     pub weight: f32,
-    /// A [`BeamFate`].
+    /// Result of the comparison, a [`BeamFate`].
     pub fate: u32,
 }
 
-/// What became of a beam.
+/// Result of comparing a beam with the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum BeamFate {
     /// It ends at an obstacle of the map.
     Hit = 0,
-    /// It ends in the open: something stands there that the map does not have.
+    /// It ends in free space: at an object that is not in the map.
     Short = 1,
     /// It passes through an obstacle of the map.
     Through = 2,
-    /// It ends behind unknown space, where the map says nothing.
+    /// It ends behind unknown space, where it cannot be compared.
     Unknown = 3,
-    /// Nothing returned, or from farther than the map reaches.
+    /// It has no return, or one from beyond the map.
     NoReturn = 4,
 }
 
 impl BeamFate {
-    /// The fate with this number, if there is one.
+    /// Returns the fate with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [

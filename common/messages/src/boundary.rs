@@ -1,4 +1,4 @@
-//! The boundary of the obstacles.
+//! Boundary cells of the obstacles.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use crate::Stamp;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `boundary`; the items are the boundary cells by (y, x).
+/// Header of topic `boundary`; the items are the boundary cells, sorted by (y, x).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -16,19 +16,19 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct BoundaryHeader {
-    /// Of the map.
+    /// Stamp of the map.
     pub stamp: Stamp,
-    /// The map that it was taken from.
+    /// Map of the boundary.
     pub map_id: u64,
-    /// Free cells, the paper's n.
+    /// Number of free cells, the paper's n.
     pub free_cells: u64,
-    /// Boundary cells, the paper's p.
+    /// Number of boundary cells, the paper's p.
     pub boundary_cells: u64,
-    /// Occupied cells.
+    /// Number of occupied cells.
     pub occupied_cells: u64,
 }
 
-/// A boundary cell: column and row.
+/// A boundary cell, given by its column and row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -37,9 +37,9 @@ pub struct BoundaryHeader {
 )]
 #[repr(C)]
 pub struct BoundaryCell {
-    /// Cells along x from the grid's origin.
+    /// Column: cells along x from the grid's origin.
     pub x: u16,
-    /// Cells along y from the grid's origin.
+    /// Row: cells along y from the grid's origin.
     pub y: u16,
 }
 

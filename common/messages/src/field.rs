@@ -1,4 +1,4 @@
-//! The intensity image of one scan.
+//! Intensity image of one scan.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use crate::Stamp;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `field`; the items are `width · height` intensities, row by
-/// row from the lowest y.
+/// Header of topic `field`; the items are `width · height` intensities, row by row from the lowest
+/// y.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -17,38 +17,38 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct FieldHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
-    /// The map that was searched.
+    /// Map that was searched.
     pub map_id: u64,
-    /// Pixels along x.
+    /// Width in pixels (along x).
     pub width: u32,
-    /// Pixels along y.
+    /// Height in pixels (along y).
     pub height: u32,
-    /// Cells along each side of a pixel.
+    /// Side of a pixel in cells.
     pub block: u32,
-    /// A [`FieldKind`].
+    /// Meaning of the pixels, a [`FieldKind`].
     pub kind: u32,
-    /// The highest intensity in the image.
+    /// Highest intensity in the image.
     pub best: u32,
-    /// What a pose would have if every beam agreed fully.
+    /// Intensity of a pose that agrees with every beam.
     pub highest_possible: u32,
-    /// The heading of an exact image in the map frame, radians; else 0.
+    /// Heading of an exact image in the map frame, in radians; else 0.
     pub heading: f64,
 }
 
-/// What a pixel of the field says.
+/// Meaning of the pixels of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum FieldKind {
-    /// The intensity of the cell at the known heading.
+    /// Intensity of the cell at the known heading.
     Exact = 0,
-    /// No pose in the block, at any heading, has more.
+    /// Upper bound on the intensities of all poses in the block, over all headings.
     UpperBound = 1,
 }
 
 impl FieldKind {
-    /// The kind with this number, if there is one.
+    /// Returns the kind with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [Self::Exact, Self::UpperBound]

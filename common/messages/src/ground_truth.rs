@@ -1,4 +1,4 @@
-//! The true pose of a scan, as recordings made for evaluation hold it.
+//! True pose of a scan, from recordings made for evaluation.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Pose2, Stamp};
 
-/// The message of topic `ground_truth`; its `measured_ns` is the scan's.
+/// The message of topic `ground_truth`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -16,11 +16,11 @@ use crate::{FrameName, Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct GroundTruth {
-    /// Of the scan that it belongs to.
+    /// Stamp of the scan; its `measured_ns` is that of the scan.
     pub stamp: Stamp,
     /// Pose of the laser in the map.
     pub map_from_laser: Pose2,
-    /// The frame in which the pose is given.
+    /// Frame of the pose.
     pub frame: FrameName,
 }
 

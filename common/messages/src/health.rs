@@ -1,4 +1,4 @@
-//! The state of a node.
+//! Health of a node.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::Name;
 use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `health`; the items are the last error as UTF-8, at most
-/// [`HealthHeader::ERROR_CAPACITY`] bytes, empty where there was none.
+/// [`HealthHeader::ERROR_CAPACITY`] bytes, empty without an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -17,35 +17,35 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct HealthHeader {
-    /// The node's name.
+    /// Name of the node.
     pub node: Name,
     /// `CLOCK_MONOTONIC` in nanoseconds when it was sent.
     pub sent_ns: i64,
-    /// Samples taken from inputs.
+    /// Number of samples received from inputs.
     pub received: u64,
-    /// Samples sent.
+    /// Number of samples sent.
     pub sent: u64,
-    /// Samples lost before they could be taken, because the node was too slow, or that
-    /// could not be sent, because shared memory was full.
+    /// Number of samples lost before they were received, because the node was too slow, or not
+    /// sent, because shared memory was full.
     pub dropped: u64,
-    /// Samples taken and refused as unusable.
+    /// Number of received samples that were rejected as unusable.
     pub refused: u64,
-    /// The node's process.
+    /// Process id of the node.
     pub pid: u32,
-    /// A [`NodeState`].
+    /// State of the node, a [`NodeState`].
     pub state: u32,
 }
 
 impl HealthHeader {
-    /// Most bytes of the last error.
+    /// Longest last error in bytes.
     pub const ERROR_CAPACITY: usize = 1024;
 }
 
-/// What a node is doing.
+/// State of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NodeState {
-    /// Up, but what it needs has not come yet: a map, a boundary, a device.
+    /// Running, but without something it needs: a map, a boundary, a device.
     Waiting = 0,
     /// Able to answer its inputs.
     Ready = 1,
@@ -53,13 +53,12 @@ pub enum NodeState {
     Degraded = 2,
     /// About to end.
     Stopped = 3,
-    /// At work on something that may take longer than reports are apart; it answers
-    /// nothing meanwhile.
+    /// Busy with work that may take longer than the report interval; it does not answer meanwhile.
     Busy = 4,
 }
 
 impl NodeState {
-    /// As users read it.
+    /// Returns the name for display.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -71,7 +70,7 @@ impl NodeState {
         }
     }
 
-    /// The state with this number, if there is one.
+    /// Returns the state with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [

@@ -1,4 +1,4 @@
-//! Where the robot may be.
+//! Candidate poses of the robot.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -16,38 +16,38 @@ use crate::{Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct HypothesesHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
-    /// The map that was searched; of several, that of the best place; 0 where there was none.
+    /// Map that was searched; of several, the map of the best hypothesis; 0 without a map.
     pub map_id: u64,
     /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
     pub sent_ns: i64,
-    /// Nanoseconds of computing, from scan to votes.
+    /// Computing time from scan to votes, in nanoseconds.
     pub search_ns: u64,
-    /// Nanoseconds of computing, from votes to hypotheses.
+    /// Computing time from votes to hypotheses, in nanoseconds.
     pub extract_ns: u64,
-    /// A [`Verdict`].
+    /// Verdict on the scan, a [`Verdict`].
     pub verdict: u32,
-    /// Other places that fit about as well as the best; 0 where it is unique.
+    /// Number of other places that fit about as well as the best; 0 if it is unique.
     pub alternatives: u32,
-    /// The probability of the best pose, 0..=1; by votes alone, its lead.
+    /// Probability of the best pose, 0..=1; from votes alone, its lead over the next.
     pub confidence: f32,
     /// Share of the beams' weight that agrees with the best pose, 0..=1.
     pub inlier_share: f32,
-    /// The highest intensity of any pose.
+    /// Highest intensity of any pose.
     pub best: u32,
-    /// What a pose would have if every beam agreed fully.
+    /// Intensity of a pose that agrees with every beam.
     pub highest_possible: u32,
-    /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
+    /// 1 if the laser's mount is known and `map_from_base` is valid, else 0.
     pub mount_known: u64,
-    /// What was searched, as [`searched_id`](crate::searched_id) says it: the map's id, and of
-    /// a set one of all its maps; 0 where nothing was. So an answer that found nothing differs
-    /// from none.
+    /// Id of what was searched, see [`searched_id`](crate::searched_id): the map's id, or for a set
+    /// an id of all its maps; 0 without a search. It tells a search without a result from no
+    /// search.
     pub searched: u64,
 }
 
 impl HypothesesHeader {
-    /// Those of the places that are on the best one's map, for who knows one map alone.
+    /// Returns the hypotheses on the best one's map, for receivers that know only one map.
     pub fn on_map<'a>(
         &self,
         places: &'a [Hypothesis],
@@ -57,48 +57,49 @@ impl HypothesesHeader {
     }
 }
 
-/// One place where the robot may be.
+/// A candidate pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Hypothesis/v3"))]
 #[repr(C)]
 pub struct Hypothesis {
     /// Pose of the laser in the map.
     pub map_from_laser: Pose2,
-    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    /// Pose of the robot's base in the map; the laser's if the mount is unknown.
     pub map_from_base: Pose2,
-    /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
-    /// How well the scan fits the map there, at most 1; of a place too far behind the best one to
-    /// matter, a bound of that. By votes alone, the share of those that the pose could have at
-    /// most.
+    /// Fit of the scan to the map at this pose, at most 1; for a place too far behind the best to
+    /// matter, an upper bound of the fit. From votes alone, the share of votes in the highest
+    /// possible.
     pub score: f32,
-    /// How likely the robot is there, 0..=1; what the hypotheses leave is that it
-    /// is at none of them.
+    /// Probability of the pose, 0..=1. The rest of the sum over all hypotheses is the probability
+    /// of none of them.
     pub probability: f32,
-    /// Votes of the best pose that led there.
+    /// Intensity of the best search pose that led to this hypothesis.
     pub intensity: u64,
-    /// Votes that led there.
+    /// Number of search poses that led to this hypothesis.
     pub support: u64,
-    /// The map that `map_from_laser` is about.
+    /// Map of `map_from_laser`.
     pub map_id: u64,
 }
 
-/// What the scan allows to say about the pose.
+/// Conclusion from a scan about the pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Verdict {
-    /// Nothing to go by: the scan was empty, refused, or explains nothing.
+    /// There are no usable beams: the scan was empty, was rejected, or does not match the map at
+    /// all.
     NoScan = 0,
-    /// One place fits, and no other comes near it.
+    /// One place fits, and no other fits nearly as well.
     Unique = 1,
     /// Several places fit about as well.
     Ambiguous = 2,
-    /// Even the best place fits badly: perhaps not this map.
+    /// Even the best place fits badly: the map may be wrong.
     PoorFit = 3,
 }
 
 impl Verdict {
-    /// The verdict with this number, if there is one.
+    /// Returns the verdict with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [Self::NoScan, Self::Unique, Self::Ambiguous, Self::PoorFit]
@@ -106,7 +107,7 @@ impl Verdict {
             .find(|v| *v as u32 == code)
     }
 
-    /// The word that logs and tables show.
+    /// Returns the name for logs and tables.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {

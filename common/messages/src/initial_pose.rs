@@ -1,4 +1,4 @@
-//! What an operator or another program says of where the robot is.
+//! Initial pose from an operator or another program.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -16,31 +16,31 @@ use crate::{Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct InitialPose {
-    /// When it was said.
+    /// Time of the message.
     pub stamp: Stamp,
-    /// An [`InitialPoseKind`].
+    /// Kind of the message, an [`InitialPoseKind`].
     pub kind: u64,
-    /// Pose of the robot's base in the map; the laser's where no mount is known. Not read
-    /// where the robot may be anywhere.
+    /// Pose of the robot's base in the map; the laser's if the mount is unknown. Ignored for
+    /// [`InitialPoseKind::Anywhere`].
     pub map_from_base: Pose2,
-    /// Of that pose, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of that pose, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
 }
 
-/// What is said.
+/// Kind of an initial pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 pub enum InitialPoseKind {
-    /// The robot should be at the pose: it is tried first, and scans must confirm it.
+    /// The robot is probably at the pose: it is tried first, and scans must confirm it.
     Hint = 0,
-    /// The robot is at the pose: it is believed at once, until scans speak against it.
+    /// The robot is at the pose: it is believed at once, until scans contradict it.
     Believed = 1,
-    /// The robot may be anywhere: what is known of its pose is forgotten.
+    /// The robot may be anywhere: the tracker forgets its pose.
     Anywhere = 2,
 }
 
 impl InitialPoseKind {
-    /// The kind with this number, if there is one.
+    /// Returns the kind with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u64) -> Option<Self> {
         [Self::Hint, Self::Believed, Self::Anywhere]

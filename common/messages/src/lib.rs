@@ -1,11 +1,10 @@
-//! What flows through a Backcast graph: one header and one slice for each topic.
+//! Messages of a Backcast graph: one header and one slice of items for each topic.
 //!
-//! Every type is `repr(C)`, plain data without padding, `usize` or pointers, so
-//! that a process can read it where another one wrote it. The version is part
-//! of the type name that the transport compares; a released layout never
-//! changes, a new one stands beside it under the next version. Headers and items
-//! are also serde structures, field by field, for what leaves the machine. The
-//! crate holds no behaviour beyond conversions, and opens nothing.
+//! Every type is `repr(C)`, plain data without padding, `usize` or pointers, so that a process can
+//! read it where another one wrote it. The version is part of the type name that the transport
+//! compares; a released layout never changes, a new one is added with the next version. Headers and
+//! items also implement serde field by field, for data that leaves the machine. The crate has no
+//! behaviour beyond conversions, and does no I/O.
 
 #![warn(missing_docs)]
 
@@ -61,7 +60,7 @@ pub use topic::{Message, Topic};
 pub use tracked_pose::{PoseHeader, TrackReason, TrackState};
 pub use votes::{SearchOutcome, Vote, VotesByMapHeader, VotesHeader};
 
-/// Pins a message's size, alignment and the offset of every field.
+/// Tests a message's size, alignment and the offset of every field.
 #[cfg(test)]
 macro_rules! pin_layout {
     ($type:ty, size $size:literal, align $align:literal, { $($field:ident: $offset:literal),+ $(,)? }) => {

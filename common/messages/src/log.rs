@@ -7,50 +7,50 @@ use crate::Name;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `log`; the items are the line as UTF-8 without its end, at
-/// most [`LogHeader::TEXT_CAPACITY`] bytes.
+/// Header of topic `log`; the items are the line as UTF-8 without a newline, at most
+/// [`LogHeader::TEXT_CAPACITY`] bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("LogHeader/v1"))]
 #[repr(C)]
 pub struct LogHeader {
-    /// The node's name.
+    /// Name of the node.
     pub node: Name,
     /// `CLOCK_MONOTONIC` in nanoseconds when it was written.
     pub written_ns: i64,
-    /// Nanoseconds since 1970 on the host's clock when it was written.
+    /// Wall clock in nanoseconds since 1970 when it was written.
     pub wall_ns: i64,
-    /// Counts up by one from 0 in each process, so that gaps show losses.
+    /// Number of the line in its process, from 0; gaps show losses.
     pub counter: u64,
-    /// Lines of the process that were lost before they could be sent: it wrote
-    /// faster than it looked after its topics.
+    /// Number of lines of the process that were lost before they could be sent, because they were
+    /// logged faster than sent.
     pub dropped: u64,
-    /// A [`LogLevel`].
+    /// Level of the line, a [`LogLevel`].
     pub level: u32,
-    /// The node's process.
+    /// Process id of the node.
     pub pid: u32,
 }
 
 impl LogHeader {
-    /// Most bytes of a line; longer ones are cut between characters.
+    /// Longest line in bytes; longer ones are cut at a character boundary.
     pub const TEXT_CAPACITY: usize = 1024;
 }
 
-/// How grave a line is, with the numbers of `rcl_interfaces/Log`.
+/// Severity of a line, with the codes of `rcl_interfaces/Log`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum LogLevel {
-    /// Of use to developers.
+    /// Useful to developers.
     Debug = 10,
-    /// As it should be.
+    /// Normal operation.
     Info = 20,
-    /// Not as it should be, but the node continues.
+    /// A problem with which the node continues.
     Warn = 30,
-    /// The node cannot do what it is there for.
+    /// The node cannot do its task.
     Error = 40,
 }
 
 impl LogLevel {
-    /// The level with this number, if there is one.
+    /// Returns the level with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [Self::Debug, Self::Info, Self::Warn, Self::Error]

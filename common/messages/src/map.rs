@@ -1,4 +1,4 @@
-//! The occupancy grid.
+//! Occupancy grid.
 
 use std::hash::Hasher;
 
@@ -11,52 +11,50 @@ use twox_hash::XxHash3_64;
 use crate::zero_copy::ZeroCopySend;
 use crate::{MapName, Pose2, Stamp};
 
-/// The occupancy of a cell about which nothing is known.
+/// Occupancy of an unknown cell.
 pub const UNKNOWN: u8 = 255;
 
-/// Occupancy from which a cell is occupied unless a map says otherwise, per cent: that of
-/// map savers.
+/// Default occupancy from which a cell is occupied, in per cent; map savers use the same.
 pub const OCCUPIED_FROM: u8 = 65;
 
-/// Occupancy up to which a cell is free unless a map says otherwise, per cent.
+/// Default occupancy up to which a cell is free, in per cent.
 pub const FREE_TO: u8 = 25;
 
-/// Header of topic `map`; the items are `width · height` cells, row by row from
-/// the lowest y: 0 free to 100 occupied, [`UNKNOWN`] unknown.
+/// Header of topic `map`; the items are `width · height` cells, row by row from the lowest y: 0
+/// free to 100 occupied, [`UNKNOWN`] unknown.
 ///
-/// It carries the rules by which cells are classed, so that all who use the map class them in
-/// the same way.
+/// It includes the rules for classifying cells, so that all users of the map classify them in the
+/// same way.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapHeader/v2"))]
 #[repr(C)]
 pub struct MapHeader {
-    /// When the map was read; the counter counts the maps served.
+    /// Time at which the map was read; the counter counts the maps served.
     pub stamp: Stamp,
-    /// Hash of the cells, their geometry and the name: equal maps have equal ids, unless they
-    /// are two of a set.
+    /// Hash of the cells, their geometry and the name: equal maps have equal ids, unless their
+    /// names in a set differ.
     pub map_id: u64,
-    /// Cells along x.
+    /// Width in cells (along x).
     pub width: u32,
-    /// Cells along y.
+    /// Height in cells (along y).
     pub height: u32,
-    /// Side of a cell, metres.
+    /// Side of a cell in metres.
     pub resolution_m: f64,
-    /// The lower left corner of cell (0, 0) in the map frame, and the turn of
+    /// Pose of the grid in the map frame: the lower left corner of cell (0, 0), and the rotation of
     /// the grid's axes.
     pub map_from_grid: Pose2,
-    /// Occupancy from which a cell is occupied, per cent, 1..=100.
+    /// Occupancy from which a cell is occupied, in per cent, 1..=100.
     pub occupied_from: u32,
-    /// Occupancy up to which a cell is free, per cent, 0..=99; what lies between counts as
-    /// unknown.
+    /// Occupancy up to which a cell is free, in per cent, 0..=99; values in between are unknown.
     pub free_to: u32,
-    /// 1 where unknown cells block rays, else 0.
+    /// 1 if unknown cells block rays, else 0.
     pub unknown_blocks: u64,
-    /// What the map is called in its set; empty of one that is served alone.
+    /// Name of the map in its set; empty without a set.
     pub name: MapName,
 }
 
 impl Default for MapHeader {
-    /// A map without cells and name, by the usual rules.
+    /// Creates a map without cells and name, with the default rules.
     fn default() -> Self {
         MapHeader {
             occupied_from: OCCUPIED_FROM.into(),
@@ -66,10 +64,11 @@ impl Default for MapHeader {
     }
 }
 
-/// The id of a map: a hash of geometry and cells (XXH3, 64 bits), the same on every machine.
+/// Returns the id of a map: a hash of geometry and cells (XXH3, 64 bits), the same on every
+/// machine.
 ///
-/// Lengths and angles count to the nanometre and nanoradian, so that a map and its copy
-/// in a recording have one id although they were written with different roundings.
+/// Lengths and angles are rounded to the nanometre and nanoradian, so that a map and its copy in a
+/// recording have one id in spite of rounding errors.
 #[must_use]
 pub fn map_id(
     (width, height): (u32, u32),
@@ -82,20 +81,19 @@ pub fn map_id(
     hasher.write(&height.to_le_bytes());
     let Pose2 { x, y, yaw } = map_from_grid;
     for value in [resolution_m, x, y, yaw] {
-        // Origins end at 1e8 m, 1e17 nanometres, well within an i64.
+        // Origins are below 1e8 m, which is 1e17 nanometres and fits an i64.
         hasher.write(&((value * 1e9).round() as i64).to_le_bytes());
     }
     hasher.write(cells);
     hasher.finish()
 }
 
-/// A map whose id is not that of its content: what is known of one map would be taken for
-/// another one's.
+/// Error of a map whose id does not match its content; it could be confused with another map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WrongMapId {
-    /// As the header says.
+    /// Id in the header.
     pub found: u64,
-    /// Of the content.
+    /// Id of the content.
     pub expected: u64,
 }
 
@@ -112,22 +110,22 @@ impl std::fmt::Display for WrongMapId {
 impl std::error::Error for WrongMapId {}
 
 impl MapHeader {
-    /// The id that a map with this geometry, this name and these cells has.
+    /// Returns the id of a map with this geometry, name and cells.
     #[must_use]
     pub fn id_of(&self, cells: &[u8]) -> u64 {
         let sides = (self.width, self.height);
         let id = map_id(sides, self.resolution_m, self.map_from_grid, cells);
         match self.name.as_str() {
             "" => id,
-            // Floors may look alike, and are not the same.
+            // Equal floors of a building are still different maps.
             name => XxHash3_64::oneshot_with_seed(id, name.as_bytes()),
         }
     }
 
-    /// Whether the id is that of the content: to be asked by whoever receives a map.
+    /// Checks that the id matches the content; every receiver of a map should do so.
     ///
     /// # Errors
-    /// It is another one.
+    /// The id does not match.
     pub fn check_id(&self, cells: &[u8]) -> Result<(), WrongMapId> {
         let (found, expected) = (self.map_id, self.id_of(cells));
         match found == expected {

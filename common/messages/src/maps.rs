@@ -10,60 +10,60 @@ use twox_hash::XxHash3_64;
 use crate::zero_copy::ZeroCopySend;
 use crate::{MapHeader, Pose2, Stamp, WrongMapId};
 
-/// Header of topic `maps`; the items are bytes: the [`MapHeader`] of each map, the
-/// [`Transition`]s between them, and the cells of each map, as [`MapSet`] reads and writes them.
+/// Header of topic `maps`. The items are bytes: the [`MapHeader`] of each map, the [`Transition`]s
+/// between them, and the cells of each map; [`MapSet`] reads and writes them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapsHeader/v1"))]
 #[repr(C)]
 pub struct MapsHeader {
-    /// When the maps were read; the counter counts the sets served.
+    /// Time at which the maps were read; the counter counts the sets served.
     pub stamp: Stamp,
     /// Hash of all maps and transitions.
     pub set_id: u64,
-    /// How many maps there are.
+    /// Number of maps.
     pub maps: u32,
-    /// How many transitions there are.
+    /// Number of transitions.
     pub transitions: u32,
 }
 
-/// Where a robot may go from one map to another: a lift, stairs, a door between buildings. It
-/// is a rectangle that both maps have.
+/// A connection between two maps: a lift, stairs, a door between buildings. It is a rectangle that
+/// is on both maps.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Transition {
-    /// The numbers of the two maps in their set, from 0.
+    /// Indices of the two maps in their set, from 0.
     pub maps: [u32; 2],
-    /// The rectangle's centre and its x axis on each of them: a robot that is somewhere in it on
-    /// one map is at the same place of it on the other.
+    /// Centre and x axis of the rectangle on each map. A robot in it has the same pose relative to
+    /// the rectangle on both maps.
     pub map_from_region: [Pose2; 2],
-    /// The rectangle's sides along its x and y, metres.
+    /// Sides of the rectangle along its x and y, in metres.
     pub size_m: [f64; 2],
 }
 
-/// The maps of a message.
+/// Content of a message of topic `maps`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapSet<'a> {
-    /// Each with its cells; in the order by which ties are decided.
+    /// Maps with their cells, in the order that decides ties.
     pub maps: Vec<(MapHeader, &'a [u8])>,
-    /// Between them.
+    /// Connections between the maps.
     pub transitions: Vec<Transition>,
 }
 
-/// A message of topic `maps` that is none.
+/// Error of an invalid message of topic `maps`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InvalidMapSet {
     /// There are no maps.
     Empty,
-    /// Maps and transitions do not fill it.
+    /// The size differs from that of its maps and transitions.
     Size {
-        /// Bytes that came.
+        /// Bytes received.
         found: usize,
     },
-    /// A map's id is not that of its content.
+    /// The id of a map does not match its content.
     MapId(WrongMapId),
-    /// A transition is between maps that are not there or the same, or no rectangle.
+    /// A transition has invalid maps or an invalid rectangle.
     Transition {
-        /// Its number.
+        /// Index of the transition.
         number: usize,
     },
 }
@@ -72,11 +72,10 @@ const HEADER: usize = size_of::<MapHeader>();
 const TRANSITION: usize = size_of::<Transition>();
 
 impl<'a> MapSet<'a> {
-    /// The maps of a message.
+    /// Reads and checks a message.
     ///
     /// # Errors
-    /// If it has another size than its parts, a map is not the one that its id says, or a
-    /// transition is not one.
+    /// The size is wrong, the id of a map does not match its content, or a transition is invalid.
     pub fn read(header: &MapsHeader, items: &'a [u8]) -> Result<Self, InvalidMapSet> {
         let set = MapSet::split(header, items)?;
         for (map, cells) in &set.maps {
@@ -89,11 +88,10 @@ impl<'a> MapSet<'a> {
         }
     }
 
-    /// The maps of a message that was read before: whether they are what they say is not
-    /// looked at again.
+    /// Splits a message that was checked before, without checking ids and transitions again.
     ///
     /// # Errors
-    /// If it has another size than its parts.
+    /// The size is wrong or there are no maps.
     pub fn split(header: &MapsHeader, items: &'a [u8]) -> Result<Self, InvalidMapSet> {
         let wrong_size = InvalidMapSet::Size { found: items.len() };
         let (maps, transitions) = (header.maps as usize, header.transitions as usize);
@@ -126,17 +124,17 @@ impl<'a> MapSet<'a> {
         Ok(set)
     }
 
-    /// Bytes of the message's items.
+    /// Returns the size of the message's items in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let cells: usize = self.maps.iter().map(|(_, cells)| cells.len()).sum();
         self.maps.len() * HEADER + self.transitions.len() * TRANSITION + cells
     }
 
-    /// The message's header; fills in the items, which are [`MapSet::bytes`] long.
+    /// Writes `items`, which must be [`MapSet::bytes`] long, and returns the header.
     ///
     /// # Panics
-    /// If they are not.
+    /// `items` has another length.
     #[must_use]
     pub fn write(&self, stamp: Stamp, items: &mut [u8]) -> MapsHeader {
         let headers = self.maps.iter().map(|(map, _)| bytemuck::bytes_of(map));
@@ -157,7 +155,7 @@ impl<'a> MapSet<'a> {
         }
     }
 
-    /// A hash of all that counts: when maps were read does not.
+    /// Returns a hash of all maps and transitions; the times of reading do not count.
     #[must_use]
     pub fn id(&self) -> u64 {
         let mut hasher = XxHash3_64::new();
@@ -173,8 +171,8 @@ impl<'a> MapSet<'a> {
     }
 }
 
-/// The id of maps that are searched together, by their ids in their order: of one its own, and
-/// 0 of none. Transitions between them change no search, and do not count.
+/// Returns the id of maps that are searched together, from their ids in order: for one map its own
+/// id, for none 0. Transitions do not affect a search and so do not count.
 #[must_use]
 pub fn searched_id(map_ids: impl IntoIterator<Item = u64>) -> u64 {
     let mut hasher = XxHash3_64::new();
@@ -190,7 +188,7 @@ pub fn searched_id(map_ids: impl IntoIterator<Item = u64>) -> u64 {
 }
 
 impl Transition {
-    /// Whether it is a rectangle on two of so many maps.
+    /// True if it is a valid rectangle on two different maps of a set of `maps` maps.
     #[must_use]
     pub fn is_between(&self, maps: usize) -> bool {
         let [a, b] = self.maps;

@@ -1,4 +1,4 @@
-//! Short texts inside messages: the names of nodes and of frames.
+//! Short texts in messages: names of nodes, lasers, maps and frames.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -15,10 +15,10 @@ macro_rules! text {
         pub struct $name([u8; $capacity]);
 
         impl $name {
-            /// Bytes that fit.
+            /// Largest length in bytes.
             pub const CAPACITY: usize = $capacity;
 
-            /// As much of `text` as fits, cut between characters.
+            /// Creates a name from the part of `text` that fits, cut at a character boundary.
             #[must_use]
             pub fn new(text: &str) -> Self {
                 let mut bytes = [0; Self::CAPACITY];
@@ -27,8 +27,7 @@ macro_rules! text {
                 $name(bytes)
             }
 
-            /// The text before the first zero; empty if a foreign writer put in what
-            /// is not UTF-8.
+            /// Returns the text before the first zero; empty if it is not UTF-8.
             #[must_use]
             pub fn as_str(&self) -> &str {
                 let zero = self.0.iter().position(|&b| b == 0);
@@ -44,7 +43,7 @@ macro_rules! text {
         }
 
         impl<'de> Deserialize<'de> for $name {
-            /// Text that does not fit is refused, not cut.
+            /// Rejects text that does not fit, instead of cutting it.
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let text = String::deserialize(deserializer)?;
                 if text.len() > Self::CAPACITY {
@@ -72,18 +71,18 @@ macro_rules! text {
 }
 
 text! {
-    /// UTF-8 text of at most 32 bytes, filled up with zeros: a node or a laser.
+    /// UTF-8 text of at most 32 bytes, padded with zeros: name of a node or a laser.
     Name, "Name/v1", 32
 }
 
 text! {
-    /// UTF-8 text of at most 64 bytes, filled up with zeros: a map of a set.
+    /// UTF-8 text of at most 64 bytes, padded with zeros: name of a map in a set.
     MapName, "MapName/v1", 64
 }
 
 text! {
-    /// UTF-8 text of at most 256 bytes, filled up with zeros: a frame. Simulators
-    /// name frames by the path of the sensor (`vehicle/lidar_link/gpu_lidar`).
+    /// UTF-8 text of at most 256 bytes, padded with zeros: name of a frame. Simulators name frames
+    /// by the path of the sensor (`vehicle/lidar_link/gpu_lidar`).
     FrameName, "FrameName/v1", 256
 }
 

@@ -1,4 +1,4 @@
-//! What the wheels report.
+//! Wheel odometry.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -12,17 +12,17 @@ use crate::{FrameName, Pose2, Stamp};
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Odometry/v2"))]
 #[repr(C)]
 pub struct Odometry {
-    /// Of the measurement.
+    /// Stamp of the measurement.
     pub stamp: Stamp,
-    /// Pose of `child_frame` since the odometry's start.
+    /// Pose of `child_frame` relative to the start of the odometry.
     pub odom_from_child: Pose2,
     /// Velocity in the child frame: m/s, m/s, rad/s.
     pub twist: Pose2,
     /// Covariance of the pose, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
-    /// The frame in which the pose is given.
+    /// Frame of the pose.
     pub frame: FrameName,
-    /// The frame that moves: the robot's base or the laser.
+    /// Frame that moves: the robot's base or the laser.
     pub child_frame: FrameName,
 }
 

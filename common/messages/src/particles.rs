@@ -1,4 +1,4 @@
-//! Where a particle filter may start.
+//! Initial particles for a particle filter.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
-/// Header of topic `particles`; the items are poses around the hypotheses of a scan, as
-/// many around each as it is likely. None where the scan has no place.
+/// Header of topic `particles`; the items are poses around the hypotheses of a scan, their number
+/// in proportion to the probability of each. There are none if the scan has no hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -17,20 +17,20 @@ use crate::{Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct ParticlesHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
-    /// The map that was searched; 0 where there was none.
+    /// Map that was searched; 0 without a map.
     pub map_id: u64,
-    /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
+    /// 1 if the laser's mount is known and `map_from_base` is valid, else 0.
     pub mount_known: u64,
 }
 
-/// One pose; all weigh the same.
+/// One pose; all have the same weight.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Particle/v1"))]
 #[repr(C)]
 pub struct Particle {
-    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    /// Pose of the robot's base in the map; the laser's if the mount is unknown.
     pub map_from_base: Pose2,
 }
 

@@ -1,4 +1,4 @@
-//! A pose inside a message.
+//! A pose in a message.
 
 use bytemuck::{Pod, Zeroable};
 use geometry::Pose;
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Metres and radians; the field that holds it names the frames.
+/// A pose in metres and radians; the name of its field gives the frames.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Pose2/v1"))]
 #[repr(C)]
 pub struct Pose2 {
-    /// Metres.
+    /// Position along x in metres.
     pub x: f64,
-    /// Metres.
+    /// Position along y in metres.
     pub y: f64,
-    /// Radians, counter-clockwise.
+    /// Heading in radians, counter-clockwise.
     pub yaw: f64,
 }
 

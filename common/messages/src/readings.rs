@@ -1,4 +1,4 @@
-//! The readings of a scan that was brought to one time and place.
+//! Readings of a scan after motion correction or joining of lasers.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use crate::Stamp;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `readings`; the items are the beams that the second stage judges.
+/// Header of topic `readings`; the items are the beams for the second stage.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -16,26 +16,25 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct ReadingsHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
 }
 
-/// One beam, in the target frame: that of the laser at the scan's
-/// stamp or, where several lasers are joined, that of the base.
+/// One beam in the target frame: that of the laser at the scan's stamp or, with several lasers,
+/// that of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Reading/v1"))]
 #[repr(C)]
 pub struct Reading {
-    /// Where the laser was when it measured, metres.
+    /// Position of the laser at the measurement along x, in metres.
     pub from_x: f64,
-    /// Where the laser was when it measured, metres.
+    /// Position of the laser at the measurement along y, in metres.
     pub from_y: f64,
-    /// Direction of the beam, radians counter-clockwise.
+    /// Direction of the beam, in radians counter-clockwise.
     pub bearing: f64,
-    /// From the laser to where the beam ends, metres; infinity where nothing
-    /// returned.
+    /// Distance from the laser to the end of the beam, in metres; infinity without a return.
     pub range_m: f64,
-    /// How much the beam counts; 0 where nothing returned.
+    /// Weight of the beam; 0 without a return.
     pub weight: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Where poses are to be searched.
+//! Region of the search.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use crate::Stamp;
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// Header of topic `region`; the items are the corners of a polygon in turn, two
-/// of an upright rectangle, or none where poses are searched everywhere.
+/// Header of topic `region`; the items are the corners of a polygon in order, two opposite corners
+/// of an axis-aligned rectangle, or none to search everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -17,18 +17,18 @@ use crate::zero_copy::ZeroCopySend;
 )]
 #[repr(C)]
 pub struct RegionHeader {
-    /// When it was requested; the counter counts the requests.
+    /// Time of the request; the counter counts the requests.
     pub stamp: Stamp,
 }
 
-/// A corner, metres in the map.
+/// A corner of a region, in the map frame.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Corner/v1"))]
 #[repr(C)]
 pub struct Corner {
-    /// Metres.
+    /// Position along x in metres.
     pub x: f64,
-    /// Metres.
+    /// Position along y in metres.
     pub y: f64,
 }
 

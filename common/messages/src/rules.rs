@@ -1,33 +1,32 @@
-//! Which cells are occupied, free or unknown: rules that travel with the map.
+//! Rules that classify cells as occupied, free or unknown; they are part of the map.
 
 use crate::{FREE_TO, MapHeader, OCCUPIED_FROM, UNKNOWN};
 
-/// Rules by which the occupancy of a cell, 0..=100 or unknown, is read.
+/// Rules that classify a cell by its occupancy, 0..=100 or unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CellRules {
-    /// Occupancy from which a cell is occupied, per cent, 1..=100; the default
-    /// is that of map savers.
+    /// Occupancy from which a cell is occupied, in per cent, 1..=100; map savers use the same
+    /// default.
     #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = OCCUPIED_FROM, value_parser = clap::value_parser!(u8).range(1..=100)))]
     pub occupied_from: u8,
-    /// Occupancy up to which a cell is free, per cent, 0..=99; what lies
-    /// between counts as unknown.
+    /// Occupancy up to which a cell is free, in per cent, 0..=99; values in between are unknown.
     #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = FREE_TO, value_parser = clap::value_parser!(u8).range(0..=99)))]
     pub free_to: u8,
-    /// Unknown cells block rays and cannot hold the robot. Real maps are half
-    /// known, so by default they do not block, and those near free cells can.
+    /// Unknown cells block rays and cannot hold the robot. Real maps are half unknown, so by
+    /// default they do not block rays, and those near free cells can hold the robot.
     #[cfg_attr(feature = "clap", arg(long))]
     pub unknown_blocks: bool,
 }
 
-/// A rule of a map that is out of range.
+/// Error of a map with a rule out of range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InvalidRule {
-    /// The rule.
+    /// Name of the rule.
     pub field: &'static str,
-    /// As the map has it.
+    /// Value in the map.
     pub found: u64,
-    /// What it may be.
+    /// Description of the allowed values.
     pub allowed: &'static str,
 }
 
@@ -55,10 +54,10 @@ impl Default for CellRules {
 }
 
 impl CellRules {
-    /// The rules of a map, which are checked, for it comes from another process.
+    /// Reads the rules of a map and checks them, as it comes from another process.
     ///
     /// # Errors
-    /// If one is out of range.
+    /// A rule is out of range.
     pub fn of(map: &MapHeader) -> Result<Self, InvalidRule> {
         let refused = |field, found, allowed| InvalidRule {
             field,
@@ -82,7 +81,7 @@ impl CellRules {
         })
     }
 
-    /// The header of a map whose cells are to be read by these rules.
+    /// Puts these rules into the header of a map.
     #[must_use]
     pub fn header(self, map: MapHeader) -> MapHeader {
         MapHeader {
@@ -93,13 +92,13 @@ impl CellRules {
         }
     }
 
-    /// Whether a cell is an obstacle.
+    /// True if the cell is an obstacle.
     #[must_use]
     pub fn is_occupied(self, occupancy: u8) -> bool {
         occupancy >= self.occupied_from && occupancy != UNKNOWN
     }
 
-    /// Whether a cell is known to be free.
+    /// True if the cell is known to be free.
     #[must_use]
     pub fn is_free(self, occupancy: u8) -> bool {
         occupancy <= self.free_to && !self.is_occupied(occupancy)

@@ -1,4 +1,4 @@
-//! A request that the last minutes be saved.
+//! Request to save the last minutes.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use crate::zero_copy::ZeroCopySend;
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("SaveHeader/v1"))]
 #[repr(C)]
 pub struct SaveHeader {
-    /// When it was requested; the counter counts the requests.
+    /// Time of the request; the counter counts the requests.
     pub stamp: Stamp,
 }
 

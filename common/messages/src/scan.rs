@@ -13,31 +13,30 @@ use crate::{FrameName, Name, Pose2, Stamp};
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("ScanHeader/v2"))]
 #[repr(C)]
 pub struct ScanHeader {
-    /// Of the first beam.
+    /// Stamp of the first beam.
     pub stamp: Stamp,
-    /// Bearing of the first beam, radians counter-clockwise from ahead.
+    /// Bearing of the first beam, in radians counter-clockwise from ahead.
     pub angle_min: f64,
-    /// From one beam to the next, radians; below zero where the laser turns
-    /// clockwise.
+    /// Angle between consecutive beams, in radians; negative if the laser turns clockwise.
     pub angle_increment: f64,
-    /// From one beam to the next, seconds; 0 where unknown.
+    /// Time between consecutive beams, in seconds; 0 if unknown.
     pub time_increment_s: f64,
-    /// From one scan to the next, seconds; 0 where unknown.
+    /// Time between consecutive scans, in seconds; 0 if unknown.
     pub scan_time_s: f64,
-    /// Readings below are no returns, metres.
+    /// Readings below this are no returns, in metres.
     pub range_min_m: f32,
-    /// Readings at or above are no returns, metres.
+    /// Readings at or above this are no returns, in metres.
     pub range_max_m: f32,
-    /// Where the laser sits on the robot; identity unless `mount_known`.
+    /// Mount of the laser on the robot; identity unless `mount_known`.
     pub base_from_laser: Pose2,
-    /// 1 where the mount was given by a transform or the configuration, else 0.
+    /// 1 if the mount was given by a transform or the configuration, else 0.
     pub mount_known: u64,
-    /// 1 where the laser hangs upside down (rolled by half a turn about its x axis):
-    /// seen from above, bearing b of a beam is -b. Else 0.
+    /// 1 if the laser is mounted upside down (rolled by half a turn about its x axis), so that seen
+    /// from above, a beam of bearing b has bearing -b. Else 0.
     pub upside_down: u64,
-    /// Which of several lasers it is; empty where the graph has one.
+    /// Name of the laser; empty if the graph has only one.
     pub laser: Name,
-    /// The laser's frame.
+    /// Frame of the laser.
     pub frame: FrameName,
 }
 

@@ -1,4 +1,4 @@
-//! When something was measured, and when the graph first saw it.
+//! Times of a measurement.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -6,24 +6,23 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "iceoryx2")]
 use crate::zero_copy::ZeroCopySend;
 
-/// The origin of a measurement. Every step copies the stamp of its input
-/// onward, so latency is always now minus `entered_ns`.
+/// Times and number of a measurement. Every step copies the stamp of its input, so latency is
+/// always now minus `entered_ns`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Stamp/v1"))]
 #[repr(C)]
 pub struct Stamp {
-    /// Nanoseconds since 1970 at which the source measured; a recording keeps
-    /// its own.
+    /// Time of the measurement by the source's clock, in nanoseconds since 1970; a recording keeps
+    /// the original time.
     pub measured_ns: i64,
-    /// The host's `CLOCK_MONOTONIC` in nanoseconds when it entered the graph.
+    /// `CLOCK_MONOTONIC` of the host in nanoseconds when it entered the graph.
     pub entered_ns: i64,
-    /// Counts up by one from 0 at the publisher, so that gaps show losses.
+    /// Number of the measurement at its publisher, from 0; gaps show losses.
     pub counter: u64,
 }
 
 impl Stamp {
-    /// Whether both are of the same measurement. When it entered does not count: each
-    /// machine says that by its own clock.
+    /// True if both are of the same measurement. `entered_ns` is ignored, as it differs by machine.
     #[must_use]
     pub fn is_of(self, other: Stamp) -> bool {
         (self.measured_ns, self.counter) == (other.measured_ns, other.counter)

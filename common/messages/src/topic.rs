@@ -1,4 +1,4 @@
-//! The topics of the graph: their names, types and quality of service.
+//! Topics of the graph: their names, types and quality of service.
 
 use bytemuck::Pod;
 
@@ -12,7 +12,7 @@ use crate::{
 #[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend as Shareable;
 
-/// What iceoryx2 asks of what lies in shared memory; without it, nothing.
+/// Trait of types in shared memory, required by iceoryx2; empty without that feature.
 #[cfg(not(feature = "iceoryx2"))]
 pub trait Shareable {}
 
@@ -28,22 +28,22 @@ impl<T: Pod + Shareable + std::fmt::Debug> Message for T {}
 ///
 /// A message of fixed size is a header with an empty slice of bytes.
 pub trait Topic: 'static {
-    /// The name in the graph, and of the port in `dataflow.yaml`.
+    /// Name in the graph, and of the port in `dataflow.yaml`.
     const NAME: &'static str;
-    /// The header of each sample.
+    /// Header of each sample.
     type Header: Message;
-    /// What the slice holds.
+    /// Items of each sample.
     type Item: Message;
-    /// Whether the newest sample is kept for those who join later.
+    /// True if the newest sample is kept for late joiners.
     const LATCHED: bool = false;
-    /// How many samples of a publisher are kept for them.
+    /// Number of samples of a publisher that are kept for late joiners.
     const HISTORY: usize = if Self::LATCHED { 1 } else { 0 };
-    /// Samples that a slow subscriber may lag behind before the oldest is
-    /// dropped; the transport counts what it drops.
+    /// Number of samples queued for a slow subscriber before the oldest is dropped; the transport
+    /// counts dropped samples.
     const DEPTH: usize = 4;
-    /// Most processes that may publish at the same time.
+    /// Largest number of processes that may publish at the same time.
     const MAX_PUBLISHERS: usize = 2;
-    /// Most processes that may subscribe at the same time.
+    /// Largest number of processes that may subscribe at the same time.
     const MAX_SUBSCRIBERS: usize = 8;
 }
 
@@ -60,7 +60,7 @@ macro_rules! topics {
                 $($(topics!(@const $const $value);)+)?
             }
         )+
-        /// The names of all topics, as `dataflow.yaml` may use them.
+        /// Names of all topics, for use in `dataflow.yaml`.
         pub const NAMES: &[&str] = &[$($name),+];
     };
     (@const latched $value:expr) => { const LATCHED: bool = $value; };
@@ -71,46 +71,46 @@ macro_rules! topics {
 }
 
 topics! {
-    /// Ranges in metres, in the order of the beams; infinity where nothing came back.
-    /// Deeper than other topics, for a player sends the scans of all lasers.
+    /// Ranges in metres, in the order of the beams; infinity without a return. The queue is deeper
+    /// than that of other topics, as a player sends the scans of all lasers.
     Scan = "scan", ScanHeader, [f32] { depth: 8, publishers: 8 };
-    /// The pose that wheels report, with twist; no items.
+    /// Pose and twist from wheel odometry; no items.
     OdometryTopic = "odometry", Odometry, [u8] { depth: 16 };
     /// Occupancy, row by row from the lowest y: 0 free to 100 occupied, 255 unknown.
     Map = "map", MapHeader, [u8] { latched: true, depth: 1 };
-    /// The occupied cells that a ray can meet first.
+    /// Occupied cells that a ray can hit first.
     Boundary = "boundary", BoundaryHeader, [BoundaryCell] { latched: true, depth: 1 };
     /// All maps of a set, which are searched together.
     Maps = "maps", MapsHeader, [u8] { latched: true, depth: 1 };
-    /// Which of the votes of a scan are on which map, where several are searched.
+    /// Assignment of a scan's votes to maps, if several are searched.
     VotesByMap = "votes_by_map", VotesByMapHeader, [VotesHeader];
-    /// The poses at or above the floor, most votes first.
+    /// Poses at or above the floor, most votes first.
     Votes = "votes", VotesHeader, [Vote];
-    /// What the second stage judges of a scan that was joined or moved.
+    /// Readings for the second stage, of a scan that was joined or motion-corrected.
     Readings = "readings", ReadingsHeader, [Reading];
-    /// The intensity image, row by row from the lowest y.
+    /// Intensity image, row by row from the lowest y.
     Field = "field", FieldHeader, [u16] { depth: 1 };
-    /// Where the robot may be, best first.
+    /// Candidate poses of the robot, best first.
     Hypotheses = "hypotheses", HypothesesHeader, [Hypothesis] { depth: 16 };
-    /// Where a particle filter may start, around the hypotheses of a scan.
+    /// Initial particles for a particle filter, around the hypotheses of a scan.
     Particles = "particles", ParticlesHeader, [Particle];
-    /// Where the tracker has the robot; the items are why, in words, as UTF-8.
+    /// Pose from the tracker; the items are the reason in words, as UTF-8.
     Tracked = "pose", PoseHeader, [u8] { depth: 16 };
-    /// Scans that the tracker wants searched; no items.
+    /// Scans that the tracker requests to be searched; no items.
     Attention = "attention", AttentionHeader, [u8] { depth: 16 };
-    /// Where the robot is said to be; no items.
+    /// Initial pose of the robot from outside; no items.
     InitialPoseTopic = "initial_pose", InitialPose, [u8];
-    /// What became of each beam at the best pose.
+    /// Comparison of each beam with the map at the best pose.
     Beams = "beams", BeamsHeader, [Beam];
-    /// The true pose of a scan, where a recording holds it; no items.
+    /// True pose of a scan, from a recording; no items.
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
-    /// Where poses are to be searched from now on; no items where everywhere.
+    /// Region of all following searches; without items, everywhere.
     Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
-    /// A request that the recorder save the last minutes; no items.
+    /// Request to the recorder to save the last minutes; no items.
     Save = "save", SaveHeader, [u8];
-    /// The state of each node; the items are its last error as UTF-8.
+    /// State of each node; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };
-    /// What each node logs, a line at a time; the items are the line as UTF-8.
+    /// Log of each node; the items are one line as UTF-8.
     Log = "log", LogHeader, [u8] { latched: true, history: 16, depth: 64, publishers: 24, subscribers: 8 };
 }
 

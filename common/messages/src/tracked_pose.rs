@@ -1,4 +1,4 @@
-//! Where the tracker has the robot, and how sure it is.
+//! Pose from the tracker, and its certainty.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,107 +7,105 @@ use serde::{Deserialize, Serialize};
 use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Pose2, Stamp};
 
-/// The message of topic `pose`; the items are the reason in words, and what to do, as
-/// UTF-8.
+/// The message of topic `pose`; the items are the reason in words and what to do, as UTF-8.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("PoseHeader/v1"))]
 #[repr(C)]
 pub struct PoseHeader {
-    /// Of the scan or, between scans, of the odometry.
+    /// Stamp of the scan or, between scans, of the odometry.
     pub stamp: Stamp,
-    /// The map that the pose is about; 0 where there is none.
+    /// Map of the pose; 0 without a map.
     pub map_id: u64,
     /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
     pub sent_ns: i64,
-    /// Nanoseconds of computing, the search not included.
+    /// Computing time in nanoseconds, without the search.
     pub tracking_ns: u64,
-    /// When the state began, as the stamps of scans count: nanoseconds since 1970.
+    /// Start of the current state by the stamps of scans: nanoseconds since 1970.
     pub since_ns: i64,
-    /// Metres that the robot has gone since.
+    /// Distance that the robot has moved since then, in metres.
     pub since_m: f64,
-    /// Pose of the laser in the map; of the first, where several are joined.
+    /// Pose of the laser in the map; of the first one if there are several.
     pub map_from_laser: Pose2,
-    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    /// Pose of the robot's base in the map; the laser's if the mount is unknown.
     pub map_from_base: Pose2,
-    /// Where the odometry's frame lies in the map; meant where `odom_known` is 1.
+    /// Pose of the odometry's frame in the map; valid if `odom_known` is 1.
     pub map_from_odom: Pose2,
-    /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
     pub laser_covariance: [f64; 9],
-    /// Of `map_from_base`, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of `map_from_base`, row by row over x, y and yaw: m², m·rad, rad².
     pub base_covariance: [f64; 9],
-    /// How likely the robot is there, 0..=1.
+    /// Probability of the pose, 0..=1.
     pub probability: f64,
     /// Natural logarithm of the odds of that probability.
     pub lead: f64,
-    /// How well the last scan fits the map there, at most 1.
+    /// Fit of the last scan to the map at the pose, at most 1.
     pub score: f64,
-    /// A [`TrackState`].
+    /// State of the tracker, a [`TrackState`].
     pub state: u32,
-    /// A [`TrackReason`].
+    /// Reason for the state, a [`TrackReason`].
     pub reason: u32,
-    /// Places that are kept as possible, the best included.
+    /// Number of places that are kept as possible, including the best.
     pub places: u32,
-    /// 1 where the pose is that of a scan, 0 where odometry carried it on since.
+    /// 1 if the pose is that of a scan, 0 if odometry has moved it on since.
     pub from_scan: u32,
-    /// 1 where there is a pose: of the place that is believed, else of the one that
-    /// leads.
+    /// 1 if there is a pose: that of the believed place, else of the leading one.
     pub pose_known: u32,
-    /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
+    /// 1 if the laser's mount is known and `map_from_base` is valid, else 0.
     pub mount_known: u32,
-    /// 1 where odometry is known, and `map_from_odom` is meant, else 0.
+    /// 1 if odometry is known and `map_from_odom` is valid, else 0.
     pub odom_known: u64,
-    /// The frame of the odometry, where it is known.
+    /// Frame of the odometry, if it is known.
     pub odom_frame: FrameName,
 }
 
 impl PoseHeader {
-    /// Most bytes of the words.
+    /// Longest reason in words, in bytes.
     pub const WORDS_CAPACITY: usize = 256;
 
-    /// Pose of the laser in the map, where there is one.
+    /// Returns the pose of the laser in the map, if there is one.
     #[must_use]
     pub fn laser(&self) -> Option<Pose2> {
         let pose = Some(self.map_from_laser).filter(|_| self.pose_known == 1);
         pose.filter(|&pose| geometry::Pose::from(pose).is_finite())
     }
 
-    /// Pose of the base in the map, where there is one and the laser's mount is known.
+    /// Returns the pose of the base in the map, if there is one and the laser's mount is known.
     #[must_use]
     pub fn base(&self) -> Option<Pose2> {
         let pose = self.laser().map(|_| self.map_from_base);
         pose.filter(|&pose| self.mount_known == 1 && geometry::Pose::from(pose).is_finite())
     }
 
-    /// Whether there is a pose, and the tracker believes it.
+    /// True if there is a pose and the tracker believes it.
     #[must_use]
     pub fn is_believed(&self) -> bool {
         let state = TrackState::from_code(self.state);
         self.pose_known == 1 && state.is_some_and(TrackState::is_believed)
     }
 
-    /// Whether there is a pose, and nothing speaks against it.
+    /// True if there is a pose and nothing contradicts it.
     #[must_use]
     pub fn is_unique(&self) -> bool {
         self.pose_known == 1 && self.state == TrackState::Unique as u32
     }
 }
 
-/// What the tracker knows.
+/// State of the tracker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum TrackState {
-    /// It has not found the robot yet.
+    /// The robot has not been found yet.
     Searching = 0,
     /// One place is left, and the scans fit there.
     Unique = 1,
-    /// The pose is kept, but something speaks against it.
+    /// The pose is kept, but something contradicts it.
     Doubtful = 2,
-    /// It had the robot, and the scans say that it is not there any more.
+    /// The robot was found before, but scans say that it is no longer at the pose.
     Lost = 3,
 }
 
 impl TrackState {
-    /// The state with this number, if there is one.
+    /// Returns the state with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [Self::Searching, Self::Unique, Self::Doubtful, Self::Lost]
@@ -115,13 +113,13 @@ impl TrackState {
             .find(|state| *state as u32 == code)
     }
 
-    /// Whether the tracker believes a place.
+    /// True if the tracker believes a place.
     #[must_use]
     pub fn is_believed(self) -> bool {
         matches!(self, Self::Unique | Self::Doubtful)
     }
 
-    /// The word that logs and tables show.
+    /// Returns the name for logs and tables.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
@@ -139,23 +137,23 @@ impl std::fmt::Display for TrackState {
     }
 }
 
-/// Why the tracker is in its state.
+/// Reason for the state of the tracker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum TrackReason {
     /// No scan has been answered yet.
     NoScan = 0,
-    /// No map has come yet.
+    /// No map has been received yet.
     NoMap = 1,
     /// One place leads clearly, and the scan fits there.
     OnePlace = 2,
     /// Several places fit.
     SeveralPlaces = 3,
-    /// One place leads, and not by enough yet.
+    /// One place leads, but not by enough yet.
     TooEarly = 4,
-    /// The scan does not fit where the robot should be.
+    /// The scan does not fit at the expected pose.
     PoorFit = 5,
-    /// Laser and odometry disagree about how the robot moved.
+    /// Laser and odometry disagree about the motion of the robot.
     OdometryJump = 6,
     /// Scans fit better at another place.
     AnotherPlace = 7,
@@ -164,7 +162,7 @@ pub enum TrackReason {
 }
 
 impl TrackReason {
-    /// The reason with this number, if there is one.
+    /// Returns the reason with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [

@@ -1,4 +1,4 @@
-//! The outcome of one search: the poses that the scan votes for.
+//! Result of one search: the poses that the scan votes for.
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
-/// Header of topic `votes`; the items are poses by falling intensity, equal ones
-/// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
-/// below. Where several maps were searched, they are those of each in turn.
+/// Header of topic `votes`; the items are poses by falling intensity, equal ones by (heading, y,
+/// x): all at or above `certified_floor`, and distinct candidates below. If several maps were
+/// searched, the poses of each map follow in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -18,69 +18,68 @@ use crate::{Pose2, Stamp};
 )]
 #[repr(C)]
 pub struct VotesHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
-    /// The map that was searched; 0 where there was none.
+    /// Map that was searched; 0 without a map.
     pub map_id: u64,
-    /// How many items there are.
+    /// Number of items.
     pub total: u64,
-    /// Nanoseconds of computing, from scan to votes.
+    /// Computing time from scan to votes, in nanoseconds.
     pub engine_ns: u64,
-    /// Poses whose intensity was computed one by one.
+    /// Number of poses whose intensity was computed individually.
     pub poses_evaluated: u64,
-    /// A [`SearchOutcome`].
+    /// Outcome of the search, a [`SearchOutcome`].
     pub outcome: u32,
-    /// Headings a turn; heading `h` is `2π h / headings` in the grid's frame.
+    /// Number of headings in a full turn; heading `h` is `2π h / headings` in the grid's frame.
     pub headings: u32,
-    /// The least intensity among the items; 0 where there are none.
+    /// Lowest intensity among the items; 0 without items.
     pub floor: u32,
-    /// At and above this intensity the items are all that there are.
+    /// Intensity at and above which the items are complete.
     pub certified_floor: u32,
-    /// The highest intensity of any pose.
+    /// Highest intensity of any pose.
     pub best: u32,
-    /// What a pose would have if every beam agreed fully.
+    /// Intensity of a pose that agrees with every beam.
     pub highest_possible: u32,
-    /// 1 where the floor was raised so that the items fit; [`VotesHeader::CUT`] where the
-    /// search took more work than it may, so that poses below the certified floor may have
-    /// been missed, which can lie above the best; else 0.
+    /// 1 if the floor was raised so that the items fit; [`VotesHeader::CUT`] if the search exceeded
+    /// its work limit, so that poses below the certified floor may be missing, which can be above
+    /// the best; else 0.
     pub truncated: u32,
-    /// Beams that voted.
+    /// Number of beams that voted.
     pub beams_used: u32,
-    /// 1 where the heading was given and only x and y were searched, else 0.
+    /// 1 if the heading was given and only x and y were searched, else 0.
     pub heading_known: u32,
-    /// Beams whose reading says nothing: no return, too near or too far.
+    /// Number of beams without a usable reading: no return, too near or too far.
     pub beams_silent: u32,
-    /// The given heading in the map frame, radians; 0 where it was searched.
+    /// Given heading in the map frame, in radians; 0 if it was searched.
     pub known_heading: f64,
-    /// The largest rounding of a bearing to the heading grid, radians.
+    /// Largest rounding of a bearing to the heading grid, in radians.
     pub bearing_rounding: f64,
-    /// Where the laser sits on the robot; identity unless `mount_known`.
+    /// Mount of the laser on the robot; identity unless `mount_known`.
     pub base_from_laser: Pose2,
-    /// 1 where the mount was given, else 0.
+    /// 1 if the mount was given, else 0.
     pub mount_known: u64,
-    /// Most beams of a scan that vote; longer scans are thinned by arc.
+    /// Largest number of beams of a scan that vote; longer scans are thinned by arc.
     pub max_beams: u32,
-    /// Cells of the map along the side of a cell that was searched: of this many
-    /// are the items' cells.
+    /// Downsampling factor: map cells per search cell and axis. Items are in search cells.
     pub pooling: u32,
-    /// Arc at the reading from which a beam counts fully, metres.
+    /// Arc at the reading from which a beam has full weight, in metres.
     pub beam_arc_m: f64,
-    /// 1 where topic `readings` holds what the second stage is to judge: the scan
-    /// was joined from several lasers, or its motion was taken out. Else 0.
+    /// 1 if topic `readings` has the readings for the second stage, because the scan was joined
+    /// from several lasers or motion-corrected. Else 0.
     pub has_readings: u32,
-    /// Lasers of which the scan was joined.
+    /// Number of lasers that the scan was joined from.
     pub lasers_used: u32,
-    /// Maps that were searched together; their votes follow each other, in the order of topic
-    /// `votes_by_map`, which has what this header says of the leading map for each of them. 0
-    /// where one map was searched alone.
+    /// Number of maps that were searched together. Their votes follow each other in the order of
+    /// topic `votes_by_map`, whose items have for each map what this header has for the leading
+    /// map. 0 if one map was searched alone.
     pub maps: u64,
-    /// What was searched, as [`searched_id`](crate::searched_id) says it: the map's id, and of
-    /// a set one of all its maps; 0 where nothing was.
+    /// Id of what was searched, see [`searched_id`](crate::searched_id): the map's id, or for a set
+    /// an id of all its maps; 0 without a search.
     pub searched: u64,
 }
 
-/// Header of topic `votes_by_map`: which of the votes of a scan are on which map. The items
-/// are the headers that the votes of each map would have alone; `total` is how many they are.
+/// Header of topic `votes_by_map`: assigns the votes of a scan to maps. The items are the headers
+/// that the votes of each map would have alone; `total` is their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "iceoryx2",
@@ -89,33 +88,32 @@ pub struct VotesHeader {
 )]
 #[repr(C)]
 pub struct VotesByMapHeader {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub stamp: Stamp,
 }
 
 impl VotesHeader {
-    /// What `truncated` is where the search was cut.
+    /// Value of `truncated` if the search was cut.
     pub const CUT: u32 = 2;
 }
 
-/// How a search ended.
+/// Outcome of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum SearchOutcome {
     /// The best pose was found, and it has votes.
     Found = 0,
-    /// The scan is sound but no beam could vote: nothing returned, or the map
-    /// explains no reading.
+    /// The scan is valid but no beam could vote: no returns, or the map explains no reading.
     NoVotes = 1,
-    /// The scan was refused; the sender's health says why.
+    /// The scan was rejected; the sender's health has the reason.
     Refused = 2,
-    /// The scan is kept, and searched once `attention` asks for it. No hypotheses
-    /// follow; the counters of these messages show what was lost.
+    /// The scan is kept, and searched if `attention` requests it. No hypotheses follow; the
+    /// counters of these messages show losses.
     NotAsked = 3,
 }
 
 impl SearchOutcome {
-    /// The outcome with this number, if there is one.
+    /// Returns the outcome with this code, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
         [Self::Found, Self::NoVotes, Self::Refused, Self::NotAsked]
@@ -129,9 +127,9 @@ impl SearchOutcome {
 #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Vote/v1"))]
 #[repr(C)]
 pub struct Vote {
-    /// Cells that were searched along x from the grid's origin.
+    /// Search cells along x from the grid's origin.
     pub x: u16,
-    /// Cells that were searched along y from the grid's origin.
+    /// Search cells along y from the grid's origin.
     pub y: u16,
     /// Index of the heading.
     pub heading: u16,

@@ -1,4 +1,4 @@
-//! That iceoryx2 may put a type into shared memory: the trait, and what derives it with
+//! Re-exports of the iceoryx2 trait for types in shared memory, and of its derive macro, which adds
 //! the versioned name of the type.
 
 pub(crate) use iceoryx2_bb_derive_macros::ZeroCopySend;

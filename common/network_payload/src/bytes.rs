@@ -1,7 +1,7 @@
-//! Items as postcard has them: a count and one after the other.
+//! Items in postcard format: a count, then one after the other.
 //!
-//! Bytes are copied as a block; the result is the same as one by one, and a map
-//! of millions of cells takes no time then.
+//! Bytes are copied as a block, with the same result as one by one, so that a map of millions of
+//! cells takes little time.
 
 use std::any::TypeId;
 
@@ -9,7 +9,6 @@ use bytemuck::{Pod, cast_slice};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Appends the items.
 pub(crate) fn append<I: Pod + Serialize>(
     items: &[I],
     to: Vec<u8>,
@@ -22,7 +21,7 @@ pub(crate) fn append<I: Pod + Serialize>(
     Ok(to)
 }
 
-/// The items at the start of `bytes`, and what follows them.
+/// Splits `bytes` into the items at its start and the rest.
 pub(crate) fn take<I: Pod + DeserializeOwned>(
     bytes: &[u8],
 ) -> Result<(Vec<I>, &[u8]), postcard::Error> {

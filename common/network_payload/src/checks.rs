@@ -1,9 +1,8 @@
-//! What a message from outside must hold before it enters a graph.
+//! Checks on a message from the network before it enters a graph.
 //!
-//! Nodes check again what they rely on. Here is refused what no sound sender
-//! sends: invalid numbers, sizes that contradict each other, text that is
-//! none. Readings of a scan may be anything, for lasers say "nothing came back"
-//! in all ways there are, and the engine knows them.
+//! Nodes check again what they rely on. These checks reject what no correct sender sends: invalid
+//! numbers, contradicting sizes, invalid text. Ranges of a scan may have any value, since lasers
+//! encode a missing echo in many ways, all of which the engine handles.
 
 use messages::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
@@ -18,7 +17,7 @@ use crate::WireError;
 
 type Checked = Result<(), WireError>;
 
-/// What a number must be.
+/// Allowed values of a number.
 const FINITE: &str = "a finite number";
 
 pub(crate) fn scan(header: &ScanHeader, _: &[f32]) -> Checked {
@@ -209,7 +208,7 @@ fn area(width: u32, height: u32) -> u64 {
     u64::from(width) * u64::from(height)
 }
 
-/// Refuses on behalf of one topic.
+/// Builds the errors of one topic.
 #[derive(Clone, Copy)]
 struct Refuse {
     topic: &'static str,

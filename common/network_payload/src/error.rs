@@ -2,77 +2,68 @@
 //!
 //! Each variant says what was found and what is allowed.
 
-/// A payload that cannot be used, or a message that cannot become one.
+/// Error of decoding or encoding a payload.
 #[derive(Debug, thiserror::Error)]
 pub enum WireError {
-    /// Another schema, another version of it, or none.
+    /// The payload has another schema or version, or none.
     #[error("the payload is {found:?}: on topic {topic} allowed is {expected:?}")]
     Encoding {
-        /// The topic.
         topic: &'static str,
-        /// What the sender says it is, cut to a few words.
+        /// Encoding given by the sender, cut to its first characters.
         found: String,
-        /// What it should say.
+        /// Encoding of this topic.
         expected: String,
     },
-    /// More bytes than a message of this topic can have.
+    /// The payload has more bytes than allowed on this topic.
     #[error("{found} bytes on topic {topic}: allowed are at most {most}")]
     TooLong {
-        /// The topic.
         topic: &'static str,
-        /// Bytes that came, or would have to be unpacked at least.
+        /// Size found, in bytes.
         found: usize,
-        /// Most bytes.
+        /// Largest size allowed, in bytes.
         most: usize,
     },
-    /// Not a zstd frame, or one that unpacks to more than a message can have.
+    /// The payload is not a zstd frame, or unpacks to more than allowed.
     #[error("topic {topic} does not unpack to at most {most} bytes")]
     Compression {
-        /// The topic.
         topic: &'static str,
-        /// Most bytes.
+        /// Largest size allowed, in bytes.
         most: usize,
-        /// What zstd says.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// Not what the encoding says.
+    /// The payload does not match its schema.
     #[error("topic {topic} does not match its postcard schema")]
     Postcard {
-        /// The topic.
         topic: &'static str,
-        /// What postcard says.
         source: postcard::Error,
     },
-    /// Bytes behind the message.
+    /// Bytes follow the message.
     #[error("{found} bytes follow the message on topic {topic}: allowed is none")]
     Trailing {
-        /// The topic.
         topic: &'static str,
-        /// How many.
+        /// Number of these bytes.
         found: usize,
     },
-    /// A field that is out of its range, or contradicts another one.
+    /// A field is out of its range or contradicts another one.
     #[error("topic {topic}: {field} is {found}, but must be {allowed}")]
     Field {
-        /// The topic.
         topic: &'static str,
-        /// The field.
+        /// Name of the field.
         field: &'static str,
-        /// What it holds.
         found: String,
-        /// What it may hold.
+        /// Description of the allowed values.
         allowed: String,
     },
-    /// No name for a robot or a map.
+    /// The name of a robot or a map is invalid.
     #[error("{found:?} is not a name: allowed are 1 to {most} of a-z A-Z 0-9 - _ .", most = crate::MAX_NAME_BYTES)]
     Name {
-        /// What was given.
+        /// Text as found.
         found: String,
     },
-    /// A name that no robot may have.
+    /// The name is reserved.
     #[error("{found:?} is taken: a robot needs another name")]
     Taken {
-        /// What was given.
+        /// Text as found.
         found: String,
     },
 }

@@ -1,21 +1,19 @@
-//! The keys under which topics and signs of life stand.
+//! Keys of topics and of liveliness tokens.
 //!
-//! The robot is a part of its own, so that rules of access can name it.
+//! The robot is a separate part of the key, so that access rules can name it.
 
 use crate::{Wire, WireError};
 
-/// The longest name of a robot or a map, bytes.
+/// Longest name of a robot or a map, in bytes.
 pub const MAX_NAME_BYTES: usize = 64;
 
-/// The part of a key under which [`locate`] stands, so that no robot has this name.
+/// Second part of the keys of [`locate`]; a robot must not have this name.
 const LOCATE: &str = "locate";
 
-/// Checks a name that is to stand in keys, where `/`, `*`, `$`, `?`, `#` and `@` mean
-/// something.
+/// Checks a name that is used in keys, where `/`, `*`, `$`, `?`, `#` and `@` have special meanings.
 ///
 /// # Errors
-/// [`WireError::Name`] if it is empty, too long, or holds another character than
-/// those allowed.
+/// [`WireError::Name`] if it is empty, too long, or has an invalid character.
 pub fn name(text: &str) -> Result<String, WireError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if (1..=MAX_NAME_BYTES).contains(&text.len()) && text.chars().all(is_plain) {
@@ -28,7 +26,7 @@ pub fn name(text: &str) -> Result<String, WireError> {
 /// Checks the name of a robot.
 ///
 /// # Errors
-/// As [`name`], and [`WireError::Taken`] where something else has it.
+/// See [`name`]; also [`WireError::Taken`] if the name is reserved.
 pub fn robot(text: &str) -> Result<String, WireError> {
     if text == LOCATE {
         let found = text.to_owned();
@@ -37,28 +35,28 @@ pub fn robot(text: &str) -> Result<String, WireError> {
     name(text)
 }
 
-/// The name of the robot that a process belongs to: the one given, else that of its
-/// machine `host`, where it can stand in keys, else `robot`.
+/// Returns the name of the robot of a process: the given one, or the host name if it is valid in
+/// keys, or `robot`.
 #[must_use]
 pub fn robot_or_host(given: Option<&str>, host: &str) -> String {
     let host = || robot(host).unwrap_or_else(|_| "robot".to_owned());
     given.map_or_else(host, str::to_owned)
 }
 
-/// Where a map's places are asked for: `backcast/locate/<map>`.
+/// Returns the key of location requests on a map: `backcast/locate/<map>`.
 #[must_use]
 pub fn locate(map: &str) -> String {
     format!("backcast/{LOCATE}/{map}")
 }
 
-/// Where a robot's topic stands: `backcast/<robot>/<topic>`.
+/// Returns the key of a robot's topic: `backcast/<robot>/<topic>`.
 #[must_use]
 pub fn key<T: Wire>(robot: &str) -> String {
     format!("backcast/{robot}/{}", T::NAME)
 }
 
-/// Where the liveliness token of one process of the robot stands:
-/// `backcast/<robot>/alive/<session>`, or below it that of a node.
+/// Returns the key of the liveliness token of a process of the robot,
+/// `backcast/<robot>/alive/<session>`, with `/<node>` appended for that of a node.
 #[must_use]
 pub fn alive(robot: &str, session: &str, node: Option<&str>) -> String {
     let session = format!("backcast/{robot}/alive/{session}");

@@ -1,21 +1,18 @@
-//! Messages as they cross a network: bytes that anybody can read, and the checks
-//! that whoever receives them makes before anything is used.
+//! Network format of messages, and the checks on received messages before use.
 //!
-//! A payload is [postcard](https://postcard.jamesmunns.com/wire-format): the
-//! fields of [`Preamble`], those of the topic's header, the items as a sequence.
-//! Its encoding names the schema and its version, [`encoding`], so that a reader
-//! knows without looking inside; what is worth it is compressed with zstd, and
-//! the encoding says so.
+//! A payload is in [postcard](https://postcard.jamesmunns.com/wire-format) format: the fields of
+//! [`Preamble`], those of the topic's header, the items as a sequence. Its Zenoh [`encoding`] names
+//! the schema and its version, so that a reader need not look inside. Large topics are compressed
+//! with zstd, which is part of the encoding.
 //!
 //! | encoding | payload |
 //! |---|---|
 //! | `application/postcard;backcast.Scan/v2` | as above |
 //! | `application/postcard+zstd;backcast.Map/v1` | one zstd frame of it |
 //!
-//! What is sent is not trusted: another schema, a payload or an item too many, a
-//! invalid number and a header that contradicts its items are refused, and
-//! nothing is reserved that the bytes do not bring along. The crate opens no
-//! socket and reads no clock.
+//! Senders are not trusted: wrong schemas, excess bytes or items, invalid numbers and headers that
+//! contradict their items are rejected, and no memory is reserved beyond the received bytes. The
+//! crate opens no socket and reads no clock.
 
 mod bytes;
 mod checks;

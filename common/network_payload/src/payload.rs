@@ -1,9 +1,9 @@
-//! A message as a payload, and back.
+//! Encodes and decodes messages.
 //!
 //! | field | postcard | meaning |
 //! |---|---|---|
 //! | `sender` | varint(u64) | the session id of the sending process, a random number |
-//! | `sequence` | varint(u64) | counts up by one from 0 for each topic of a sender |
+//! | `sequence` | varint(u64) | number of the message, from 0 for each topic of a sender |
 //! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent |
 //! | header | its fields in order | see `messages` |
 //! | items | varint(count), then each | see `messages` |
@@ -12,40 +12,37 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Wire, WireError, bytes};
 
-/// The compression level of zstd: the fastest of its ordinary ones. Maps shrink to
-/// a few per cent at any.
+/// Compression level of zstd: the fastest ordinary one. Maps shrink to a few per cent at any level.
 const LEVEL: i32 = 1;
-/// Characters of a foreign encoding that an error shows.
+/// Characters of an unknown encoding shown in an error.
 const SHOWN: usize = 80;
 
-/// What stands in front of each message.
+/// Fields in front of each message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Preamble {
-    /// The session id: a random number that the sending process keeps while it lives.
+    /// Session id: a random number of the sending process.
     pub sender: u64,
-    /// Counts up by one from 0 for each topic of a sender: a gap is a loss, and a
-    /// number at or below the last one a repetition.
+    /// Number of the message, counted from 0 for each topic of a sender: a gap is a loss, and a
+    /// number at or below the last one is a repetition.
     pub sequence: u64,
-    /// The sender's `CLOCK_MONOTONIC` in nanoseconds when it was sent, by which
-    /// the receiver turns the times in the message into its own clock's.
+    /// The sender's `CLOCK_MONOTONIC` in nanoseconds when it was sent; with it the receiver
+    /// converts the times in the message to its own clock.
     pub clock_ns: i64,
 }
 
-/// A message that was received and passed all checks.
+/// A received message that passed all checks.
 #[derive(Debug)]
 pub struct Received<T: Wire> {
-    /// Who sent it, as what, when.
     pub preamble: Preamble,
-    /// The header; its times are the sender's until [`Received::rebase`].
+    /// Header of the message; its times are of the sender's clock until [`Received::rebase`].
     pub header: T::Header,
-    /// The items.
     pub items: Vec<T::Item>,
 }
 
 impl<T: Wire> Received<T> {
-    /// Turns the times that the sender's clock gave into those of the clock that
-    /// shows `now_ns` here, so that what was 5 ms old at sending is 5 ms old now.
-    /// The time on the network counts for nothing, for nobody knows it.
+    /// Converts the header's times from the sender's clock to this machine's, which shows `now_ns`:
+    /// what was 5 ms old when it was sent is 5 ms old now. The unknown time on the network is not
+    /// counted.
     pub fn rebase(&mut self, now_ns: i64) {
         let sent_ns = self.preamble.clock_ns;
         T::each_time(&mut self.header, |time_ns| {
@@ -55,17 +52,17 @@ impl<T: Wire> Received<T> {
     }
 }
 
-/// What the payloads of a topic say that they are.
+/// Returns the encoding of a topic's payloads.
 #[must_use]
 pub fn encoding<T: Wire>() -> String {
     let packed = if T::COMPRESSED { "+zstd" } else { "" };
     format!("application/postcard{packed};backcast.{}", T::SCHEMA)
 }
 
-/// The payload of a message.
+/// Encodes a message.
 ///
 /// # Errors
-/// If the message could not be received: see [`decode`].
+/// The message would be rejected by [`decode`].
 pub fn encode<T: Wire>(
     preamble: &Preamble,
     header: &T::Header,
@@ -86,11 +83,11 @@ pub fn encode<T: Wire>(
     zstd::bulk::compress(&payload, LEVEL).map_err(packing::<T>)
 }
 
-/// The message in a payload that says of itself what it is by `found`.
+/// Decodes a payload whose given encoding is `found`.
 ///
 /// # Errors
-/// If it is of another schema, too long, damaged, or holds what a message of this
-/// topic must not; see [`WireError`].
+/// The payload has another schema, is too long or damaged, or has values that are invalid on this
+/// topic; see [`WireError`].
 pub fn decode<T: Wire>(found: &str, payload: &[u8]) -> Result<Received<T>, WireError> {
     let expected = encoding::<T>();
     if found != expected {
@@ -251,7 +248,7 @@ mod tests {
         back.rebase(50_000);
         assert_eq!(back.header.stamp.entered_ns, 50_000 - 600);
         assert_eq!(back.header.stamp.measured_ns, -5, "a date, no age");
-        // What claims to come from the future is new, and nothing overflows.
+        // A time in the future becomes age 0, and nothing overflows.
         back.header.stamp.entered_ns = i64::MAX;
         back.preamble.clock_ns = i64::MIN;
         back.rebase(50_000);

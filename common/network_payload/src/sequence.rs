@@ -1,35 +1,35 @@
-//! What is lost on the way, and what comes twice.
+//! Detects lost and repeated messages.
 //!
-//! Senders are known by a number that each picks at random. Of a flood of made-up
-//! ones only the newest few are remembered.
+//! Each sender has a random session id. Only the newest few are remembered, as a flood may use
+//! made-up ids.
 
 use std::collections::VecDeque;
 
-/// Senders of one topic that are remembered at the same time.
+/// Largest number of senders remembered for one topic.
 const MOST: usize = 32;
 
-/// What the number of a message shows.
+/// Result of checking a message's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
-    /// It is new, and this many before it were lost.
+    /// The message is new.
     New {
-        /// Messages between the last one of this sender and this one.
+        /// Number of messages lost between the last one of this sender and this one.
         lost: u64,
     },
-    /// It came before, or a later one did.
+    /// This message, or a later one, was received before.
     Repeated,
 }
 
-/// The numbers that came last on one topic, for each sender. Pure.
+/// Last number of each sender on one topic. Pure.
 #[derive(Debug, Default)]
 pub struct Arrivals {
-    /// Sender and its last number, the most recent one at the back.
+    /// Pairs of sender and last number, the most recent at the back.
     last: VecDeque<(u64, u64)>,
 }
 
 impl Arrivals {
-    /// Notes number `sequence` of `sender`. The first of a sender shows no
-    /// loss, for one may join late.
+    /// Records number `sequence` of `sender`. The first message of a sender shows no loss, as a
+    /// subscriber may join late.
     pub fn note(&mut self, sender: u64, sequence: u64) -> Arrival {
         let known = self.last.iter().position(|&(id, _)| id == sender);
         let known = known.and_then(|at| self.last.remove(at));

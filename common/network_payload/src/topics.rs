@@ -1,6 +1,6 @@
-//! What each topic is on a network: its schema, its limits, its times.
+//! Network properties of each topic: schema, limits, times.
 //!
-//! A topic's schema changes its version whenever its header or its items do.
+//! The version of a schema changes whenever the topic's header or items do.
 
 use messages::{Topic, topic};
 use serde::Serialize;
@@ -8,38 +8,36 @@ use serde::de::DeserializeOwned;
 
 use crate::{WireError, checks};
 
-/// A topic that may leave the machine.
+/// A topic that may be sent over a network.
 pub trait Wire:
     Topic<Header: Serialize + DeserializeOwned, Item: Serialize + DeserializeOwned>
 {
-    /// Name and version of the payload's structure.
+    /// Name and version of the payload's schema.
     const SCHEMA: &'static str;
-    /// Most bytes of a payload, before it is compressed and as it comes.
+    /// Largest payload in bytes, both uncompressed and as received.
     const MAX_BYTES: usize;
-    /// Whether payloads are compressed.
+    /// True if payloads are compressed.
     const COMPRESSED: bool;
-    /// Whether a late joiner on another machine is to get the newest sample: of
-    /// what is said once and holds until it is said again.
+    /// True if late joiners on another machine get the newest sample: for messages that hold until
+    /// the next one.
     const KEPT: bool;
-    /// Whether its publisher computes it only while somebody subscribes, so that
-    /// nobody is to subscribe on behalf of nobody.
+    /// True if the publisher computes it only while it has subscribers, so that relays subscribe
+    /// only on request.
     const ON_DEMAND: bool;
 
-    /// Refuses what contradicts itself, or holds no number where one must be.
+    /// Checks for contradictions and invalid numbers.
     ///
     /// # Errors
-    /// [`WireError::Field`], with the field and what it may hold.
+    /// [`WireError::Field`] with the field and its allowed values.
     fn check(header: &Self::Header, items: &[Self::Item]) -> Result<(), WireError>;
 
-    /// Calls `change` with each time of the host's clock in the header.
+    /// Calls `change` for each time of the sender's monotonic clock in the header.
     fn each_time(header: &mut Self::Header, change: impl FnMut(&mut i64));
 }
 
-/// Something to be done with a topic that is known by name alone.
+/// A generic operation on a topic that is given by name.
 pub trait Visit {
-    /// What comes of it.
     type Output;
-    /// Does it with `T`.
     fn visit<T: Wire>(self) -> Self::Output;
 }
 
@@ -67,7 +65,7 @@ macro_rules! wire {
             }
         )+
 
-        /// Does something with the topic called `name`, if there is one.
+        /// Calls `visitor` with the topic called `name`; `None` if there is none.
         pub fn by_name<V: Visit>(name: &str, visitor: V) -> Option<V::Output> {
             $(
                 if name == <topic::$topic as Topic>::NAME {
@@ -139,7 +137,7 @@ mod tests {
         assert!(by_name("scam", Schema).is_none());
     }
 
-    /// A layout that changes takes its schema along.
+    /// A changed layout must change its schema.
     #[test]
     fn schemas_have_the_versions_of_the_messages() {
         struct Version;

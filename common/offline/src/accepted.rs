@@ -1,4 +1,4 @@
-//! Whether anything came of the scans of a recording.
+//! Counts accepted and rejected scans of a recording.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use transport::with_causes;
 use super::Reply;
 use crate::OfflineError;
 
-/// Scans that were asked for, and why the first was refused.
+/// Number of scans searched and rejected, and the reason of the first rejection.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Accepted {
     scans: u64,
@@ -16,7 +16,6 @@ pub struct Accepted {
 }
 
 impl Accepted {
-    /// Counts what came of a scan.
     pub fn count(&mut self, reply: &Reply<'_>) {
         self.scans += 1;
         if let Err(refusal) = &reply.answer {
@@ -26,10 +25,10 @@ impl Accepted {
         }
     }
 
-    /// Checks that not every scan was refused.
+    /// Fails if every scan was rejected.
     ///
     /// # Errors
-    /// Says why the first was.
+    /// Every scan was rejected; names the first reason.
     pub fn check(self, file: &Path) -> Result<(), OfflineError> {
         match self.first_refusal {
             Some(reason) if self.refused == self.scans => Err(OfflineError::AllRefused {

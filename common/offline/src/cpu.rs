@@ -1,5 +1,4 @@
-//! The processor time of this thread: what a computation costs, whatever else
-//! runs on the machine.
+//! CPU time of this thread: the cost of a computation, independent of the load of the machine.
 
 use std::time::Duration;
 
@@ -7,10 +6,10 @@ use nix::time::{ClockId, clock_gettime};
 
 use crate::OfflineError;
 
-/// Does `work` and returns what it gave, with the milliseconds that it cost.
+/// Runs `work` and returns its result, with its CPU time in milliseconds.
 ///
 /// # Errors
-/// The system has no such clock.
+/// The CPU clock cannot be read.
 pub fn timed<T>(work: impl FnOnce() -> T) -> Result<(T, f64), OfflineError> {
     let start = thread_time()?;
     let done = work();
@@ -30,7 +29,7 @@ mod tests {
 
     #[test]
     fn computing_costs() {
-        // Spins until the clock itself has moved on by two milliseconds.
+        // Spins until the CPU clock has advanced by two milliseconds.
         let spin = || {
             let start = thread_time().unwrap();
             while thread_time().unwrap() - start < Duration::from_millis(2) {}
@@ -43,8 +42,8 @@ mod tests {
 
     #[test]
     fn the_work_of_other_threads_is_theirs() {
-        // The other thread stops when its own clock has moved on, so the first
-        // reading of ours lies before, the second after its work.
+        // The other thread stops once its own clock has advanced, so our first reading is before
+        // its work and our second one after it.
         let (theirs, ours) = timed(|| {
             let spin = || {
                 let work = || while thread_time().unwrap() < Duration::from_millis(20) {};
@@ -53,8 +52,8 @@ mod tests {
             std::thread::spawn(spin).join().unwrap()
         })
         .unwrap();
-        // To start and to join a thread takes a share of a millisecond; the
-        // process as a whole has worked for more than theirs.
+        // Starting and joining a thread takes a fraction of a millisecond; the whole process has
+        // worked longer than the other thread.
         assert!(ours < theirs, "{ours} {theirs}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a recording says about the headings of its scans.
+//! Headings of scans from the data of a recording.
 
 use std::sync::Arc;
 
@@ -12,20 +12,20 @@ use transport::with_causes;
 use super::TakenScan;
 use super::topics::concerns_other;
 
-/// All that a recording says about headings, and what of it is asked for.
+/// Heading data of a recording, and the configured source.
 #[derive(Debug, Clone)]
 pub(crate) struct Headings {
     source: HeadingSource,
     history: History,
-    /// What of the recording is left out.
+    /// Notes about messages that cannot be used.
     notes: Vec<String>,
 }
 
 impl Headings {
-    /// Reads from the recording what the options ask for.
+    /// Reads the data that the configured source needs.
     ///
     /// # Errors
-    /// It is not there, or one of its messages cannot be used.
+    /// The data does not exist, or one of its messages cannot be used.
     pub(crate) fn of(
         config: &HeadingConfig,
         recording: &Recording,
@@ -45,21 +45,18 @@ impl Headings {
         })
     }
 
-    /// What of the recording is left out.
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Where the headings come from.
     pub(crate) fn source(&self) -> HeadingSource {
         self.source
     }
 
-    /// The laser's heading when it measured `scan`; `None` where it is to be
-    /// searched.
+    /// Heading of the laser at the time of `scan`, in radians; `None` if it is to be searched.
     ///
     /// # Errors
-    /// Nothing that is known belongs to the scan.
+    /// There is no heading for the time of the scan.
     pub(crate) fn of_scan(&self, scan: &TakenScan) -> Result<Option<f64>, HeadingError> {
         let header = ScanHeader {
             stamp: measured(scan.stamp_ns),
@@ -101,8 +98,8 @@ fn read_odometry(
     })
 }
 
-/// Goes through the odometry of a channel; returns what is left out: how many
-/// messages cannot be used, and why the first.
+/// Passes each odometry message of a channel to `take`; returns a note about messages that cannot
+/// be used: their number, and the reason of the first.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -116,7 +113,7 @@ pub fn each_odometry(
         let received = match record {
             Ok(record) if record.topic != *topic => continue,
             Ok(record) => odometry_of(recording, &record),
-            // It lies behind all that can be read, and the scans come to it too.
+            // The damage follows all readable messages, and is reported with the scans.
             Err(RecordingError::Damaged { .. }) => break,
             Err(error) if concerns_other(&error, topic) => continue,
             Err(error @ RecordingError::Message { .. }) => Err(error),
@@ -168,7 +165,7 @@ mod tests {
         Header::new(Time { sec: 0, nanosec }, frame_id)
     }
 
-    /// A recording with a scan, odometry of a frame, and a true pose.
+    /// A recording with odometry of a frame, and a true pose.
     fn recording(child_frame: &str) -> Recording {
         let pose = ros::Pose::from_planar(Pose::new(1.0, 2.0, 0.25));
         let mut odometry = ros::Odometry {

@@ -1,13 +1,13 @@
-//! A map as the engine takes it: where its cells lie, and whether it can be used.
+//! Adapts a map for the engine: geometry and suitability.
 
 use engine::EngineError;
 use engine::grid::{CellRules, Grid, GridFrame};
 use map::OccupancyGrid;
 
-/// Whether a map can be searched at all, without preparing it.
+/// Checks that a map can be searched, without preparing it.
 ///
 /// # Errors
-/// As the engine would refuse it: its sides, or no occupied or no free cell.
+/// The same as those of the engine: invalid sides, or no occupied or no free cell.
 pub fn check_map(map: &OccupancyGrid, rules: CellRules) -> Result<(), EngineError> {
     let (width, height) = sides_of(map);
     let grid = Grid::new(width, height, &map.cells, rules)?;
@@ -18,7 +18,6 @@ pub fn check_map(map: &OccupancyGrid, rules: CellRules) -> Result<(), EngineErro
     }
 }
 
-/// Size of a cell, and the pose of the lower left corner.
 pub fn frame_of(map: &OccupancyGrid) -> GridFrame {
     GridFrame {
         resolution_m: map.resolution_m,
@@ -26,7 +25,7 @@ pub fn frame_of(map: &OccupancyGrid) -> GridFrame {
     }
 }
 
-/// Sides of a map, cells along x and y.
+/// Number of cells along x and y.
 pub fn sides_of(map: &OccupancyGrid) -> (usize, usize) {
     (map.width as usize, map.height as usize)
 }

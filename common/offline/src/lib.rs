@@ -1,9 +1,8 @@
-//! What `locate`, `evaluate` and `plot` share: the scans of a recording, each asked for
-//! its place on a map, in this process and without a graph.
+//! Searches the scans of a recording on a map, in this process and without a graph; shared by
+//! `locate`, `evaluate` and `plot`.
 //!
-//! The engine is the graph's, with the same settings, so the votes are the same
-//! to the last one. Files are read and times are taken in here; nothing is
-//! printed but by the commands.
+//! It uses the engine of the graph with the same settings, so the votes are exactly equal. This
+//! crate reads files and measures times; printing is left to the commands.
 
 mod accepted;
 pub mod cpu;

@@ -1,6 +1,5 @@
-//! Which map counts for a scan: the newest that was recorded before it, as the
-//! graph would have it, or the first after it where none came before. Where no scan is
-//! asked for, it is the newest.
+//! Selects the map for a scan: the newest one recorded before it, as in the graph, or the first one
+//! after it if there is none before. [`map_in`] returns the newest map.
 
 use std::borrow::Cow;
 use std::iter::Peekable;
@@ -12,19 +11,19 @@ use transport::with_causes;
 
 use crate::OfflineError;
 
-/// A map that was recorded, with its log time.
+/// A recorded map with its log time.
 type Recorded = Result<(i64, OccupancyGridMsg), RecordingError>;
 
-/// The maps of a recording by log time, or one for all scans.
+/// Maps of a recording by log time, or one map for all scans.
 pub(super) struct Maps<'a> {
     given: Option<&'a OccupancyGrid>,
     recorded: Peekable<Box<dyn Iterator<Item = Recorded> + 'a>>,
-    /// Whether one has been given out.
+    /// True once a map has been returned.
     began: bool,
 }
 
 impl<'a> Maps<'a> {
-    /// The map that is given, whatever is recorded.
+    /// Uses the given map for all scans, and ignores recorded ones.
     pub(super) fn given(map: &'a OccupancyGrid) -> Self {
         Maps {
             given: Some(map),
@@ -33,7 +32,7 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// None: what counts was prepared before.
+    /// Contains no map, since the map has already been prepared.
     pub(super) fn none() -> Self {
         Maps {
             given: None,
@@ -42,10 +41,10 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// Those of a recording.
+    /// Uses the maps of a recording.
     ///
     /// # Errors
-    /// Several topics could be meant.
+    /// Several topics contain maps.
     pub(super) fn recorded(recording: &'a Recording) -> Result<Self, RecordingError> {
         Ok(Maps {
             given: None,
@@ -61,12 +60,12 @@ impl<'a> Maps<'a> {
         maps.peekable()
     }
 
-    /// Whether there is none.
+    /// True if there is no map at all.
     pub(super) fn is_empty(&mut self) -> bool {
         self.given.is_none() && self.recorded.peek().is_none()
     }
 
-    /// What has come since the last question, for a scan of this log time.
+    /// Returns the maps that arrived since the last call, for a scan of this log time.
     pub(super) fn since(
         &mut self,
         log_time_ns: i64,
@@ -78,14 +77,14 @@ impl<'a> Maps<'a> {
             self.began = true;
         }
         while let Some(next) = self.recorded.peek() {
-            // One that does not decode stands among those of its time.
+            // A map that cannot be decoded has no log time and is due at once.
             let is_due = next.as_ref().map_or(true, |(time, _)| *time <= log_time_ns);
             if !is_due && self.began {
                 break;
             }
             self.began = true;
             let next = self.recorded.next();
-            // One at a time, for there may be many, and large ones.
+            // Keeps one map at a time, since there may be many large ones.
             arrived.take(next.map_or(Err(String::new()), grid), &check);
         }
         arrived
@@ -98,12 +97,11 @@ fn grid<'a>(recorded: Recorded) -> Result<Cow<'a, OccupancyGrid>, String> {
     grid.map(Cow::Owned).map_err(|error| with_causes(&error))
 }
 
-/// Maps that have come.
 #[derive(Debug, Default)]
 pub(super) struct Arrived<'a> {
-    /// The newest that can be used.
+    /// The newest usable map.
     pub(super) map: Option<Cow<'a, OccupancyGrid>>,
-    /// Why others cannot.
+    /// Reasons why other maps cannot be used.
     pub(super) refusals: Vec<String>,
 }
 
@@ -121,15 +119,15 @@ impl<'a> Arrived<'a> {
     }
 }
 
-/// The newest map that a recording holds.
+/// Returns the newest map of a recording.
 ///
 /// # Errors
-/// It holds none, or one that cannot be used.
+/// It contains no map, or one that cannot be used.
 pub fn map_in(recording: &Recording) -> Result<OccupancyGrid, OfflineError> {
     recording.map()?.ok_or_else(|| no_map(recording))
 }
 
-/// What is wrong with a recording without a map: that, or its damage.
+/// Error for a recording without a map; its damage, if it is damaged.
 pub(super) fn no_map(recording: &Recording) -> OfflineError {
     match recording.damage_error() {
         Some(damage) => damage.into(),
@@ -161,7 +159,7 @@ mod tests {
         Recording::from_bytes("r.mcap", bytes).unwrap()
     }
 
-    /// The width of the map that came, where those of 7 cells cannot be used.
+    /// Width of the arrived map, and number of refusals; maps 7 cells wide cannot be used.
     fn width(maps: &mut Maps<'_>, log_time_ns: i64) -> (Option<u32>, usize) {
         let check = |map: &OccupancyGrid| match map.width {
             7 => Err("it is 7 cells wide".to_owned()),

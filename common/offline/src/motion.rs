@@ -1,5 +1,5 @@
-//! Brings the scans of a recording to one time, as the graph's accumulator does: with
-//! the same code, and all odometry at hand.
+//! Transforms the scans of a recording to one time, with the code of the graph's accumulator, but
+//! with all odometry available.
 
 use std::sync::Arc;
 
@@ -13,19 +13,19 @@ use super::TakenScan;
 use super::heading::each_odometry;
 use crate::OfflineError;
 
-/// The scans of a recording's lasers, brought to one time.
+/// Scans of a recording's lasers, transformed to one time.
 pub(crate) struct Motion<'a> {
     recording: &'a Recording,
     config: JoinConfig,
     joiner: Joiner,
-    /// Whether the odometry was read, which only scans that take time need.
+    /// True once the odometry was read; it is needed only for scans that take time.
     is_read: bool,
     deskews: bool,
     notes: Vec<String>,
 }
 
 impl<'a> Motion<'a> {
-    /// Of the lasers with these topics.
+    /// Joins the scans of the lasers with these topics.
     pub(crate) fn of(recording: &'a Recording, topics: &[Arc<str>], motion: &MotionConfig) -> Self {
         let scans = match topics {
             [_] => Vec::new(),
@@ -45,10 +45,10 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Takes a scan, and those of the other lasers that came since the one before.
+    /// Adds a scan, and the scans of other lasers since the previous one.
     ///
     /// # Errors
-    /// The scan cannot be one of the graph, or the recording cannot be read.
+    /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
     pub(crate) fn take(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
         let takes_time = self.joiner.targets_base() || scan.message.time_increment != 0.0;
         if takes_time && self.deskews {
@@ -61,7 +61,7 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// Reads the odometry, unless that has been done.
+    /// Reads the odometry on the first call.
     ///
     /// # Errors
     /// The recording cannot be read.
@@ -85,44 +85,44 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// Forgets all scans, and takes this odometry in place of the recorded one.
+    /// Drops all scans, and uses this odometry in place of the recorded one.
     pub(crate) fn begin_again(&mut self, odometry: &[Odometry]) {
         self.joiner = Joiner::keeping_all(self.config.clone());
         odometry.iter().for_each(|one| self.joiner.on_odometry(one));
         self.is_read = true;
     }
 
-    /// Brings what was taken to the time of the scan.
+    /// Transforms the added scans to the time of the newest.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub(crate) fn bring(&mut self) -> Result<(), EngineError> {
         let brought = self.joiner.bring()?;
         self.notes.extend(brought.notes(self.joiner.flows()));
         Ok(())
     }
 
-    /// Where the target frame was by the odometry when the scan was taken.
+    /// Pose of the target frame by odometry, at the time of the scan.
     pub(crate) fn by_odometry(&self) -> Option<ByOdometry> {
         self.joiner.by_odometry()
     }
 
-    /// What was brought.
+    /// The transformed scan.
     pub(crate) fn seen(&self) -> Seen<'_> {
         self.joiner.seen()
     }
 
-    /// Whether places are searched for the base, of several lasers.
+    /// True if the base's pose is searched, as with several lasers.
     pub(crate) fn targets_base(&self) -> bool {
         self.joiner.targets_base()
     }
 
-    /// The heading of the laser, radians, as that of what is searched.
+    /// Converts a heading of the laser, in radians, to one of the searched frame.
     pub(crate) fn target_heading(&self, laser_heading: f64) -> f64 {
         self.joiner.target_heading(laser_heading)
     }
 
-    /// What is worth knowing, and has not been said yet.
+    /// Returns the notes since the last call.
     pub(crate) fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }

@@ -1,4 +1,4 @@
-//! Options of all of them.
+//! Options of `locate`, `evaluate` and `plot`.
 
 use std::path::{Path, PathBuf};
 
@@ -17,16 +17,15 @@ use super::maps::map_in;
 use super::topics::TopicOptions;
 use crate::OfflineError;
 
-/// The map, the scans that are taken, and how they are searched.
+/// Map, selection of scans, and settings of the search.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Options {
-    /// The map, a YAML file as map_server reads it, or another recording that
-    /// holds one; `locate` searches several together if it is given several times
-    /// [default: in the recording, the newest before each scan]
+    /// The map, a YAML file in the format of map_server, or another recording that contains one;
+    /// `locate` searches several together if it is given several times [default: in the recording,
+    /// the newest before each scan]
     #[arg(long, value_name = "FILE")]
     pub map: Vec<PathBuf>,
 
-    /// Which channels are meant.
     #[command(flatten)]
     pub topics: TopicOptions,
 
@@ -34,52 +33,42 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub every: u64,
 
-    /// Where the heading comes from.
     #[command(flatten)]
     pub heading: HeadingConfig,
 
-    /// How motion within a scan is taken out.
     #[command(flatten)]
     pub motion: MotionConfig,
 
-    /// The engine's settings.
     #[command(flatten)]
     pub engine: EngineOptions,
 
-    /// Where prepared maps are kept.
     #[command(flatten, next_help_heading = "Kept maps")]
     pub index_cache: IndexCacheConfig,
 }
 
-/// A map of several.
+/// One map of a set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedMap {
-    /// What it is called.
     pub name: String,
-    /// The floor, where the set says so.
+    /// Floor, if the map set defines it.
     pub floor: Option<String>,
-    /// The map.
     pub grid: OccupancyGrid,
 }
 
-/// All settings of the engine, as the nodes of the graph take them.
+/// All settings of the engine, the same as those of the graph's nodes.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Engine")]
 pub struct EngineOptions {
-    /// What the values of cells mean.
     #[command(flatten)]
     pub cells: CellRules,
-    /// How the best poses are searched.
     #[command(flatten)]
     pub localizer: LocalizerConfig,
-    /// How the poses found are judged.
     #[command(flatten)]
     pub peaks: PeakConfig,
 }
 
 impl Options {
-    /// Checks what no option can check alone, and that there is one map at most; opens
-    /// nothing.
+    /// Checks relations between options, and that there is at most one map; opens no file.
     ///
     /// # Errors
     /// Names the option and what is allowed.
@@ -93,7 +82,7 @@ impl Options {
         self.check_settings()
     }
 
-    /// The same where there may be several maps.
+    /// Like [`Options::check`], but allows several maps.
     ///
     /// # Errors
     /// Names the option and what is allowed.
@@ -111,21 +100,22 @@ impl Options {
         }
     }
 
-    /// The map that is named, if one is; recordings to be searched are named, too,
-    /// for the case that the two were swapped.
+    /// Loads the map given by `--map`, if any. `recordings` are the files to be searched; they help
+    /// to detect that map and recording were swapped.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The map cannot be read.
     pub fn load_map(&self, recordings: &[PathBuf]) -> Result<Option<OccupancyGrid>, OfflineError> {
         let file = self.map.first();
         file.map(|file| self.load(file, recordings)).transpose()
     }
 
-    /// The maps that are named, if there are several: by `--map`, or those of a set, which is
-    /// a folder or a file that lists them. Where names of maps or floors are given, only those.
+    /// Loads several maps: those given by `--map`, or those of a set, which is a folder or a file
+    /// that lists them; empty if there are not several. `on` selects maps by the names of maps or
+    /// floors.
     ///
     /// # Errors
-    /// One of them cannot be read, the set is none, or has no such map and no such floor.
+    /// A map or the set cannot be read, or it contains no map and no floor of a name in `on`.
     pub fn load_set(
         &self,
         set: Option<&Path>,
@@ -162,13 +152,13 @@ impl Options {
         map_in(&recording)
     }
 
-    /// Opens a recording, or several files of one.
+    /// Opens a recording, which may consist of several files.
     ///
     /// # Errors
-    /// It cannot be read, or has no channel that is named.
+    /// It cannot be read, or does not contain a given channel.
     pub fn open(&self, paths: &[PathBuf]) -> Result<Recording, OfflineError> {
         let mut recording = Recording::open_all(paths)?;
-        // Where the map is another's, so is its channel.
+        // With `--map`, the map's topic belongs to that file.
         let map_topic = self
             .topics
             .map_topic
@@ -183,7 +173,7 @@ impl Options {
     }
 }
 
-/// Whether it is named as a map is, and is no recording.
+/// True if the file has an extension of maps and is not a recording.
 fn is_map(path: &Path) -> bool {
     let endings = ["yaml", "yml", "pgm", "png", "bmp"];
     let ending = path.extension().and_then(|ending| ending.to_str());

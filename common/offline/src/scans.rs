@@ -1,4 +1,4 @@
-//! The scans of a recording, by log time, each N-th of them.
+//! Iterates over every N-th scan of a recording, by log time.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,36 +11,34 @@ use ros::{ConversionError, LaserScan, lasers, measurements};
 
 use super::topics::concerns_other;
 
-/// A scan and what the recording says about it.
+/// A scan with its context from the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TakenScan {
-    /// When it was measured, nanoseconds since 1970.
+    /// Time of measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
-    /// When it was recorded, nanoseconds since 1970.
+    /// Log time, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// Where the laser sits on the robot, if that is known.
+    /// Mount of the laser, if known.
     pub base_from_laser: Option<Pose>,
-    /// Whether it hangs there upside down, so that its beams, seen from above, turn
-    /// the other way.
+    /// True if the laser is mounted upside down, so that its beams turn the other way as seen from
+    /// above.
     pub upside_down: bool,
-    /// As the recording has it.
     pub message: LaserScan,
-    /// Which of several lasers it is; empty where there is one.
+    /// Name of the laser; empty if there is only one.
     pub laser: String,
-    /// Of the other lasers, what was recorded since the scan before.
+    /// Scans of other lasers recorded since the previous scan.
     pub others: Vec<TakenScan>,
 }
 
 impl TakenScan {
-    /// The laser's frame.
     pub fn frame(&self) -> &str {
         &self.message.header.frame_id
     }
 
-    /// As the graph has it.
+    /// Converts to the header of a graph message.
     ///
     /// # Errors
-    /// The frame's name is longer than a message of the graph can hold.
+    /// The frame's name is longer than a message can hold.
     pub fn header(&self) -> Result<ScanHeader, ConversionError> {
         let frame = measurements::frame(self.frame())?;
         let mount = self.base_from_laser.map(|base_from_laser| Mount {
@@ -53,7 +51,7 @@ impl TakenScan {
         })
     }
 
-    /// As the engine takes it: seen from above.
+    /// Converts to a scan of the engine, as seen from above.
     pub fn borrowed(&self) -> Scan<'_> {
         let message = &self.message;
         let as_measured = Scan {
@@ -67,14 +65,14 @@ impl TakenScan {
     }
 }
 
-/// Iterates over the scans. One that does not decode is an error in its place;
-/// damage of the file is the last item.
+/// Iterator over the scans. A scan that cannot be decoded is an error in its place; damage of the
+/// file is the last item.
 pub struct Scans<'a> {
     recording: &'a Recording,
     records: Records<'a>,
-    /// The first is that of the scans that are answered.
+    /// The first one is the topic of the scans that are searched.
     topics: Vec<Arc<str>>,
-    /// Of the other lasers, since the last scan that was taken.
+    /// Scans of other lasers since the last scan that was returned.
     others: Vec<TakenScan>,
     every: u64,
     seen: u64,
@@ -83,8 +81,8 @@ pub struct Scans<'a> {
 }
 
 impl<'a> Scans<'a> {
-    /// Each `every`-th scan of the first of these channels, with those of the others
-    /// that came since; `every` is at least 1.
+    /// Returns each `every`-th scan of the first channel, with the scans of the other channels
+    /// since the previous one; `every` is at least 1.
     pub fn of(recording: &'a Recording, topics: Vec<Arc<str>>, every: u64) -> Self {
         Scans {
             recording,
@@ -98,7 +96,7 @@ impl<'a> Scans<'a> {
         }
     }
 
-    /// How many there are, those that do not decode included.
+    /// Number of scans, including those that cannot be decoded.
     pub fn total(&self) -> u64 {
         let channels = self.recording.channels();
         let first = channels.filter(|channel| self.topics.first() == Some(&channel.topic));
@@ -106,19 +104,19 @@ impl<'a> Scans<'a> {
         scans.div_ceil(self.every)
     }
 
-    /// What is worth knowing about the mounts, and has not been said yet.
+    /// Returns the notes about mounts since the last call.
     pub(super) fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }
 
-    /// Counts a scan of the channel; whether it is taken.
+    /// Counts a scan of the channel; true if it is selected.
     fn take_next(&mut self) -> bool {
         let is_taken = self.seen.is_multiple_of(self.every);
         self.seen += 1;
         is_taken
     }
 
-    /// Keeps a scan of another laser: the newest two, which also give its period.
+    /// Keeps the newest two scans of another laser, which also give its period.
     fn keep(&mut self, scan: TakenScan) {
         let of_laser = |other: &TakenScan| other.laser == scan.laser;
         if self.others.iter().filter(|other| of_laser(other)).count() == 2
@@ -174,7 +172,8 @@ impl Iterator for Scans<'_> {
             };
             let record = match record {
                 Ok(record) => record,
-                // Also where it would not be taken: the file is not sound.
+                // Reports the error even for a scan that is not selected, since the file is not
+                // sound.
                 Err(error) => {
                     self.take_next();
                     return Some(Err(error));

@@ -1,5 +1,4 @@
-//! One recording on one map: everything read and prepared, ready to be asked
-//! scan by scan.
+//! A session searches the scans of one recording on its map.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -26,22 +25,20 @@ use super::world::{Answer, World};
 use super::{Options, TakenScan, cpu};
 use crate::OfflineError;
 
-/// A recording that is being gone through.
+/// State of reading and searching a recording.
 pub struct Session<'a> {
-    /// The scans, in order.
     pub scans: Scans<'a>,
-    /// Milliseconds of computing that preparing maps has cost.
+    /// CPU time of preparing maps, in milliseconds.
     pub prepare_cpu_ms: f64,
     maps: Maps<'a>,
-    /// The map that counts for the last scan that was asked for.
+    /// Map of the last scan that was searched.
     prepared: Option<Prepared<'a>>,
-    /// Why the newest map cannot be used.
+    /// Reason why the newest map cannot be used.
     refusal: String,
     notes: Vec<String>,
     said: BTreeSet<String>,
     map_file: PathBuf,
     engine: EngineOptions,
-    /// Where prepared maps are kept.
     cache: Option<IndexCache>,
     headings: Headings,
     motion: Motion<'a>,
@@ -50,38 +47,37 @@ pub struct Session<'a> {
 /// A map that is ready to be searched.
 struct Prepared<'a> {
     map: Cow<'a, OccupancyGrid>,
-    /// Of the map as it is, whatever has been erased since.
+    /// Id of the original map, before any cells were erased.
     map_id: u64,
     world: World,
 }
 
-/// A scan as the tracker takes it.
+/// Tracker input of one scan.
 pub struct View {
-    /// Where the beams end, seen from the laser.
+    /// End points of the beams, in the laser's frame.
     pub ends: Ends,
-    /// Where the target frame was by the odometry.
+    /// Pose of the target frame by odometry.
     pub by_odometry: Option<ByOdometry>,
-    /// Whose pose is searched.
+    /// Frame whose pose is searched.
     pub target: Target,
 }
 
-/// What came of one scan.
+/// Result of one scan.
 pub struct Reply<'a> {
-    /// The map's id, as the graph's messages have it; 0 without one.
+    /// The map's id, as in the graph's messages; 0 without a map.
     pub map_id: u64,
-    /// Milliseconds of computing from the scan to the verdict or the refusal;
-    /// decoding is not in it.
+    /// CPU time from the scan to the verdict or rejection, in milliseconds, without decoding.
     pub cpu_ms: f64,
-    /// The places, or why the scan is refused.
+    /// The places, or the reason for the rejection.
     pub answer: Result<Answer<'a>, OfflineError>,
 }
 
 impl<'a> Session<'a> {
-    /// Looks at the map that is given, else at those in the recording.
+    /// Opens a session on the given map, else on the maps of the recording.
     ///
     /// # Errors
-    /// Something that is needed is not there, or the map that is given cannot be
-    /// used. Where something is missing in a damaged file, the damage is the error.
+    /// Data is missing, or the given map cannot be used. If data is missing in a damaged file, the
+    /// damage is the error.
     pub fn open(
         recording: &'a Recording,
         options: &Options,
@@ -96,7 +92,7 @@ impl<'a> Session<'a> {
             return Err(no_map(recording));
         }
         if let Some(map) = given {
-            // Without it there is nothing to be done for any scan.
+            // An unusable given map is an error at once, since no scan could be searched.
             session.maps.since(i64::MIN, |_| Ok(()));
             session.prepare(Cow::Borrowed(map))?.map_err(|source| {
                 let file = session.map_file.clone();
@@ -129,10 +125,10 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Looks at several maps that are given, for each scan at all of them together.
+    /// Opens a session that searches several maps together for each scan.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The same as those of [`Session::open`].
     pub fn open_on(
         recording: &'a Recording,
         options: &Options,
@@ -157,10 +153,10 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// The map that counts for the last scan that was asked for.
+    /// Map of the last scan that was searched.
     ///
     /// # Errors
-    /// There is none that can be used.
+    /// There is no usable map.
     pub fn map(&self) -> Result<&OccupancyGrid, OfflineError> {
         Ok(&self.prepared()?.map)
     }
@@ -168,12 +164,12 @@ impl<'a> Session<'a> {
     /// The same map, ready to be searched.
     ///
     /// # Errors
-    /// As [`Session::map`].
+    /// The same as those of [`Session::map`].
     pub fn world(&self) -> Result<&World, OfflineError> {
         Ok(&self.prepared()?.world)
     }
 
-    /// What is worth knowing, and has not been said yet.
+    /// Returns the notes since the last call, each text once per session.
     pub fn take_notes(&mut self) -> Vec<String> {
         self.notes.extend(self.scans.take_notes());
         self.notes.extend(self.motion.take_notes());
@@ -187,8 +183,7 @@ impl<'a> Session<'a> {
         self.prepared.as_ref().ok_or_else(none)
     }
 
-    /// Makes the map that counts for a scan the one that is searched. A map that
-    /// cannot be used is left out, as the graph does.
+    /// Prepares the map for a scan. A map that cannot be used is ignored, as in the graph.
     fn turn_to(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
         let rules = self.engine.cells;
         let check =
@@ -227,8 +222,7 @@ impl<'a> Session<'a> {
         }))
     }
 
-    /// Notes what is to be said of the file of an index, and writes one that is to be
-    /// written.
+    /// Notes problems with a cached index, and saves a new index.
     fn keep(&mut self, kept: Kept) {
         let saved = kept.unsaved.map(Unsaved::save);
         let problems = kept.problem.into_iter().chain(saved.and_then(Result::err));
@@ -236,11 +230,10 @@ impl<'a> Session<'a> {
         self.notes.extend(notes);
     }
 
-    /// Prepares the map of a scan again, unknown within a radius, metres, of a
-    /// point.
+    /// Prepares the map of a scan again with all cells within `radius_m` of `centre` unknown.
     ///
     /// # Errors
-    /// Nothing is left that could be used.
+    /// The remaining map cannot be used.
     pub fn erase(
         &mut self,
         scan: &TakenScan,
@@ -264,7 +257,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Has odometry read, which is else left alone where nothing needs it.
+    /// Reads the odometry even if no option needs it.
     ///
     /// # Errors
     /// The recording cannot be read.
@@ -272,26 +265,25 @@ impl<'a> Session<'a> {
         Ok(self.motion.read_odometry()?)
     }
 
-    /// Forgets all scans, and takes this odometry in place of the recorded one, for a
-    /// drive that is searched again with something changed.
+    /// Drops all scans, and uses this odometry in place of the recorded one; for another search of
+    /// the drive with something changed.
     pub fn begin_again(&mut self, odometry: &[Odometry]) {
         self.motion.begin_again(odometry);
     }
 
-    /// Where the target frame was by the odometry at a scan, which is taken and not
-    /// searched.
+    /// Pose of the target frame by odometry at a scan, without searching the scan.
     ///
     /// # Errors
-    /// The scan cannot be one of the graph, or the recording cannot be read.
+    /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
     pub fn by_odometry(&mut self, scan: &TakenScan) -> Result<Option<ByOdometry>, OfflineError> {
         self.motion.take(scan)?;
         Ok(self.motion.by_odometry())
     }
 
-    /// What the tracker takes of the scan that was asked for last.
+    /// Tracker input of the last scan that was searched.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub fn view(&self, scan: &TakenScan) -> Result<View, OfflineError> {
         let seen = self.motion.seen();
         let ends = self.world()?.ends(seen.observation());
@@ -302,10 +294,10 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Finds the place of a scan.
+    /// Searches the place of a scan.
     ///
     /// # Errors
-    /// The clock fails. A scan that is refused is a reply.
+    /// The CPU clock cannot be read. A rejected scan is a reply.
     pub fn ask(&mut self, scan: &TakenScan) -> Result<Reply<'_>, OfflineError> {
         self.turn_to(scan)?;
         let Some(prepared) = &mut self.prepared else {
@@ -371,7 +363,7 @@ fn no_usable_map(file: &Path, reason: &str) -> OfflineError {
     }
 }
 
-/// The damage of a recording, as an error.
+/// Damage of a recording as an error; `None` if it is sound.
 pub fn damage_of(recording: &Recording) -> Option<RecordingError> {
     recording.damage_error()
 }

@@ -1,10 +1,10 @@
-//! Which channels of a recording are meant, where that is not clear.
+//! Selects channels of a recording by topic.
 
 use std::sync::Arc;
 
 use recording::{Kind, Recording, RecordingError};
 
-/// Channels by their names.
+/// Topics of the channels to use.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 #[command(next_help_heading = "Topics")]
 pub struct TopicOptions {
@@ -23,12 +23,12 @@ pub struct TopicOptions {
 }
 
 impl TopicOptions {
-    /// From now on, these are meant in the recording.
+    /// Selects these topics in the recording.
     ///
     /// # Errors
-    /// The recording does not have one of them.
+    /// The recording does not contain one of them.
     pub fn apply(&self, recording: &mut Recording) -> Result<(), RecordingError> {
-        // The first is the one where only one can be meant.
+        // Last, the first one, which is used where only one topic can be.
         for topic in self.scan_topic.iter().rev() {
             recording.prefer(Kind::Scan, topic)?;
         }
@@ -41,10 +41,10 @@ impl TopicOptions {
         Ok(())
     }
 
-    /// The channels with the scans: those that are named, or the one that is meant.
+    /// Returns the topics of the scans: the given ones or the default.
     ///
     /// # Errors
-    /// There are no scans, or it is not clear which ones are meant.
+    /// There are no scans, or several topics contain scans.
     pub fn scans(&self, recording: &Recording) -> Result<Vec<Arc<str>>, RecordingError> {
         let mut topics: Vec<Arc<str>> = Vec::new();
         for topic in &self.scan_topic {
@@ -59,7 +59,7 @@ impl TopicOptions {
     }
 }
 
-/// Whether an error is about a message of a channel other than `topic`.
+/// True if the error is about a message of a channel other than `topic`.
 pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
     match error {
         RecordingError::Message { topic: of, .. } | RecordingError::NotCdr { topic: of, .. } => {

@@ -1,5 +1,4 @@
-//! A map that is ready to be searched, and what a search answers. Pure: no
-//! file, no clock.
+//! A map that is ready to be searched, and the results of a search. Pure: no file, no clock.
 
 use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
@@ -18,74 +17,72 @@ use super::layout::{frame_of, sides_of};
 use super::options::{EngineOptions, NamedMap};
 use crate::OfflineError;
 
-/// A map and all settings.
+/// Maps prepared with all settings.
 #[derive(Debug)]
 pub struct World {
-    /// The map's id, as the graph's messages have it; the first one's of several.
+    /// The map's id, as in the graph's messages; that of the first map of several.
     pub map_id: u64,
     maps: Vec<KnownMap>,
     set: MapSet,
     workspace: map_set::Workspace,
-    /// The last places, of the first laser.
+    /// The last places, as poses of the first laser.
     of_laser: Places,
 }
 
-/// A map that is searched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownMap {
-    /// As the graph's messages have it.
+    /// The id in the graph's messages.
     pub id: u64,
-    /// What it is called in its set; else empty.
+    /// Name in the map set; empty for a single map.
     pub name: String,
-    /// The floor, where the set of maps says so.
+    /// Floor, if the map set defines it.
     pub floor: Option<String>,
     frame: GridFrame,
     cells: u64,
 }
 
-/// What a scan says about the place.
+/// Result of searching a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer<'a> {
     /// The votes, and search statistics.
     pub outcome: &'a Outcome,
-    /// What they say, the verdict included.
+    /// Places with the verdict.
     pub places: &'a Places,
-    /// Where the cells of that map lie.
+    /// Geometry of the map's cells.
     pub frame: GridFrame,
     /// The map of the best place.
     pub map: &'a KnownMap,
-    /// All maps that were searched, by the numbers that places have.
+    /// All maps that were searched; places refer to them by index.
     pub maps: &'a [KnownMap],
 }
 
-/// A scan at a pose.
+/// A scan compared with the map at a given pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScanAt {
-    /// How well it fits the map there, at most 1.
+    /// Fit to the map, at most 1.
     pub score: f64,
-    /// In the order of their bearings.
+    /// Sorted by bearing.
     pub ends: Vec<BeamEnd>,
 }
 
-/// Where a beam that votes ends, and what became of it.
+/// End point of a beam that votes, and its class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamEnd {
     /// In the map, metres.
     pub at: (f64, f64),
-    /// Whether the beam fits the map.
     pub class: BeamClass,
 }
 
 impl BeamEnd {
-    /// How far it lies from a pose, metres.
+    /// Distance from a pose, in metres.
     pub fn distance_to(&self, pose: Pose) -> f64 {
         (self.at.0 - pose.x).hypot(self.at.1 - pose.y)
     }
 }
 
 impl ScanAt {
-    /// How far a share of the beams, 0..=1, ends from a pose at most, metres; 0
-    /// without beams.
+    /// Distance from a pose within which this share (0..=1) of the beams ends, in metres; 0 without
+    /// beams.
     pub fn reach_m(&self, pose: Pose, share: f64) -> f64 {
         let ends = self.ends.iter();
         let mut distances: Vec<f64> = ends.map(|end| end.distance_to(pose)).collect();
@@ -96,21 +93,20 @@ impl ScanAt {
     }
 }
 
-/// How many votes each position has at one heading.
+/// Number of votes for each position at one heading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// Where its cells lie; they can be larger than the map's.
+    /// Geometry of the cells, which can be larger than the map's.
     pub frame: GridFrame,
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     pub sides: (usize, usize),
     /// Row by row from the lowest y.
     pub intensities: Vec<u16>,
-    /// What the engine found.
     pub outcome: Outcome,
 }
 
 impl World {
-    /// Does what the graph's accumulator and peak extractor do with a map.
+    /// Prepares a map as the graph's accumulator and peak extractor do.
     ///
     /// # Errors
     /// The map has no occupied or no free cell, or a setting is out of range.
@@ -122,10 +118,10 @@ impl World {
         Self::prepare_with(map, options, prior, None).map(|(world, _)| world)
     }
 
-    /// The same by way of kept indexes.
+    /// Like [`World::prepare`], with an index cache.
     ///
     /// # Errors
-    /// See [`World::prepare`].
+    /// The same as those of [`World::prepare`].
     pub fn prepare_with(
         map: &OccupancyGrid,
         options: &EngineOptions,
@@ -137,10 +133,10 @@ impl World {
         Ok((World::of(vec![known], vec![locator]), kept))
     }
 
-    /// The same with several maps, which are searched together.
+    /// Like [`World::prepare_with`], for several maps that are searched together.
     ///
     /// # Errors
-    /// See [`World::prepare`]; the map is named.
+    /// The same as those of [`World::prepare`], with the map's name.
     pub fn of_set(
         maps: &[NamedMap],
         options: &EngineOptions,
@@ -171,51 +167,51 @@ impl World {
         }
     }
 
-    /// The map, the first of several.
+    /// The locator of the only or first map.
     fn locator(&self) -> &Locator {
         &self.set.locators()[0]
     }
 
-    /// Cells of all maps.
+    /// Number of cells of all maps.
     pub fn cells(&self) -> u64 {
         self.maps.iter().map(|map| map.cells).sum()
     }
 
-    /// Cells in which poses are searched, as large as they are searched.
+    /// Number of cells in which poses are searched, at the resolution of the search.
     pub fn searchable_cells(&self) -> u64 {
         self.locator().localizer().searchable_cells() as u64
     }
 
-    /// Bytes of what a search keeps of the map.
+    /// Size of the search index of the map.
     pub fn index_bytes(&self) -> u64 {
         self.locator().localizer().index_bytes() as u64
     }
 
-    /// The map as the second stage reads it.
+    /// Distance field of the map, used by the second stage.
     pub fn distance_field(&self) -> &DistanceField {
         self.locator().distance_field()
     }
 
-    /// How the second stage judges places.
+    /// Settings of the second stage.
     pub fn peaks(&self) -> &PeakConfig {
         self.locator().peaks()
     }
 
-    /// The beams of a scan, as the second stage judges them.
+    /// Prepares the beams of a scan for the second stage.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
         self.locator().ends(scan)
     }
 
-    /// Searches all poses or, where the heading in the map is given in radians,
-    /// all positions; the world must be prepared for the one or the other.
+    /// Searches all poses or, if the heading in the map (radians) is given, all positions; the
+    /// world must be prepared with the corresponding prior.
     ///
-    /// The places are those of the first laser, also where the base is searched.
+    /// The places are poses of the first laser, even if the base is searched.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub fn locate(
         &mut self,
         scan: Observation<'_>,
@@ -254,10 +250,10 @@ impl World {
         })
     }
 
-    /// How a scan fits if it was taken at a pose of the map.
+    /// Compares a scan with the map at a pose.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
         let frame = self.distance_field().frame;
@@ -276,11 +272,11 @@ impl World {
         })
     }
 
-    /// The votes of all positions at a heading in the map, radians; the world
-    /// must be prepared for known headings.
+    /// Votes of all positions at a heading in the map, in radians; the world must be prepared for
+    /// known headings.
     ///
     /// # Errors
-    /// The scan is refused.
+    /// The scan is rejected.
     pub fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
         let found = self
             .locator()
@@ -334,7 +330,7 @@ fn locator_of(
     Ok((Locator::with(localizer, view, options.peaks)?, kept))
 }
 
-/// Where a beam ends in the map if the scan was taken at a pose, metres.
+/// End point of a beam in the map, in metres, if the scan was taken at this pose.
 fn end_of(map_from_laser: Pose, beam: JudgedBeam) -> (f64, f64) {
     let (sin, cos) = beam.bearing.sin_cos();
     map_from_laser.transform(beam.reading_m * cos, beam.reading_m * sin)

@@ -1,6 +1,5 @@
-//! What is printed for a scan, as a row of a table or as JSON: `line` is the answer to
-//! the scan alone, `pose_line` the tracker's pose beside it, and `rows` brings both
-//! together, whichever comes first. All pure.
+//! Output for a scan, as a row of a table or as JSON: `line` is the answer to the scan alone,
+//! `pose_line` the tracker's pose with it, and `rows` joins both in either order. All pure.
 
 mod line;
 mod pose_line;

@@ -1,4 +1,4 @@
-//! What is printed for one scan, as a row of the table or as JSON. Pure.
+//! Output for the answer to one scan, as a row of the table or as JSON. Pure.
 
 use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
@@ -7,33 +7,33 @@ use serde::Serialize;
 
 pub(super) const NS_PER_MS: f64 = 1e6;
 
-/// One scan and its answer. What has no pose has none of its figures.
+/// One scan and its answer. Fields of the pose are `None` without a pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Line {
-    /// When the scan was measured, nanoseconds since 1970.
+    /// Time of the measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
-    /// Of the laser in the map, metres.
+    /// Position of the laser in the map along x, in metres.
     pub x: Option<f64>,
-    /// Of the laser in the map, metres.
+    /// Position of the laser in the map along y, in metres.
     pub y: Option<f64>,
-    /// Of the laser in the map, degrees counter-clockwise.
+    /// Heading of the laser in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
-    /// How well the scan fits the map there, at most 1.
+    /// Fit of the scan to the map at the pose, at most 1.
     pub score: Option<f32>,
-    /// The verdict, or `?` for one that this version does not know.
+    /// Verdict, or `?` if this version does not know it.
     pub verdict: &'static str,
-    /// Other places that fit about as well.
+    /// Number of other places that fit about as well.
     pub alternatives: u32,
-    /// The verdict in words.
+    /// Verdict in words.
     pub says: String,
-    /// From the scan's entry into the graph to the pose, milliseconds.
+    /// Time from the scan's entry into the graph to the pose, in milliseconds.
     pub latency_ms: f64,
-    /// Of that, computing.
+    /// Part of the latency that is computing, in milliseconds.
     pub engine_ms: f64,
 }
 
 impl Line {
-    /// Reads one message of topic `hypotheses`.
+    /// Converts a message of topic `hypotheses`.
     pub fn new(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Self {
         let verdict = Verdict::from_code(header.verdict);
         let best = hypotheses
@@ -58,7 +58,7 @@ impl Line {
         }
     }
 
-    /// The names of the columns.
+    /// Returns the column names.
     pub fn header() -> String {
         row([
             "stamp s",
@@ -72,7 +72,7 @@ impl Line {
         ])
     }
 
-    /// A row of the table, without the end of the line.
+    /// Returns the row without a newline.
     pub fn text(&self) -> String {
         let row = row([
             &seconds(self.stamp_ns),
@@ -84,7 +84,7 @@ impl Line {
             &self.alternatives.to_string(),
             &format!("{:.2}", self.latency_ms),
         ]);
-        // What all scans should say needs no words.
+        // The normal verdict needs no words.
         if self.verdict == Verdict::Unique.as_str() || self.says.is_empty() {
             return row;
         }
@@ -92,8 +92,8 @@ impl Line {
     }
 }
 
-/// The best place and those that fit about as well, as far as they are numbers:
-/// they come from another process.
+/// Returns the best place and those that fit about as well, without non-finite values, which
+/// another process may have sent.
 fn summaries(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<PlaceSummary> {
     let is_finite = |h: &&Hypothesis| {
         Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
@@ -116,12 +116,12 @@ fn row([stamp, x, y, heading, score, verdict, alternatives, ms]: [&str; 8]) -> S
     )
 }
 
-/// A figure, or a dash where there is none.
+/// Formats a number, or a dash for `None`.
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".to_owned(), |v| format!("{v:.decimals$}"))
 }
 
-/// Seconds with milliseconds, cut; exact where a float would round.
+/// Formats nanoseconds as seconds with three decimals, truncated; exact where a float would round.
 pub(super) fn seconds(ns: i64) -> String {
     let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
     format!("{sign}{}.{:03}", ns / 1_000_000_000, ns / 1_000_000 % 1000)

@@ -1,5 +1,5 @@
-//! What is printed for one scan where the graph has a tracker: its pose first, the
-//! answer to the scan alone beside it. Pure.
+//! Output for one scan in a graph with a tracker: its pose, followed by the answer to the scan
+//! alone. Pure.
 
 use geometry::{Covariance, ELLIPSE_95};
 use messages::{PoseHeader, TrackState};
@@ -7,47 +7,47 @@ use serde::Serialize;
 
 use super::line::{Line, NS_PER_MS, number, seconds};
 
-/// Where the tracker has the robot at one scan. What has no pose has none of its figures.
+/// The tracker's pose at one scan. Fields of the pose are `None` without a pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PoseLine {
-    /// When the scan was measured, nanoseconds since 1970.
+    /// Time of the measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
-    /// The state, or `?` for one that this version does not know.
+    /// State of the tracker, or `?` if this version does not know it.
     pub state: &'static str,
-    /// Of the laser in the map, metres.
+    /// Position of the laser in the map along x, in metres.
     pub x: Option<f64>,
-    /// Of the laser in the map, metres.
+    /// Position of the laser in the map along y, in metres.
     pub y: Option<f64>,
-    /// Of the laser in the map, degrees counter-clockwise.
+    /// Heading of the laser in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
-    /// Standard deviation of the position along the long axis of its ellipse, metres.
+    /// Standard deviation of the position along the long axis of its ellipse, in metres.
     pub deviation_m: Option<f64>,
-    /// Standard deviation of the heading, degrees.
+    /// Standard deviation of the heading in degrees.
     pub deviation_deg: Option<f64>,
-    /// How likely the robot is there, 0..=1.
+    /// Probability of the pose, 0..=1.
     pub probability: Option<f64>,
-    /// Places that are kept as possible.
+    /// Number of places that are kept as possible.
     pub places: u32,
-    /// The reason in words, and what to do.
+    /// Reason for the state in words, and what to do.
     pub says: String,
-    /// From the scan's entry into the graph to the pose, milliseconds.
+    /// Time from the scan's entry into the graph to the pose, in milliseconds.
     pub latency_ms: f64,
-    /// When the pose was sent, nanoseconds of the machine's monotonic clock.
+    /// Time at which the pose was sent, in nanoseconds of the machine's monotonic clock.
     pub sent_ns: i64,
 }
 
 /// The pose of a scan, and the answer to the scan alone; either may be missing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// What the scan says by itself; none where it was not searched.
+    /// Answer to the scan alone; `None` if it was not searched.
     #[serde(flatten)]
     pub single: Option<Line>,
-    /// Where the tracker has the robot; none where it said nothing of the scan.
+    /// Pose from the tracker; `None` if it did not answer the scan.
     pub pose: Option<PoseLine>,
 }
 
 impl PoseLine {
-    /// Reads one message of topic `pose`.
+    /// Converts a message of topic `pose`.
     pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
         let state = TrackState::from_code(header.state);
         let pose = header.laser();
@@ -74,7 +74,7 @@ impl PoseLine {
 }
 
 impl Row {
-    /// The names of the columns.
+    /// Returns the column names.
     pub fn header() -> String {
         row([
             "stamp s",
@@ -89,7 +89,7 @@ impl Row {
         ])
     }
 
-    /// A row of the table, without the end of the line.
+    /// Returns the row without a newline.
     pub fn text(&self) -> String {
         let single = self.single.as_ref();
         let single = single.map_or("-".to_owned(), |line| match line.alternatives {
@@ -104,22 +104,22 @@ impl Row {
             &number(pose.x, 3),
             &number(pose.y, 3),
             &number(pose.heading_deg, 2),
-            // To either side, as the page and the pictures have it.
+            // Deviation to either side, as in the web page and the plots.
             &number(pose.deviation_m.map(|m| ELLIPSE_95 * m), 3),
             pose.state,
             &number(pose.probability.map(|share| 100.0 * share), 1),
             &single,
             &format!("{:.2}", pose.latency_ms),
         ]);
-        // What all scans should say needs no words.
+        // The normal state needs no words.
         if pose.state == TrackState::Unique.as_str() || pose.says.is_empty() {
             return row.trim_end().to_owned();
         }
         format!("{row}  {}", pose.says)
     }
 
-    /// The tracker said nothing of the scan, so no pose is shown: that of the scan
-    /// alone may be another place.
+    /// Returns the row of a scan without an answer of the tracker. No pose is shown, as that of the
+    /// scan alone may be at another place.
     fn text_without_pose(&self, single: &str) -> String {
         let Some(line) = &self.single else {
             return String::new();

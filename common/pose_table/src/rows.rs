@@ -1,8 +1,7 @@
-//! Joins the two halves of a row, where the graph has a tracker: the answer to a scan
-//! alone and the tracker's pose of it, whichever comes first. Pure.
+//! Joins the answer to a scan alone and the tracker's pose to a row, in either order. Pure.
 //!
-//! A row is printed once both are there. The pose of a later scan ends the wait: a scan
-//! may not have been searched, or be answered later than the next one is tracked.
+//! A row is due once it has both. The pose of a later scan ends the wait: a scan may not have been
+//! searched, or be answered after the next one is tracked.
 
 use std::collections::VecDeque;
 
@@ -11,20 +10,20 @@ use messages::Stamp;
 use super::line::Line;
 use super::pose_line::{PoseLine, Row};
 
-/// Answers that wait for their poses at most: a tracker that ended must not keep the
-/// answers back.
+/// Largest number of answers that wait for their poses, so that a dead tracker does not hold them
+/// back.
 const CAPACITY: usize = 16;
 
 /// Answers and poses that wait for the other half.
 #[derive(Debug, Default)]
 pub struct Rows {
     waiting: VecDeque<(Stamp, Row)>,
-    /// The scan whose row was printed last.
+    /// Scan of the last row returned.
     printed: Option<Stamp>,
 }
 
 impl Rows {
-    /// Takes the answer to a scan alone; gives the rows that are to be printed.
+    /// Adds the answer to a scan alone; returns the rows that are due.
     pub fn answer(&mut self, scan: Stamp, single: Line) -> Vec<Row> {
         if let Some(at) = self.find(scan) {
             if let Some((_, row)) = self.waiting.get_mut(at) {
@@ -32,7 +31,7 @@ impl Rows {
             }
             return self.release(at + 1);
         }
-        // Its row was printed when the pose of a later scan came.
+        // Its row was returned when the pose of a later scan came.
         let is_printed = |printed: Stamp| printed.is_of(scan) || is_before(scan, printed);
         if self.printed.is_some_and(is_printed) {
             return Vec::new();
@@ -45,7 +44,7 @@ impl Rows {
         self.release(self.waiting.len().saturating_sub(CAPACITY))
     }
 
-    /// Takes the tracker's pose of a scan; gives the rows that are to be printed.
+    /// Adds the tracker's pose of a scan; returns the rows that are due.
     pub fn pose(&mut self, scan: Stamp, pose: PoseLine) -> Vec<Row> {
         if let Some(at) = self.find(scan) {
             if let Some((_, row)) = self.waiting.get_mut(at) {
@@ -64,7 +63,7 @@ impl Rows {
         released
     }
 
-    /// Gives all that still wait.
+    /// Returns all waiting rows.
     pub fn finish(&mut self) -> Vec<Row> {
         self.release(self.waiting.len())
     }
@@ -83,8 +82,8 @@ impl Rows {
     }
 }
 
-/// Whether a scan came before another of the same sender. One that was started again
-/// counts again, at a later time.
+/// True if a scan came before another of the same sender. The counter of a restarted sender begins
+/// again, at a later time.
 fn is_before(scan: Stamp, other: Stamp) -> bool {
     scan.counter < other.counter && scan.entered_ns <= other.entered_ns
 }
@@ -96,7 +95,7 @@ mod tests {
     use super::*;
     use crate::testing::{message, pose};
 
-    /// What is printed: counters of the answer and of the pose, by their stamps.
+    /// Returns the stamps of answer and pose of each row, which equal their counters.
     fn printed(rows: &[Row]) -> Vec<(Option<i64>, Option<i64>)> {
         let show = |row: &Row| {
             let single = row.single.as_ref().map(|line| line.stamp_ns);
@@ -122,7 +121,7 @@ mod tests {
         assert_eq!(track(&mut rows, 1), [(Some(1), Some(1))]);
         assert_eq!(track(&mut rows, 2), []);
         assert_eq!(answer(&mut rows, 2), [(Some(2), Some(2))]);
-        // The tracker is behind the search.
+        // The tracker is slower than the search.
         assert_eq!(answer(&mut rows, 3), []);
         assert_eq!(answer(&mut rows, 4), []);
         assert_eq!(track(&mut rows, 3), [(Some(3), Some(3))]);
@@ -135,7 +134,7 @@ mod tests {
         let mut rows = Rows::default();
         assert_eq!(track(&mut rows, 1), []);
         assert_eq!(track(&mut rows, 2), [(None, Some(1))]);
-        // The answer to the first comes late: its row was printed.
+        // The answer to the first scan is late: its row was printed.
         assert_eq!(answer(&mut rows, 1), []);
         assert_eq!(answer(&mut rows, 2), [(Some(2), Some(2))]);
         assert_eq!(track(&mut rows, 3), []);

@@ -1,10 +1,10 @@
-//! Messages of one scan, for tests of what is made of them.
+//! Messages of one scan, for tests of their output.
 
 use bytemuck::Zeroable;
 use messages::{HypothesesHeader, Hypothesis, Pose2, PoseHeader, Stamp, TrackState};
 
-/// A message about the scan measured at `measured_ns`, found at (1, -2),
-/// half a turn from the x axis, after 25 ms of which 24 ms were computing.
+/// Creates an answer to the scan measured at `measured_ns`: at (1, -2), half a turn from the x
+/// axis, after 25 ms, 24 ms of them computing.
 #[must_use]
 pub fn message(
     measured_ns: i64,
@@ -36,8 +36,8 @@ pub fn message(
     (header, [hypothesis])
 }
 
-/// The pose of the scan measured at `measured_ns`: the laser at (1, -2), half a turn
-/// from the x axis, 26 ms after the scan.
+/// Creates the pose of the scan measured at `measured_ns`: the laser at (1, -2), half a turn from
+/// the x axis, 26 ms after the scan.
 #[must_use]
 pub fn pose(measured_ns: i64, counter: u64, state: TrackState) -> PoseHeader {
     PoseHeader {

@@ -1,4 +1,4 @@
-//! A device that speaks CoLa, in either encoding, on one of its ports.
+//! Probes a device that speaks CoLa, in both encodings and on its usual ports.
 
 use std::net::Ipv6Addr;
 use std::time::{Duration, Instant};
@@ -12,31 +12,31 @@ use super::line::Line;
 use super::picture::Seen;
 use crate::ProbeError;
 
-/// Where devices listen.
+/// Ports of devices, in the order of trying.
 const PORTS: [u16; 2] = [2112, 2111];
-/// How long an answer may take.
+/// Longest wait for an answer.
 const TIMEOUT: Duration = Duration::from_secs(1);
-/// A scan at 5 Hz, and some more.
+/// Longest wait for a scan, several times its period at 5 Hz.
 const SCAN_TIMEOUT: Duration = Duration::from_secs(3);
-/// Distances below are codes.
+/// Lowest reading that is a distance; lower ones are codes.
 const FIRST_DISTANCE: u16 = 16;
 
-/// A connection on which the device has answered.
+/// Connection to a device that has answered.
 struct Device {
     address: String,
     line: Line,
     encoding: Encoding,
     framer: Framer,
-    /// Bytes that came.
+    /// Number of bytes received.
     received: usize,
-    /// Which way it looks, by its name.
+    /// Angle convention by its name.
     angles: DeviceAngles,
 }
 
-/// What is found at HOST or HOST:PORT, in lines for people, and a scan.
+/// Probes the device at HOST or HOST:PORT; returns lines for the user, and a scan.
 ///
 /// # Errors
-/// Nothing is there, it refuses, is silent or says something else.
+/// The device cannot be reached, is silent, or sends something else.
 pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
     let mut device = find(target)?;
     let mut said = vec![format!(
@@ -61,11 +61,10 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
     Ok((said, seen))
 }
 
-/// Tries each port in each encoding; what went wrong last says most.
-/// The options of `lms_reader` for the device at HOST or HOST:PORT.
+/// Returns the options of `lms_reader` for the device at HOST or HOST:PORT.
 ///
 /// # Errors
-/// As [`probe`].
+/// See [`probe`].
 pub(super) fn reader_options(target: &str) -> Result<Vec<String>, ProbeError> {
     let device = find(target)?;
     Ok(reader_options_of(&device.address, device.encoding))
@@ -80,6 +79,7 @@ pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> Vec<String
     words.map(str::to_owned).to_vec()
 }
 
+/// Connects to the device: tries each port in each encoding.
 fn find(target: &str) -> Result<Device, ProbeError> {
     let addresses = addresses(target);
     let mut failure = None;
@@ -121,7 +121,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
     })
 }
 
-/// Where to look for it: at its port, or at those that devices have.
+/// Returns the address with its port, or with each usual port.
 pub(super) fn addresses(target: &str) -> Vec<String> {
     let bare = target.parse::<Ipv6Addr>().map(|ip| format!("[{ip}]"));
     let host = bare.as_deref().unwrap_or(target);
@@ -133,7 +133,7 @@ pub(super) fn addresses(target: &str) -> Vec<String> {
 }
 
 impl Device {
-    /// Whether it says what it is; a device in the other encoding may hang up.
+    /// Returns true if it answers; a device with the other encoding may close the connection.
     fn ask_answers(&mut self) -> Result<bool, ProbeError> {
         let outcome = self.ask(Command::Read(Variable::DeviceIdent), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_) | Telegram::ScanData(_)).then_some(())
@@ -145,7 +145,7 @@ impl Device {
         }
     }
 
-    /// Says a command and waits for what `pick` takes.
+    /// Sends a command and waits for the first telegram accepted by `pick`.
     fn ask<R>(
         &mut self,
         command: Command<'_>,
@@ -181,7 +181,7 @@ impl Device {
         }
     }
 
-    /// A variable in words, or why the device does not say it.
+    /// Describes a variable, or the reason why the device does not return it.
     fn describe(&mut self, variable: Variable) -> Result<String, ProbeError> {
         let command = Command::Read(variable);
         let mut angles = None;
@@ -203,7 +203,7 @@ impl Device {
         Ok(found.unwrap_or_else(|| format!("{variable:?}: no answer")))
     }
 
-    /// One scan, in words and to be drawn.
+    /// Gets one scan, described in words and for drawing.
     fn scan(&mut self) -> Result<(Vec<String>, Seen), ProbeError> {
         let angles = std::mem::take(&mut self.angles);
         let found = self.ask(Command::SubscribeScans(true), SCAN_TIMEOUT, |telegram| {
@@ -230,8 +230,8 @@ impl Device {
     }
 }
 
-/// What `lms_reader` makes of the angles, how a picture of them is laid out and what is
-/// up in it.
+/// Describes how `lms_reader` interprets the angles; returns the convention for the picture and its
+/// upward direction.
 fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention, String) {
     match angles.convention(field) {
         Ok(convention) => {

@@ -1,4 +1,4 @@
-//! The command `backcast probe`.
+//! `backcast probe`: asks a device and prints its answers.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -9,30 +9,29 @@ use sick::cola::Encoding;
 use super::{cola, lms2xx};
 use crate::ProbeError;
 
-/// What stands below the options.
+/// Text below the options in the help.
 pub const NOTES: &str = "\
 Without a port, 2112 and 2111 are tried; on a serial line, 38400, 9600, 500000 and 19200 baud.
 
 Exit codes: 0 a device answered, 1 none did, 2 wrong use";
 
-/// Columns where nobody says how many there are.
+/// Default width of the picture in characters.
 const COLUMNS: usize = 80;
 
 /// Options of `backcast probe`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after
-    /// tcp://), or a serial line such as /dev/ttyUSB0
+    /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after tcp://), or a
+    /// serial line such as /dev/ttyUSB0
     #[arg(value_name = "DEVICE")]
     device: String,
 
-    /// Width of the picture in characters [default: that of the terminal, $COLUMNS or
-    /// 80]
+    /// Width of the picture in characters [default: that of the terminal, $COLUMNS or 80]
     #[arg(long, value_name = "CHARACTERS", value_parser = clap::value_parser!(u16).range(10..=500))]
     width: Option<u16>,
 }
 
-/// Asks the device and prints what it says.
+/// Probes the device and prints the result.
 ///
 /// # Errors
 /// No device answers, or standard output cannot be written.
@@ -46,8 +45,8 @@ pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The options by which `lms_reader` reads the device at an address, or on a serial line,
-/// a word each: which port and encoding it answers on.
+/// Returns the options of `lms_reader` for the device at an address or on a serial line, one word
+/// each: the port and encoding on which it answers.
 ///
 /// # Errors
 /// No device answers.
@@ -58,7 +57,7 @@ pub fn reader_options(device: &str, is_serial: bool) -> Result<Vec<String>, Prob
     }
 }
 
-/// The same for a device that is not asked, and set as devices are delivered.
+/// Returns the options for a device with factory settings, without contacting it.
 #[must_use]
 pub fn default_reader_options(device: &str, is_serial: bool) -> Vec<String> {
     if is_serial {
@@ -68,8 +67,8 @@ pub fn default_reader_options(device: &str, is_serial: bool) -> Vec<String> {
     cola::reader_options_of(&cola::addresses(address)[0], Encoding::Binary)
 }
 
-/// The address of a device on the network; `None` where a serial line is meant, which is
-/// a path or the name of a file that is there.
+/// Returns the address of a device on the network; `None` for a serial line, which is a path or the
+/// name of an existing file.
 fn address(device: &str) -> Option<&str> {
     if let Some(address) = device.strip_prefix("tcp://") {
         return Some(address.trim_end_matches('/'));
@@ -78,7 +77,7 @@ fn address(device: &str) -> Option<&str> {
     (!is_path).then_some(device)
 }
 
-/// As wide as the terminal.
+/// Returns the width of the picture: that of the terminal, $COLUMNS or the default.
 fn columns() -> usize {
     let (_, columns) = console::Term::stdout().size();
     let stated = std::env::var("COLUMNS").ok();
@@ -105,7 +104,7 @@ mod tests {
             ("tcp://laser:1/", Some("laser:1")),
             ("/dev/ttyUSB0", None),
             ("./laser", None),
-            // Tests run where the crate is.
+            // Tests run in the crate's folder.
             ("Cargo.toml", None),
         ] {
             assert_eq!(address(device), expected, "{device}");

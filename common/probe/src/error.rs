@@ -4,18 +4,17 @@ use std::io;
 
 use command_line::{CommandError, OutputError};
 
-/// Why a laser cannot be asked.
+/// Error of probing a laser.
 #[derive(Debug, thiserror::Error)]
 pub enum ProbeError {
-    /// A laser cannot be reached, or hung up.
+    /// The device cannot be reached, or closed the connection.
     #[error("{address}: no device can be reached; check its power, cable and address")]
     DeviceNotReached {
-        /// As it was given, with the port that was tried last.
+        /// Address as given, with the last port tried.
         address: String,
-        /// Why not.
         source: io::Error,
     },
-    /// Something is there, but no laser that we know.
+    /// A device is there, but does not answer like a known laser.
     #[error(
         "{address}: no laser answers; tried {tried}; {}",
         match received {
@@ -24,14 +23,14 @@ pub enum ProbeError {
         }
     )]
     DeviceNotUnderstood {
-        /// As it was given, with the port that was tried last.
+        /// Address as given, with the last port tried.
         address: String,
-        /// Bytes that came.
+        /// Number of bytes received.
         received: usize,
-        /// In which ways it was asked.
+        /// Protocols that were tried.
         tried: String,
     },
-    /// Standard output takes no more.
+    /// Standard output cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

@@ -1,8 +1,8 @@
-//! `backcast probe`: which laser is there, how it is set, and what it sees.
+//! `backcast probe`: shows the type, settings and a scan of a laser.
 //!
-//! `cola` and `lms2xx` ask the device, over a `line`; `picture` draws a scan in
-//! characters. No setting is changed but the baud rate that the device has, which
-//! is found by trying; an LMS2xx is left waiting for commands.
+//! `cola` and `lms2xx` ask the device, over a `line`; `picture` draws a scan with characters. No
+//! setting of the device is changed; its baud rate is found by trying. An LMS2xx is left waiting
+//! for commands.
 
 mod cola;
 mod command;

@@ -1,4 +1,4 @@
-//! A socket or a serial line: bytes out, bytes in until a deadline.
+//! A socket or serial line: writes bytes, and reads bytes until a deadline.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -8,21 +8,21 @@ use std::time::{Duration, Instant};
 use serialport::{ClearBuffer, SerialPort, TTYPort};
 use sick::lms2xx::Baud;
 
-/// How long a connection may take to be made.
+/// Timeout of connecting.
 const ATTEMPT: Duration = Duration::from_secs(2);
-/// The longest sleep in a read.
+/// Timeout of a single read.
 const SLICE: Duration = Duration::from_millis(20);
-/// An LMS2xx wants 55 µs between two bytes that it receives.
+/// Gap between two bytes: an LMS2xx needs 55 µs when it receives.
 const BYTE_GAP: Duration = Duration::from_micros(60);
 
-/// A line to a device.
+/// Connection to a device.
 pub(super) enum Line {
     Socket(TcpStream),
     Serial(TTYPort),
 }
 
 impl Line {
-    /// Tries all that a name stands for; the last failure counts.
+    /// Tries all addresses of a name; returns the last error.
     pub(super) fn connect(address: &str) -> io::Result<Self> {
         let mut failure = ErrorKind::AddrNotAvailable.into();
         for candidate in address.to_socket_addrs()? {
@@ -44,7 +44,7 @@ impl Line {
         Ok(Line::Serial(builder.open_native()?))
     }
 
-    /// Speaks at this rate from now on; what came at another is no use.
+    /// Changes the baud rate and discards input received at the old one.
     pub(super) fn switch(&mut self, baud: Baud) -> io::Result<()> {
         if let Line::Serial(port) = self {
             port.set_baud_rate(baud.rate())?;
@@ -64,7 +64,7 @@ impl Line {
         }
     }
 
-    /// What has come, at least a byte; nothing once the deadline has passed.
+    /// Returns received bytes, at least one; `None` after the deadline.
     pub(super) fn receive<'b>(
         &mut self,
         buffer: &'b mut [u8],

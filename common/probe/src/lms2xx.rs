@@ -1,4 +1,4 @@
-//! An LMS2xx, at whichever baud rate it speaks.
+//! Probes an LMS2xx at any baud rate.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -9,33 +9,33 @@ use super::line::Line;
 use super::picture::Seen;
 use crate::ProbeError;
 
-/// In the order of how likely they are.
+/// Baud rates, most likely first.
 const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
-/// How often a rate is tried: the first command may meet a scan under way.
+/// Attempts at each rate: the first command may collide with a scan in transmission.
 const TRIES: usize = 2;
-/// How long an answer may take: two scans may be under way at 38400 baud.
+/// Longest wait for an answer: two scans may be in transmission at 38400 baud.
 const TIMEOUT: Duration = Duration::from_millis(700);
 
 struct Device<'a> {
     path: &'a Path,
     line: Line,
     framer: ReplyFramer,
-    /// Bytes that came.
+    /// Number of bytes received.
     received: usize,
 }
 
-/// Whether one answers, at whichever rate.
+/// Checks that a device answers at any rate.
 ///
 /// # Errors
-/// As [`probe`].
+/// See [`probe`].
 pub(super) fn ask(path: &Path) -> Result<(), ProbeError> {
     Device::open(path)?.find_rate().map(drop)
 }
 
-/// What is found on the line, in lines for people, and a scan.
+/// Probes the device on the line; returns lines for the user, and a scan.
 ///
 /// # Errors
-/// The line cannot be opened, or nothing on it answers at any rate.
+/// The line cannot be opened, or no device answers at any rate.
 pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
     let mut device = Device::open(path)?;
     let baud = device.find_rate()?;
@@ -75,7 +75,8 @@ impl<'a> Device<'a> {
         })
     }
 
-    /// It answers this command in every mode, and sends no more scans by itself.
+    /// Finds the baud rate with a command that is answered in every mode and stops continuous
+    /// scans.
     fn find_rate(&mut self) -> Result<Baud, ProbeError> {
         for baud in RATES {
             let switched = self.line.switch(baud);

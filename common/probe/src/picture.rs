@@ -1,26 +1,25 @@
-//! A scan drawn in characters of two by four dots (Unicode's Braille patterns).
-//! Pure. The laser is in the middle, ahead is up where it is known.
+//! Draws a scan in characters of two by four dots (Unicode's Braille patterns). Pure. The laser is
+//! in the middle; ahead is up if it is known.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Of a character.
+/// Dots of a character: columns and rows.
 const DOTS: (usize, usize) = (2, 4);
 /// The bit of each dot, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-/// A character is about twice as high as wide, so dots are square.
+/// Rows per column: a character is about twice as high as wide, so dots are square.
 const ROWS_PER_COLUMN: f64 = 0.5;
 
-/// What a scan looks like: bearings in radians counter-clockwise from ahead, and
-/// distances in metres.
+/// A scan: bearings in radians counter-clockwise from ahead, and distances in metres.
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) points: Vec<(f64, f64)>,
-    /// What is up in the picture.
+    /// Description of the upward direction.
     pub(super) up: String,
 }
 
 impl Seen {
-    /// A picture this many characters wide, with the reach of its sides below it.
+    /// Draws a picture `columns` characters wide, with a legend below.
     pub(super) fn draw(&self, columns: usize) -> String {
         let rows = ((columns as f64 * ROWS_PER_COLUMN) as usize).max(2);
         let reach_m = self.reach();
@@ -45,7 +44,7 @@ impl Seen {
             let angle = FRAC_PI_2 + bearing;
             set(range * angle.cos(), range * angle.sin());
         }
-        // The laser is a ring of a dot's width.
+        // The laser is a ring one dot wide.
         for step in 0..16 {
             let angle = TAU * f64::from(step) / 16.0;
             set(
@@ -65,8 +64,8 @@ impl Seen {
         )
     }
 
-    /// Nine tenths of the points lie within, so that one far one does not make
-    /// the rest a speck; metres.
+    /// Returns the distance from the centre to the nearest side in metres. Nine tenths of the
+    /// points are within, so that a single far one does not shrink the rest.
     fn reach(&self) -> f64 {
         let mut ranges: Vec<f64> = self.points.iter().map(|(_, range)| *range).collect();
         ranges.sort_unstable_by(f64::total_cmp);
@@ -96,8 +95,7 @@ mod tests {
         let points = wall.map(|bearing| (bearing, 1.0 / bearing.cos())).collect();
         let picture = seen(points).draw(20);
         let lines: Vec<&str> = picture.lines().collect();
-        // The wall is one row of characters and the laser is below it; nothing is
-        // behind.
+        // The wall is one row of characters above the laser; the area behind is empty.
         let is_long = |line: &&str| line.trim_matches(braille(0)).chars().count() > 8;
         assert!(is_long(&lines[0]), "{picture}");
         assert_eq!(

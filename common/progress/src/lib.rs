@@ -1,6 +1,5 @@
-//! How far a command has come: a bar on standard error where that is a
-//! terminal, nothing in a pipe. Whatever else is printed goes through it, so
-//! that the bar never stands within a line.
+//! Progress bar of a command on standard error if that is a terminal, none otherwise. All other
+//! output goes through it, so that the bar does not break into a line.
 
 use std::io::{self, ErrorKind, Write};
 use std::ops::ControlFlow;
@@ -8,17 +7,17 @@ use std::ops::ControlFlow;
 use command_line::OutputError;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// The bar; it goes when it is dropped.
+/// The bar; it is removed when this is dropped.
 pub struct Progress(ProgressBar);
 
 impl Progress {
-    /// A bar for `total` scans of what is called `name`.
+    /// Creates a bar with the label `name` for `total` scans.
     pub fn new(name: &str, total: u64) -> Self {
         let template = "{msg} [{bar:40}] {pos}/{len} scans, {eta} left";
         let style = ProgressStyle::with_template(template)
             .unwrap_or_else(|_| ProgressStyle::default_bar())
             .progress_chars("=> ");
-        // Its own target is standard error, and none where that is no terminal.
+        // The default target is standard error, and hidden if that is not a terminal.
         let bar = ProgressBar::new(total)
             .with_style(style)
             .with_message(name.to_owned());
@@ -26,16 +25,16 @@ impl Progress {
         Progress(bar)
     }
 
-    /// Another scan is done.
+    /// Counts another scan.
     pub fn step(&self) {
         self.0.inc(1);
     }
 
-    /// Writes a line to standard output. Breaks where nobody reads any more,
-    /// which is no failure.
+    /// Writes a line to standard output. Returns `Break` if the reader has closed it, which is no
+    /// error.
     ///
     /// # Errors
-    /// Writing failed otherwise.
+    /// Writing failed for another reason.
     pub fn print(&self, line: &str) -> Result<ControlFlow<()>, OutputError> {
         let written = self.0.suspend(|| {
             let mut stdout = io::stdout().lock();
@@ -49,14 +48,12 @@ impl Progress {
         }
     }
 
-    /// Writes a remark to standard error.
     pub fn say(&self, remark: &str) {
         self.0.suspend(|| say(remark));
     }
 }
 
-/// Writes a remark to standard error while there is no bar. One that is closed
-/// is nobody's loss but its own.
+/// Writes a remark to standard error, without a bar. A closed standard error is ignored.
 pub fn say(remark: &str) {
     let _ = writeln!(io::stderr().lock(), "backcast: {remark}");
 }

@@ -1,11 +1,10 @@
-//! Files of rosbag2 in SQLite (`.db3`), written again as recordings.
+//! Converts SQLite files of rosbag2 (`.db3`) to recordings.
 //!
-//! SQLite keeps no checksums of what is stored: its structure is checked before
-//! anything is taken, and a file that is damaged is refused as a whole, but a bit
-//! that flipped within a message goes unnoticed. How the database is opened, so
-//! that nothing is left beside it, is the business of `database`.
+//! SQLite stores no checksums of the data: the structure of a file is checked before it is read,
+//! and a damaged file is rejected as a whole, but a flipped bit within a message goes unnoticed.
+//! The module `database` opens the file so that no other files are left next to it.
 //!
-//! | table | column | what it holds |
+//! | table | column | content |
 //! |---|---|---|
 //! | `topics` | `id`, `name`, `type`, `serialization_format` | the channels |
 //! | `messages` | `topic_id`, `timestamp`, `data` | nanoseconds since 1970; the message as it was sent |
@@ -26,7 +25,7 @@ use crate::write::{Packing, RecordingWriter, definition};
 use crate::{Damage, Kind, RecordingError};
 use database::Database;
 
-/// The messages with their topics. The order of equal times is that of writing.
+/// Messages with their topics. Messages with equal times are in the order of writing.
 const MESSAGES: &str = "SELECT name, type, serialization_format, timestamp, data \
      FROM messages LEFT JOIN topics ON topics.id = messages.topic_id \
      ORDER BY timestamp, messages.id";
@@ -34,8 +33,9 @@ const MESSAGES: &str = "SELECT name, type, serialization_format, timestamp, data
 const DEFINITIONS: &str = "SELECT topic_type, encoded_message_definition \
      FROM message_definitions WHERE encoding = 'ros2msg'";
 
-/// The file at `place`, which errors call by its listed name, as a recording in a
-/// file that has no name and goes when it is closed; and what is missing of it.
+/// Converts the file at `place`, which errors call by its listed name, to a recording in an unnamed
+/// temporary file that is deleted when it is closed. Also returns the damage if messages are
+/// missing.
 pub(crate) fn as_recording(
     listed: &Listed,
     place: &Path,
@@ -69,7 +69,6 @@ fn write_failed(error: &std::io::Error) -> RecordingError {
     }
 }
 
-/// An open bag.
 struct Bag<'p> {
     path: &'p Path,
     database: Database,
@@ -101,7 +100,7 @@ impl Bag<'_> {
         Ok(messages)
     }
 
-    /// The texts of the schemas that the bag defines, by name.
+    /// Schema texts that the bag defines, by schema name.
     fn definitions(&self) -> Result<HashMap<String, String>, RecordingError> {
         let has_any = self
             .database
@@ -147,7 +146,7 @@ impl Bag<'_> {
     }
 }
 
-/// A row of the table.
+/// A row of the query `MESSAGES`.
 struct Message<'r> {
     topic: String,
     schema: String,
@@ -171,7 +170,7 @@ mod tests {
     use super::*;
     use crate::{Record, Recording, sample};
 
-    /// The tables as rosbag2 has made them since ROS 2 Foxy.
+    /// The tables as rosbag2 creates them since ROS 2 Foxy.
     const TABLES: &str = "
         CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
             serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);
@@ -179,7 +178,7 @@ mod tests {
             timestamp INTEGER NOT NULL, data BLOB NOT NULL);
         CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 
-    /// A bag of the sample's messages, the newest first.
+    /// Creates a bag with the given messages, the newest first.
     fn bag(folder: &TempDir, name: &str, records: &[Record]) -> PathBuf {
         let path = folder.path().join(name);
         let database = Connection::open(&path).unwrap();
@@ -204,7 +203,7 @@ mod tests {
         recording.records().map(Result::unwrap).collect()
     }
 
-    /// What is wrong with a sound bag after a change.
+    /// Error of a sound bag after a change.
     fn refusal(change: &str) -> String {
         let folder = TempDir::new().unwrap();
         let path = bag(&folder, "r.db3", &sample::records());
@@ -238,7 +237,7 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let records = sample::records();
         let (first, second) = records.split_at(7);
-        // The parts of a bag are numbered, and their order by name may be another.
+        // Parts of a bag are numbered; their order by name may differ.
         bag(&folder, "r_2.db3", first);
         bag(&folder, "r_10.db3", second);
         let found = read(folder.path());

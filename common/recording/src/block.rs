@@ -1,4 +1,4 @@
-//! A stretch of a file that holds messages, and what is in it.
+//! A section of a file that holds messages, and its statistics.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,48 +12,45 @@ use crate::feed::{each_record, part_options};
 use crate::parse::reason;
 use crate::registry::Registry;
 
-/// A part of the file that holds messages: a chunk, or a run of messages outside
-/// of chunks.
+/// A part of the file that holds messages: a chunk, or a run of messages outside of chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part {
-    /// Whether it is a chunk.
+    /// True if it is a chunk.
     pub is_chunk: bool,
-    /// Bytes in the file.
+    /// Size in the file, in bytes.
     pub bytes: usize,
-    /// Messages in it.
     pub messages: u64,
-    /// Log times of its messages, nanoseconds since 1970.
+    /// Earliest and latest log time of its messages, in nanoseconds since 1970.
     pub log_times_ns: (i64, i64),
-    /// Messages with an earlier time than the one before them.
+    /// Number of messages with an earlier time than the one before them.
     pub unsorted: u64,
 }
 
-/// What is known of a part.
+/// Location and statistics of a part.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
-    /// Start of its first record.
+    /// File offset of its first record.
     pub(crate) at: usize,
     pub(crate) is_chunk: bool,
-    /// A chunk's body, or the records that stand outside of chunks.
+    /// Body of a chunk, or the records outside of chunks.
     pub(crate) bytes: Range<usize>,
-    /// Log times of its messages, nanoseconds.
+    /// Earliest and latest log time of its messages, in nanoseconds.
     pub(crate) first_ns: i64,
     pub(crate) last_ns: i64,
-    /// Messages with an earlier time than the one before them, whose time is
-    /// `newest_ns`.
+    /// Number of messages with an earlier time than the one before them, and the log time of the
+    /// last message that was added.
     unsorted: u64,
     newest_ns: i64,
-    /// Messages by channel.
+    /// Number of messages by channel.
     pub(crate) counts: BTreeMap<u16, u64>,
 }
 
 impl Block {
-    /// A chunk's block.
     pub(crate) fn chunk(at: usize, body: Range<usize>) -> Self {
         Block::new(at, true, body)
     }
 
-    /// The block of messages outside of chunks, of which the first is at `at`.
+    /// Starts the block of messages outside of chunks; the first is at byte `at`.
     pub(crate) fn loose(at: usize) -> Self {
         Block::new(at, false, at..at)
     }
@@ -85,7 +82,7 @@ impl Block {
         self.counts.values().sum()
     }
 
-    /// Adds a message record that starts at byte `at`, or whose chunk does.
+    /// Adds a message record that starts at byte `at`, or whose chunk starts there.
     pub(crate) fn add(
         &mut self,
         header: &MessageHeader,
@@ -116,7 +113,7 @@ impl Block {
         Ok(())
     }
 
-    /// Shows each of its records in `file` to `take`.
+    /// Passes each of its records in `file` to `take`, by opcode and body.
     pub(crate) fn each_record(
         &self,
         file: &[u8],

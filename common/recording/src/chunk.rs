@@ -1,4 +1,4 @@
-//! From a chunk to its records, unpacked and checked by the library.
+//! Reads the records of a chunk, with decompression and checksum by the library.
 
 use mcap::McapError;
 use mcap::records::{ChunkHeader, Record, op};
@@ -8,30 +8,28 @@ use crate::feed::{each_record, feed, part_options};
 use crate::parse::{parse, reason};
 use crate::{Damage, MAX_CHUNK_BYTES};
 
-/// Bytes of a chunk before its packed records, without the packing's name.
+/// Size of a chunk's fields before its packed records, without the name of the compression.
 const HEADER_BYTES: usize = 40;
 
-/// A chunk whose claims are within the limits.
+/// A chunk whose claimed sizes are within the limits.
 #[derive(Debug)]
 pub(crate) struct Chunk<'a> {
     at: u64,
     header: ChunkHeader,
-    /// The record without its opcode, its length, and what may follow the
-    /// packed records.
+    /// The record without its opcode, its length, and any bytes after the packed records.
     body: &'a [u8],
 }
 
 impl<'a> Chunk<'a> {
-    /// The chunk that starts at byte `at`.
+    /// Parses the chunk that starts at byte `at`.
     pub(crate) fn of(body: &'a [u8], at: u64) -> Result<Self, Damage> {
         let Record::Chunk { header, data } = parse(op::CHUNK, body, at)? else {
             return Err(damaged(at, "it is none".to_owned()));
         };
         let claimed = header.uncompressed_size;
-        // The library looks at this size only where there is a checksum, and
-        // without a packing not at all. Where there is a packing and the size is
-        // too small, records may be missing: the checksum shows it, or that of the
-        // data, or the count in the summary.
+        // The library checks this size only if there is a checksum, and never for uncompressed
+        // chunks. If a compressed chunk claims too small a size, records may be missing; its
+        // checksum, the data checksum or the message count of the summary reveals that.
         if claimed > MAX_CHUNK_BYTES {
             return Err(Damage::ChunkSize { at, claimed });
         }
@@ -44,18 +42,18 @@ impl<'a> Chunk<'a> {
         Ok(Chunk { at, header, body })
     }
 
-    /// Whether it has a checksum.
+    /// True if it has a checksum.
     pub(crate) fn is_checked(&self) -> bool {
         self.header.uncompressed_crc != 0
     }
 
-    /// Shows each of its records to `take`; none if the checksum is wrong.
+    /// Passes each of its records to `take`; none if the checksum is wrong.
     ///
-    /// The reader gets the chunk without what may follow the packed records. It
-    /// believes the length of an unpacked record without a look at where the
-    /// chunk's records end, and then counts what is left of them below zero: a
-    /// panic in builds with overflow checks, else bytes of the next field as
-    /// records. Where the bytes end with the records, it finds them missing.
+    /// The reader gets the chunk without any bytes after the packed records. In an uncompressed
+    /// chunk it trusts the length of a record without comparing it with the end of the chunk's
+    /// records; its count of remaining bytes then underflows: a panic in builds with overflow
+    /// checks, otherwise it reads bytes of the next field as records. If its input ends with the
+    /// records, it reports the missing bytes as an error.
     pub(crate) fn each_record(
         &self,
         take: impl FnMut(u8, &[u8]) -> Result<(), Damage>,
@@ -109,7 +107,7 @@ mod tests {
     use crate::write::Packing;
 
     const PACKINGS: [Packing; 3] = [Packing::Plain, Packing::Zstd, Packing::Lz4];
-    /// Where the fields stand: sizes of eight bytes, a checksum of four.
+    /// Offsets of the fields: sizes have eight bytes, the checksum has four.
     const CLAIMED: usize = 16;
     const CHECKSUM: usize = 24;
 
@@ -130,7 +128,7 @@ mod tests {
         chunks.swap_remove(0)
     }
 
-    /// How many messages it holds.
+    /// Number of messages in a chunk.
     fn messages(body: &[u8]) -> Result<usize, Damage> {
         let mut messages = 0;
         Chunk::of(body, 7)?.each_record(|opcode, _| {
@@ -154,7 +152,7 @@ mod tests {
         body
     }
 
-    /// With another packing's name and packed bytes.
+    /// Replaces the name of the compression and the packed bytes.
     fn packed(body: &[u8], name: &str, bytes: &[u8]) -> Vec<u8> {
         let length = (name.len() as u32).to_le_bytes();
         let size = (bytes.len() as u64).to_le_bytes();
@@ -233,8 +231,8 @@ mod tests {
             let sound = body(packing);
             let bytes = &sound[HEADER_BYTES + name.len()..];
             for length in 0..bytes.len() {
-                // The last bytes of lz4 only say that nothing follows, with a
-                // checksum of its own; the chunk's has covered what was there.
+                // The last bytes of lz4 only mark the end, with a checksum of their own; the
+                // chunk's checksum has covered the content.
                 let is_after_content = name == "lz4" && bytes.len() - length <= 8;
                 match messages(&packed(&sound, name, &bytes[..length])) {
                     Ok(found) => assert!(found == 4 && is_after_content, "{name}, {length}"),
@@ -259,7 +257,7 @@ mod tests {
         }
     }
 
-    /// The library's own reading of a chunk: what its records hold.
+    /// Bytes that the library alone reads as records of a chunk.
     fn as_the_library_reads(body: &[u8]) -> Vec<u8> {
         let mut found = Vec::new();
         let mut reader = LinearReader::new_with_options(part_options());
@@ -278,7 +276,7 @@ mod tests {
 
     #[test]
     fn an_unpacked_record_that_reaches_beyond_the_records_is_refused() {
-        // A record that claims eight bytes, of which four are the chunk's.
+        // A record that claims eight bytes, four of which are in the chunk.
         let record = [&[op::MESSAGE, 8, 0, 0, 0, 0, 0, 0, 0][..], b"mine"].concat();
         let start = claiming(vec![0; 28], record.len() as u64);
         let body = [packed(&start, "", &record), b"not mine".to_vec()].concat();

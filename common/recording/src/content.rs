@@ -1,4 +1,4 @@
-//! What a file holds, by its first bytes; its name says nothing.
+//! Detects the format of a file from its first bytes; its name is ignored.
 
 use std::fs::File;
 use std::io::Read;
@@ -8,23 +8,22 @@ use mcap::MAGIC;
 
 use crate::RecordingError;
 
-/// How a database of SQLite 3 begins.
+/// Magic of an SQLite 3 database.
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
-/// How what zstd packed begins.
+/// Magic of a zstd frame.
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// How a frame begins that zstd skips, but for the low half of its first byte.
+/// Magic of a skippable zstd frame, without the first byte, which is 0x50 to 0x5f.
 const ZSTD_SKIPPED: &[u8] = &[0x2a, 0x4d, 0x18];
 
-/// How the `metadata.yaml` of a bag begins.
+/// First line of a bag's `metadata.yaml`.
 const METADATA: &[u8] = b"rosbag2_bagfile_information:";
 
-/// Bytes that identify the format.
+/// Number of bytes that are read to identify the format.
 const START: u64 = 64;
 
-/// What is not read here: how it begins, what it is, and the command that makes of
-/// it what is read.
+/// Known formats that are not supported: magic, name, and the command that converts the file.
 const FOREIGN: [(&[u8], &str, &str); 7] = [
     (
         b"#ROSBAG V",
@@ -63,24 +62,24 @@ const FOREIGN: [(&[u8], &str, &str); 7] = [
     ),
 ];
 
-/// What a file is.
+/// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
     Mcap,
     Sqlite,
     Zstd,
-    /// The description of a bag that lies beside it.
+    /// Description of a bag, next to its parts.
     Metadata,
-    /// What is known, but not read: what it is, and what to do with it.
+    /// A known format that is not supported: its name and the advice.
     Foreign(&'static str, &'static str),
     Unknown,
 }
 
 impl Content {
-    /// What the file is.
+    /// Detects the format of the file.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// If it cannot be read.
     pub(crate) fn of(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = |source| RecordingError::Open {
             path: path.to_owned(),
@@ -94,7 +93,7 @@ impl Content {
         Ok(Content::of_bytes(&start))
     }
 
-    /// What begins so.
+    /// Detects the format from the first bytes.
     pub(crate) fn of_bytes(start: &[u8]) -> Self {
         let foreign = FOREIGN.iter().find(|(magic, ..)| start.starts_with(magic));
         match foreign {
@@ -108,7 +107,7 @@ impl Content {
     }
 }
 
-/// Whether zstd packed it.
+/// True if the bytes start with a zstd frame.
 pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     let is_skipped = |bytes: &[u8]| match bytes.split_first() {
         Some((first, rest)) => first & 0xf0 == 0x50 && rest.starts_with(ZSTD_SKIPPED),
@@ -117,7 +116,7 @@ pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(ZSTD) || is_skipped(bytes)
 }
 
-/// That a file is foreign, and the command to use.
+/// Error for a foreign file, with the command to convert it.
 pub(crate) fn foreign(path: &Path, what: &'static str, advice: &str) -> RecordingError {
     let file = path.display().to_string();
     let bare = path.with_extension("").display().to_string();

@@ -1,5 +1,5 @@
-//! What is asked of a recording as a whole: its map, the laser's mount, the true
-//! poses. Each is taken from the part that is readable.
+//! Data of a recording as a whole, taken from its readable part: map, mount of the laser, true
+//! poses.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,20 +13,20 @@ use crate::{
     RecordingError, Records, TF_STATIC, TransformTree, unpack,
 };
 
-/// Where a laser sits, as far as a recording says it.
+/// Mount of a laser by a recording.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mounted {
-    /// The mount, if it is known.
+    /// The mount; `None` if the recording does not have it.
     pub mount: Option<Mount>,
-    /// What is worth knowing about it, and about transforms that are not sound.
+    /// Notes on its source, and on invalid transforms.
     pub notes: Vec<String>,
 }
 
 impl Recording {
-    /// The newest map, if the readable part holds one.
+    /// Returns the newest map of the readable part, if there is one.
     ///
     /// # Errors
-    /// If several topics could be meant, or the map is not sound.
+    /// If several topics qualify, or the map is invalid.
     pub fn map(&self) -> Result<Option<OccupancyGrid>, RecordingError> {
         let mut newest = None;
         for record in self.on_topic(Kind::Map)? {
@@ -44,11 +44,11 @@ impl Recording {
         Ok(Some(grid))
     }
 
-    /// All maps of the readable part with their log times in nanoseconds, by these.
-    /// One that does not decode is an error in its place.
+    /// Iterates over all maps of the readable part by log time, with that time in nanoseconds. A
+    /// map that does not decode is an error in its place.
     ///
     /// # Errors
-    /// If several topics could be meant.
+    /// If several topics qualify.
     pub fn maps(
         &self,
     ) -> Result<
@@ -67,26 +67,26 @@ impl Recording {
         }))
     }
 
-    /// Where a laser sits on the robot, if the readable part says so.
+    /// Returns the mount of a laser, if the readable part has it.
     ///
     /// # Errors
-    /// As [`Recording::mounted`].
+    /// Same as [`Recording::mounted`].
     pub fn base_from_laser(&self, laser: &str) -> Result<Option<Mount>, RecordingError> {
         Ok(self.mounted(laser)?.mount)
     }
 
-    /// Where a laser sits on the robot, if the readable part says so on
-    /// `/tf_static`, or on `/tf` by transforms that are always the same.
+    /// Returns the mount of a laser, if the readable part has it on `/tf_static`, or on `/tf` by
+    /// transforms that never change.
     ///
-    /// The base is the child frame of the odometry, or of `odom` on `/tf`; where that does
-    /// not bear the laser, it is `base_link`, else `base_footprint`, else `base`, with any
-    /// prefix that ends in a slash. Chains of transforms are followed, and of
-    /// several for one frame the latest counts, as in tf2. A transform that is not
-    /// sound is a note, unless the laser's place depends on it.
+    /// The base is the child frame of the odometry, or of `odom` on `/tf`; if the laser is not
+    /// below that in the tree, it is `base_link`, else `base_footprint`, else `base`, with any
+    /// prefix that ends in a slash. Chains of transforms are followed; if one frame has several
+    /// transforms, the latest counts, as in tf2. An invalid transform is a note, unless the laser's
+    /// mount depends on it.
     ///
     /// # Errors
-    /// If the laser's place depends on a transform that is invalid, or the laser is
-    /// neither level nor upside down.
+    /// If the laser's mount depends on an invalid transform, or the laser is neither level nor
+    /// upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         let (mut tree, mut notes) = self.fixed_transforms()?;
         notes.extend(tree.notes());
@@ -118,8 +118,8 @@ impl Recording {
         }
     }
 
-    /// The frame that odometry moves: that of its first message, else the first child of
-    /// `odom` on `/tf`.
+    /// Returns the child frame of odometry: that of the first odometry message, or if there is no
+    /// odometry, the first child of `odom` on `/tf`.
     fn moved_frame(&self) -> Option<String> {
         match self.topic(Kind::Odometry) {
             Ok(None) => self.moving_transforms().find_map(|message| {
@@ -139,12 +139,12 @@ impl Recording {
                     }) => Some(odometry.child_frame_id),
                     _ => None,
                 }),
-            // Which one is meant, others ask.
+            // The choice between several topics is left to other callers.
             Err(_) => None,
         }
     }
 
-    /// What stands on `/tf`; messages that do not decode are left out.
+    /// Messages on `/tf`; those that do not decode are left out.
     fn moving_transforms(&self) -> impl Iterator<Item = Result<TfMessage, RecordingError>> + '_ {
         let is_meant = |channel: &Channel| {
             let schema = channel.schema == TfMessage::SCHEMA && channel.encoding == "cdr";
@@ -160,7 +160,7 @@ impl Recording {
         })
     }
 
-    /// What stands on `/tf_static`, and which messages there do not decode.
+    /// Transforms on `/tf_static`, and errors of messages there that do not decode.
     fn fixed_transforms(&self) -> Result<(TransformTree, Vec<String>), RecordingError> {
         let (mut tree, mut notes) = (TransformTree::default(), Vec::new());
         for record in self.readable(&[Kind::StaticTransforms]) {
@@ -177,7 +177,7 @@ impl Recording {
         Ok((tree, notes))
     }
 
-    /// Adds to a tree what stands on `/tf` and does not move; says what came of it.
+    /// Adds the transforms on `/tf` that do not move; returns a note about the result.
     fn add_still(
         &self,
         tree: &mut TransformTree,
@@ -203,11 +203,11 @@ impl Recording {
         }))
     }
 
-    /// The true poses of the readable part, by the stamp of their scan in
-    /// nanoseconds; empty where there are none.
+    /// Returns the true poses of the readable part, by the stamp of their scan in nanoseconds;
+    /// empty if there are none.
     ///
     /// # Errors
-    /// If one is not a pose, or two contradict each other.
+    /// If one is not a valid pose, or two contradict each other.
     pub fn ground_truths(&self) -> Result<BTreeMap<i64, GroundTruth>, RecordingError> {
         let mut truths = BTreeMap::new();
         for record in self.on_topic(Kind::PoseStamped)? {
@@ -233,12 +233,12 @@ impl Recording {
         Ok(truths)
     }
 
-    /// What can be read, without the damage at its end.
+    /// Iterates over the readable messages, without the damage at the end.
     fn readable(&self, kinds: &[Kind]) -> Records<'_> {
         Records::new(self, kinds, None)
     }
 
-    /// The messages of the channel that is meant by a kind.
+    /// Iterates over the messages of the selected channel of a kind.
     fn on_topic(
         &self,
         kind: Kind,

@@ -1,4 +1,4 @@
-//! A bag, whatever it is made of, written again as one recording.
+//! Copies a bag of any format to one recording.
 
 use std::io::{Seek, Write};
 use std::path::Path;
@@ -7,16 +7,15 @@ use crate::content::Content;
 use crate::write::{RecordingWriter, definition};
 use crate::{Kind, Recording, RecordingError, unpack};
 
-/// Whether it is something that [`Recording::open`] may read: by its content, or a
-/// folder.
+/// True if [`Recording::open`] may be able to read it: a file with suitable content, or a folder.
 #[must_use]
 pub fn is_recording(path: impl AsRef<Path>) -> bool {
     let path = path.as_ref();
     is_bag(path) || Content::of(path).is_ok_and(|content| content == Content::Mcap)
 }
 
-/// Whether it is what ROS 2 calls a bag and no plain MCAP file: a folder, its
-/// `metadata.yaml`, a file in SQLite, or one that is packed.
+/// True if it is a bag of ROS 2 and not a plain MCAP file: a folder, its `metadata.yaml`, an SQLite
+/// file, or a compressed file.
 #[must_use]
 pub fn is_bag(path: impl AsRef<Path>) -> bool {
     let path = path.as_ref();
@@ -28,11 +27,11 @@ pub fn is_bag(path: impl AsRef<Path>) -> bool {
         )
 }
 
-/// Writes what a bag holds, all its parts by log time, every message unpacked;
-/// returns the number of messages.
+/// Writes the messages of all parts of a bag by log time, with every message decompressed; returns
+/// the number of messages.
 ///
 /// # Errors
-/// The bag cannot be read or is damaged, or the recording cannot be written.
+/// If the bag cannot be read or is damaged, or the recording cannot be written.
 pub fn write_bag<W: Write + Seek>(
     path: impl AsRef<Path>,
     writer: &mut RecordingWriter<W>,
@@ -47,7 +46,7 @@ pub fn write_bag<W: Write + Seek>(
         let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
         let text = definitions.get(schema).map(String::as_str);
         let text = text.or(own.map(definition)).unwrap_or_default();
-        // What does not unpack is kept as it is: whoever reads it gets the error.
+        // A message that cannot be decompressed is copied unchanged: its reader gets the error.
         let body = unpack::message(&record.body).unwrap_or((&*record.body).into());
         writer.write_bytes(
             &channel.topic,

@@ -7,162 +7,137 @@ use ros::ConversionError;
 
 use crate::{Damage, Kind, topics};
 
-/// What went wrong, and in which file.
+/// An error of a recording, with the file that it concerns.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The file is not there or not readable.
+    /// The file does not exist or cannot be read.
     #[error("cannot read the recording {}", path.display())]
     Open {
-        /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// The file is cut short or damaged, or no recording.
+    /// The file is truncated or damaged, or is no recording.
     #[error("{}: {damage}; {readable} messages before that are readable", path.display())]
     Damaged {
-        /// The file.
         path: PathBuf,
-        /// Messages of all channels that lie before the damage.
+        /// Messages of all channels that come before the damage.
         readable: u64,
-        /// What is wrong, and where.
         damage: Damage,
     },
-    /// A kind of file that is known, but not read.
+    /// A known file format that is not supported.
     #[error("{} is {what}: {advice}", path.display())]
     Foreign {
-        /// The file.
         path: PathBuf,
-        /// What it is.
+        /// Name of the format.
         what: &'static str,
-        /// How to make of it what is read.
+        /// Advice on how to convert it.
         advice: String,
     },
-    /// A packed file that cannot be unpacked.
+    /// A compressed file that cannot be decompressed.
     #[error("{} cannot be unpacked: {reason}", path.display())]
     Unpack {
-        /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Message of zstd or of the system, or the limit that is exceeded.
         reason: String,
     },
-    /// A bag of rosbag2 whose files are not all there, or one in SQLite that cannot
-    /// be read, or whose content is not sound.
+    /// A rosbag2 bag with missing files, or an SQLite bag that cannot be read or whose content is
+    /// invalid.
     #[error("the bag {}: {reason}", path.display())]
     Bag {
-        /// The file.
         path: PathBuf,
-        /// What SQLite says, or what is not allowed.
+        /// Message of SQLite, or the rule that is broken.
         reason: String,
     },
-    /// A channel of a type in use whose messages are encoded in another way.
+    /// A channel of a decodable type whose messages are not encoded in CDR.
     #[error("{}: {topic} has {schema} encoded as {encoding:?}; allowed: \"cdr\", as ROS 2 writes it", path.display())]
     NotCdr {
-        /// The file.
         path: PathBuf,
-        /// The channel.
         topic: String,
-        /// Its schema's name.
+        /// Schema name of the channel.
         schema: String,
-        /// How its messages are encoded.
+        /// Encoding of its messages.
         encoding: String,
     },
-    /// A message does not decode as its schema says.
+    /// A message cannot be decoded by its schema.
     #[error("{}: the message of {topic} at log time {log_time_ns} ns is not a {kind}: {reason}", path.display())]
     Message {
-        /// The file.
         path: PathBuf,
-        /// The channel.
         topic: String,
         /// Nanoseconds since 1970.
         log_time_ns: i64,
-        /// What it should be.
+        /// Expected kind.
         kind: Kind,
-        /// What is wrong.
         reason: String,
     },
     /// A message decodes, but cannot be used.
     #[error("{}: the message of {topic} at log time {log_time_ns} ns cannot be used", path.display())]
     Unusable {
-        /// The file.
         path: PathBuf,
-        /// The channel.
         topic: String,
         /// Nanoseconds since 1970.
         log_time_ns: i64,
-        /// What is wrong.
         source: ConversionError,
     },
-    /// What was asked for is not in the recording.
+    /// The recording has no messages of the requested kind.
     #[error("{} has no {kind}; it has {}", path.display(), listed(found))]
     NoTopic {
-        /// The file.
         path: PathBuf,
-        /// What was asked for.
         kind: Kind,
-        /// The channels that it has, with their schemas.
+        /// All channels of the recording, with their schemas.
         found: Vec<String>,
     },
-    /// The channel that was named is not in the recording.
+    /// The recording has no messages of the kind on the named channel.
     #[error("{} has no {kind} on {topic}; it has {}", path.display(), listed(found))]
     NoSuchTopic {
-        /// The file.
         path: PathBuf,
-        /// What was asked for.
         kind: Kind,
-        /// On which channel.
         topic: String,
-        /// The channels that have some.
+        /// Channels with messages of the kind.
         found: Vec<String>,
     },
-    /// Several channels could be meant.
+    /// Several channels have messages of the kind, none with the conventional name.
     #[error("{} has several channels of {kind}, {}, and none is called {name}: name one with {}", path.display(), listed(found), topics::option(*kind))]
     SeveralTopics {
-        /// The file.
         path: PathBuf,
-        /// What was asked for.
         kind: Kind,
-        /// The name that would be taken.
+        /// Conventional name of the kind.
         name: &'static str,
-        /// The channels.
+        /// Channels with messages of the kind.
         found: Vec<String>,
     },
-    /// A laser whose place depends on a transform that is invalid.
+    /// A laser whose mount depends on an invalid transform.
     #[error("{}: the mount of {laser} is not known, for the transform {transform} is invalid: {reason}", path.display())]
     BrokenMount {
-        /// The file.
         path: PathBuf,
-        /// The laser's frame.
+        /// Frame of the laser.
         laser: String,
-        /// From which frame to which.
+        /// Frames of the transform, from and to.
         transform: String,
-        /// What is wrong.
         reason: String,
     },
     /// A laser that is neither level nor upside down.
     #[error("{}: {laser} is tilted by {tilt_degrees:.0} degrees against {base}; allowed: 10, also upside down, for what it sees is not the plane of the map", path.display())]
     TiltedLaser {
-        /// The file.
         path: PathBuf,
-        /// The laser's frame.
+        /// Frame of the laser.
         laser: String,
-        /// The base frame.
+        /// Base frame.
         base: String,
-        /// Angle between their z axes, or to the opposite one if that is nearer.
+        /// Angle between their z axes, or to the opposite axis if that is smaller, in degrees.
         tilt_degrees: f64,
     },
-    /// Two ground truths that contradict each other.
+    /// Two ground truths with the same stamp that differ.
     #[error("{}: two ground truths are stamped {stamp_ns} ns, and differ", path.display())]
     TwoTruths {
-        /// The file.
         path: PathBuf,
         /// Nanoseconds since 1970.
         stamp_ns: i64,
     },
-    /// A recording could not be written.
+    /// A recording cannot be written.
     #[error("cannot write the recording: {reason}")]
     Write {
-        /// What the system or the library says, or what is not allowed.
+        /// Message of the system or the library, or the rule that is broken.
         reason: String,
     },
 }

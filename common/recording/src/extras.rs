@@ -1,6 +1,6 @@
-//! What a recording holds beside messages: metadata and attachments.
+//! Metadata and attachments of a recording.
 //!
-//! They are listed and can be taken out; nothing here says what they mean.
+//! They are listed and can be extracted, but not interpreted.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,49 +10,46 @@ use mcap::records::Record;
 use crate::Damage;
 use crate::parse::parse;
 
-/// Bytes of an attachment before its data, without its texts: two times, the
-/// lengths of two texts, and that of the data.
+/// Size of an attachment's fields before its data, without the texts: two times, the lengths of two
+/// texts, and the length of the data.
 const FIXED_BYTES: usize = 8 + 8 + 4 + 4 + 8;
 
 /// A file inside a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttachedFile {
-    /// Its name.
     pub name: String,
-    /// What kind of file it is, as `image/png`.
+    /// Media type, such as `image/png`.
     pub media_type: String,
-    /// When it was put in, nanoseconds since 1970.
+    /// Time at which it was added, in nanoseconds since 1970.
     pub log_time_ns: u64,
-    /// In which of the recording's files it is.
+    /// Index of the recording's file that contains it.
     pub(crate) file: usize,
-    /// Where its bytes lie in that file.
+    /// Byte range in that file.
     pub(crate) bytes: Range<usize>,
 }
 
 impl AttachedFile {
-    /// Its size in bytes.
+    /// Size in bytes.
     #[must_use]
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether it has no bytes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 }
 
-/// Entries by key, under a name.
+/// Named key-value entries.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MetadataRecord {
-    /// The name; several may have the same.
+    /// Name; several records may have the same.
     pub name: String,
-    /// The entries.
     pub entries: BTreeMap<String, String>,
 }
 
-/// All of them, in the order of the file.
+/// Attachments and metadata, in the order of the file.
 #[derive(Debug, Default)]
 pub(crate) struct Extras {
     pub(crate) attachments: Vec<AttachedFile>,
@@ -60,8 +57,8 @@ pub(crate) struct Extras {
 }
 
 impl Extras {
-    /// Takes an attachment or a metadata record that lies at `place`, from its
-    /// opcode to the end of its body.
+    /// Adds an attachment or a metadata record; `place` is the range from its opcode to the end of
+    /// its body.
     pub(crate) fn add(
         &mut self,
         opcode: u8,

@@ -1,28 +1,28 @@
-//! Bytes into the library's reader, records out of it.
+//! Feeds bytes to the library's reader and takes records out of it.
 //!
-//! The library reads the container. It does no input itself and asks for bytes;
-//! here they come from memory, and never more than there are: a record that
-//! claims hundreds of megabytes makes it ask for them, and gets what is left.
+//! The library parses the container but does no input: it requests bytes. Here they come from
+//! memory, at most as many as there are: a record that claims hundreds of megabytes only gets the
+//! bytes that are left.
 
 use mcap::McapError;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::{Damage, MAX_CHUNK_BYTES};
 
-/// How every part of a file is read: nothing longer than the limit is believed.
+/// Reader options for files: records longer than the limit are rejected.
 pub(crate) fn options() -> LinearReaderOptions {
     LinearReaderOptions::default().with_record_length_limit(MAX_CHUNK_BYTES as usize)
 }
 
-/// How records are read that stand alone, without a file around them.
+/// Reader options for records alone, without the magic of a file around them.
 pub(crate) fn part_options() -> LinearReaderOptions {
     options()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
 }
 
-/// Gives the reader as much as it wants, or what is left; nothing informs it that
-/// the bytes have ended.
+/// Gives the reader the bytes that it requests, or those that are left; it is not told that the
+/// input has ended.
 pub(crate) fn feed(reader: &mut LinearReader, wanted: usize, rest: &mut &[u8]) {
     let (given, left) = rest.split_at(wanted.min(rest.len()));
     reader.insert(given.len()).copy_from_slice(given);
@@ -30,10 +30,10 @@ pub(crate) fn feed(reader: &mut LinearReader, wanted: usize, rest: &mut &[u8]) {
     *rest = left;
 }
 
-/// Shows each record of some bytes to `take`, by its opcode and body.
+/// Passes each record of some bytes to `take`, by its opcode and body.
 ///
 /// # Errors
-/// The first that `take` gives, or what `damage` makes of the reader's.
+/// The first error of `take`, or the error of the reader converted by `damage`.
 pub(crate) fn each_record(
     mut reader: LinearReader,
     mut bytes: &[u8],
@@ -54,7 +54,7 @@ pub(crate) fn each_record(
 mod tests {
     use super::*;
 
-    /// The opcodes, the bodies one after another, and how it ended.
+    /// Returns the opcodes, the concatenated bodies, and the result.
     fn read(bytes: &[u8]) -> (Vec<u8>, Vec<u8>, Result<(), Damage>) {
         let (mut opcodes, mut bodies) = (Vec::new(), Vec::new());
         let take = |opcode, body: &[u8]| {

@@ -10,7 +10,7 @@ use crate::folder::Listed;
 use crate::survey::Survey;
 use crate::{Damage, RecordingError, unpack};
 
-/// A file whose messages are known and whose checksums have been compared.
+/// A file whose messages are known and whose checksums have been verified.
 #[derive(Debug)]
 pub(crate) struct RecordedFile {
     pub(crate) path: PathBuf,
@@ -25,7 +25,7 @@ enum Bytes {
 }
 
 impl RecordedFile {
-    /// Opens a file, whatever of what is read it holds.
+    /// Opens an MCAP file or an SQLite bag, also if it is compressed with zstd.
     ///
     /// # Errors
     /// It cannot be read, or does not even start as a recording.
@@ -45,7 +45,7 @@ impl RecordedFile {
         RecordedFile::with_content(listed, unpacked.path(), Content::of(unpacked.path())?)
     }
 
-    /// What errors call by the listed name, and lies at `place`.
+    /// Opens the file at `place` with the given content; errors call it by its listed name.
     fn with_content(
         listed: &Listed,
         place: &Path,
@@ -67,16 +67,16 @@ impl RecordedFile {
         }
     }
 
-    /// A file that errors call `path`.
+    /// Maps a file; errors call it `path`.
     fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
-        // SAFETY: the map is only read. Should another process write to the
-        // file, bytes change under the reader, which checks each as if it came
-        // from anywhere; should one cut it, the system ends this process.
+        // SAFETY: the map is only read. If another process writes to the file, bytes change under
+        // the reader, which checks each of them as untrusted input; if one truncates it, the system
+        // ends this process.
         let map = unsafe { Mmap::map(file) }.map_err(|source| unreadable(path, source))?;
         RecordedFile::new(path.to_owned(), Bytes::Mapped(map))
     }
 
-    /// A file in memory; errors call it `path`.
+    /// Opens a file in memory; errors call it `path`.
     ///
     /// # Errors
     /// It does not even start as a recording.
@@ -84,7 +84,7 @@ impl RecordedFile {
         RecordedFile::new(path, Bytes::Owned(bytes))
     }
 
-    /// One that does not even start as a recording.
+    /// Stands for a file that does not even start as a recording.
     pub(crate) fn without_content(path: PathBuf, damage: Damage) -> Self {
         RecordedFile {
             path,
@@ -96,7 +96,7 @@ impl RecordedFile {
         }
     }
 
-    /// Whether it is such a one.
+    /// True for a file from [`RecordedFile::without_content`].
     pub(crate) fn is_without_content(&self) -> bool {
         self.bytes().is_empty()
     }

@@ -1,9 +1,9 @@
-//! The files of a recording: one, or those of a bag of rosbag2.
+//! Finds the files of a recording: a single one, or those of a rosbag2 bag.
 //!
-//! A bag is a folder. Its `metadata.yaml` names the parts in their order; where
-//! there is none, as after a recorder was cut off, the parts are the folder's
-//! `.mcap` or `.db3` files by name, numbers in it by their value. Parts are found
-//! packed (`.zstd`) or unpacked, whichever of the two is there.
+//! A bag is a folder. Its `metadata.yaml` lists the parts in their order. Without it, as after a
+//! recorder was killed, the parts are the `.mcap` or `.db3` files of the folder, sorted by name,
+//! with numbers in the names compared by value. A part may be compressed (`.zstd`) or not, also if
+//! the list says otherwise.
 
 use std::cmp::Ordering;
 use std::path::{Component, Path, PathBuf};
@@ -13,26 +13,26 @@ use serde::Deserialize;
 use crate::RecordingError;
 use crate::content::{Content, foreign};
 
-/// What a bag's description is called.
+/// Name of a bag's description.
 const METADATA: &str = "metadata.yaml";
 
-/// What may stand behind a part's name where it is packed.
+/// Extensions of compressed parts.
 const PACKED: [&str; 2] = ["zstd", "zst"];
 
-/// What stands there where it is packed as is not read, so that this can be said.
+/// Extensions of unsupported compression, found only to report them.
 const PACKED_OTHERWISE: [&str; 4] = ["gz", "xz", "lz4", "bz2"];
 
-/// A file, and how many messages the bag's description says it holds.
+/// A file with its number of messages by the bag's description.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Listed {
     pub(crate) path: PathBuf,
     pub(crate) messages: Option<u64>,
 }
 
-/// The files behind a name, in their order.
+/// Returns the files behind a path, in their order.
 ///
 /// # Errors
-/// There is no such file, or no clear set of them in a folder.
+/// If there is no such file, or a folder does not clearly define its files.
 pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
     let unreadable = |source| RecordingError::Open {
         path: path.to_owned(),
@@ -40,7 +40,7 @@ pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
     };
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         let metadata = path.join(METADATA);
-        // A recorder that was cut off leaves an empty one.
+        // A recorder that was killed leaves an empty one.
         return match std::fs::metadata(&metadata) {
             Ok(found) if found.len() > 0 => named(&metadata, path),
             _ => unnamed(path),
@@ -62,7 +62,7 @@ struct Description {
     rosbag2_bagfile_information: Information,
 }
 
-/// What is needed of a description; there is more.
+/// The needed fields of a description, which has more.
 #[derive(Deserialize)]
 struct Information {
     relative_file_paths: Vec<String>,
@@ -94,7 +94,7 @@ impl Information {
         Ok(description.rosbag2_bagfile_information)
     }
 
-    /// Messages of one of its files, if they are counted.
+    /// Number of messages in one of its files, if given.
     fn messages(&self, name: &str) -> Option<u64> {
         let mut files = self.files.iter().flatten();
         let counted = files.find(|file| file.path == name);
@@ -106,7 +106,7 @@ impl Information {
     }
 }
 
-/// The parts that a description names.
+/// Returns the parts that a description lists.
 fn named(metadata: &Path, folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let information = Information::read(metadata)?;
     let names = &information.relative_file_paths;
@@ -124,8 +124,7 @@ fn named(metadata: &Path, folder: &Path) -> Result<Vec<Listed>, RecordingError> 
     names.iter().map(part).collect()
 }
 
-/// Where a part lies that is called so; some writers put the folder's own name
-/// before it.
+/// Returns the path of a listed part; some writers prefix it with the folder's own name.
 fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     let name = Path::new(name);
     let is_inside = name.components().all(|c| matches!(c, Component::Normal(_)));
@@ -148,14 +147,14 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// The name of a packed file once it is unpacked.
+/// Name of a compressed file without its compression extension.
 fn without_ending(path: &Path) -> Option<PathBuf> {
     let ending = path.extension()?;
     let is_packed = PACKED.iter().any(|packed| ending == *packed);
     is_packed.then(|| path.with_extension(""))
 }
 
-/// How many messages the description beside a single file says that it holds.
+/// Number of messages in a single file by the description next to it.
 fn described(path: &Path, folder: &Path) -> Option<u64> {
     let information = Information::read(&folder.join(METADATA)).ok()?;
     let name = path.file_name()?.to_str()?;
@@ -164,7 +163,7 @@ fn described(path: &Path, folder: &Path) -> Option<u64> {
     is_listed.then(|| information.messages(name)).flatten()
 }
 
-/// The parts of a folder that nothing describes.
+/// Returns the parts of a folder without a description.
 fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let unreadable = |source| RecordingError::Open {
         path: folder.to_owned(),
@@ -174,13 +173,13 @@ fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         paths.push(entry.map_err(unreadable)?.path());
     }
-    // One that lies there packed and unpacked is one part.
+    // A part that exists both compressed and uncompressed counts once.
     let all = paths.clone();
     let is_twice = |path: &Path| without_ending(path).is_some_and(|path| all.contains(&path));
     paths.retain(|path| storage(path).is_some() && path.is_file() && !is_twice(path));
     paths.sort_by(|a, b| natural_order(&shown(a), &shown(b)));
-    // A disk that was full for a while leaves parts into which nothing was written, and others
-    // after them; that it is the last one that is empty is said when it is read.
+    // A disk that was full for a while leaves empty parts between others. An empty part at the end
+    // is kept, so that reading reports it.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|found| found.len() == 0);
     if let Some(last) = paths.iter().rposition(|path| !is_empty(path)) {
         let after = paths.split_off(last);
@@ -213,14 +212,14 @@ fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     Ok(paths.into_iter().map(listed).collect())
 }
 
-/// `mcap` or `db3`, by a part's name.
+/// Storage format by a part's name: `mcap` or `db3`.
 fn storage(path: &Path) -> Option<String> {
     let unpacked = without_ending(path).unwrap_or_else(|| path.to_owned());
     let ending = unpacked.extension()?.to_str()?.to_lowercase();
     ["mcap", "db3"].contains(&ending.as_str()).then_some(ending)
 }
 
-/// By the value of the numbers in them: `r_2` comes before `r_10`.
+/// Compares numbers in names by value: `r_2` comes before `r_10`.
 fn natural_order(a: &str, b: &str) -> Ordering {
     let (mut a, mut b) = (a, b);
     while let (Some(first), Some(second)) = (a.chars().next(), b.chars().next()) {
@@ -243,7 +242,7 @@ fn natural_order(a: &str, b: &str) -> Ordering {
     a.len().cmp(&b.len())
 }
 
-/// The digits at the start, without zeros before them, and what follows.
+/// Splits off the leading digits, without leading zeros, from the rest.
 fn number(text: &str) -> (&str, &str) {
     let end = text.find(|c: char| !c.is_ascii_digit());
     let (digits, rest) = text.split_at(end.unwrap_or(text.len()));
@@ -254,7 +253,7 @@ fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// A bag that cannot be used, and why.
+/// Error of an unusable bag.
 pub(crate) fn refused(path: &Path, reason: String) -> RecordingError {
     RecordingError::Bag {
         path: path.to_owned(),
@@ -268,7 +267,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder with files of these names, empty but for the description.
+    /// Creates a folder with files of these names, empty except for the description.
     fn folder(names: &[&str], metadata: Option<&str>) -> TempDir {
         let folder = TempDir::new().unwrap();
         for name in names {

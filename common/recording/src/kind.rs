@@ -1,10 +1,10 @@
-//! The kinds of message that are read.
+//! The kinds of message that are decoded.
 
 use std::fmt;
 
 use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
-/// Where the transforms are that never change.
+/// Topic of the transforms that never change.
 pub const TF_STATIC: &str = "/tf_static";
 
 /// A kind of message, by its schema.
@@ -18,13 +18,12 @@ pub enum Kind {
     Odometry,
     /// `geometry_msgs/msg/PoseStamped`.
     PoseStamped,
-    /// `tf2_msgs/msg/TFMessage` on a topic called `/tf_static`; those of `/tf`
-    /// have the same schema, but hold for a moment only.
+    /// `tf2_msgs/msg/TFMessage` on a topic that ends in `/tf_static`; messages on `/tf` have the
+    /// same schema, but hold only for a moment.
     StaticTransforms,
 }
 
 impl Kind {
-    /// All kinds.
     pub const ALL: [Kind; 5] = [
         Kind::Scan,
         Kind::Map,
@@ -33,7 +32,7 @@ impl Kind {
         Kind::StaticTransforms,
     ];
 
-    /// The schema's name in ROS 2.
+    /// Name of the schema in ROS 2.
     #[must_use]
     pub fn schema(self) -> &'static str {
         match self {
@@ -45,8 +44,8 @@ impl Kind {
         }
     }
 
-    /// The kind of a channel; the schema may be named as ROS 1 does, without
-    /// `msg`, so that such a channel can be refused with the reason.
+    /// Returns the kind of a channel. The schema may also have its ROS 1 name, without `msg`, so
+    /// that such a channel can be rejected with a reason.
     pub(crate) fn of(schema: &str, topic: &str) -> Option<Kind> {
         let is_named = |kind: &Kind| {
             let name = kind.schema();

@@ -1,13 +1,11 @@
-//! Recordings: MCAP files that hold ROS 2 messages in CDR, or a folder of such as
-//! rosbag2 writes it; with the feature `rosbag2` also bags in SQLite, as ROS 2
-//! wrote them before.
+//! Reads and writes recordings: MCAP files with ROS 2 messages in CDR, or a folder of them as
+//! rosbag2 writes it; with the feature `rosbag2` also the older SQLite bags of ROS 2.
 //!
-//! [`Recording::open`] checks all files from start to end, [`Recording::records`]
-//! gives its messages in the order of their log times, and [`mod@write`] writes
-//! recordings. Damage is never repaired and never passed over: what lies before
-//! it is given out, then the error that says where it is. The crate decodes the
-//! five message types of [`Kind`] by way of crate `ros`, gives out all others as
-//! bytes, and knows no graph.
+//! [`Recording::open`] checks all files from start to end, [`Recording::records`] returns the
+//! messages in the order of their log times, and [`mod@write`] writes recordings. Damage is never
+//! repaired or skipped: the messages before it are returned, then an error that says where it is.
+//! The crate decodes the five message types of [`Kind`] with the crate `ros` and returns all others
+//! as bytes. It knows nothing about graphs.
 
 #[cfg(feature = "rosbag2")]
 mod bag;

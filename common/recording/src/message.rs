@@ -6,34 +6,27 @@ use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, cdr};
 
 use crate::Kind;
 
-/// A message with its place in the recording.
+/// A message with its topic and log time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// The channel.
     pub topic: Arc<str>,
-    /// When it was recorded, nanoseconds since 1970.
+    /// Time of recording, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// What it says.
     pub message: Message,
 }
 
-/// A message of one of the kinds that are read.
+/// A message of one of the decoded kinds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Message {
-    /// A laser scan.
     Scan(LaserScan),
-    /// A map.
     Map(OccupancyGridMsg),
-    /// What the wheels report.
     Odometry(Box<Odometry>),
-    /// A pose: the truth, a goal, or whatever the topic says.
+    /// A pose: the ground truth, a goal, or anything else the topic may mean.
     PoseStamped(PoseStamped),
-    /// Transforms that never change.
     StaticTransforms(TfMessage),
 }
 
 impl Message {
-    /// Which kind it is.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {

@@ -1,4 +1,4 @@
-//! Where the laser sits on the robot.
+//! Mount of the laser on the robot, from a tree of transforms.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -6,33 +6,31 @@ use geometry::Pose;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use ros::{ConversionError, Mend, Transform, TransformStamped};
 
-/// The names of a robot's base where odometry names none, the one that is preferred first.
+/// Usual names of a robot's base frame, in order of preference.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 
-/// How far a laser may be from level, or from upside down: at 10 degrees a wall
-/// seems 1.5 percent farther than it is.
+/// Largest tilt of a laser from level, or from upside down, in degrees: at 10 degrees a wall seems
+/// 1.5 percent farther than it is.
 pub const MAX_TILT_DEGREES: f64 = 10.0;
 
-/// A laser's place on the robot.
+/// Pose of a laser on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mount {
-    /// The base frame's name.
+    /// Name of the base frame.
     pub base_frame: String,
-    /// The laser in that frame, seen from above: its heading is that of the laser's
-    /// x axis.
+    /// Pose of the laser in that frame, seen from above: its heading is that of the laser's x axis.
     pub base_from_laser: Pose,
-    /// Whether the laser's z axis points down, so that its beams, seen from above,
-    /// turn clockwise.
+    /// True if the laser's z axis points down, so that its beams turn clockwise seen from above.
     pub upside_down: bool,
-    /// How high the laser sits above the base frame, metres.
+    /// Height of the laser above the base frame, in metres.
     pub height_m: f64,
-    /// Angle between the z axes of laser and base, degrees; of a laser upside down,
-    /// the angle to the opposite of the base's axis.
+    /// Angle between the z axes of laser and base, in degrees; for a laser upside down, the angle
+    /// to the opposite of the base's axis.
     pub tilt_degrees: f64,
 }
 
 impl From<&Mount> for geometry::Mount {
-    /// What matters in the plane.
+    /// Keeps the planar part.
     fn from(mount: &Mount) -> Self {
         geometry::Mount {
             base_from_laser: mount.base_from_laser,
@@ -41,25 +39,24 @@ impl From<&Mount> for geometry::Mount {
     }
 }
 
-/// Frames and what is known between them.
+/// Tree of frames and the transforms between them.
 #[derive(Debug, Default)]
 pub struct TransformTree {
-    /// By child: its parent, and `parent_from_child`.
+    /// Parent and `parent_from_child`, by child.
     parents: BTreeMap<String, (String, Isometry3<f64>)>,
-    /// By child: the parent of a transform that is invalid, and why.
+    /// Parent and error of invalid transforms, by child.
     broken: BTreeMap<String, (String, ConversionError)>,
-    /// By child: what was wrong with the transform that it has.
+    /// Corrections that were applied to valid transforms, by child.
     mended: BTreeMap<String, Mend>,
-    /// The frame that odometry moves.
+    /// Child frame of the odometry.
     moved: Option<String>,
 }
 
 impl TransformTree {
-    /// Adds a transform, or replaces the one that its child had. An invalid one
-    /// is kept in mind only as far as [`TransformTree::broken_below`] asks.
+    /// Adds a transform, or replaces the previous one of its child.
     ///
     /// # Errors
-    /// If it is no transform.
+    /// If the transform is invalid.
     pub fn add(&mut self, stamped: &TransformStamped) -> Result<(), ConversionError> {
         let parent = plain(&stamped.header.frame_id).to_owned();
         let child = plain(&stamped.child_frame_id).to_owned();
@@ -73,7 +70,8 @@ impl TransformTree {
         Ok(())
     }
 
-    /// As [`TransformTree::add`], but an invalid one is noted, and ends nothing.
+    /// Same as [`TransformTree::add`], but an invalid transform is only recorded, for
+    /// [`TransformTree::notes`] and [`TransformTree::broken_below`].
     pub fn take(&mut self, stamped: &TransformStamped) {
         if let Err(error) = self.add(stamped) {
             let parent = plain(&stamped.header.frame_id).to_owned();
@@ -82,8 +80,7 @@ impl TransformTree {
         }
     }
 
-    /// What is wrong with transforms, the frames named: those that are none, and
-    /// those that had to be mended.
+    /// Describes invalid and corrected transforms, with their frames.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let broken = self.broken.iter().map(|(child, (parent, error))| {
             format!("the transform from {parent} to {child} is ignored: {error}")
@@ -95,8 +92,8 @@ impl TransformTree {
         broken.chain(mended)
     }
 
-    /// A transform that is invalid, if only that keeps the laser from a base: its
-    /// parent and child, and what is wrong.
+    /// Returns an invalid transform if it alone separates the laser from a base: parent, child and
+    /// error.
     #[must_use]
     pub fn broken_below(&self, laser: &str) -> Option<(&str, &str, &ConversionError)> {
         let mut bridged = self.sound();
@@ -113,7 +110,7 @@ impl TransformTree {
         None
     }
 
-    /// Takes note of the child frame of odometry; whether it is another than before.
+    /// Sets the base frame to the child frame of odometry; returns true if it has changed.
     pub fn on_odometry(&mut self, child: &str) -> bool {
         let child = plain(child);
         let is_new = !child.is_empty() && self.moved.as_deref() != Some(child);
@@ -123,7 +120,7 @@ impl TransformTree {
         is_new
     }
 
-    /// A copy without the notes.
+    /// Returns a copy without the invalid transforms and the corrections.
     pub(crate) fn sound(&self) -> TransformTree {
         TransformTree {
             parents: self.parents.clone(),
@@ -132,19 +129,20 @@ impl TransformTree {
         }
     }
 
-    /// Whether the frame has a parent.
+    /// True if the frame has a parent.
     pub(crate) fn knows(&self, child: &str) -> bool {
         self.parents.contains_key(plain(child))
     }
 
-    /// How many frames have a parent.
+    /// Number of frames that have a parent.
     #[must_use]
     pub fn children(&self) -> usize {
         self.parents.len()
     }
 
-    /// The laser's place in the frame that odometry moves, if that bears the laser; else in
-    /// the one with a usual name of a base, or else in the first, if it is connected to it.
+    /// Mount of the laser in the child frame of odometry, if the laser is below it in the tree;
+    /// otherwise in a frame with a usual name of a base, otherwise in the child frame of odometry
+    /// if it is connected at all.
     #[must_use]
     pub fn base_from(&self, laser: &str) -> Option<Mount> {
         let laser = plain(laser);
@@ -161,28 +159,27 @@ impl TransformTree {
         Some(mount(base, connected.get(base)?))
     }
 
-    /// Whether a frame is above another one.
+    /// True if `frame` is an ancestor of `child`.
     fn bears(&self, frame: &str, child: &str) -> bool {
         let parent = |child: &str| self.parents.get(child).map(|(parent, _)| parent.as_str());
-        // Transforms may go round.
+        // Transforms may form a cycle.
         std::iter::successors(parent(child), |&above| parent(above))
             .take(self.parents.len())
             .any(|above| above == frame)
     }
 
-    /// As [`TransformTree::base_from`], of the base frame with this name.
+    /// Same as [`TransformTree::base_from`], for the base frame with this name.
     #[must_use]
     pub fn base_named(&self, base: &str, laser: &str) -> Option<Mount> {
         let base = plain(base);
         Some(mount(base, self.connected_to(plain(laser)).get(base)?))
     }
 
-    /// Where another frame lies in the laser's, seen from above, if they are
-    /// connected.
+    /// Pose of another frame in the laser's frame, seen from above, if they are connected.
     #[must_use]
     pub fn laser_from(&self, laser: &str, frame: &str) -> Option<Pose> {
         let connected = self.connected_to(plain(laser));
-        // From above the frame, for the laser may look at it from below.
+        // Seen from above `frame`, because a laser upside down would see it from below.
         let frame_from_laser = connected.get(plain(frame))?.inverse();
         let forward = frame_from_laser.rotation * Vector3::x();
         let place = frame_from_laser.translation;
@@ -190,7 +187,7 @@ impl TransformTree {
         Some(seen.inverse())
     }
 
-    /// Every frame that is connected to the laser, as `laser_from_frame`.
+    /// Every frame that is connected to the laser, with `laser_from_frame`.
     fn connected_to(&self, laser: &str) -> BTreeMap<String, Isometry3<f64>> {
         let mut found = BTreeMap::new();
         let mut queue = VecDeque::from([(laser.to_owned(), Isometry3::identity())]);
@@ -214,7 +211,7 @@ impl TransformTree {
     }
 }
 
-/// A laser's place in a base frame.
+/// Mount of a laser in a base frame.
 fn mount(base: &str, laser_from_base: &Isometry3<f64>) -> Mount {
     let base_from_laser = laser_from_base.inverse();
     let forward = base_from_laser.rotation * Vector3::x();
@@ -229,15 +226,15 @@ fn mount(base: &str, laser_from_base: &Isometry3<f64>) -> Mount {
     }
 }
 
-/// Some writers put a slash before a frame's name, as ROS 1 once did.
+/// Strips the leading slash that some writers put before a frame's name, as ROS 1 once did.
 pub(crate) fn plain(frame: &str) -> &str {
     frame.strip_prefix('/').unwrap_or(frame)
 }
 
-/// A transform in space, and what had to be mended.
+/// Converts a transform; also returns the correction that was applied, if any.
 ///
 /// # Errors
-/// It is none.
+/// If the transform is invalid.
 pub(crate) fn isometry(
     transform: &Transform,
 ) -> Result<(Isometry3<f64>, Option<Mend>), ConversionError> {

@@ -1,9 +1,8 @@
-//! Frames that are published on `/tf` again and again, as a state publisher does
-//! also for those that never move.
+//! Finds frames that `/tf` repeats without change: a state publisher also publishes fixed frames
+//! there.
 //!
-//! On `/tf` stands as well what does move, above all `odom` to `base_link`. A
-//! transform that is the same in all messages is taken for a mount, any other is
-//! not.
+//! `/tf` also holds transforms that move, above all `odom` to `base_link`. A transform that is the
+//! same in all messages counts as a mount, any other does not.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,19 +12,19 @@ use ros::TransformStamped;
 
 use crate::mount::{TransformTree, isometry, plain};
 
-/// How far a transform that does not move may be from the first one, metres and
-/// radians: a calibration that is published again, or a rounding.
+/// Largest difference of a still transform from the first one, in metres and radians: allows for a
+/// repeated calibration or rounding.
 const STILL_M: f64 = 1e-3;
 const STILL_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
-/// What was seen of one frame.
+/// Observations of one frame.
 #[derive(Debug)]
 struct Seen {
     first: TransformStamped,
     isometry: Isometry3<f64>,
-    /// How far it was from the first one, metres and radians.
+    /// Largest difference from the first transform, in metres and radians.
     moved: (f64, f64),
-    /// Whether another parent was named.
+    /// True if its parent frame has changed.
     changed_parent: bool,
 }
 
@@ -35,14 +34,13 @@ impl Seen {
     }
 }
 
-/// Frames by their names.
 #[derive(Debug, Default)]
 pub(crate) struct MovingFrames {
     seen: BTreeMap<String, Seen>,
 }
 
 impl MovingFrames {
-    /// Looks at a transform; an invalid one says nothing.
+    /// Records a transform; an invalid one is ignored.
     pub(crate) fn see(&mut self, stamped: &TransformStamped) {
         let Ok((isometry, _)) = isometry(&stamped.transform) else {
             return;
@@ -67,7 +65,7 @@ impl MovingFrames {
         }
     }
 
-    /// Adds to a tree what does not move and the tree does not know.
+    /// Adds still frames that the tree does not have yet.
     pub(crate) fn add_still(&self, tree: &mut TransformTree) {
         for (child, seen) in self.seen.iter().filter(|(_, seen)| seen.is_still()) {
             if !tree.knows(child) {
@@ -76,8 +74,8 @@ impl MovingFrames {
         }
     }
 
-    /// Where a laser is connected to a base only by what moves: the frame that
-    /// does, and how far, metres and radians.
+    /// Returns the moving frame that alone connects a laser to a base, and how far it moves, in
+    /// metres and radians.
     pub(crate) fn moving_below(
         &self,
         tree: &TransformTree,

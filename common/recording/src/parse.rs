@@ -1,4 +1,4 @@
-//! A record's fields, by the library, after a look at the lengths among them.
+//! Parses the fields of a record with the library, after a check of the lengths in it.
 
 use std::borrow::Cow;
 
@@ -7,10 +7,10 @@ use mcap::records::{Record, op};
 
 use crate::Damage;
 
-/// The fields of the record at byte `at`, or in the chunk there.
+/// Parses the fields of the record at byte `at`, or in the chunk there.
 ///
-/// Records that are not read for their fields come back as unknown ones. The
-/// library would panic on an attachment that is shorter than its fields.
+/// Records whose fields are not needed are returned as unknown. The library alone would panic on an
+/// attachment that is shorter than its fields.
 pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Damage> {
     let damaged = |reason| Damage::Record {
         at,
@@ -38,13 +38,13 @@ pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Dama
     }
 }
 
-/// `None` if a field that starts with its length does not end within the record.
+/// `None` if a field with a length prefix exceeds the record.
 ///
-/// The library reserves what the length of a text claims, up to four gigabytes,
-/// before it looks whether as much is there; where the system has less, the
-/// process ends. These are the fields of that kind:
+/// The library allocates the claimed length of a text, up to four gigabytes, before it checks that
+/// so many bytes are there; if memory is short, the process aborts. These are the fields with a
+/// length prefix:
 ///
-/// | record | bytes before | fields that start with their length |
+/// | record | bytes before | fields with a length prefix |
 /// |---|---|---|
 /// | schema | 2 | name, encoding, data |
 /// | channel | 4 | topic, encoding, metadata (within it: keys and values) |
@@ -80,10 +80,10 @@ fn split_field(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     rest.split_at_checked(u32::from_le_bytes(*length) as usize)
 }
 
-/// What the library says is wrong, on one line.
+/// Error message of the library, on one line.
 pub(crate) fn reason(error: &McapError) -> String {
     match error {
-        // The texts of these leave out the cause, or put a frame around it.
+        // The messages of these omit the cause or wrap it in other text.
         McapError::Parse(error) => error.root_cause().to_string(),
         McapError::Io(error) => error.to_string(),
         McapError::DecompressionError(reason) => reason.clone(),
@@ -91,7 +91,7 @@ pub(crate) fn reason(error: &McapError) -> String {
     }
 }
 
-/// A record's type in words.
+/// Name of a record type.
 pub(crate) fn name(opcode: u8) -> &'static str {
     match opcode {
         op::HEADER => "header",
@@ -121,7 +121,7 @@ mod tests {
         }
     }
 
-    /// A channel of one letter, up to its metadata.
+    /// A channel with a topic of one letter, up to its metadata.
     fn channel(metadata: &[u8]) -> Vec<u8> {
         let start = b"\x01\0\x02\0\x01\0\0\0t\x03\0\0\0cdr";
         let length = (metadata.len() as u32).to_le_bytes();

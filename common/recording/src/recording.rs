@@ -15,33 +15,33 @@ use crate::{AttachedFile, Channel, Damage, Kind, MetadataRecord, RecordingError,
 pub use raw::{RawRecord, RawRecords};
 pub use reading::Records;
 
-/// A recording whose channels are known and whose checksums have been compared:
-/// one file, or several that are read as one.
+/// A recording whose channels are known and whose checksums have been verified: one file, or
+/// several that are read as one.
 #[derive(Debug)]
 pub struct Recording {
     path: PathBuf,
     files: Vec<RecordedFile>,
-    /// Those of all files; a topic of several files stands here once.
+    /// Channels of all files; a topic in several files is listed once.
     channels: Vec<Channel>,
     attachments: Vec<AttachedFile>,
     metadata: Vec<MetadataRecord>,
-    /// Channels that the user has named.
+    /// Channels that the user has selected.
     preferred: BTreeMap<Kind, Arc<str>>,
 }
 
 impl Recording {
-    /// Opens a file, or the folder of a bag of rosbag2 with all its parts, and
-    /// reads it once from start to end. A bag may be named by its `metadata.yaml`,
-    /// and files may be packed with zstd; with the feature `rosbag2` they may also
-    /// be in SQLite. What a file holds is detected from its content.
+    /// Opens a file, or a rosbag2 folder with all its parts, and reads it once from start to end. A
+    /// bag may also be given by its `metadata.yaml`. Files may be compressed with zstd; with the
+    /// feature `rosbag2` they may also be in SQLite. The format of a file is detected from its
+    /// content.
     ///
-    /// A file that is cut short or damaged opens as far as it is sound; the
-    /// damage is the last item of [`Recording::records`]. The file is mapped:
-    /// it may grow, but must not be cut while it is open.
+    /// A truncated or damaged file opens up to the damage, which is the last item of
+    /// [`Recording::records`]. The file is mapped: it may grow, but must not be truncated while it
+    /// is open.
     ///
     /// # Errors
-    /// If it cannot be read, or does not even start as a recording; of a bag in
-    /// SQLite, any damage.
+    /// If it cannot be read, or does not even start as a recording; for an SQLite bag, on any
+    /// damage.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         Recording::open_all(&[path])
     }
@@ -49,13 +49,13 @@ impl Recording {
     /// Opens several files or folders as one recording.
     ///
     /// # Errors
-    /// As [`Recording::open`]; nothing is named.
+    /// Same as [`Recording::open`], and if `paths` is empty.
     pub fn open_all(paths: &[impl AsRef<Path>]) -> Result<Self, RecordingError> {
         let paths = || paths.iter().map(AsRef::as_ref);
         let (mut listed, mut seen) = (Vec::new(), Vec::new());
         for path in paths() {
             for file in folder::files(path)? {
-                // As `drive/*` names the parts and the description of them.
+                // A glob such as `drive/*` may match the parts as well as their `metadata.yaml`.
                 let place = file.path.canonicalize();
                 let place = place.unwrap_or_else(|_| file.path.clone());
                 if !seen.contains(&place) {
@@ -69,7 +69,7 @@ impl Recording {
         Ok(Recording::of(names.join(" and ").into(), files))
     }
 
-    /// A recording in memory; errors call it `name`.
+    /// Opens a recording in memory; errors call it `name`.
     ///
     /// # Errors
     /// If it does not even start as a recording.
@@ -104,7 +104,7 @@ impl Recording {
         recording
     }
 
-    /// Lists a channel of a file. What a file defines twice is listed twice.
+    /// Adds a channel of file number `file`. A channel that one file defines twice is listed twice.
     fn list(&mut self, channel: &Channel, file: usize) {
         let is_same = |other: &&mut Channel| {
             other.topic == channel.topic
@@ -117,20 +117,19 @@ impl Recording {
         }
     }
 
-    /// The file or folder; of several, their names.
+    /// Path of the file or folder; for several, their names joined.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The size of its files in bytes, once they are unpacked.
+    /// Size of its files in bytes, after decompression.
     #[must_use]
     pub fn size(&self) -> u64 {
         let sizes = self.files.iter().map(|file| file.bytes().len() as u64);
         sizes.sum()
     }
 
-    /// How many files it has.
     #[must_use]
     pub fn file_count(&self) -> usize {
         self.files.len()
@@ -141,13 +140,13 @@ impl Recording {
         self.channels.iter()
     }
 
-    /// The files in it.
     #[must_use]
     pub fn attachments(&self) -> &[AttachedFile] {
         &self.attachments
     }
 
-    /// The bytes of one of its [`Recording::attachments`]; none of another's.
+    /// Content of an attachment from [`Recording::attachments`]; empty for one of another
+    /// recording.
     #[must_use]
     pub fn content_of(&self, attached: &AttachedFile) -> &[u8] {
         let file = self.files.get(attached.file);
@@ -155,19 +154,18 @@ impl Recording {
         bytes.unwrap_or_default()
     }
 
-    /// What is said of it as a whole.
     #[must_use]
     pub fn metadata(&self) -> &[MetadataRecord] {
         &self.metadata
     }
 
-    /// How its messages are packed: the parts of the files that hold them.
+    /// Parts (chunks, or messages outside of chunks) in which the files store their messages.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
         let blocks = self.files.iter().flat_map(|file| &file.survey.blocks);
         blocks.map(Block::part)
     }
 
-    /// Readable messages of all channels.
+    /// Number of readable messages on all channels.
     #[must_use]
     pub fn messages(&self) -> u64 {
         self.files.iter().map(|file| file.survey.messages).sum()
@@ -183,14 +181,14 @@ impl Recording {
         Some((first, last))
     }
 
-    /// What is wrong with the first of its files that is damaged, if one is.
+    /// Damage of the first damaged file; `None` if all are sound.
     #[must_use]
     pub fn damage(&self) -> Option<&Damage> {
         let mut files = self.files.iter();
         files.find_map(|file| file.survey.damage.as_ref())
     }
 
-    /// As [`Recording::damage`], as an error that names the file.
+    /// Same as [`Recording::damage`], as an error that names the file.
     #[must_use]
     pub fn damage_error(&self) -> Option<RecordingError> {
         let mut files = self.files.iter();
@@ -203,26 +201,26 @@ impl Recording {
         })
     }
 
-    /// All messages that are read, by log time, then the damage if there is any.
+    /// Iterates over all decodable messages by log time, then returns the damage if there is any.
     #[must_use]
     pub fn records(&self) -> Records<'_> {
         self.records_of(&Kind::ALL)
     }
 
-    /// As [`Recording::records`], but only those of some kinds.
+    /// Same as [`Recording::records`], for messages of the given kinds only.
     #[must_use]
     pub fn records_of(&self, kinds: &[Kind]) -> Records<'_> {
         Records::new(self, kinds, self.damage_error())
     }
 
-    /// The messages of all channels as they stand in the file, by log time, then
-    /// the damage if there is any.
+    /// Iterates over the undecoded messages of all channels by log time, then returns the damage if
+    /// there is any.
     #[must_use]
     pub fn raw_records(&self) -> RawRecords<'_> {
         RawRecords::new(self, |_| true, self.damage_error())
     }
 
-    /// From now on, `topic` is meant wherever messages of this kind are asked for.
+    /// Makes `topic` the channel to use for messages of this kind from now on.
     ///
     /// # Errors
     /// If no channel of that name has messages of the kind.
@@ -242,12 +240,12 @@ impl Recording {
         Ok(())
     }
 
-    /// The channel that holds messages of a kind: the preferred one, the only one,
-    /// or the one with the conventional name; `None` where there is none. Poses are
-    /// taken under that name alone.
+    /// Selects the channel with messages of a kind: the preferred one, the only one, or the one
+    /// with the conventional name; `None` if there is none. Poses are only accepted under the
+    /// conventional name.
     ///
     /// # Errors
-    /// If several could be meant.
+    /// If several channels qualify.
     pub fn topic(&self, kind: Kind) -> Result<Option<Arc<str>>, RecordingError> {
         if let Some(topic) = self.preferred.get(&kind) {
             return Ok(Some(topic.clone()));
@@ -257,12 +255,11 @@ impl Recording {
         Ok(channel.map(|channel| channel.topic.clone()))
     }
 
-    /// As [`Recording::topic`], where channels go by other names: `name_of` gives
-    /// that of each, or `None` for one that is not meant. The result is the
-    /// channel's own name.
+    /// Same as [`Recording::topic`] with renamed channels: `name_of` returns the new name of a
+    /// channel, or `None` to exclude it. The result is the channel's own name.
     ///
     /// # Errors
-    /// If several could be meant.
+    /// If several channels qualify.
     pub fn topic_renamed(
         &self,
         kind: Kind,
@@ -291,10 +288,10 @@ impl Recording {
         Ok(own.map(|(_, own)| own.clone()))
     }
 
-    /// As [`Recording::topic`], where there must be one.
+    /// Same as [`Recording::topic`], but a missing channel is an error.
     ///
     /// # Errors
-    /// If there is none, or several could be meant.
+    /// If there is none, or several qualify.
     pub fn required_topic(&self, kind: Kind) -> Result<Arc<str>, RecordingError> {
         let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
         self.topic(kind)?.ok_or_else(|| RecordingError::NoTopic {
@@ -304,7 +301,7 @@ impl Recording {
         })
     }
 
-    /// The texts of the schemas that the files bring along, by their names.
+    /// Schema texts that the files contain, by schema name.
     pub(crate) fn definitions(&self) -> BTreeMap<String, String> {
         let files = self.files.iter();
         files
@@ -317,8 +314,8 @@ impl Recording {
     }
 }
 
-/// Opens files. Where there are several, one that does not even start as a
-/// recording is damage, as the last part of a recorder that was cut off is.
+/// Opens files. If there are several, one that does not even start as a recording counts as damage,
+/// like the last part of a recorder that was killed.
 fn opened(listed: &[Listed]) -> Result<Vec<RecordedFile>, RecordingError> {
     let (mut files, mut failure) = (Vec::new(), None);
     for file in listed {

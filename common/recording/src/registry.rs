@@ -14,22 +14,21 @@ use crate::{Damage, Kind};
 /// A channel of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name.
     pub topic: Arc<str>,
-    /// The schema's name; empty where it has none.
+    /// Name of its schema; empty if it has none.
     pub schema: String,
-    /// How its messages are encoded; `cdr` in ROS 2.
+    /// Encoding of its messages; `cdr` in ROS 2.
     pub encoding: String,
-    /// What its messages are decoded as; `None` where they are only counted.
+    /// Type that its messages are decoded as; `None` if they are only counted.
     pub kind: Option<Kind>,
-    /// Readable messages.
+    /// Number of readable messages.
     pub messages: u64,
 }
 
-/// All channels by number, each complete when the first message refers to it.
+/// All channels by id, each complete before the first message refers to it.
 #[derive(Debug, Default)]
 pub(crate) struct Registry {
-    /// Links channels to schemas, and demands that a repetition is equal.
+    /// Links channels to schemas, and rejects repetitions that differ.
     known: ChannelAccumulator<'static>,
     channels: BTreeMap<u16, Channel>,
 }
@@ -43,7 +42,7 @@ impl Registry {
         self.channels.values()
     }
 
-    /// The texts of the schemas as ROS 2 writes them, by their names.
+    /// Schema texts in ROS 2's `ros2msg` format, by schema name.
     pub(crate) fn definitions(&self) -> impl Iterator<Item = (String, String)> {
         self.channels.keys().filter_map(|id| {
             let schema = self.known.get(*id)?.schema.clone()?;
@@ -52,15 +51,14 @@ impl Registry {
         })
     }
 
-    /// Counts messages of a channel that is there.
+    /// Adds to the message count of a known channel.
     pub(crate) fn count(&mut self, id: u16, messages: u64) {
         if let Some(channel) = self.channels.get_mut(&id) {
             channel.messages += messages;
         }
     }
 
-    /// Takes a schema or channel record that starts at byte `at`, or whose chunk
-    /// does.
+    /// Adds a schema or channel record that starts at byte `at`, or whose chunk starts there.
     pub(crate) fn add(&mut self, opcode: u8, body: &[u8], at: u64) -> Result<(), Damage> {
         match parse(opcode, body, at)? {
             Record::Schema { header, data } => {
@@ -150,7 +148,7 @@ mod tests {
         registry
             .add(op::CHANNEL, &channel(5, 0, "/raw"), 0)
             .unwrap();
-        // Both are repeated in the summary.
+        // The summary repeats both.
         registry.add(op::SCHEMA, &scan, 0).unwrap();
         registry
             .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)

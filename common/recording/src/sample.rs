@@ -1,5 +1,5 @@
-//! A small recording for this crate's tests: a map, a mount, a few scans with
-//! odometry and truth in several chunks, and a message of an unknown type.
+//! A small recording for this crate's tests: a map, a mount, a few scans with odometry and ground
+//! truth in several chunks, and a message of an unknown type.
 
 use geometry::Pose;
 use map::OccupancyGrid;
@@ -27,7 +27,7 @@ pub(crate) fn grid() -> OccupancyGrid {
     OccupancyGrid::from_parts(10, 6, 0.05, Pose::new(-1.0, 2.0, 0.0), cells).unwrap()
 }
 
-/// The messages that are read, by log time, then place in the file.
+/// The decodable messages, by log time, then position in the file.
 pub(crate) fn records() -> Vec<Record> {
     let record = |topic: &str, scan: usize, message| Record {
         topic: topic.into(),
@@ -46,13 +46,13 @@ pub(crate) fn records() -> Vec<Record> {
     records
 }
 
-/// The file: chunks of four messages, the second chunk before the first, so
-/// that the order of the file is not the order of the times.
+/// The file: chunks of four messages, with the second and third swapped, so that the order of the
+/// file differs from the order of the times.
 pub(crate) fn bytes(packing: Packing) -> Vec<u8> {
     let mut writer = RecordingWriter::in_memory(packing).unwrap();
     let records = records();
     let mut chunks: Vec<&[Record]> = records.chunks(4).collect();
-    // The first chunk ends within scan 0, so ties would change their order.
+    // The first chunk ends within scan 0, so swapping it would change the order of equal times.
     chunks.swap(1, 2);
     for chunk in chunks {
         for record in chunk {

@@ -1,5 +1,5 @@
-//! Tests with whole recordings that are cut, flipped and overwritten: a reader
-//! gets messages as they were written, then the damage, and never panics.
+//! Tests with whole recordings that are cut, flipped and overwritten: a reader gets messages as
+//! they were written, then the damage, and never panics.
 
 use mcap::MAGIC;
 
@@ -9,7 +9,7 @@ use crate::{Damage, Record, Recording, RecordingError, sample};
 
 const CHUNKED: [Packing; 3] = [Packing::Plain, Packing::Zstd, Packing::Lz4];
 
-/// What a reader gets: the messages, then the damage.
+/// Returns the messages, then the damage.
 fn read(bytes: Vec<u8>) -> (Vec<Record>, Option<Damage>) {
     let mut records = Vec::new();
     match Recording::from_bytes("r.mcap", bytes) {
@@ -22,8 +22,8 @@ fn read(bytes: Vec<u8>) -> (Vec<Record>, Option<Damage>) {
                     Err(RecordingError::Damaged { damage, .. }) => {
                         return (records, Some(damage));
                     }
-                    // A length that no checksum covers, seen in the message
-                    // before the damage is.
+                    // A damaged length that no checksum covers can show in the message before the
+                    // damage is reported.
                     Err(RecordingError::Message { .. }) => {}
                     Err(other) => panic!("{other}"),
                 }
@@ -33,7 +33,7 @@ fn read(bytes: Vec<u8>) -> (Vec<Record>, Option<Damage>) {
     (records, None)
 }
 
-/// The next number of a fixed sequence (splitmix64).
+/// Returns the next number of a fixed sequence (splitmix64).
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;
@@ -42,7 +42,7 @@ fn random(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Messages of `part` are messages of `whole`, in the same order.
+/// Asserts that the messages of `part` are messages of `whole`, in the same order.
 fn assert_part(part: &[Record], whole: &[Record], case: &str) {
     let mut rest = whole.iter();
     for record in part {
@@ -139,7 +139,7 @@ fn many_flips_and_random_bytes_never_panic() {
 fn damage_outside_of_checked_chunks_takes_no_message_from_them() {
     let sound = sample::bytes(Packing::Zstd);
     let (whole, _) = read(sound.clone());
-    // Within the header record: opcode, length, then the profile's length.
+    // Within the header record: opcode, length, length of the profile, then the profile.
     let mut flipped = sound;
     let profile = MAGIC.len() + 9 + 4;
     assert_eq!(flipped[profile..profile + 4], *b"ros2");

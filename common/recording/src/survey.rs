@@ -1,9 +1,8 @@
-//! What a recording holds, and how far it is sound.
+//! Survey of a file: its content, and the position of the first damage.
 //!
-//! It is found once, from start to end, when the recording is opened: every
-//! chunk is unpacked and every checksum compared, because a reader in time order
-//! meets the chunks in another order than the file has them. A channel may be
-//! defined in one that is read later, and a claimed time may be wrong.
+//! It is made in one pass when the recording is opened. Every chunk is unpacked and every checksum
+//! compared, because a reader in time order visits the chunks in another order than the file has
+//! them: a channel may be defined in a chunk that is read later, and a claimed time may be wrong.
 
 mod pass;
 
@@ -16,24 +15,24 @@ use crate::extras::Extras;
 use crate::registry::Registry;
 use pass::Pass;
 
-/// What the first pass found.
+/// Result of the first pass.
 #[derive(Debug, Default)]
 pub(crate) struct Survey {
     pub(crate) registry: Registry,
     pub(crate) extras: Extras,
-    /// The sound parts with messages, by first log time, then place.
+    /// The sound parts with messages, by first log time, then position.
     pub(crate) blocks: Vec<Block>,
-    /// Messages in them.
+    /// Number of messages in `blocks`.
     pub(crate) messages: u64,
-    /// What ends the sound part, if it is not the end.
+    /// Damage that ends the sound part; `None` if the whole file is sound.
     pub(crate) damage: Option<Damage>,
 }
 
 impl Survey {
-    /// Looks at a whole file.
+    /// Surveys a whole file.
     ///
     /// # Errors
-    /// If it is no recording at all; other damage is part of what was found.
+    /// If it is no recording at all; other damage is part of the result.
     pub(crate) fn of(bytes: &[u8]) -> Result<Self, Damage> {
         if !bytes.starts_with(MAGIC) {
             return Err(Damage::NotMcap {
@@ -53,7 +52,7 @@ impl Survey {
         Ok(survey)
     }
 
-    /// Log times of the first and the last message, nanoseconds.
+    /// Log times of the first and the last message, in nanoseconds.
     pub(crate) fn time_range_ns(&self) -> Option<(i64, i64)> {
         let last = self.blocks.iter().map(|block| block.last_ns).max()?;
         Some((self.blocks.first()?.first_ns, last))
@@ -173,13 +172,13 @@ mod tests {
                 ..
             })
         ));
-        // Behind the magic (8), header (17), data end (13) and footer (29).
+        // After the magic (8 bytes), header (17), data end (13) and footer (29).
         let found = "\"more\"".to_owned();
         assert_eq!(
             damage(&[end(), b"more".to_vec()]),
             Damage::End { at: 67, found }
         );
-        // The count, then all that is not looked at.
+        // The message count, then fields that are not checked.
         let mut statistics = record(
             op::STATISTICS,
             &[&3u64.to_le_bytes()[..], &[0; 38]].concat(),

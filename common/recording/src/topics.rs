@@ -1,19 +1,18 @@
-//! Which of a recording's channels is meant.
-//!
-//! The type decides; the conventional name only where several channels have it.
+//! Selects the channel to use for a kind of message: by type, and by conventional name only if
+//! several channels have the type.
 
 use std::path::Path;
 
 use crate::{Channel, Kind, RecordingError, TF_STATIC};
 
-/// Where scans are by convention.
+/// Conventional topic of scans.
 pub const SCAN: &str = "/scan";
-/// Where the map is by convention.
+/// Conventional topic of the map.
 pub const MAP: &str = "/map";
-/// Where odometry is by convention.
+/// Conventional topic of odometry.
 pub const ODOM: &str = "/odom";
-/// Where the true poses of the scans are: always under this name, because any
-/// other pose has the same type.
+/// Topic of the true poses of the scans: always this name, because any other pose has the same
+/// type.
 pub const GROUND_TRUTH: &str = "/ground_truth";
 
 fn conventional_name(kind: Kind) -> &'static str {
@@ -26,7 +25,7 @@ fn conventional_name(kind: Kind) -> &'static str {
     }
 }
 
-/// The option of the commands that names a channel of a kind.
+/// Command-line option that selects a channel of a kind.
 pub(crate) fn option(kind: Kind) -> &'static str {
     match kind {
         Kind::Scan => "--scan-topic",
@@ -36,7 +35,7 @@ pub(crate) fn option(kind: Kind) -> &'static str {
     }
 }
 
-/// The channel with messages of a kind.
+/// Selects the channel with messages of a kind; `None` if there is none.
 pub(crate) fn choose<'a>(
     channels: &[&'a Channel],
     kind: Kind,
@@ -44,7 +43,7 @@ pub(crate) fn choose<'a>(
 ) -> Result<Option<&'a Channel>, RecordingError> {
     let has_messages = |channel: &&&Channel| channel.kind == Some(kind) && channel.messages > 0;
     let mut of_kind: Vec<&Channel> = channels.iter().filter(has_messages).copied().collect();
-    // A recording that was put together from several defines a topic again.
+    // A merged recording may define a topic twice.
     of_kind.sort_by(|a, b| a.topic.cmp(&b.topic));
     of_kind.dedup_by(|a, b| a.topic == b.topic);
     let name = conventional_name(kind);

@@ -1,14 +1,14 @@
-//! True poses.
+//! Ground truth of a scan.
 
 use geometry::Pose;
 use ros::{ConversionError, PoseStamped};
 
-/// Where the laser truly was.
+/// True pose of the laser.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroundTruth {
-    /// The frame in which the pose is given.
+    /// Frame of `pose`.
     pub frame: String,
-    /// The pose of the laser there.
+    /// Pose of the laser in `frame`.
     pub pose: Pose,
 }
 

@@ -1,4 +1,4 @@
-//! What rosbag2 packs with zstd: single messages, and whole files.
+//! Decompresses messages and files that rosbag2 has compressed with zstd.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -11,20 +11,20 @@ use zstd::stream::read::Decoder;
 use crate::content::is_packed;
 use crate::{MAX_CHUNK_BYTES, RecordingError};
 
-/// Most bytes that a packed file may unpack to: this many for each that it has, and
-/// this many beside. A sound recording is packed to no less than a few hundredths;
-/// what a damaged or a malicious one claims must not fill the disk.
+/// A file may decompress to at most `MAX_FACTOR` times its size plus `MAX_BESIDE` bytes. A sound
+/// recording compresses to no less than a few hundredths of its size; the claims of a damaged or
+/// malicious one must not fill the disk.
 const MAX_FACTOR: u64 = 1000;
 const MAX_BESIDE: u64 = 1 << 30;
 
-/// Bytes that are unpacked at a time.
+/// Number of bytes that are decompressed at a time.
 const STEP_BYTES: usize = 1 << 20;
 
-/// A message in CDR as it was sent. Neither byte order of CDR begins as what zstd
-/// packed does, so a packed message is known by its first bytes.
+/// Returns a message in CDR, decompressed if necessary. Compressed messages are recognized by their
+/// first bytes, because CDR in either byte order never starts with the magic of zstd.
 ///
 /// # Errors
-/// The reason why it does not unpack.
+/// The reason if it cannot be decompressed.
 pub(crate) fn message(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     match is_packed(bytes) {
         true => within(bytes, MAX_CHUNK_BYTES).map(Cow::Owned),
@@ -45,11 +45,11 @@ fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
     }
 }
 
-/// What a packed file holds, in a temporary one that goes when it is dropped.
-/// `allows` judges the first bytes, before the rest is unpacked.
+/// Decompresses a file to a temporary one that is deleted when it is dropped. `allows` checks the
+/// first bytes before the rest is decompressed.
 ///
 /// # Errors
-/// The file does not unpack, or to more than is allowed, or there is no room.
+/// If the file cannot be decompressed, exceeds the limit, or the disk is full.
 pub(crate) fn file(
     path: &Path,
     allows: impl FnOnce(&[u8]) -> Result<(), RecordingError>,

@@ -1,8 +1,8 @@
-//! Writing ROS 2 recordings.
+//! Writes ROS 2 recordings, with checksums of chunks, data and summary, schemas and quality of
+//! service, so that other tools can read them too.
 //!
-//! With chunk, data and summary checksums, schemas and quality of service, so
-//! that other tools read them too. It writes what it is given in the order in
-//! which it is given; when to flush, split or stop is the caller's business.
+//! Messages are written in the order in which they are passed; the caller decides when to flush,
+//! split or stop.
 
 mod encoded;
 mod qos;
@@ -22,28 +22,26 @@ use crate::parse::reason;
 use crate::{Kind, Message, RecordingError};
 use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
-/// How chunks are packed.
+/// Compression of chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packing {
-    /// No chunks: messages stand in the file one by one.
+    /// No chunks: messages are written to the file one by one.
     Loose,
-    /// Chunks that are not packed.
+    /// Uncompressed chunks.
     Plain,
-    /// Chunks packed with zstd.
     Zstd,
-    /// Chunks packed with lz4.
     Lz4,
 }
 
 /// Writes messages to a file or to memory.
 pub struct RecordingWriter<W: Write + Seek> {
     writer: mcap::Writer<W>,
-    /// By topic: the channel's number and its schema.
+    /// Channel number and schema by topic.
     channels: HashMap<String, (u16, String)>,
     sequence: u32,
 }
 
-/// What a channel is called and holds.
+/// Properties of a channel.
 struct Definition<'a> {
     topic: &'a str,
     schema: &'a str,
@@ -53,7 +51,7 @@ struct Definition<'a> {
 }
 
 impl RecordingWriter<BufWriter<File>> {
-    /// Starts a file, replacing one that is there.
+    /// Creates a file, replacing an existing one.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -69,7 +67,7 @@ impl RecordingWriter<Cursor<Vec<u8>>> {
     /// Starts a recording in memory.
     ///
     /// # Errors
-    /// Only if the library refuses.
+    /// Only if the library fails.
     pub fn in_memory(packing: Packing) -> Result<Self, RecordingError> {
         RecordingWriter::new(Cursor::new(Vec::new()), packing)
     }
@@ -90,7 +88,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .profile("ros2")
             .use_chunks(packing != Packing::Loose)
             .compression(compression)
-            // Chunks are small: threads of the packer's own would only wait.
+            // Chunks are small: extra compression threads would only wait.
             .compression_threads(0)
             .create(sink)
             .map_err(failed)?;
@@ -101,7 +99,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         })
     }
 
-    /// Writes a message; a topic takes messages of one kind.
+    /// Writes a message; all messages of a topic must have the same kind.
     ///
     /// # Errors
     /// If the topic has another kind, the time is before 1970, or it cannot be
@@ -129,7 +127,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
     /// Writes a message that was encoded before.
     ///
     /// # Errors
-    /// As [`RecordingWriter::write`].
+    /// Same as [`RecordingWriter::write`].
     pub fn write_encoded(&mut self, message: &Encoded) -> Result<(), RecordingError> {
         let definition = Definition {
             topic: &message.topic,
@@ -141,9 +139,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.write_body(&definition, message.log_time_ns, &message.body)
     }
 
-    /// Writes a message of any type whose bytes are given; the first one of a
-    /// topic decides its encoding. Where the type is one of [`Kind`], late joiners
-    /// get it as [`RecordingWriter::write`] says.
+    /// Writes the encoded bytes of a message of any type; the first message of a topic determines
+    /// its encoding. A topic is latched under the same condition as in [`RecordingWriter::write`].
     ///
     /// # Errors
     /// If the topic has another schema, the time is before 1970, or it cannot be
@@ -167,7 +164,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.write_body(&definition, log_time_ns, body)
     }
 
-    /// Writes what is known of the recording as a whole, under a name.
+    /// Writes a metadata record for the recording as a whole.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -183,7 +180,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.writer.write_metadata(&record).map_err(failed)
     }
 
-    /// Puts a file into the recording.
+    /// Adds an attachment to the recording.
     ///
     /// # Errors
     /// If the time is before 1970, or it cannot be written.
@@ -205,7 +202,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.writer.attach(&attachment).map_err(failed)
     }
 
-    /// Ends the chunk: what was written until now survives whatever follows.
+    /// Ends the chunk: everything written so far survives a later failure.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -213,7 +210,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.writer.flush().map_err(failed)
     }
 
-    /// Ends the recording and gives back what it was written to.
+    /// Ends the recording and returns the sink.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -290,7 +287,7 @@ fn is_latched(kind: Kind) -> bool {
     matches!(kind, Kind::Map | Kind::StaticTransforms)
 }
 
-/// The schema's text of a kind.
+/// Schema text of a kind.
 pub(crate) fn definition(kind: Kind) -> &'static str {
     match kind {
         Kind::Scan => LaserScan::DEFINITION,

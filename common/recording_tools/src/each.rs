@@ -1,4 +1,4 @@
-//! One file after another, of which one may be bad.
+//! Runs an action on several files, some of which may be bad.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,11 @@ use transport::with_causes;
 
 use crate::RecordingToolsError;
 
-/// Does something with each file; where there are several, one that fails is named on standard
-/// error, and the others follow. Returns whether any failed.
+/// Runs `act` on each file. If there are several, an error is printed to standard error and the
+/// next file follows. Returns true if any failed.
 ///
 /// # Errors
-/// The only file failed, or standard output takes no more.
+/// If the only file failed, or standard output is closed.
 pub(crate) fn each(
     paths: &[PathBuf],
     mut act: impl FnMut(&Path) -> Result<(), RecordingToolsError>,

@@ -8,7 +8,7 @@ use offline::OfflineError;
 use recording::RecordingError;
 use simulation::SimulationError;
 
-/// Why a recording cannot be looked at, converted or made.
+/// Error of the commands of this crate.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingToolsError {
     /// A scan cannot be searched.
@@ -29,25 +29,22 @@ pub enum RecordingToolsError {
     /// A file cannot be read or written.
     #[error("cannot {action} {}", file.display())]
     File {
-        /// What was tried, as a verb.
+        /// Attempted action, as a verb.
         action: &'static str,
-        /// With what.
         file: PathBuf,
-        /// Why it failed.
         source: io::Error,
     },
-    /// A file to convert holds nothing that can be.
+    /// A file to convert contains nothing that can be converted.
     #[error("nothing in {} could be converted, and no file was written: {reason}", file.display())]
     NothingConverted {
-        /// The file.
         file: PathBuf,
-        /// What it holds instead.
+        /// Description of its content.
         reason: String,
     },
-    /// Options that do not go together.
+    /// Incompatible options.
     #[error("{0}")]
     Usage(String),
-    /// Standard output takes no more.
+    /// Standard output is closed.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

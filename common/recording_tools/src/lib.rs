@@ -1,6 +1,5 @@
-//! Tools for recordings: `info` lists what one holds, `doctor` says what is wrong with
-//! it, `convert` makes one of other logs and bags, and `simulate` one of a drive that no
-//! robot drove.
+//! Tools for recordings: `info` lists the contents of a recording, `doctor` finds its faults,
+//! `convert` converts other logs and bags, and `simulate` records a simulated drive.
 
 pub mod convert;
 pub mod doctor;

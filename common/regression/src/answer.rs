@@ -1,13 +1,12 @@
-//! What is expected of a scan, and found.
+//! Results that are expected and found for each scan.
 
 use messages::{
     HypothesesHeader, Hypothesis, PoseHeader, TrackReason, TrackState, Verdict, VotesHeader,
 };
 use serde::{Deserialize, Serialize};
 
-/// The graph's answer to one scan. What is computed in integers must come out
-/// exactly; the refined pose and what is judged there may differ by what other
-/// mathematics libraries round.
+/// Result of the graph for one scan. Integers must be exactly equal; the refined pose and the
+/// scores may differ by the rounding of other math libraries.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Answer {
@@ -22,17 +21,17 @@ pub(super) struct Answer {
     pub(super) alternatives: u32,
     pub(super) hypotheses: usize,
     pub(super) confidence: f32,
-    /// Of the laser in the map; absent where there is no hypothesis.
+    /// Pose of the laser in the map; `None` without hypotheses.
     pub(super) x_m: Option<f64>,
     pub(super) y_m: Option<f64>,
     pub(super) heading_deg: Option<f64>,
     pub(super) score: Option<f32>,
-    /// The tracker's pose with this scan; absent where the graph has no tracker.
+    /// Pose of the tracker at this scan; `None` if the graph has no tracker.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) pose: Option<TrackedPose>,
 }
 
-/// What the tracker says with a scan.
+/// Result of the tracker for a scan.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TrackedPose {
@@ -40,7 +39,7 @@ pub(super) struct TrackedPose {
     pub(super) reason: String,
     pub(super) places: u32,
     pub(super) probability: f64,
-    /// Of the laser in the map; absent where no place is known.
+    /// Pose of the laser in the map; `None` if no place is known.
     pub(super) x_m: Option<f64>,
     pub(super) y_m: Option<f64>,
     pub(super) heading_deg: Option<f64>,

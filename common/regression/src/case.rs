@@ -1,4 +1,4 @@
-//! The recordings that are replayed.
+//! Recordings that are replayed.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,20 +8,19 @@ use launcher::LauncherError;
 use super::answer::Answer;
 use crate::RegressionError;
 
-/// A folder with a recording, its map and what is expected.
+/// A folder with a recording, its map and the expected results.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Case {
-    /// The folder's name.
     pub(super) name: String,
-    /// Absolute.
+    /// Absolute path.
     folder: PathBuf,
 }
 
 impl Case {
-    /// The folder itself if it is a case, else all cases in it by name.
+    /// Returns the folder itself if it is a case, else all cases in it, sorted by name.
     ///
     /// # Errors
-    /// It cannot be read, or there is none.
+    /// It cannot be read, or contains no case.
     pub(super) fn all_in(folder: &Path) -> Result<Vec<Self>, RegressionError> {
         let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
         if let Some(case) = Case::of(&folder) {
@@ -48,7 +47,7 @@ impl Case {
         (case.recording().exists() && case.map().is_file()).then_some(case)
     }
 
-    /// Its recording: a file, or the folder of a bag.
+    /// Path of the recording: a file, or the folder of a bag.
     pub(super) fn recording(&self) -> PathBuf {
         let names = ["recording.mcap", "recording", "recording.db3"];
         let mut paths = names.map(|name| self.folder.join(name)).into_iter();
@@ -64,10 +63,10 @@ impl Case {
         self.folder.join("expected.json")
     }
 
-    /// What is expected; `None` where nobody has said.
+    /// Reads the expected results; `None` if the file does not exist.
     ///
     /// # Errors
-    /// The file cannot be read, or says something else.
+    /// The file cannot be read, or has another format.
     pub(super) fn expected(&self) -> Result<Option<Vec<Answer>>, RegressionError> {
         let file = self.expectation();
         let text = match std::fs::read_to_string(&file) {
@@ -81,13 +80,13 @@ impl Case {
             .map_err(|source| RegressionError::Expectation { file, source })
     }
 
-    /// Expects this from now on.
+    /// Writes these results as the expected ones.
     ///
     /// # Errors
     /// The file cannot be written.
     pub(super) fn accept(&self, answers: &[Answer]) -> Result<(), RegressionError> {
         let file = self.expectation();
-        // Texts and finite numbers always serialize.
+        // Strings and finite numbers always serialize.
         let text = serde_json::to_string_pretty(answers).unwrap_or_default() + "\n";
         std::fs::write(&file, text).map_err(|source| failed("write", &file, source))
     }

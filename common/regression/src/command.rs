@@ -17,7 +17,7 @@ use super::junit::{self, Outcome};
 use super::play::{self, Played};
 use crate::RegressionError;
 
-/// What stands below the options.
+/// Notes below the options in the help text.
 pub const NOTES: &str = "\
 A case is a folder with recording.mcap (or the folder recording, of a bag), map.yaml and
 expected.json. With --tolerance exact, votes, verdicts, the tracker's states and counts must
@@ -35,33 +35,32 @@ pub struct Config {
     #[arg(default_value = "recordings", value_name = "FOLDER")]
     folders: Vec<PathBuf>,
 
-    /// The graph; it plays each recording on its map, at --rate max
+    /// The graph that plays each recording on its map, at --rate max
     #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// What counts as a difference
+    /// Differences to report
     #[arg(long, value_enum, default_value_t = Tolerance::Exact)]
     tolerance: Tolerance,
 
-    /// Accept the results as the new expectation, and say what changed, a line a kind
+    /// Accept the results as the new expectation, and print a summary of the changes
     #[arg(long)]
     accept: bool,
 
-    /// Write a JUnit report for a build server: a suite a recording, a test case a scan
+    /// Write a JUnit report for a build server: a suite per recording, a test case per scan
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 }
 
-/// Replays one recording after another; one whose graph fails is reported, and the
-/// next one follows.
+/// Replays one recording after another. One whose graph fails is reported, and the next one
+/// follows.
 ///
 /// # Errors
-/// There is nothing to replay, the graph cannot be built, or a file cannot be
-/// written.
+/// There is no recording, the graph cannot be built, or a file cannot be written.
 pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
     if let Some(folder) = config.junit.as_deref().and_then(Path::parent) {
-        // Before the work, whose outcome would be lost otherwise.
+        // Before the replay, so that a failure costs no work.
         std::fs::create_dir_all(folder)
             .map_err(|source| case::failed("make the folder", folder, source))?;
     }
@@ -70,7 +69,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
         cases.extend(Case::all_in(folder)?);
     }
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
-    // What replays is the same for all cases, and is built with the others.
+    // The replayer is the same for all cases, and is built with the other nodes.
     if let Some(case) = cases.first() {
         play::direct(&mut descriptor, case)?;
     }
@@ -127,7 +126,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         damage,
     } = play::play(descriptor, &name, &case.recording())?;
     outcome.scans = found.iter().map(|answer| answer.stamp_ns).collect();
-    // What is not written as it should be can be written again.
+    // With `--accept` an unreadable expectation is overwritten.
     let expected = match config.accept {
         true => Some(expected.ok().flatten().unwrap_or_default()),
         false => expected?,
@@ -142,7 +141,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     }
     let all = differences(&expected, &found, config.tolerance);
     if let Some(damage) = damage {
-        // What is cut off would be missed for ever.
+        // Accepting a truncated replay would drop the expectations of the missing scans.
         outcome.result = Err(format!(
             "{damage}; only what lies before was played and compared, with {} differences",
             all.len()

@@ -1,23 +1,22 @@
-//! Differences between what is expected and what was found. Pure.
+//! Compares expected and found results. Pure.
 
 use std::collections::BTreeMap;
 
 use super::answer::{Answer, TrackedPose};
 
-/// What counts as a difference.
+/// Differences to report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub(super) enum Tolerance {
-    /// Every figure: for changes that should change no answer
+    /// All figures: for changes that should change no result
     #[default]
     Exact,
-    /// Verdicts, states and the poses of answers that are Unique: for another version of
-    /// the engine
+    /// Verdicts, states and the poses of results that are Unique: for another version of the engine
     Pose,
 }
 
 impl Tolerance {
-    /// Metres. Exactly: far below what any laser resolves, far above rounding. Of
-    /// poses: a usual cell of a map.
+    /// Tolerance in metres. `Exact`: far below the resolution of lasers, far above rounding.
+    /// `Pose`: a usual cell of a map.
     fn position_m(self) -> f64 {
         match self {
             Tolerance::Exact => 0.001,
@@ -25,7 +24,7 @@ impl Tolerance {
         }
     }
 
-    /// As for the position: the second moves what is 3 m away by a cell.
+    /// Tolerance in degrees. `Pose`: one degree moves a point 3 m away by a cell of 5 cm.
     fn heading_deg(self) -> f64 {
         match self {
             Tolerance::Exact => 0.01,
@@ -34,24 +33,23 @@ impl Tolerance {
     }
 }
 
-/// Of scores and probabilities, which are shares of 1 kept in 32 bits: below
-/// what moves a verdict, above the rounding of exponential functions.
+/// Tolerance of scores and probabilities, which are shares of 1 in 32 bits: less than what changes
+/// a verdict, more than the rounding of exponential functions.
 const SHARE: f64 = 0.001;
 
-/// What a verdict and a state are called that stand for one place.
+/// Name of the verdict and the state that stand for one place.
 const UNIQUE: &str = "Unique";
 
-/// One value that is not as expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Difference {
     pub(super) stamp_ns: i64,
-    /// Its name, or "scan" where one is missing.
+    /// Name of the value, or "scan" if results are missing or added.
     pub(super) what: &'static str,
     pub(super) expected: String,
     pub(super) found: String,
 }
 
-/// All differences, by the stamps of the scans.
+/// Returns all differences, sorted by the stamps of the scans.
 pub(super) fn differences(
     expected: &[Answer],
     found: &[Answer],
@@ -84,7 +82,7 @@ pub(super) fn differences(
     all
 }
 
-/// One scan whose values are compared.
+/// Comparison of one scan.
 struct Scan<'a> {
     stamp_ns: i64,
     tolerance: Tolerance,
@@ -169,7 +167,7 @@ impl Scan<'_> {
         self.tolerance == Tolerance::Exact
     }
 
-    /// Headings are compared on the circle.
+    /// Compares headings on the circle.
     fn near_heading(&mut self, what: &'static str, (expected, found): (Option<f64>, Option<f64>)) {
         let turned = expected.zip(found).map(|(expected, found)| {
             expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
@@ -209,7 +207,6 @@ impl Scan<'_> {
     }
 }
 
-/// The differences as a table.
 pub(super) fn table(differences: &[Difference]) -> String {
     let mut text = format!(
         "  {:>20} {:<16} {:>14} {:>14}\n",
@@ -227,8 +224,8 @@ pub(super) fn table(differences: &[Difference]) -> String {
     text
 }
 
-/// What differs, a line a kind: on how many scans, by how much at most where it is a
-/// number, and on which scan first.
+/// Formats one line per kind of difference: number of scans, largest difference of numbers, and the
+/// first scan.
 pub(super) fn summary(differences: &[Difference]) -> String {
     let mut kinds: BTreeMap<&str, Vec<&Difference>> = BTreeMap::new();
     for difference in differences {
@@ -276,7 +273,7 @@ mod tests {
         }
     }
 
-    /// What differs from the plain answer.
+    /// Names of the values that differ after `spoil` has changed a result.
     fn spoilt(spoil: fn(&mut Answer)) -> Vec<&'static str> {
         let mut found = answer(1);
         spoil(&mut found);
@@ -354,7 +351,7 @@ mod tests {
         assert_eq!(spoilt(|a| a.heading_deg = Some(178.9)), ["heading_deg"]);
         let elsewhere = |a: &mut Answer| a.pose.as_mut().unwrap().x_m = Some(5.0);
         assert_eq!(spoilt(elsewhere), ["pose.x_m"]);
-        // Of several places that fit as well, either may come first.
+        // Several places fit equally well, so either may come first.
         let unsure = |x_m| Answer {
             verdict: "Ambiguous".to_owned(),
             x_m: Some(x_m),

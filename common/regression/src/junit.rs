@@ -1,4 +1,4 @@
-//! The outcome for a build server.
+//! Report for a build server.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -7,11 +7,11 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::compare::{Difference, table};
 
-/// How a recording came out.
+/// Outcome of one recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outcome {
     pub(super) name: String,
-    /// The stamps of the scans that were answered, by their coming.
+    /// Stamps of the scans with results, in order of arrival.
     pub(super) scans: Vec<i64>,
     pub(super) took: Duration,
     pub(super) result: Result<Vec<Difference>, String>,
@@ -22,7 +22,7 @@ impl Outcome {
         self.result.as_ref().is_ok_and(Vec::is_empty)
     }
 
-    /// What is wrong, in one line; `None` if nothing is.
+    /// One line about the failure; `None` if all is as expected.
     pub(super) fn complaint(&self) -> Option<String> {
         match &self.result {
             Ok(differences) if differences.is_empty() => None,
@@ -32,12 +32,11 @@ impl Outcome {
     }
 }
 
-/// A report in the form of JUnit: a suite a recording, a test case a scan, which fails
-/// where an answer differs. A recording that was not replayed to its end has one more
-/// case, an error.
+/// Formats a JUnit report: a suite per recording, and a test case per scan, which fails if a result
+/// differs. A recording that was not replayed to its end has an additional test case with an error.
 ///
 /// # Errors
-/// A text holds what XML cannot say.
+/// A text contains characters that XML does not allow.
 pub(super) fn report(outcomes: &[Outcome]) -> Result<String, quick_junit::SerializeError> {
     let mut report = Report::new("backcast regress");
     report.add_test_suites(outcomes.iter().map(suite));
@@ -70,7 +69,7 @@ fn suite(outcome: &Outcome) -> TestSuite {
         let differences = by_scan.remove(&stamp_ns).unwrap_or_default();
         suite.add_test_case(scan(stamp_ns, &differences));
     }
-    // Those that were expected and did not come.
+    // Expected scans without a result.
     for (stamp_ns, differences) in by_scan {
         suite.add_test_case(scan(stamp_ns, &differences));
     }

@@ -1,8 +1,8 @@
-//! `backcast regress`: replays recordings through the graph and compares every
-//! answer with what is expected.
+//! `backcast regress`: replays recordings through the graph and compares every result with the
+//! expected one.
 //!
-//! `case` finds the recordings, `play` runs the graph, `answer` is what is
-//! compared, `compare` compares (pure), `junit` reports to a build server.
+//! `case` finds the recordings, `play` runs the graph, `answer` is the result of a scan, `compare`
+//! compares (pure), `junit` writes a report for a build server.
 
 mod answer;
 mod case;

@@ -1,4 +1,4 @@
-//! Plays a recording through a graph of its own and collects the answers.
+//! Plays a recording through a separate graph and collects the results.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -17,14 +17,14 @@ use super::answer::Answer;
 use super::case::Case;
 use crate::RegressionError;
 
-/// The name under which the graph is joined.
+/// Node name in the graph.
 const NAME: &str = "regress";
-/// Between two looks at the processes.
+/// Interval between checks of the processes.
 const TICK: Duration = Duration::from_millis(20);
-/// How long the last answers may take once the source is done.
+/// Longest wait for the last results after the source has ended.
 const TIMEOUT: Duration = Duration::from_secs(20);
 
-/// Lets the graph replay this recording, on its map, as fast as it answers.
+/// Configures the graph to replay this recording on its map, as fast as it can process it.
 ///
 /// # Errors
 /// The graph has no map server.
@@ -39,28 +39,28 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Reg
     set(server, "--map", Some(&case.map().to_string_lossy()));
     tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
-        // What goes wrong is reported; what goes well is in the table.
+        // Logs problems only; results are in the table.
         node.env
             .insert(0, ("RUST_LOG".to_owned(), "warn".to_owned()));
     }
     Ok(())
 }
 
-/// What came of a recording.
+/// Results of playing a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Played {
-    /// The answers to all scans, by their coming.
+    /// Results of all scans, in order of arrival.
     pub(super) answers: Vec<Answer>,
-    /// Whether the graph tracks the pose.
+    /// True if the graph has a tracker.
     pub(super) is_tracked: bool,
-    /// Why the recording was not played to its end, if it was not.
+    /// Damage that ended the replay early.
     pub(super) damage: Option<String>,
 }
 
-/// Plays what is readable of a recording.
+/// Plays the readable part of a recording.
 ///
 /// # Errors
-/// The graph does not run, or leaves scans without an answer.
+/// The graph fails, or some scans have no result.
 pub(super) fn play(
     descriptor: Descriptor,
     name: &GraphName,
@@ -87,7 +87,7 @@ pub(super) fn play(
     }
 }
 
-/// How many scans it has, and how it is damaged.
+/// Returns the number of scans, and the damage if any.
 fn look_at(path: &Path) -> Result<(usize, Option<String>), RegressionError> {
     let recording = Recording::open(path)?;
     let topic = recording.required_topic(Kind::Scan)?;
@@ -111,7 +111,7 @@ fn collect(
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
     let reports = graph.subscriber::<topic::Health>()?;
-    // The player waits for what it counts.
+    // The player waits for the scans that this process has counted.
     let mut health = graph.health()?;
     let mut received = Received {
         is_tracked,
@@ -142,18 +142,18 @@ fn collect(
     Ok(received.answers())
 }
 
-/// What came until now.
+/// Messages received so far.
 #[derive(Default)]
 struct Received {
     is_tracked: bool,
-    /// The tracker's poses of scans.
+    /// Poses of the tracker that are from scans.
     poses: Vec<PoseHeader>,
     votes: Vec<VotesHeader>,
     hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
 }
 
 impl Received {
-    /// Returns whether anything came.
+    /// Receives all waiting messages; true if there were any.
     fn take(
         &mut self,
         votes: &Subscriber<topic::Votes>,
@@ -176,7 +176,7 @@ impl Received {
         Ok(self.messages() > before)
     }
 
-    /// Scans of which the answer came, as the player counts them.
+    /// Number of scans with results, as the player counts them.
     fn taken(&self) -> u64 {
         let last = self.hypotheses.last();
         last.map_or(0, |(header, _)| header.stamp.counter + 1)
@@ -191,7 +191,7 @@ impl Received {
         self.votes.len() >= scans && self.hypotheses.len() >= scans && is_tracked
     }
 
-    /// Votes, hypotheses and the tracker's pose that belong to one scan.
+    /// Joins votes, hypotheses and the tracker's pose of each scan.
     fn answers(&self) -> Vec<Answer> {
         let of = |(header, items): &(HypothesesHeader, Vec<Hypothesis>)| {
             let votes = self

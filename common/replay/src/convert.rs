@@ -1,12 +1,11 @@
-//! From the messages of a recording to those of the graph; an error says where the
-//! message stands.
+//! Converts messages of a recording to those of the graph; errors name the message.
 
 use messages::{FrameName, GroundTruth, Odometry};
 use ros::{ConversionError, PoseStamped, measurements};
 
 use crate::PlaybackError;
 
-/// Where a message stands, for errors.
+/// Topic and log time of a message, for errors.
 pub(crate) struct Place<'a> {
     pub(crate) topic: &'a str,
     pub(crate) log_time_ns: i64,

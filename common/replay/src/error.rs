@@ -1,28 +1,26 @@
-//! What can go wrong with the messages of a recording.
+//! Errors of replaying a recording.
 
 use recording::RecordingError;
 use ros::ConversionError;
 
-/// What was tried, what was found and what is allowed.
+/// Error of a recording or one of its messages.
 #[derive(Debug, thiserror::Error)]
 pub enum PlaybackError {
-    /// The recording, or a message of it, cannot be read.
+    /// The recording, or a message in it, cannot be read.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
-    /// A message says what the graph cannot.
+    /// A message cannot be represented in the graph.
     #[error("the message of {topic} at log time {log_time_ns} ns cannot be used: {reason}")]
     Message {
-        /// The channel.
         topic: String,
         /// Nanoseconds since 1970.
         log_time_ns: i64,
-        /// What is wrong.
         reason: ConversionError,
     },
 }
 
 impl PlaybackError {
-    /// Whether it is about one message, so that the next one may be played.
+    /// True if the error concerns one message, so that the next one can be replayed.
     #[must_use]
     pub fn is_about_one_message(&self) -> bool {
         match self {
@@ -31,7 +29,7 @@ impl PlaybackError {
         }
     }
 
-    /// Whether the recording is damaged, so that what lay before has been played.
+    /// True if the recording is damaged; everything before the damage has been replayed.
     #[must_use]
     pub fn is_damage(&self) -> bool {
         match self {

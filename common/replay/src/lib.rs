@@ -1,11 +1,10 @@
-//! What every node that plays a recording needs.
+//! Building blocks of nodes that replay a recording.
 //!
-//! `selection` says what is played of it, `source` and `convert` turn records into
-//! messages, `order` sees to it that what belongs to a scan comes before it,
-//! `schedule` says when each is due and which answer is waited for, `readiness` who
-//! is ready; all pure. `poses` sends what is no scan, and `waiting` waits for nodes.
-//! How a scan reaches the graph is left to the node. Readings are passed on as
-//! they were recorded, however odd.
+//! `selection` defines the part to replay, `source` and `convert` turn records into messages,
+//! `order` moves messages that belong to a scan before it, `schedule` decides when each is due and
+//! which answer to wait for, and `readiness` tracks which nodes are ready; all of these do no I/O.
+//! `poses` publishes messages other than scans, and `waiting` waits for nodes. Publishing scans is
+//! left to the node. Ranges are passed on exactly as they were recorded.
 
 mod convert;
 mod error;

@@ -1,34 +1,33 @@
-//! Puts before a scan what was measured by then.
+//! Moves messages that were measured before a scan in front of it.
 //!
-//! A recording is in the order of log times, where odometry or a true pose may
-//! follow the scan that it belongs to. Whoever searches with a given heading, or
-//! takes out the motion within a scan, needs it before. So a scan is held back until what was recorded shortly after
-//! it has been seen. All else keeps its order; memory is bounded by the window.
+//! A recording is in the order of log times, where odometry or a true pose may follow the scan that
+//! it belongs to. A search with a given heading, or the deskewing of a scan, needs it first. So a
+//! scan is held back until everything that was recorded shortly after it has been read. All other
+//! messages keep their order; memory is bounded by the window.
 
 use std::collections::VecDeque;
 
 use crate::source::Timed;
 
-/// How much later than a scan something may have been recorded and still come
-/// before it, nanoseconds of log time.
+/// Largest delay in log time of a message that is still moved before a scan, in nanoseconds.
 const WINDOW_NS: i64 = 500_000_000;
 
-/// Odometry may lag behind the scans by this much and still measure the motion within
-/// them, nanoseconds.
+/// Largest lag of odometry behind the scans that still covers the motion within them, in
+/// nanoseconds.
 const MARGIN_NS: i64 = 250_000_000;
 
-/// An iterator over the same items, errors included, in playing order.
+/// Iterator over the same items, including errors, in playing order.
 pub struct InOrder<I, E> {
     items: I,
     ended: bool,
     newest_ns: i64,
-    /// Of the odometry that was given.
+    /// Stamp of the last odometry that was returned.
     odometry_ns: i64,
     ahead: VecDeque<Result<Timed, E>>,
 }
 
 impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
-    /// Of items by log time.
+    /// Reorders items that are sorted by log time.
     pub fn new(items: I) -> Self {
         InOrder {
             items,
@@ -39,7 +38,7 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
         }
     }
 
-    /// Reads on until the first item can be judged.
+    /// Reads ahead until the first item can be returned.
     fn look_ahead(&mut self) {
         while !self.ended && !self.sees_far_enough() {
             match self.items.next() {
@@ -64,8 +63,8 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
         }
     }
 
-    /// What was measured by the time of the scan in front, recorded after it; of the
-    /// odometry also what measures the motion within the scan.
+    /// Takes the next item behind the front scan that was measured by the time of the scan, or
+    /// odometry that covers the motion within it.
     fn take_overdue(&mut self) -> Option<Timed> {
         let scan = self
             .ahead
@@ -94,7 +93,7 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
 impl<E, I: Iterator<Item = Result<Timed, E>>> Iterator for InOrder<I, E> {
     type Item = Result<Timed, E>;
 
-    /// The next item; its log time never goes back.
+    /// Returns the next item; log times never decrease.
     fn next(&mut self) -> Option<Self::Item> {
         self.look_ahead();
         let overdue = self.take_overdue().map(Ok);
@@ -137,7 +136,7 @@ mod tests {
         }
     }
 
-    /// `s` or `t`, the stamp, and the time when it is due, in milliseconds.
+    /// Formats items as `s` or `t`, the stamp, and the time when they are due, in milliseconds.
     fn played(items: Vec<Timed>) -> Vec<String> {
         let items = items.into_iter().map(Ok::<_, String>);
         let show = |item: Timed| {

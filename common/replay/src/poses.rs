@@ -1,9 +1,9 @@
-//! Sends the messages of a recording that are no scans.
+//! Publishes the messages of a recording other than scans.
 
 use messages::{GroundTruth, Odometry, topic};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
-/// Where odometry and true poses enter the graph.
+/// Publishers of odometry and true poses.
 pub struct Poses {
     odometry: Publisher<topic::OdometryTopic>,
     truths: Publisher<topic::GroundTruthTopic>,
@@ -13,7 +13,7 @@ pub struct Poses {
 
 impl Poses {
     /// # Errors
-    /// The graph refuses.
+    /// If the graph fails.
     pub fn open(graph: &Graph) -> Result<Self, TransportError> {
         Ok(Poses {
             odometry: graph.publisher()?,
@@ -23,10 +23,10 @@ impl Poses {
         })
     }
 
-    /// Sends it now, with the next counter.
+    /// Publishes odometry now, with the next counter.
     ///
     /// # Errors
-    /// The graph fails.
+    /// If the graph fails.
     pub fn send_odometry(&mut self, mut odometry: Odometry) -> Result<(), TransportError> {
         let mut loan = self.odometry.loan(0)?;
         odometry.stamp.counter = self.odometry_sent;
@@ -36,10 +36,10 @@ impl Poses {
         loan.send()
     }
 
-    /// Sends it now, with the next counter.
+    /// Publishes a true pose now, with the next counter.
     ///
     /// # Errors
-    /// The graph fails.
+    /// If the graph fails.
     pub fn send_truth(&mut self, mut truth: GroundTruth) -> Result<(), TransportError> {
         let mut loan = self.truths.loan(0)?;
         truth.stamp.counter = self.truths_sent;

@@ -1,18 +1,17 @@
-//! How fast a recording plays.
+//! Speed of a replay.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A multiple of the original speed, or as fast as the graph answers.
+/// Speed of a replay: a multiple of the original speed, or as fast as the graph answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
-    /// Times the original speed.
+    /// Multiple of the original speed.
     Factor(f64),
-    /// The next scan follows the answer to the one before.
+    /// The next scan follows the answer to the previous one.
     Max,
 }
 
-/// The slowest and the fastest factor.
 const ALLOWED: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
 
 impl FromStr for Rate {

@@ -1,8 +1,8 @@
-//! Which of the nodes that are waited for are ready.
+//! Tracks which nodes are ready.
 
 use messages::{HealthHeader, NodeState};
 
-/// The nodes and what they last said.
+/// The nodes and their last states.
 #[derive(Debug)]
 pub(crate) struct Readiness {
     nodes: Vec<(String, Option<NodeState>)>,
@@ -16,7 +16,7 @@ impl Readiness {
         }
     }
 
-    /// Takes a node's report.
+    /// Stores the state in a node's report.
     pub(crate) fn receive(&mut self, report: &HealthHeader) {
         let name = report.node.as_str();
         for (_, state) in self.nodes.iter_mut().filter(|(node, _)| node == name) {
@@ -24,7 +24,7 @@ impl Readiness {
         }
     }
 
-    /// Those that are not ready, with what is known of them; empty when all are.
+    /// Names and states of the nodes that are not ready; empty if all are.
     pub(crate) fn missing(&self) -> Vec<String> {
         let missing = |(name, state): &(String, Option<NodeState>)| match state {
             Some(NodeState::Ready) => None,

@@ -1,50 +1,49 @@
-//! What to do next, and when: pure, the caller passes the clock in.
+//! Decides what to do next, and when; the caller passes the clock in.
 //!
-//! At a factor each message is due at the original distance from the first one,
-//! so that no error adds up; at `max` the next message follows the answer to the
-//! last scan. At the end the last scan's answer is waited for in either case.
+//! At a factor each message is due at its original, scaled distance from the first one, so that
+//! errors do not accumulate; at `max` the next message follows the answer to the last scan. At the
+//! end the answer to the last scan is awaited in both cases.
 
 use messages::Stamp;
 
 use crate::Rate;
 
-/// What to do now. Times are `CLOCK_MONOTONIC` in nanoseconds.
+/// Next step of the caller. Times are `CLOCK_MONOTONIC` in nanoseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
-    /// Send the pending message.
     Send,
-    /// It is due at this time.
+    /// Sleep until this time, when the message is due.
     SleepUntil(i64),
-    /// Only an answer, or patience, leads on.
+    /// Wait for the answer to the last scan, or its timeout.
     AwaitAnswer,
-    /// The answer to this scan is given up.
+    /// The answer to this scan has timed out.
     GiveUp(Stamp),
-    /// Everything was played, and answered or given up.
+    /// Everything has been replayed, and answered or timed out.
     Done,
 }
 
-/// Where the recording's time meets the clock.
+/// Pair of corresponding times of the recording and the clock.
 #[derive(Debug, Clone, Copy)]
 struct Anchor {
     log_ns: i64,
     clock_ns: i64,
 }
 
-/// The state of playing.
+/// State of a replay.
 #[derive(Debug)]
 pub struct Schedule {
     rate: Rate,
     patience_ns: i64,
     anchor: Option<Anchor>,
-    /// Of the message that was due last, on the clock.
+    /// Time at which the last message was due, on the clock.
     last_due_ns: i64,
-    /// The first message of this round is not due before.
+    /// Earliest time for the first message of this round.
     not_before_ns: i64,
     awaited: Option<Stamp>,
 }
 
 impl Schedule {
-    /// Nothing played yet; an answer may take `patience_s` seconds.
+    /// Starts a schedule; an answer times out after `patience_s` seconds.
     #[must_use]
     pub fn new(rate: Rate, patience_s: f64) -> Self {
         Schedule {
@@ -57,8 +56,8 @@ impl Schedule {
         }
     }
 
-    /// What to do at `now_ns`, where the next message was recorded at
-    /// `pending_ns`, or there is none.
+    /// Returns the next step at `now_ns`; `pending_ns` is the log time of the next message, if
+    /// there is one.
     pub fn next(&mut self, pending_ns: Option<i64>, now_ns: i64) -> Action {
         if let Some(stamp) = self.awaited
             && (self.rate == Rate::Max || pending_ns.is_none())
@@ -81,31 +80,31 @@ impl Schedule {
         Action::Send
     }
 
-    /// A scan was sent with this stamp.
+    /// Records that a scan was sent with this stamp.
     pub fn scan_sent(&mut self, stamp: Stamp) {
         self.awaited = Some(stamp);
     }
 
-    /// The scan whose answer is waited for.
+    /// Stamp of the scan whose answer is awaited.
     #[must_use]
     pub fn awaited(&self) -> Option<Stamp> {
         self.awaited
     }
 
-    /// An answer came that carries this stamp.
+    /// Records an answer with this stamp.
     pub fn answered(&mut self, stamp: Stamp) {
         if self.awaited.is_some_and(|awaited| awaited.is_of(stamp)) {
             self.awaited = None;
         }
     }
 
-    /// The recording starts over, `gap_ns` of its time after its last message.
+    /// Starts the recording again, `gap_ns` of its time after its last message.
     pub fn start_over(&mut self, gap_ns: i64) {
         self.anchor = None;
         self.not_before_ns = self.last_due_ns.saturating_add(self.scaled(gap_ns));
     }
 
-    /// Playing continues after a pause: the next message is due at once.
+    /// Continues after a pause: the next message is due at once.
     pub fn resume(&mut self) {
         self.anchor = None;
         self.not_before_ns = i64::MIN;
@@ -125,7 +124,7 @@ impl Schedule {
             .saturating_add(self.scaled(log_ns.saturating_sub(anchor.log_ns)))
     }
 
-    /// A time of the recording as the clock counts it.
+    /// Converts a duration of the recording to the clock.
     fn scaled(&self, recorded_ns: i64) -> i64 {
         match self.rate {
             Rate::Factor(factor) => (recorded_ns as f64 / factor) as i64,
@@ -139,7 +138,7 @@ mod tests {
     use super::*;
 
     const MS: i64 = 1_000_000;
-    /// Recordings start long before a clock that started at boot.
+    /// Recordings have much later times than a clock that started at boot.
     const LOG: i64 = 1_700_000_000_000 * MS;
 
     fn at(log_ms: i64) -> Option<i64> {
@@ -163,8 +162,7 @@ mod tests {
                 let due = (5 + step * stretch) * MS;
                 let pending = at(step * 100);
                 assert_eq!(schedule.next(pending, due - 1), Action::SleepUntil(due));
-                // Each wake-up is late by a millisecond; the next one's due
-                // time does not care.
+                // Each wake-up is late by a millisecond, which does not shift the next due time.
                 assert_eq!(schedule.next(pending, due + MS), Action::Send);
             }
         }
@@ -197,8 +195,8 @@ mod tests {
         assert_eq!(schedule.next(at(0), 0), Action::Send);
         schedule.scan_sent(stamp(0, 0));
         assert_eq!(schedule.next(at(9999), MS), Action::AwaitAnswer);
-        // The same counter from another source is another scan; when it entered is
-        // for each machine to say.
+        // The same counter with another measuring time is another scan; the time of entering the
+        // graph does not matter.
         schedule.answered(Stamp {
             measured_ns: 7,
             ..stamp(0, 0)

@@ -1,11 +1,11 @@
-//! Which part of a recording is played: channels, their names, and time.
+//! Selects the part of a recording to replay: channels, their names, and times.
 
 use std::fmt;
 use std::str::FromStr;
 
 use recording::Recording;
 
-/// One channel goes by the name of another.
+/// Renames a channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remap {
     from: String,
@@ -32,18 +32,18 @@ impl fmt::Display for Remap {
     }
 }
 
-/// What is played of a recording.
+/// Part of a recording to replay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Selection {
     topics: Vec<String>,
     remap: Vec<Remap>,
-    /// First and last log time, nanoseconds.
+    /// First and last log time, in nanoseconds.
     from_ns: i64,
     to_ns: i64,
 }
 
 impl Selection {
-    /// Everything.
+    /// Selects everything.
     #[must_use]
     pub fn all() -> Self {
         Selection {
@@ -54,7 +54,7 @@ impl Selection {
         }
     }
 
-    /// These topics alone, unless there are none; some of them go by other names.
+    /// Selects only these topics, or all if there are none, and renames some of them.
     #[must_use]
     pub fn of(topics: &[String], remap: &[Remap]) -> Self {
         Selection {
@@ -64,7 +64,8 @@ impl Selection {
         }
     }
 
-    /// What lies this many seconds after the recording's first message, at most 1e9.
+    /// Limits the selection to a period, given in seconds after the recording's first message, at
+    /// most 1e9.
     #[must_use]
     pub fn within(self, recording: &Recording, start: Option<f64>, end: Option<f64>) -> Self {
         let first_ns = recording.time_range_ns().map_or(0, |(first, _)| first);
@@ -77,14 +78,14 @@ impl Selection {
         }
     }
 
-    /// The name by which a channel goes; `None` where it is left out.
+    /// Name of a channel after renaming; `None` if it is left out.
     #[must_use]
     pub fn name_of(&self, topic: &str) -> Option<String> {
         if !self.topics.is_empty() && !self.topics.iter().any(|meant| meant == topic) {
             return None;
         }
         let remap = self.remap.iter().find(|remap| remap.from == topic);
-        // A channel whose name another one takes gives way.
+        // A channel is left out if another one takes its name.
         let is_taken = || self.remap.iter().any(|remap| remap.to == topic);
         match remap {
             Some(remap) => Some(remap.to.clone()),
@@ -93,13 +94,13 @@ impl Selection {
         }
     }
 
-    /// Whether a message of this log time is played.
+    /// True if a message with this log time is selected.
     #[must_use]
     pub fn covers(&self, log_time_ns: i64) -> bool {
         (self.from_ns..=self.to_ns).contains(&log_time_ns)
     }
 
-    /// Topics that were named, but that the recording does not have.
+    /// Selected topics that the recording does not have.
     #[must_use]
     pub fn unknown(&self, recording: &Recording) -> Vec<String> {
         let named = self

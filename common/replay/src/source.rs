@@ -1,7 +1,6 @@
-//! From the records of a recording to messages of the graph, in their order.
+//! Converts the records of a recording to messages of the graph, in their order.
 //!
-//! Pure: the recording is open already. It chooses the channels and leaves out
-//! all others.
+//! The recording is already open. Only the selected channels are read.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,41 +15,38 @@ use crate::PlaybackError;
 use crate::convert::Place;
 use crate::selection::Selection;
 
-/// A message that is ready but for its moment.
+/// A message of the graph with its log time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timed {
-    /// When it was recorded, nanoseconds.
+    /// Time of recording, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// The message.
     pub content: Content,
 }
 
-/// What it says.
+/// Content of a message; its stamp has no counter and no time of entering the graph yet.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
-    /// Without its counter and its entry into the graph.
+    /// A scan: header and ranges.
     Scan(Box<ScanHeader>, Vec<f32>),
-    /// Likewise.
     Odometry(Box<Odometry>),
-    /// Likewise.
     GroundTruth(Box<GroundTruth>),
 }
 
 impl Timed {
-    /// Whether it is a scan.
+    /// True if it is a scan.
     #[must_use]
     pub fn is_scan(&self) -> bool {
         matches!(self.content, Content::Scan(..))
     }
 
-    /// Whether it is odometry.
+    /// True if it is odometry.
     #[must_use]
     pub fn is_odometry(&self) -> bool {
         matches!(self.content, Content::Odometry(_))
     }
 
-    /// Until when the robot's motion matters to the scan, nanoseconds: its last beam
-    /// where it takes time, its stamp where it is one of several.
+    /// Time up to which the robot's motion matters for the scan, in nanoseconds: that of its last
+    /// beam if the scan takes time, its stamp if it is one of several lasers.
     #[must_use]
     pub fn motion_until_ns(&self) -> Option<i64> {
         let Content::Scan(header, ranges) = &self.content else {
@@ -62,7 +58,7 @@ impl Timed {
         matters.then(|| self.stamp_ns().saturating_add(duration_ns.max(0)))
     }
 
-    /// When it was measured, nanoseconds.
+    /// Time of measurement, in nanoseconds since 1970.
     #[must_use]
     pub fn stamp_ns(&self) -> i64 {
         match &self.content {
@@ -73,20 +69,20 @@ impl Timed {
     }
 }
 
-/// The channels that are played.
+/// Channels that are replayed.
 #[derive(Debug, Clone)]
 pub struct Channels {
-    /// Of one laser, or of several by their names, the first one first.
+    /// Topic and name of each laser, the first one first; a single laser has an empty name.
     scans: Vec<(Arc<str>, Name)>,
     odometry: Option<Arc<str>>,
     truth: Option<Arc<str>>,
 }
 
 impl Channels {
-    /// Those of the selection.
+    /// Returns the channels of the selection.
     ///
     /// # Errors
-    /// If there are no scans, or it is not clear which ones are meant.
+    /// If there are no scans, or several channels qualify.
     pub fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
         let topic = |kind| recording.topic_renamed(kind, |topic| selection.name_of(topic));
         let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
@@ -102,11 +98,11 @@ impl Channels {
         })
     }
 
-    /// Those of the selection, with the scans of these lasers: each is named by its
-    /// topic, and the first one's scans are those that are answered.
+    /// Returns the channels of the selection, with the scans of several lasers: each is named by
+    /// its topic, and the scans of the first one are answered.
     ///
     /// # Errors
-    /// If one has no scans.
+    /// If there are no scans, or several channels qualify.
     pub fn of_lasers(
         recording: &Recording,
         selection: &Selection,
@@ -126,7 +122,7 @@ impl Channels {
         })
     }
 
-    /// Readable scans of the first laser.
+    /// Number of readable scans of the first laser.
     #[must_use]
     pub fn scans(&self, recording: &Recording) -> u64 {
         let channels = recording.channels();
@@ -134,7 +130,7 @@ impl Channels {
         scans.map(|channel| channel.messages).sum()
     }
 
-    /// The laser whose scans are answered; without a name where there is one.
+    /// Laser whose scans are answered; a single laser has an empty name.
     #[must_use]
     pub fn first_laser(&self) -> Name {
         let first = self.scans.first();
@@ -159,7 +155,7 @@ impl Channels {
     }
 }
 
-/// The messages by log time; damage of the file is the last item.
+/// Messages by log time; damage of the file is the last item.
 pub struct Source<'a> {
     recording: &'a Recording,
     channels: Channels,
@@ -169,7 +165,6 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Before the first of them.
     #[must_use]
     pub fn new(recording: &'a Recording, channels: Channels, selection: Selection) -> Self {
         Source {
@@ -208,7 +203,7 @@ impl<'a> Source<'a> {
         }))
     }
 
-    /// Where the laser of this frame sits; looked up once.
+    /// Mount of the laser with this frame; looked up once.
     fn mount(&mut self, frame: &str) -> Result<Option<Mount>, RecordingError> {
         if let Some(&known) = self.mounts.get(frame) {
             return Ok(known);

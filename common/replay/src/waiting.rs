@@ -1,4 +1,4 @@
-//! Waits until the nodes that answer are there.
+//! Waits until other nodes are ready.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
 use crate::readiness::Readiness;
 
-/// The longest time without a look at signals and health.
+/// Largest time between checks of signals and health.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Between two lines that say who is waited for, nanoseconds.
+/// Time between log lines about missing nodes, in nanoseconds.
 const REMINDER_NS: i64 = 5_000_000_000;
 
 /// The nodes that must be ready before playing starts.
@@ -22,10 +22,10 @@ pub struct Awaited {
 }
 
 impl Awaited {
-    /// Nodes by their names.
+    /// Waits for nodes with these names.
     ///
     /// # Errors
-    /// The graph refuses.
+    /// If the graph fails.
     pub fn new(graph: &Graph, names: &[String]) -> Result<Self, TransportError> {
         Ok(Awaited {
             reports: graph.subscriber()?,
@@ -35,10 +35,10 @@ impl Awaited {
         })
     }
 
-    /// Whether all have been ready at once; says in the log who is missing.
+    /// True once all nodes have been ready at the same time; logs which are missing.
     ///
     /// # Errors
-    /// The graph fails.
+    /// If the graph fails.
     pub fn are_ready(&mut self) -> Result<bool, TransportError> {
         while let Some(report) = self.reports.receive()? {
             self.readiness.receive(report.header());
@@ -56,7 +56,7 @@ impl Awaited {
 /// Waits until all these nodes are ready, or the stop flag is set.
 ///
 /// # Errors
-/// The graph fails.
+/// If the graph fails.
 pub fn wait_for_nodes(
     graph: &Graph,
     names: &[String],
@@ -66,7 +66,8 @@ pub fn wait_for_nodes(
         return Ok(());
     }
     let mut awaited = Awaited::new(graph, names)?;
-    // The loop below has the listener while it runs; reports are taken on ticks.
+    // The closure borrows `awaited`, so its subscriber is no input of the loop; reports are
+    // received on ticks.
     graph.run(&[], TICK, |_| {
         if awaited.are_ready()? {
             return Ok(Flow::Stop);

@@ -5,20 +5,19 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, RosMessage};
 
-/// A sign of life, by which two nodes know that the other is there.
+/// Heartbeat by which two nodes monitor each other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BondStatus {
-    /// When.
     pub header: Header,
-    /// The bond that both have.
+    /// Id of the bond, the same for both nodes.
     pub id: String,
-    /// One of the two.
+    /// Id of the sending node.
     pub instance_id: String,
-    /// False where the bond ends.
+    /// False if the bond ends.
     pub active: bool,
-    /// Without a sign for so long it is broken, seconds.
+    /// Seconds without a heartbeat after which the bond is broken.
     pub heartbeat_timeout: f32,
-    /// From one sign to the next, seconds.
+    /// Seconds between heartbeats.
     pub heartbeat_period: f32,
 }
 

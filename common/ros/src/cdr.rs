@@ -1,10 +1,10 @@
-//! CDR as ROS 2 uses it: four bytes that say how, then the fields.
+//! CDR as used by ROS 2: a header of four bytes, then the fields.
 //!
 //! | bytes | field |
 //! |---|---|
 //! | 2 | representation: `00 00` big-endian, `00 01` little-endian |
 //! | 2 | options, not used |
-//! | … | fields, each aligned to its size counted from here |
+//! | … | fields, each aligned to its size, counted from here |
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::Serialize;
@@ -13,11 +13,11 @@ use serde::de::DeserializeOwned;
 const BIG_ENDIAN: [u8; 2] = [0, 0];
 const LITTLE_ENDIAN: [u8; 2] = [0, 1];
 
-/// Decodes a message. Bytes after its last field are not looked at, as ROS does not: writers pad
-/// what they write, and a later version of a type may have more fields.
+/// Decodes a message. Bytes after its last field are ignored, as in ROS: writers add padding, and a
+/// later version of a type may have more fields.
 ///
 /// # Errors
-/// The reason why it is none.
+/// The reason if it cannot be decoded.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     let Some((&[kind, format, _, _], body)) = bytes.split_first_chunk() else {
         return Err(format!(
@@ -42,7 +42,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 /// Encodes a message, little-endian.
 ///
 /// # Errors
-/// If a text or a list of it is longer than CDR can say.
+/// If a string or a sequence in it is longer than CDR allows.
 pub fn encode<T: Serialize>(message: &T) -> Result<Vec<u8>, cdr_encoding::Error> {
     let mut bytes = vec![LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0];
     bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message)?);
@@ -63,7 +63,7 @@ mod tests {
         }
     }
 
-    /// As it stands on the wire, byte by byte, from the layout of the message.
+    /// Expected bytes on the wire, from the layout of the message.
     fn scan_bytes(big: bool) -> Vec<u8> {
         let mut bytes = vec![0, u8::from(!big), 0, 0];
         let mut word = |value: u32| {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn sequences_that_claim_more_than_is_there_are_refused() {
         let mut bytes = scan_bytes(false);
-        // The count of the ranges stands after header (20) and seven floats.
+        // The count of the ranges comes after the header (20 bytes) and seven floats.
         let at = 4 + 20 + 28;
         assert_eq!(bytes[at..at + 4], 2u32.to_le_bytes());
         bytes[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes());

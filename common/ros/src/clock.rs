@@ -5,10 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{RosMessage, Time};
 
-/// The time of a simulation.
+/// Time of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Clock {
-    /// Now.
     pub clock: Time,
 }
 

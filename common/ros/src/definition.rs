@@ -1,17 +1,16 @@
-//! The text of a message's definition, put together when the crate is compiled.
+//! Text of message definitions, concatenated at compile time.
 //!
-//! What several messages are made of stands here once.
+//! Types that several messages share are defined here once.
 
-/// The fields of a message, then each type that it is made of: by name where
-/// several messages share it, which brings along the types that it is made of
-/// itself, or as its name and fields.
+/// Fields of a message, then each type that it uses: a shared type by its name, which includes the
+/// types that it uses itself, or any other by its name and fields.
 macro_rules! definition {
     ($fields:literal $(, $part:tt)+ $(,)?) => {
         concat!($fields $(, $crate::definition::part!($part))+)
     };
 }
 
-/// A type with the rule above it.
+/// Definition of a type, with the separator line above it.
 macro_rules! part {
     (Header) => {
         definition!(

@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, RosMessage};
 
-/// How parts of a robot fare.
+/// States of a robot's components.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DiagnosticArray {
-    /// When; the frame is not used.
+    /// Time; the frame is not used.
     pub header: Header,
-    /// One entry a part.
     pub status: Vec<DiagnosticStatus>,
 }
 
@@ -20,33 +19,25 @@ pub struct DiagnosticStatus {
     /// [`DiagnosticStatus::OK`], [`DiagnosticStatus::WARN`],
     /// [`DiagnosticStatus::ERROR`] or [`DiagnosticStatus::STALE`].
     pub level: u8,
-    /// The part.
     pub name: String,
-    /// The state in words.
+    /// State in words.
     pub message: String,
-    /// Which device it is.
     pub hardware_id: String,
-    /// Figures.
     pub values: Vec<KeyValue>,
 }
 
 impl DiagnosticStatus {
-    /// All is well.
     pub const OK: u8 = 0;
-    /// Something is not as it should be.
     pub const WARN: u8 = 1;
-    /// It does not work.
     pub const ERROR: u8 = 2;
-    /// Nothing is received from it.
+    /// No data is received from the component.
     pub const STALE: u8 = 3;
 }
 
 /// `diagnostic_msgs/msg/KeyValue`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct KeyValue {
-    /// What the figure is.
     pub key: String,
-    /// The figure.
     pub value: String,
 }
 

@@ -1,10 +1,10 @@
-//! A node's health as ROS says it.
+//! Converts a node's health to a message of ROS.
 
 use messages::{HealthHeader, NodeState};
 
 use crate::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
 
-/// A node's report, and its last error, with the time `stamp`.
+/// Converts the health of a node and its last error; `stamp` is the time of the header.
 #[must_use]
 pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
     let state = NodeState::from_code(report.state);
@@ -36,7 +36,7 @@ pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
     }
 }
 
-/// A node that waits for its map is no trouble yet.
+/// Level of a state; a node that waits for its map is not a warning yet.
 fn level(state: Option<NodeState>) -> u8 {
     match state {
         Some(NodeState::Waiting | NodeState::Ready | NodeState::Busy) => DiagnosticStatus::OK,

@@ -1,30 +1,27 @@
-//! Why a message's numbers are not what they should be.
+//! Error of a message with invalid values.
 
 use map::MapError;
 use messages::FrameName;
 
-/// A message that decodes, but says something that cannot be.
+/// A message that decodes, but has invalid values.
 #[derive(Debug, thiserror::Error)]
 pub enum ConversionError {
-    /// A quaternion that is no rotation: its length is not 1 within a few percent,
-    /// or it is not a number.
+    /// A quaternion that is no rotation: its length is not 1 within a few percent, or it is not
+    /// finite.
     #[error("the quaternion ({x}, {y}, {z}, {w}) is not a rotation; allowed: a length of 1")]
     Rotation {
-        /// Of i.
         x: f64,
-        /// Of j.
         y: f64,
-        /// Of k.
         z: f64,
-        /// The real part.
+        /// Real part.
         w: f64,
     },
-    /// A position that is not a number.
+    /// A position that is not finite.
     #[error("the position ({x}, {y}) is not finite")]
     Position {
-        /// Metres.
+        /// X, in metres.
         x: f64,
-        /// Metres.
+        /// Y, in metres.
         y: f64,
     },
     /// An occupancy out of range.
@@ -32,18 +29,17 @@ pub enum ConversionError {
     Cell {
         /// Index of the cell, row by row from the lowest y.
         index: usize,
-        /// Its occupancy.
         found: i8,
     },
-    /// A frame's name does not fit into a message of the graph.
+    /// The name of a frame is too long for a message of the graph.
     #[error(
         "the frame {frame:?} has {} bytes, at most {} are allowed", frame.len(), FrameName::CAPACITY
     )]
     Frame {
-        /// The name.
+        /// Name of the frame.
         frame: String,
     },
-    /// A map that is not within the limits.
+    /// A map that exceeds the limits.
     #[error(transparent)]
     Map(Box<MapError>),
 }

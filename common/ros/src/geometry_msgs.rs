@@ -1,21 +1,21 @@
-//! The parts of `geometry_msgs` that other messages are made of.
+//! Types of `geometry_msgs` that other messages use.
 
 use serde::{Deserialize, Serialize};
 
 use super::ConversionError;
 
-/// How far a quaternion's squared length may be from 1, as in tf2.
+/// Tolerance of a quaternion's squared length around 1, as in tf2.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
-/// How far a quaternion's length may be from 1 and be taken for a rounded one.
+/// Tolerance of a quaternion's length around 1, for rounded values.
 const ROUNDING: f64 = 0.05;
 
-/// What was wrong with a quaternion that is taken for a rotation nevertheless.
+/// Correction of an inexact quaternion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mend {
-    /// All four numbers are zero; taken for no turn.
+    /// All four numbers are zero; replaced by the identity.
     Zero,
-    /// Its length is not 1, but near.
+    /// The length is near 1, but not 1; normalized.
     Length(f64),
 }
 
@@ -33,57 +33,45 @@ impl std::fmt::Display for Mend {
     }
 }
 
-/// Where x, y and yaw stand among x, y, z and the rotations about them.
+/// Indices of x, y and yaw among x, y, z and the rotations about them.
 const PLANAR_AXES: [usize; 3] = [0, 1, 5];
 
-/// `geometry_msgs/msg/Point`, metres.
+/// `geometry_msgs/msg/Point`, in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Point {
-    /// Forward in the frame.
     pub x: f64,
-    /// Left in the frame.
     pub y: f64,
-    /// Up in the frame.
     pub z: f64,
 }
 
-/// `geometry_msgs/msg/Vector3`: metres, metres a second or radians a second.
+/// `geometry_msgs/msg/Vector3`: metres, metres per second or radians per second along or about the
+/// frame's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Vector3 {
-    /// Along or about the frame's x axis.
     pub x: f64,
-    /// Along or about the frame's y axis.
     pub y: f64,
-    /// Along or about the frame's z axis.
     pub z: f64,
 }
 
-/// `geometry_msgs/msg/Quaternion`.
+/// `geometry_msgs/msg/Quaternion`; `w` is the real part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quaternion {
-    /// Of i.
     pub x: f64,
-    /// Of j.
     pub y: f64,
-    /// Of k.
     pub z: f64,
-    /// The real part.
     pub w: f64,
 }
 
 /// `geometry_msgs/msg/Pose`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose {
-    /// Where.
     pub position: Point,
-    /// Which way.
     pub orientation: Quaternion,
 }
 
 /// `geometry_msgs/msg/PoseWithCovariance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PoseWithCovariance {
-    /// The estimate.
     pub pose: Pose,
     /// Row by row over x, y, z and the rotations about them.
     pub covariance: [[f64; 6]; 6],
@@ -92,32 +80,30 @@ pub struct PoseWithCovariance {
 /// `geometry_msgs/msg/Twist`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Twist {
-    /// Metres a second.
+    /// Metres per second.
     pub linear: Vector3,
-    /// Radians a second.
+    /// Radians per second.
     pub angular: Vector3,
 }
 
 /// `geometry_msgs/msg/TwistWithCovariance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TwistWithCovariance {
-    /// The estimate.
     pub twist: Twist,
     /// Row by row over x, y, z and the rotations about them.
     pub covariance: [[f64; 6]; 6],
 }
 
-/// `geometry_msgs/msg/Transform`.
+/// `geometry_msgs/msg/Transform`: pose of the child frame in the parent frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Transform {
-    /// Where the inner frame's origin lies in the outer frame, metres.
+    /// Position of the child frame's origin, in metres.
     pub translation: Vector3,
-    /// How the inner frame is turned in the outer frame.
     pub rotation: Quaternion,
 }
 
 impl Default for Quaternion {
-    /// No turn.
+    /// The identity.
     fn default() -> Self {
         Quaternion {
             x: 0.0,
@@ -129,7 +115,7 @@ impl Default for Quaternion {
 }
 
 impl Quaternion {
-    /// A turn about the z axis, radians.
+    /// Rotation about the z axis, in radians.
     #[must_use]
     pub fn from_yaw(yaw: f64) -> Self {
         let (sin, cos) = (0.5 * yaw).sin_cos();
@@ -141,22 +127,22 @@ impl Quaternion {
         }
     }
 
-    /// The heading of the turned x axis, radians in `[-π, π]`; of a quaternion
-    /// that is mended as [`Quaternion::mended`] says.
+    /// Heading of the rotated x axis, radians in `[-π, π]`, after the correction by
+    /// [`Quaternion::mended`].
     ///
     /// # Errors
-    /// If it is no rotation.
+    /// If the quaternion is no rotation.
     pub fn yaw(self) -> Result<f64, ConversionError> {
         let (Quaternion { x, y, z, w }, _) = self.mended()?;
-        // Both arguments scale with the squared length, so it need not be 1.
+        // Both arguments scale with the squared length, so it does not need to be 1.
         Ok((2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
     }
 
-    /// The rotation that is meant: no turn where nobody has filled in the fields,
-    /// and of a length of 1 where it was rounded; with what was wrong.
+    /// Corrects the quaternion: all zeros, as in a field that was never set, become the identity,
+    /// and a rounded one gets the length 1. Also returns the correction that was applied.
     ///
     /// # Errors
-    /// If it is no rotation.
+    /// If the quaternion is no rotation.
     pub fn mended(self) -> Result<(Self, Option<Mend>), ConversionError> {
         let Quaternion { x, y, z, w } = self;
         let squared = x * x + y * y + z * z + w * w;
@@ -179,7 +165,7 @@ impl Quaternion {
 }
 
 impl Pose {
-    /// A pose in the plane, at height 0.
+    /// Pose in the plane, at height 0.
     #[must_use]
     pub fn from_planar(pose: geometry::Pose) -> Self {
         Pose {
@@ -192,10 +178,10 @@ impl Pose {
         }
     }
 
-    /// The pose seen from above.
+    /// Projects the pose to the plane.
     ///
     /// # Errors
-    /// If it is not finite or no rotation.
+    /// If its position is not finite, or its orientation is no rotation.
     pub fn planar(&self) -> Result<geometry::Pose, ConversionError> {
         let Point { x, y, .. } = self.position;
         if !(x.is_finite() && y.is_finite()) {
@@ -206,7 +192,7 @@ impl Pose {
 }
 
 impl Transform {
-    /// A transform in the plane, at height 0.
+    /// Transform in the plane, at height 0.
     #[must_use]
     pub fn from_planar(pose: geometry::Pose) -> Self {
         Transform {
@@ -221,8 +207,7 @@ impl Transform {
 }
 
 impl PoseWithCovariance {
-    /// An estimate in the plane, with its covariance row by row over x, y and
-    /// yaw: m², m·rad, rad².
+    /// Estimate in the plane, with its covariance row by row over x, y and yaw: m², m·rad, rad².
     #[must_use]
     pub fn from_planar(pose: geometry::Pose, covariance: [f64; 9]) -> Self {
         let mut with = PoseWithCovariance {
@@ -235,7 +220,7 @@ impl PoseWithCovariance {
         with
     }
 
-    /// The covariance row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance row by row over x, y and yaw: m², m·rad, rad².
     #[must_use]
     pub fn planar_covariance(&self) -> [f64; 9] {
         std::array::from_fn(|i| self.covariance[PLANAR_AXES[i / 3]][PLANAR_AXES[i % 3]])
@@ -243,7 +228,7 @@ impl PoseWithCovariance {
 }
 
 impl Twist {
-    /// A motion in the plane: m/s, m/s and rad/s.
+    /// Motion in the plane: m/s, m/s and rad/s.
     #[must_use]
     pub fn from_planar(motion: geometry::Pose) -> Self {
         Twist {
@@ -260,7 +245,7 @@ impl Twist {
         }
     }
 
-    /// The motion in the plane: m/s, m/s and rad/s.
+    /// Projects the motion to the plane: m/s, m/s and rad/s.
     #[must_use]
     pub fn planar(&self) -> geometry::Pose {
         geometry::Pose::new(self.linear.x, self.linear.y, self.angular.z)
@@ -276,10 +261,10 @@ mod tests {
     #[test]
     fn yaw_comes_back_also_with_tilt() {
         for yaw in [0.0, 0.1, -3.0, FRAC_PI_2] {
-            // Half angles and one arc tangent: a few units in the last place.
+            // Half angles and one arc tangent cost a few units in the last place.
             assert!((Quaternion::from_yaw(yaw).yaw().unwrap() - yaw).abs() < 1e-15);
         }
-        // Upside down and turned by 0.4: the x axis still points there.
+        // Upside down and turned by 0.4: the x axis still has that heading.
         let (sin, cos) = 0.2f64.sin_cos();
         let flipped = Quaternion {
             x: cos,
@@ -288,7 +273,7 @@ mod tests {
             w: 0.0,
         };
         assert!((flipped.yaw().unwrap() - 0.4).abs() < 1e-15);
-        // A little too long, as rounded writers make them.
+        // Slightly too long, like values of writers that round.
         let long = Quaternion {
             w: 1.004,
             ..Quaternion::default()

@@ -6,39 +6,39 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, RosMessage, Time};
 
-/// One turn of a laser.
+/// One revolution of a laser.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LaserScan {
-    /// When the first beam was measured, and the laser's frame.
+    /// Time of the first beam, and the laser's frame.
     pub header: Header,
-    /// Bearing of the first beam, radians counter-clockwise from ahead.
+    /// Bearing of the first beam, in radians counter-clockwise from ahead.
     pub angle_min: f32,
-    /// Bearing of the last beam, radians.
+    /// Bearing of the last beam, in radians.
     pub angle_max: f32,
-    /// From one beam to the next, radians.
+    /// Angle between beams, in radians.
     pub angle_increment: f32,
-    /// From one beam to the next, seconds.
+    /// Time between beams, in seconds.
     pub time_increment: f32,
-    /// From one scan to the next, seconds.
+    /// Time between scans, in seconds.
     pub scan_time: f32,
-    /// Readings below are not returns, metres.
+    /// Smallest valid range, in metres.
     pub range_min: f32,
-    /// Readings above are not returns, metres.
+    /// Largest valid range, in metres.
     pub range_max: f32,
-    /// Metres; infinity where nothing came back.
+    /// Ranges in metres; infinity if nothing returned.
     pub ranges: Vec<f32>,
-    /// In the device's own unit; empty where it gives none.
+    /// Intensities in the device's own unit; empty if it has none.
     pub intensities: Vec<f32>,
 }
 
 impl LaserScan {
-    /// A scan of the graph, with the time `stamp`.
+    /// Converts a scan of the graph; `stamp` is the time of the header.
     #[must_use]
     pub fn of(stamp: Time, scan: &ScanHeader, ranges: &[f32]) -> Self {
         let steps = ranges.len().saturating_sub(1) as f64;
         LaserScan {
             header: Header::new(stamp, scan.frame.as_str()),
-            // Recordings hold 32 bits, and a scan that was played came from them.
+            // Recordings hold 32-bit floats, and the values of a replayed scan came from them.
             angle_min: scan.angle_min as f32,
             angle_max: (scan.angle_min + steps * scan.angle_increment) as f32,
             angle_increment: scan.angle_increment as f32,

@@ -1,7 +1,6 @@
-//! What several lasers of a robot are called: in the graph by a name, among the topics
-//! of ROS by that of their scans.
+//! Names of a robot's lasers: in the graph by name, in ROS by the topic of their scans.
 
-/// The topic of the scans of a laser; the only one has no name.
+/// Topic of a laser's scans; the only laser has an empty name.
 #[must_use]
 pub fn topic_of(laser: &str) -> String {
     match laser {
@@ -10,8 +9,8 @@ pub fn topic_of(laser: &str) -> String {
     }
 }
 
-/// The name of a laser by the topic of its scans: `front` for `/front/scan`,
-/// `/scan_front` and `/front_scan`, and the whole topic where nothing is left.
+/// Name of a laser by the topic of its scans: `front` for `/front/scan`, `/scan_front` and
+/// `/front_scan`, and `scan` if nothing else is left.
 #[must_use]
 pub fn name_of(topic: &str) -> String {
     let parts = topic.split('/').filter(|part| !part.is_empty());

@@ -1,22 +1,21 @@
-//! The messages of ROS 2 that recordings and robots are read and written with: their
-//! types, one file each, their bytes (`cdr`), and what becomes of them in the graph and
-//! back. Pure.
+//! ROS 2 messages for recordings and robots: one file for each type, their bytes (`cdr`), and
+//! conversions from and to messages of the graph. No I/O.
 //!
-//! A struct has the fields of its `.msg` in their order, because CDR names
-//! none: the definition stands beside it as a constant, in the form in which a
-//! recording carries it, and what makes the message of the graph's (`of`). Conversions to
-//! the plane refuse what is no number or no rotation.
+//! A struct has the fields of its `.msg` in the same order, because CDR does not name fields. Next
+//! to it are the definition as a constant, in the form that recordings store, and the conversion
+//! from the message of the graph (`of`). Conversions to the plane reject values that are not finite
+//! and quaternions that are no rotation.
 //!
-//! | file | between the graph and ROS |
+//! | file | conversion between graph and ROS |
 //! |---|---|
 //! | `measurements` | scans, odometry and true poses, to the graph |
 //! | `poses`, `planar` | poses and transforms, to ROS |
 //! | `diagnostics` | health, to ROS |
 //! | `lasers` | names of lasers and topics, both ways |
 //!
-//! The types are written by hand, although `hiroz-msgs` generates those of ROS: it
-//! depends on `hiroz`, and with it on all of Zenoh, which takes longer to build than
-//! everything that reads or writes a recording.
+//! The types are written by hand although `hiroz-msgs` generates those of ROS: it depends on
+//! `hiroz`, and with it on all of Zenoh, which takes longer to build than everything that reads or
+//! writes a recording.
 
 pub mod backcast_msgs;
 mod bond;
@@ -65,11 +64,11 @@ pub use service::{Empty, Nothing, RosService};
 pub use std_msgs::{Header, Time};
 pub use tf_message::{TfMessage, TransformStamped};
 
-/// A message type, as recordings name and define it.
+/// A message type with its name and definition in recordings.
 pub trait RosMessage: serde::Serialize {
-    /// The schema's name.
+    /// Name of the schema.
     const SCHEMA: &'static str;
-    /// The schema's text (`ros2msg`): the fields, then those of each type used.
+    /// Text of the schema (`ros2msg`): its fields, then those of each type used.
     const DEFINITION: &'static str;
 }
 
@@ -203,8 +202,7 @@ mod tests {
         });
     }
 
-    /// Fields of a type are named by its definition in the order of the struct;
-    /// the text of a type that several messages use is the same in each.
+    /// Definitions that use the same type contain the same text for it.
     #[test]
     fn definitions_agree_on_the_types_that_they_share() {
         let definitions = [

@@ -9,42 +9,32 @@ use super::{RosMessage, RosService};
 /// `lifecycle_msgs/msg/State`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct State {
-    /// Its number.
     pub id: u8,
-    /// Its name.
     pub label: String,
 }
 
 /// `lifecycle_msgs/msg/Transition`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Transition {
-    /// Its number.
     pub id: u8,
-    /// Its name.
     pub label: String,
 }
 
 /// `lifecycle_msgs/msg/TransitionDescription`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct TransitionDescription {
-    /// The transition.
     pub transition: Transition,
-    /// Where it begins.
     pub start_state: State,
-    /// Where it leads.
     pub goal_state: State,
 }
 
-/// A transition that took place.
+/// `lifecycle_msgs/msg/TransitionEvent`: a completed transition.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct TransitionEvent {
     /// Nanoseconds since 1970.
     pub timestamp: u64,
-    /// The transition.
     pub transition: Transition,
-    /// Where it began.
     pub start_state: State,
-    /// Where it led.
     pub goal_state: State,
 }
 
@@ -62,21 +52,19 @@ lifecycle_msgs/State goal_state
     );
 }
 
-/// `lifecycle_msgs/srv/ChangeState`.
 #[derive(Debug)]
 pub enum ChangeState {}
 
-/// Asks for a transition: by name where there is one, else by number.
+/// Requests a transition: by label, or if that is empty, by id.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ChangeStateRequest {
-    /// The transition.
     pub transition: Transition,
 }
 
-/// Whether the transition took place.
+/// Result of the transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ChangeStateResponse {
-    /// Whether the node is in the goal state.
+    /// True if the node is in the goal state.
     pub success: bool,
 }
 
@@ -88,14 +76,12 @@ impl RosService for ChangeState {
     type Response = ChangeStateResponse;
 }
 
-/// `lifecycle_msgs/srv/GetState`.
 #[derive(Debug)]
 pub enum GetState {}
 
-/// The state now.
+/// Current state.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GetStateResponse {
-    /// The state.
     pub current_state: State,
 }
 
@@ -107,14 +93,11 @@ impl RosService for GetState {
     type Response = GetStateResponse;
 }
 
-/// `lifecycle_msgs/srv/GetAvailableStates`.
 #[derive(Debug)]
 pub enum GetAvailableStates {}
 
-/// All states.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GetAvailableStatesResponse {
-    /// The states.
     pub available_states: Vec<State>,
 }
 
@@ -126,14 +109,12 @@ impl RosService for GetAvailableStates {
     type Response = GetAvailableStatesResponse;
 }
 
-/// `lifecycle_msgs/srv/GetAvailableTransitions`.
 #[derive(Debug)]
 pub enum GetAvailableTransitions {}
 
-/// Transitions: of the state now, or all of them.
+/// Transitions from the current state, or all of them.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GetAvailableTransitionsResponse {
-    /// The transitions.
     pub available_transitions: Vec<TransitionDescription>,
 }
 

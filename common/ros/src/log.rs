@@ -9,29 +9,27 @@ use super::{RosMessage, Time};
 /// A line of a node's log.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Log {
-    /// When it was written.
     pub stamp: Time,
-    /// How grave it is: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
+    /// Severity: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
     pub level: u8,
-    /// Who wrote it.
+    /// Name of the node.
     pub name: String,
-    /// The line.
     pub msg: String,
-    /// Where in the source, if that is known.
+    /// Source file, if known.
     pub file: String,
-    /// Where in the source, if that is known.
+    /// Function, if known.
     pub function: String,
-    /// Where in the source; 0 where that is not known.
+    /// Source line; 0 if unknown.
     pub line: u32,
 }
 
 impl Log {
-    /// A line of a node's log in the graph, with the time `stamp`.
+    /// Converts a log line of the graph; `stamp` is the time of the message.
     #[must_use]
     pub fn of(stamp: Time, header: &LogHeader, text: &str) -> Self {
         Log {
             stamp,
-            // The numbers of the graph are those of ROS; one that does not fit is none.
+            // The graph uses the level numbers of ROS; one that does not fit becomes 0.
             level: u8::try_from(header.level).unwrap_or_default(),
             name: header.node.as_str().to_owned(),
             msg: text.to_owned(),

@@ -1,7 +1,7 @@
-//! Scans, odometry and true poses of ROS as the graph has them.
+//! Converts scans, odometry and true poses of ROS to messages of the graph.
 //!
-//! Stamps lack what only the moment of sending gives: when they enter the graph
-//! and their counter. Readings are not looked at.
+//! Their stamps still lack the fields that are set on sending: the time of entering the graph, and
+//! the counter. Ranges are not converted here.
 
 use geometry::Mount;
 use messages::{FrameName, GroundTruth, Name, Odometry, ScanHeader, Stamp};
@@ -10,7 +10,7 @@ use crate as ros;
 use crate::ConversionError;
 use crate::{LaserScan, PoseStamped, Time};
 
-/// A frame's name.
+/// Converts the name of a frame.
 ///
 /// # Errors
 /// If it is longer than a message of the graph can hold.
@@ -23,8 +23,8 @@ pub fn frame(frame: &str) -> Result<FrameName, ConversionError> {
     })
 }
 
-/// The header of a scan; `mount` is how the laser sits on the base, if that is known.
-/// It is of the graph's only laser.
+/// Converts the header of a scan of the graph's only laser; `mount` is the mount of the laser on
+/// the base, if known.
 #[must_use]
 pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> ScanHeader {
     let known = mount.unwrap_or_default();
@@ -44,10 +44,10 @@ pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> 
     }
 }
 
-/// Odometry.
+/// Converts odometry.
 ///
 /// # Errors
-/// If the pose is invalid, or a frame's name too long.
+/// If the pose is invalid, or the name of a frame is too long.
 pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     Ok(Odometry {
         stamp: measured(message.header.stamp),
@@ -59,10 +59,10 @@ pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     })
 }
 
-/// The true pose of a laser.
+/// Converts the true pose of a laser.
 ///
 /// # Errors
-/// As [`odometry`].
+/// Same as [`odometry`].
 pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, ConversionError> {
     Ok(GroundTruth {
         stamp: measured(message.header.stamp),

@@ -1,4 +1,4 @@
-//! The parts of `nav2_msgs` that a localizer has.
+//! Types of `nav2_msgs` that a localizer uses.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,18 +9,17 @@ use super::{Header, Pose, PoseWithCovarianceStamped, RosMessage, RosService};
 /// `nav2_msgs/msg/ParticleCloud`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParticleCloud {
-    /// When, and the frame of the poses.
+    /// Time, and the frame of the poses.
     pub header: Header,
-    /// Where the robot may be.
+    /// Possible poses of the robot.
     pub particles: Vec<Particle>,
 }
 
 /// `nav2_msgs/msg/Particle`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Particle {
-    /// A place.
     pub pose: Pose,
-    /// How likely the robot is there; of all together at most 1.
+    /// Probability of the pose; the sum over all particles is at most 1.
     pub weight: f64,
 }
 
@@ -41,14 +40,12 @@ float64 weight
     );
 }
 
-/// `nav2_msgs/srv/SetInitialPose`.
 #[derive(Debug)]
 pub enum SetInitialPose {}
 
-/// Where the robot is said to be.
+/// Pose of the robot, as on topic `initialpose`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetInitialPoseRequest {
-    /// As on topic `initialpose`.
     pub pose: PoseWithCovarianceStamped,
 }
 

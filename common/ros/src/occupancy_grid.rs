@@ -7,40 +7,37 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{ConversionError, Header, Pose, RosMessage, Time, planar};
 
-/// A map.
+/// An occupancy grid.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct OccupancyGridMsg {
-    /// When it was published, and the map's frame.
+    /// Time of publication, and the map's frame.
     pub header: Header,
-    /// Its size and place.
     pub info: MapMetaData,
-    /// Row by row from the lowest y: 0 free to 100 occupied, -1 unknown.
+    /// Row by row from the lowest y: 0 (free) to 100 (occupied), -1 unknown.
     pub data: Vec<i8>,
 }
 
 /// `nav_msgs/msg/MapMetaData`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MapMetaData {
-    /// When the map was read.
+    /// Time at which the map was loaded.
     pub map_load_time: Time,
-    /// Side of a cell, metres.
+    /// Side of a cell, in metres.
     pub resolution: f32,
-    /// Cells along x.
     pub width: u32,
-    /// Cells along y.
     pub height: u32,
-    /// The lower left corner of cell (0, 0) in the map frame.
+    /// Pose of the grid in the map frame: its origin is the lower left corner of cell (0, 0).
     pub origin: Pose,
 }
 
 impl OccupancyGridMsg {
-    /// The grid that the message holds.
+    /// Converts the message to a grid.
     ///
-    /// Its resolution is the shortest decimal that rounds to the message's 32
-    /// bits: a map of 0.05 m is 0.05 m, as in the file that it was read from.
+    /// The resolution is the shortest decimal that rounds to the message's 32 bits: a map of 0.05 m
+    /// has exactly 0.05 m, as in the file that it was loaded from.
     ///
     /// # Errors
-    /// Says what about the message is not sound.
+    /// If the message is invalid.
     pub fn to_grid(&self) -> Result<OccupancyGrid, ConversionError> {
         let cells = self.data.iter().enumerate().map(cell);
         let cells: Vec<u8> = cells.collect::<Result<_, _>>()?;
@@ -54,7 +51,7 @@ impl OccupancyGridMsg {
         )?)
     }
 
-    /// The message for a grid; its header is empty.
+    /// Converts a grid to a message with an empty header.
     #[must_use]
     pub fn from_grid(grid: &OccupancyGrid) -> Self {
         OccupancyGridMsg {
@@ -66,12 +63,12 @@ impl OccupancyGridMsg {
                 height: grid.height,
                 origin: Pose::from_planar(grid.map_from_grid),
             },
-            // Unknown is 255, and -1 in the message: the same bits.
+            // Unknown is 255 in the grid and -1 in the message: the same bits.
             data: grid.cells.iter().map(|&cell| cell as i8).collect(),
         }
     }
 
-    /// The map of the graph; its header and load time are empty.
+    /// Converts a map of the graph to a message with an empty header and load time.
     #[must_use]
     pub fn of_map(map: &MapHeader, cells: &[u8]) -> Self {
         OccupancyGridMsg {
@@ -83,13 +80,13 @@ impl OccupancyGridMsg {
                 origin: planar::pose(map.map_from_grid.into()),
                 ..MapMetaData::default()
             },
-            // As above.
+            // The same bits, as above.
             data: cells.iter().map(|&cell| cell.cast_signed()).collect(),
         }
     }
 
-    /// The intensities on a map of the graph, as per cent of what a pose would have if
-    /// every beam agreed.
+    /// Converts an intensity field of the graph to percentages of the intensity that a pose would
+    /// have if every beam agreed.
     #[must_use]
     pub fn of_field(header: Header, field: &FieldHeader, items: &[u16], map: &MapHeader) -> Self {
         let full = field.highest_possible.max(1);
@@ -111,14 +108,15 @@ impl OccupancyGridMsg {
 fn cell((index, &found): (usize, &i8)) -> Result<u8, ConversionError> {
     match found {
         -1 => Ok(map::UNKNOWN),
-        // Not negative, so the bits are the number.
+        // Not negative, so the value stays the same.
         0..=100 => Ok(found as u8),
         _ => Err(ConversionError::Cell { index, found }),
     }
 }
 
 fn shortest_decimal(value: f32) -> f64 {
-    // What an f32 prints, an f64 reads; NaN stays NaN and is refused later.
+    // An f32 prints as its shortest decimal, which is parsed as f64; NaN stays NaN and is rejected
+    // later.
     value.to_string().parse().unwrap_or(f64::NAN)
 }
 

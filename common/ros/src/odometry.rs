@@ -5,21 +5,21 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, PoseWithCovariance, RosMessage, Time, Twist, TwistWithCovariance, planar};
 
-/// What the wheels report.
+/// Pose and velocity from wheel odometry.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Odometry {
-    /// When, and the frame of the pose.
+    /// Time, and the frame of the pose.
     pub header: Header,
-    /// The frame that moves, and of the twist.
+    /// Moving frame, in which the twist is given.
     pub child_frame_id: String,
-    /// Where the child frame is.
+    /// Pose of the child frame.
     pub pose: PoseWithCovariance,
-    /// How it moves.
+    /// Velocity in the child frame.
     pub twist: TwistWithCovariance,
 }
 
 impl Odometry {
-    /// Odometry of the graph, with the time `stamp`.
+    /// Converts odometry of the graph; `stamp` is the time of the header.
     #[must_use]
     pub fn of(stamp: Time, odometry: &messages::Odometry) -> Self {
         Odometry {
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(message.pose.planar_covariance(), [0.25; 9]);
         assert_eq!(message.twist.twist.planar(), pose.into());
         let back = message.pose.pose.planar().unwrap();
-        // The yaw is rounded to 2⁻⁴⁰ rad.
+        // The yaw is rounded to multiples of 2⁻⁴⁰ rad.
         assert!(back.is_within(pose.into(), 0.0, 1e-12), "{back:?}");
     }
 }

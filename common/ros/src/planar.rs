@@ -1,39 +1,37 @@
-//! Poses in the plane as ROS says them.
+//! Converts poses in the plane to messages of ROS.
 
 use geometry::{Pose, wrap_angle};
 
 use crate as ros;
 use crate::Quaternion;
 
-/// Steps of a yaw to the radian: 2⁴⁰, so a step is a millionth of a micrometre
-/// at a metre.
+/// Resolution of a yaw, in steps per radian: a step of 2⁻⁴⁰ rad moves a point at a distance of one
+/// metre by a millionth of a micrometre.
 const STEPS: f64 = (1u64 << 40) as f64;
 
-/// The yaw of which a quaternion is made. A quaternion gives back its yaw with
-/// an error of about 1e-15, so the yaw that is read from it is rounded to the
-/// same step, and becomes the same quaternion again: a pose that is recorded,
-/// played and recorded again does not change by a bit.
+/// Rounds a yaw before it is converted to a quaternion. A quaternion returns its yaw with an error
+/// of about 1e-15, so a yaw that is read from it rounds to the same step and gives the same
+/// quaternion: a pose that is recorded, replayed and recorded again stays the same in every bit.
 fn rounded(yaw: f64) -> f64 {
     let step = (wrap_angle(yaw) * STEPS).round();
-    // The half turn itself lies between two steps; beyond it the sign changes.
+    // π itself is between two steps; beyond it the sign would change.
     let most = (std::f64::consts::PI * STEPS).floor();
     step.clamp(-most, most) / STEPS
 }
 
-/// A pose, at height 0.
+/// Converts a pose, at height 0.
 #[must_use]
 pub fn pose(pose: Pose) -> ros::Pose {
     ros::Pose::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
-/// A pose as whoever reads the recording gets it: the same as given, or its yaw
-/// off by less than a step.
+/// Pose that a reader of the recording gets: the given one, with its yaw off by less than a step.
 #[must_use]
 pub fn as_recorded(of: Pose) -> Pose {
     pose(of).planar().unwrap_or(of)
 }
 
-/// An estimate with its covariance over x, y and yaw.
+/// Converts an estimate with its covariance over x, y and yaw.
 #[must_use]
 pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
     ros::PoseWithCovariance {
@@ -42,14 +40,14 @@ pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
     }
 }
 
-/// A transform, at height 0.
+/// Converts a transform, at height 0.
 #[must_use]
 pub fn transform(pose: Pose) -> ros::Transform {
     ros::Transform::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
-/// The transform of a laser that hangs upside down, where `level` is that of its frame
-/// seen from above: it is rolled by half a turn about its x axis.
+/// Transform of a laser that is mounted upside down: `level`, its frame seen from above, rolled by
+/// half a turn about its x axis.
 #[must_use]
 pub fn upside_down(level: ros::Transform) -> ros::Transform {
     let turn = level.rotation;

@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, Pose, RosMessage};
 
-/// Poses of one moment, in one frame.
+/// Poses at one time, in one frame.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PoseArray {
-    /// When, and the frame of the poses.
+    /// Time, and the frame of the poses.
     pub header: Header,
-    /// The poses; their order is the writer's choice.
+    /// Poses, in the order of the writer.
     pub poses: Vec<Pose>,
 }
 

@@ -6,17 +6,16 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, Pose, RosMessage, Time, planar};
 
-/// A pose, when it was, and in which frame.
+/// A pose with its time and frame.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PoseStamped {
-    /// When, and the frame of the pose.
+    /// Time, and the frame of the pose.
     pub header: Header,
-    /// The pose.
     pub pose: Pose,
 }
 
 impl PoseStamped {
-    /// A true pose of the graph, with the time `stamp`.
+    /// Converts a true pose of the graph; `stamp` is the time of the header.
     #[must_use]
     pub fn of(stamp: Time, truth: &GroundTruth) -> Self {
         PoseStamped {

@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, PoseWithCovariance, RosMessage};
 
-/// A pose with how sure it is.
+/// A pose with its covariance.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PoseWithCovarianceStamped {
-    /// When, and the frame of the pose.
+    /// Time, and the frame of the pose.
     pub header: Header,
-    /// The estimate.
     pub pose: PoseWithCovariance,
 }
 

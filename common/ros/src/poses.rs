@@ -1,4 +1,4 @@
-//! Hypotheses as poses that every tool knows.
+//! Converts hypotheses to pose messages that common tools understand.
 
 use std::f64::consts::PI;
 
@@ -9,8 +9,8 @@ use nalgebra::Matrix3;
 use crate::planar;
 use crate::{Header, PoseArray, PoseWithCovarianceStamped};
 
-/// All hypotheses that are on the map of the best one, best first: of the base, or of the laser
-/// where no mount is known.
+/// Converts all hypotheses on the map of the best one, best first: poses of the base, or of the
+/// laser if no mount is known.
 #[must_use]
 pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> PoseArray {
     let pose = |item| planar::pose(robot(from, item));
@@ -20,7 +20,8 @@ pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> P
     }
 }
 
-/// The start of a particle filter: of the base, or of the laser where no mount is known.
+/// Converts the initial particles of a particle filter: poses of the base, or of the laser if no
+/// mount is known.
 #[must_use]
 pub fn particles(header: Header, items: &[Particle]) -> PoseArray {
     let pose = |item: &Particle| planar::pose(item.map_from_base.into());
@@ -30,9 +31,9 @@ pub fn particles(header: Header, items: &[Particle]) -> PoseArray {
     }
 }
 
-/// The best one. Its covariance is its own where the verdict is Unique. Else nobody is to
-/// take it for sure: where several places fit, it spans them, all alike; where none does,
-/// the robot may be anywhere.
+/// Converts the best hypothesis. It keeps its own covariance only if the verdict is Unique, so that
+/// no reader takes an uncertain pose as certain: if several places fit, the covariance spans them
+/// with equal weight; if none fits, the robot may be anywhere.
 #[must_use]
 pub fn best(
     header: Header,
@@ -55,17 +56,18 @@ pub fn best(
     })
 }
 
-/// A robot that may be anywhere: as far as a building is wide.
+/// Standard deviation of the position of a robot that may be anywhere, in metres: the width of a
+/// building.
 const ANYWHERE_M: f64 = 100.0;
 
-/// Of the pose that is meant.
+/// Covariance of the pose that [`robot`] returns.
 fn covariance(from: &HypothesesHeader, item: &Hypothesis) -> Covariance {
     let own = Covariance::from_rows(item.covariance);
     own.carried(item.map_from_laser.into(), robot(from, item))
 }
 
-/// The covariance about a pose of a robot that is at one of these places, as far as they are on
-/// its map.
+/// Covariance about a pose of a robot that is at one of these places; places on other maps are left
+/// out.
 fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covariance {
     let on_map = from.on_map(items);
     let count = on_map.clone().count().max(1);
@@ -73,8 +75,8 @@ fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covaria
     Covariance(parts.sum::<Matrix3<f64>>() / count as f64)
 }
 
-/// Where the tracker has the robot: of the base, or of the laser where no mount is known.
-/// `None` where it believes no place.
+/// Converts the tracker's pose: of the base, or of the laser if no mount is known. `None` if it
+/// believes no place.
 #[must_use]
 pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceStamped> {
     if !from.is_believed() {
@@ -90,7 +92,7 @@ pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceSt
     })
 }
 
-/// The pose that is meant: of the base, or of the laser where no mount is known.
+/// Pose of the base, or of the laser if no mount is known.
 #[must_use]
 pub fn robot(from: &HypothesesHeader, item: &Hypothesis) -> Pose {
     match from.mount_known {
@@ -144,7 +146,7 @@ mod tests {
                 .covariance[0][0]
         };
         assert!((xx(Verdict::Unique) - 0.01).abs() < 1e-9);
-        // Half of the robots are 10 m away.
+        // Half of the probability is 10 m away.
         assert!((xx(Verdict::Ambiguous) - 50.01).abs() < 1e-6);
         assert_eq!(xx(Verdict::PoorFit), 1e4);
         assert_eq!(

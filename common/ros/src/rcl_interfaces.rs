@@ -1,38 +1,29 @@
-//! `rcl_interfaces`: the parameters of a node, and the services that read and set them.
+//! `rcl_interfaces`: parameters of a node, and the services that read and set them.
 
 use serde::{Deserialize, Serialize};
 
 use super::definition::{definition, part};
 use super::{RosMessage, RosService, Time};
 
-/// `rcl_interfaces/msg/ParameterType`: what a parameter holds.
+/// `rcl_interfaces/msg/ParameterType`: type of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ParameterType {
-    /// Nothing: there is no such parameter.
+    /// No such parameter.
     NotSet = 0,
-    /// True or false.
     Bool = 1,
-    /// A whole number.
     Integer = 2,
-    /// A number.
     Double = 3,
-    /// A text.
     String = 4,
-    /// Bytes.
     ByteArray = 5,
-    /// A list of true and false.
     BoolArray = 6,
-    /// A list of whole numbers.
     IntegerArray = 7,
-    /// A list of numbers.
     DoubleArray = 8,
-    /// A list of texts.
     StringArray = 9,
 }
 
 impl ParameterType {
-    /// The type with this number, if there is one.
+    /// Returns the type with this number, if there is one.
     #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         [
@@ -52,113 +43,92 @@ impl ParameterType {
     }
 }
 
-/// `rcl_interfaces/msg/ParameterValue`: the field that `type` names counts.
+/// `rcl_interfaces/msg/ParameterValue`: `type` selects the field that holds the value.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParameterValue {
     /// A [`ParameterType`].
     pub r#type: u8,
-    /// True or false.
     pub bool_value: bool,
-    /// A whole number.
     pub integer_value: i64,
-    /// A number.
     pub double_value: f64,
-    /// A text.
     pub string_value: String,
-    /// Bytes.
     pub byte_array_value: Vec<u8>,
-    /// A list of true and false.
     pub bool_array_value: Vec<bool>,
-    /// A list of whole numbers.
     pub integer_array_value: Vec<i64>,
-    /// A list of numbers.
     pub double_array_value: Vec<f64>,
-    /// A list of texts.
     pub string_array_value: Vec<String>,
 }
 
 /// `rcl_interfaces/msg/Parameter`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Its name; a dot stands between levels.
+    /// Name; dots separate its levels.
     pub name: String,
-    /// What it holds.
     pub value: ParameterValue,
 }
 
 /// `rcl_interfaces/msg/ParameterDescriptor`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParameterDescriptor {
-    /// Its name.
     pub name: String,
     /// A [`ParameterType`].
     pub r#type: u8,
-    /// What it means.
     pub description: String,
-    /// What is allowed, in words.
+    /// Description of further constraints.
     pub additional_constraints: String,
-    /// Whether it cannot be set while the node runs.
+    /// True if it cannot be set while the node runs.
     pub read_only: bool,
-    /// Whether its type may change.
+    /// True if its type may change.
     pub dynamic_typing: bool,
-    /// What a number may be; at most one.
+    /// Allowed range of a floating-point number; at most one.
     pub floating_point_range: Vec<FloatingPointRange>,
-    /// What a whole number may be; at most one.
+    /// Allowed range of an integer; at most one.
     pub integer_range: Vec<IntegerRange>,
 }
 
 /// `rcl_interfaces/msg/FloatingPointRange`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct FloatingPointRange {
-    /// The least.
     pub from_value: f64,
-    /// The most.
     pub to_value: f64,
-    /// From one allowed number to the next; 0 where all are allowed.
+    /// Step between allowed values; 0 if all are allowed.
     pub step: f64,
 }
 
 /// `rcl_interfaces/msg/IntegerRange`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct IntegerRange {
-    /// The least.
     pub from_value: i64,
-    /// The most.
     pub to_value: i64,
-    /// From one allowed number to the next; 0 where all are allowed.
+    /// Step between allowed values; 0 if all are allowed.
     pub step: u64,
 }
 
 /// `rcl_interfaces/msg/SetParametersResult`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SetParametersResult {
-    /// Whether it was set.
+    /// True if the parameter was set.
     pub successful: bool,
-    /// Why not.
+    /// Reason if it was not.
     pub reason: String,
 }
 
 /// `rcl_interfaces/msg/ListParametersResult`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ListParametersResult {
-    /// Names of parameters.
     pub names: Vec<String>,
-    /// What stands before their last dots.
+    /// Prefixes of the names, up to their last dots.
     pub prefixes: Vec<String>,
 }
 
-/// `rcl_interfaces/msg/ParameterEvent`: what became of a node's parameters.
+/// `rcl_interfaces/msg/ParameterEvent`: changes of a node's parameters.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParameterEvent {
-    /// When.
     pub stamp: Time,
-    /// The node's whole name.
+    /// Full name of the node.
     pub node: String,
-    /// Those that there were not before.
     pub new_parameters: Vec<Parameter>,
-    /// Those that hold something else.
     pub changed_parameters: Vec<Parameter>,
-    /// Those that there are no more.
     pub deleted_parameters: Vec<Parameter>,
 }
 
@@ -177,31 +147,27 @@ rcl_interfaces/Parameter[] deleted_parameters
     );
 }
 
-/// Names of parameters: the request of several services.
+/// Request of several services: names of parameters.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ParameterNames {
-    /// The names.
     pub names: Vec<String>,
 }
 
-/// Parameters to be set: the request of two services.
+/// Request of two services: parameters to set.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetParametersRequest {
-    /// Names and values.
     pub parameters: Vec<Parameter>,
 }
 
 const NAMES: &str = "string[] names\n";
 const PARAMETERS: &str = definition!("rcl_interfaces/Parameter[] parameters\n", Parameter);
 
-/// `rcl_interfaces/srv/GetParameters`.
 #[derive(Debug)]
 pub enum GetParameters {}
 
-/// What parameters hold, in the order in which they were asked for.
+/// Values of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParametersResponse {
-    /// The values.
     pub values: Vec<ParameterValue>,
 }
 
@@ -214,14 +180,13 @@ impl RosService for GetParameters {
     type Response = GetParametersResponse;
 }
 
-/// `rcl_interfaces/srv/GetParameterTypes`.
 #[derive(Debug)]
 pub enum GetParameterTypes {}
 
-/// The types of parameters, in the order in which they were asked for.
+/// Types of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GetParameterTypesResponse {
-    /// A [`ParameterType`] each.
+    /// Values of [`ParameterType`].
     pub types: Vec<u8>,
 }
 
@@ -233,14 +198,12 @@ impl RosService for GetParameterTypes {
     type Response = GetParameterTypesResponse;
 }
 
-/// `rcl_interfaces/srv/SetParameters`.
 #[derive(Debug)]
 pub enum SetParameters {}
 
-/// What became of each parameter.
+/// Result for each parameter, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SetParametersResponse {
-    /// In the order in which they were to be set.
     pub results: Vec<SetParametersResult>,
 }
 
@@ -255,14 +218,12 @@ impl RosService for SetParameters {
     type Response = SetParametersResponse;
 }
 
-/// `rcl_interfaces/srv/SetParametersAtomically`.
 #[derive(Debug)]
 pub enum SetParametersAtomically {}
 
-/// What became of all parameters together.
+/// Result for all parameters: either all are set or none.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SetParametersAtomicallyResponse {
-    /// All are set or none.
     pub result: SetParametersResult,
 }
 
@@ -277,23 +238,20 @@ impl RosService for SetParametersAtomically {
     type Response = SetParametersAtomicallyResponse;
 }
 
-/// `rcl_interfaces/srv/ListParameters`.
 #[derive(Debug)]
 pub enum ListParameters {}
 
-/// Asks for names of parameters.
+/// Request for names of parameters.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ListParametersRequest {
-    /// What they begin with, up to a dot; empty where all are wanted.
+    /// Prefixes of the names, up to a dot; empty for all parameters.
     pub prefixes: Vec<String>,
-    /// Levels below the prefixes; 0 where all are wanted.
+    /// Number of levels below the prefixes; 0 for all levels.
     pub depth: u64,
 }
 
-/// Names of parameters.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ListParametersResponse {
-    /// The names.
     pub result: ListParametersResult,
 }
 
@@ -312,14 +270,12 @@ string[] prefixes
     type Response = ListParametersResponse;
 }
 
-/// `rcl_interfaces/srv/DescribeParameters`.
 #[derive(Debug)]
 pub enum DescribeParameters {}
 
-/// What parameters mean, in the order in which they were asked for.
+/// Descriptions of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DescribeParametersResponse {
-    /// The descriptors.
     pub descriptors: Vec<ParameterDescriptor>,
 }
 

@@ -1,30 +1,26 @@
-//! Services: a request, and the response to it.
+//! Services: types of request and response.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// A service type. A struct without fields has one of eight bits, as ROS gives it.
+/// A service type. A struct without fields has one field of 8 bits, as in ROS.
 pub trait RosService {
-    /// Its name, as `std_srvs/srv/Empty`.
+    /// Name, such as `std_srvs/srv/Empty`.
     const NAME: &'static str;
-    /// The request's fields, then those of each type used; see
-    /// [`RosMessage::DEFINITION`](crate::RosMessage::DEFINITION).
+    /// Definition of the request; see [`RosMessage::DEFINITION`](crate::RosMessage::DEFINITION).
     const REQUEST: &'static str;
-    /// The response's.
+    /// Definition of the response.
     const RESPONSE: &'static str;
-    /// The request.
     type Request: DeserializeOwned;
-    /// The response.
     type Response: Serialize;
 }
 
-/// What has no fields.
+/// A request or response without fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Nothing {
     structure_needs_at_least_one_member: u8,
 }
 
-/// `std_srvs/srv/Empty`.
 #[derive(Debug)]
 pub enum Empty {}
 

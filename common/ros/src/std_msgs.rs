@@ -2,17 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// When and in which frame something was measured.
+/// Time and frame of a measurement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Header {
-    /// When.
     pub stamp: Time,
-    /// The frame's name.
     pub frame_id: String,
 }
 
 impl Header {
-    /// What was measured at `stamp` in a frame.
     #[must_use]
     pub fn new(stamp: Time, frame: &str) -> Self {
         Header {
@@ -22,23 +19,22 @@ impl Header {
     }
 }
 
-/// A moment since 1970.
+/// Time since 1970.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Time {
-    /// Whole seconds.
     pub sec: i32,
-    /// Nanoseconds on top of them.
+    /// Nanoseconds within the second.
     pub nanosec: u32,
 }
 
 impl Time {
-    /// The moment as nanoseconds since 1970; seconds of 32 bits always fit.
+    /// Nanoseconds since 1970; seconds of 32 bits always fit.
     #[must_use]
     pub fn as_ns(self) -> i64 {
         i64::from(self.sec) * 1_000_000_000 + i64::from(self.nanosec)
     }
 
-    /// The moment that lies `ns` after 1970, if its seconds fit 32 bits.
+    /// Converts nanoseconds since 1970; `None` if the seconds do not fit 32 bits.
     #[must_use]
     pub fn from_ns(ns: i64) -> Option<Self> {
         Some(Time {

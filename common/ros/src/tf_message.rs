@@ -5,21 +5,19 @@ use serde::{Deserialize, Serialize};
 use super::definition::definition;
 use super::{Header, RosMessage, Transform};
 
-/// Transforms between frames.
+/// Transforms between frames, in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TfMessage {
-    /// In any order.
     pub transforms: Vec<TransformStamped>,
 }
 
 /// `geometry_msgs/msg/TransformStamped`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TransformStamped {
-    /// When, and the outer frame.
+    /// Time, and the parent frame.
     pub header: Header,
-    /// The inner frame.
     pub child_frame_id: String,
-    /// Takes coordinates of the inner frame to the outer one.
+    /// Pose of the child frame in the parent frame.
     pub transform: Transform,
 }
 

@@ -1,99 +1,81 @@
-//! `type_description_interfaces`: the service by which a node says what its types are made of.
+//! `type_description_interfaces`: the service that returns the fields of a node's types.
 
 use serde::{Deserialize, Serialize};
 
 use super::RosService;
 use super::definition::part;
 
-/// What a field holds.
+/// Type of a field.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FieldType {
-    /// One of the numbers of ROS.
+    /// Number of the type in ROS.
     pub type_id: u8,
-    /// Most elements of a list.
+    /// Largest number of elements of a sequence.
     pub capacity: u64,
-    /// Most bytes of a text.
+    /// Largest size of a string, in bytes.
     pub string_capacity: u64,
-    /// The type, where it is one of another description.
+    /// Name of the type, if it has a description of its own.
     pub nested_type_name: String,
 }
 
-/// A field.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Field {
-    /// Its name.
     pub name: String,
-    /// What it holds.
     pub r#type: FieldType,
-    /// What it holds where nobody says it.
     pub default_value: String,
 }
 
-/// A type and its fields.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct IndividualTypeDescription {
-    /// As `std_msgs/msg/String`.
+    /// Full name, such as `std_msgs/msg/String`.
     pub type_name: String,
-    /// In their order.
     pub fields: Vec<Field>,
 }
 
-/// A type and all that it is made of.
+/// A type and all types that it uses.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TypeDescription {
-    /// The type.
     pub type_description: IndividualTypeDescription,
-    /// Those that it is made of, by name.
+    /// Types that it uses, by name.
     pub referenced_type_descriptions: Vec<IndividualTypeDescription>,
 }
 
 /// A file that defines a type.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TypeSource {
-    /// The type.
     pub type_name: String,
-    /// The form of the file, as `msg`.
+    /// Format of the file, such as `msg`.
     pub encoding: String,
-    /// Its text.
     pub raw_file_contents: String,
 }
 
-/// A pair of texts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct KeyValue {
-    /// The name.
     pub key: String,
-    /// What it holds.
     pub value: String,
 }
 
-/// `type_description_interfaces/srv/GetTypeDescription`.
 #[derive(Debug)]
 pub enum GetTypeDescription {}
 
-/// Which type is asked about.
+/// Request for the description of a type.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetTypeDescriptionRequest {
-    /// As `std_msgs/msg/String`.
+    /// Full name, such as `std_msgs/msg/String`.
     pub type_name: String,
-    /// Its hash, as `RIHS01_` and 64 digits.
+    /// Hash of the type: `RIHS01_` and 64 hexadecimal digits.
     pub type_hash: String,
-    /// Whether files are wanted, too.
+    /// True to request the source files as well.
     pub include_type_sources: bool,
 }
 
-/// What the type is made of, or why that is not known.
+/// Description of the type, or the reason for the failure.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetTypeDescriptionResponse {
-    /// Whether it is known.
     pub successful: bool,
-    /// Why it is not.
     pub failure_reason: String,
-    /// The type.
     pub type_description: TypeDescription,
-    /// Its files.
     pub type_sources: Vec<TypeSource>,
-    /// What else there is to say.
     pub extra_information: Vec<KeyValue>,
 }
 

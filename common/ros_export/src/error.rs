@@ -1,17 +1,17 @@
-//! Why a sample has no place in a transcript.
+//! Errors of the conversion to messages of ROS.
 
 use recording::RecordingError;
 
-/// What was found and what is allowed.
+/// Reason why a sample cannot be added to a transcript.
 #[derive(Debug, thiserror::Error)]
 pub enum TranscriptError {
-    /// A time that no message of ROS can say.
+    /// A time that messages of ROS cannot represent.
     #[error(
         "topic {topic}: a stamp of {stamp_ns} ns; allowed are 0 to 2147483647999999999, the times \
          of ROS from 1970 on"
     )]
     Stamp {
-        /// The topic in the graph.
+        /// Topic in the graph.
         topic: &'static str,
         /// Nanoseconds since 1970.
         stamp_ns: i64,
@@ -19,19 +19,17 @@ pub enum TranscriptError {
     /// A sample whose header and items contradict each other.
     #[error("topic {topic}: {width} x {height} cells are claimed, {found} are there")]
     Size {
-        /// The topic in the graph.
+        /// Topic in the graph.
         topic: &'static str,
-        /// Cells along x.
         width: u32,
-        /// Cells along y.
         height: u32,
-        /// Items of the sample.
+        /// Number of items in the sample.
         found: usize,
     },
-    /// A map that is not the one that its id says.
+    /// A map that does not have its claimed id.
     #[error("topic map")]
     MapId(#[from] messages::WrongMapId),
-    /// It cannot be said in CDR.
+    /// A sample that cannot be encoded in CDR.
     #[error(transparent)]
     Encoding(Box<RecordingError>),
 }

@@ -1,4 +1,4 @@
-//! The topics of a transcript.
+//! Subscribers for a transcript.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -8,46 +8,45 @@ use transport::{GapCounter, Graph, Input, Subscriber, TransportError, monotonic_
 
 use crate::Transcript;
 
-/// Who makes a transcript.
+/// Receiver of a transcript.
 pub trait Listener {
-    /// What keeps it from going on.
     type Error: From<TransportError>;
 
-    /// Where it is made.
+    /// Transcript that the samples are added to.
     fn transcript(&mut self) -> &mut Transcript;
 
-    /// A node's report came.
+    /// Called for each health report of a node.
     ///
     /// # Errors
-    /// What keeps it from going on.
+    /// Any error ends [`Inputs::take`].
     fn reported(&mut self, _report: &HealthHeader) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// The verdict on a scan came, by its number.
+    /// Called for each verdict on a scan, by its number.
     ///
     /// # Errors
-    /// What keeps it from going on.
+    /// Any error ends [`Inputs::take`].
     fn judged(&mut self, _verdict: u32) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// The tracker's state at a scan came, by its number.
+    /// Called for each state of the tracker at a scan, by its number.
     ///
     /// # Errors
-    /// What keeps it from going on.
+    /// Any error ends [`Inputs::take`].
     fn tracked(&mut self, _state: u32) -> Result<(), Self::Error> {
         Ok(())
     }
 }
 
-/// The ends of all topics that have a place in it.
+/// Subscribers of all topics of a transcript.
 pub struct Inputs {
     map: Counted<topic::Map>,
     odometry: Counted<topic::OdometryTopic>,
     truths: Counted<topic::GroundTruthTopic>,
     scans: Subscriber<topic::Scan>,
-    /// By laser, for each counts its own scans.
+    /// By laser, because each laser counts its own scans.
     scan_gaps: RefCell<BTreeMap<String, GapCounter>>,
     votes: Counted<topic::Votes>,
     field: Option<Counted<topic::Field>>,
@@ -57,11 +56,11 @@ pub struct Inputs {
     beams: Counted<topic::Beams>,
     health: Counted<topic::Health>,
     log: Subscriber<topic::Log>,
-    /// By process, for each counts its own lines.
+    /// By process, because each process counts its own lines.
     log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
 }
 
-/// A subscriber that knows what it has missed.
+/// A subscriber that counts missed samples.
 struct Counted<T: Topic> {
     subscriber: Subscriber<T>,
     gaps: RefCell<GapCounter>,
@@ -81,8 +80,8 @@ impl<T: Topic> Counted<T> {
 }
 
 impl Inputs {
-    /// Subscribes. To the intensity image only where it is wanted, for it is computed
-    /// only then.
+    /// Subscribes to all topics; to the intensity image only if `field` is set, because it is only
+    /// computed for subscribers.
     ///
     /// # Errors
     /// If the graph fails.
@@ -105,7 +104,7 @@ impl Inputs {
         })
     }
 
-    /// What the event loop waits for.
+    /// Inputs for the event loop.
     #[must_use]
     pub fn all(&self) -> Vec<&dyn Input> {
         let field = self
@@ -128,10 +127,10 @@ impl Inputs {
         others.into_iter().chain(field).collect()
     }
 
-    /// Takes everything that has come, measurements before their answers.
+    /// Receives all pending samples, measurements before the answers to them.
     ///
     /// # Errors
-    /// If the graph fails, or the listener does.
+    /// If the graph or the listener fails.
     pub fn take<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         while let Some(map) = self.map.subscriber.receive()? {
             let outcome = to
@@ -191,9 +190,9 @@ impl Inputs {
         Ok(())
     }
 
-    /// Answers carry the stamps of their scans, so a gap among them may be a scan
-    /// that was never answered, and is no loss here. A listener that
-    /// is too slow for them is too slow for the scans as well, which are counted.
+    /// Answers carry the stamps of their scans, so a gap in their counters may be an unanswered
+    /// scan; it is not counted as a loss. A listener that is too slow for answers is also too slow
+    /// for scans, which are counted.
     fn take_answers<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         while let Some(sample) = self.votes.subscriber.receive()? {
             let outcome = to
@@ -202,7 +201,7 @@ impl Inputs {
                 .votes(sample.header(), sample.items());
             to.transcript().taken(0, outcome)?;
         }
-        // Images are left out by choice where they come too fast.
+        // Images that come too fast are skipped on purpose.
         while let Some(sample) = self
             .field
             .as_ref()

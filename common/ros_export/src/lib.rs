@@ -1,12 +1,11 @@
-//! What flows in the graph, as messages of ROS with their times: what a recorder
-//! writes, and a viewer is shown.
+//! Converts the topics of the graph to messages of ROS with their times, for recorders and viewers.
 //!
-//! | file | what it is about |
+//! | file | content |
 //! |---|---|
-//! | `inputs` | the topics of the graph, each with what was missed of it |
-//! | `entries` | from samples of the graph to messages of ROS, each with its time; pure |
-//! | `topics` | what the messages of ROS are called |
-//! | `transcript` | what was made, lost and refused |
+//! | `inputs` | subscribers of the graph's topics, with counts of missed samples |
+//! | `entries` | conversion of samples to messages of ROS with their times; no I/O |
+//! | `topics` | names of the topics in ROS |
+//! | `transcript` | entries made, and counts of lost and rejected samples |
 
 mod entries;
 mod error;

@@ -1,15 +1,15 @@
-//! What a user can set of a transcript.
+//! Options of a transcript.
 
 use messages::FrameName;
 
-/// How frames are called that have no name in the graph.
+/// Names of frames that have none in the graph.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Options {
-    /// The frame of the map in messages of ROS
+    /// Name of the map frame in messages of ROS
     #[arg(long, value_name = "FRAME", default_value = "map", value_parser = frame)]
     pub map_frame: String,
 
-    /// The robot's frame in messages of ROS, where the laser's mount is known
+    /// Name of the robot's frame in messages of ROS, if the laser's mount is known
     #[arg(long, value_name = "FRAME", default_value = "base_link", value_parser = frame)]
     pub base_frame: String,
 }

@@ -1,20 +1,19 @@
-//! What each topic of the graph is called in messages of ROS.
+//! Names of the graph's topics in ROS.
 
 pub use recording::{GROUND_TRUTH, MAP, ODOM, SCAN, TF_STATIC};
 
-/// The frames, as they move.
+/// Transforms between moving frames.
 pub const TF: &str = "/tf";
-/// The best place of a scan.
+/// Pose of the robot: of the tracker, or of the best hypothesis if there is no tracker.
 pub const POSE: &str = "/pose";
-/// All places of a scan.
+/// All hypotheses of a scan, as poses.
 pub const HYPOTHESES: &str = "/hypotheses";
-/// Where a particle filter may start.
+/// Initial particles for a particle filter.
 pub const PARTICLES: &str = "/particles";
-/// How the nodes fare.
+/// Health of the nodes.
 pub const DIAGNOSTICS: &str = "/diagnostics";
-/// What the nodes log.
+/// Log lines of the nodes.
 pub const ROSOUT: &str = "/rosout";
-/// The intensity image.
 pub const FIELD: &str = "/field";
 /// Votes, lossless, with every field of the graph's header.
 pub const OWN_VOTES: &str = "/backcast/votes";

@@ -1,15 +1,15 @@
-//! What is made of the graph, and what was lost of it.
+//! Entries made from the graph, with counts of lost samples.
 
 use transport::{Graph, Health, TransportError, with_causes};
 
 use crate::{Entries, Options, TranscriptError};
 
-/// Makes entries of received messages, and reports its health to the graph.
+/// Converts received samples to entries, and reports its health to the graph.
 #[derive(Debug)]
 pub struct Transcript {
-    /// What was made.
+    /// Entries made from the samples.
     pub entries: Entries,
-    /// Its health reports.
+    /// Reporter of its health.
     pub health: Health,
     dropped: u64,
     refused: u64,
@@ -17,7 +17,7 @@ pub struct Transcript {
 }
 
 impl Transcript {
-    /// Of nothing yet.
+    /// Starts an empty transcript.
     ///
     /// # Errors
     /// If the graph fails.
@@ -31,26 +31,23 @@ impl Transcript {
         })
     }
 
-    /// Samples that were lost until now.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// Samples that could not be used until now.
     #[must_use]
     pub fn refused(&self) -> u64 {
         self.refused
     }
 
-    /// Counts samples that were lost.
     pub fn count_dropped(&mut self, samples: u64) {
         self.dropped += samples;
         self.health.count_dropped(samples);
     }
 
-    /// A sample came, after others that were lost; it could be used, or not, which is
-    /// said once for each reason.
+    /// Counts a received sample, and `lost` samples before it; logs an error that differs from the
+    /// last one.
     ///
     /// # Errors
     /// If the graph fails.

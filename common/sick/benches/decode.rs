@@ -1,6 +1,5 @@
-//! How fast each format is read: bytes in, every reading out.
-//!
-//! The buffers are kept, so nothing is allocated after the first round.
+//! Benchmarks of the parsers: bytes in, every reading out. The buffers are reused, so nothing is
+//! allocated after the first round.
 
 use std::hint::black_box;
 
@@ -10,10 +9,10 @@ use sick::lms2xx::{Answer, Reply, ReplyFramer, Scan, Status, Unit};
 
 /// Sixteen scans of a TiM781.
 const CAPTURE: &[u8] = include_bytes!("../tests/data/tim781_colab_telegrams.bin");
-/// As much as a read from a socket brings.
+/// Typical size of one read from a socket, bytes.
 const PIECE: usize = 1 << 14;
 
-/// Reads a stream of scans; returns the sum of all readings.
+/// Parses a stream of scans and returns the sum of all readings.
 fn read_cola(framer: &mut Framer, stream: &[u8]) -> u64 {
     let mut sum = 0;
     for piece in stream.chunks(PIECE) {
@@ -44,7 +43,7 @@ fn read_lms2xx(framer: &mut ReplyFramer, stream: &[u8]) -> u64 {
     sum
 }
 
-/// The captured scans as text.
+/// Returns the captured scans re-encoded as CoLa A.
 fn as_text() -> Vec<u8> {
     let mut text = Vec::new();
     let mut framer = Framer::new(Encoding::Binary);

@@ -1,66 +1,65 @@
 //! Finds telegrams in a stream that arrives in arbitrary pieces.
 //!
-//! What a telegram looks like is the business of a [`Protocol`]. After anything
-//! that is no telegram the framer looks on from the very next byte, so that
-//! damage to one never costs another. Checksums of one byte are weak, and CoLa A
-//! has none: a telegram counts only if its content can be read as well, to the
-//! last byte.
+//! A [`Protocol`] defines the format of a telegram. After bytes that are no telegram, the framer
+//! continues at the very next byte, so that a damaged telegram never costs another one. One-byte
+//! checksums are weak, and CoLa A has none, so a telegram counts only if its content can be parsed
+//! to the last byte.
 
 use crate::SickError;
 
-/// How telegrams of one kind are distinguished from other bytes.
+/// Rules that distinguish telegrams of one kind from other bytes.
 pub trait Protocol {
-    /// What a content says.
+    /// Parsed content of a telegram.
     type Telegram<'a>;
 
-    /// Looks at each new piece of the stream, once.
+    /// Processes each new piece of the stream, once.
     fn extend(&mut self, _piece: &[u8]) {}
 
-    /// Bytes at the front of the buffer are let go of.
+    /// Drops bytes at the front of the buffer.
     fn release(&mut self, _count: usize) {}
 
-    /// What stands at the first pending byte.
+    /// Classifies the bytes from the first pending one on.
     fn judge(&self, pending: Pending<'_>) -> Judgement;
 
-    /// Whether a telegram with this content stands in no other one: where a longer
-    /// one that is not complete would hold it, that one's length is wrong. Without
-    /// this, damage to a length would cost as much as the length claims.
+    /// Returns true if a telegram with this content never occurs inside another one. If a longer,
+    /// incomplete telegram seems to contain it, the length of the longer one is wrong. Without
+    /// this, a damaged length would cost as many bytes as it claims.
     fn stands_alone(&self, _content: &[u8]) -> bool {
         false
     }
 
-    /// Reads a content that was judged to be a telegram's.
+    /// Parses the content of a telegram that was judged valid.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// If the content cannot be parsed.
     fn read<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError>;
 
-    /// Reads a content that has been read just before, without an error.
+    /// Parses a content that has just been parsed without an error.
     ///
     /// # Errors
-    /// None in that case.
+    /// Never for such a content.
     fn read_again<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError> {
         self.read(content)
     }
 }
 
-/// The part of the stream that has not been judged.
+/// Part of the stream that has not been judged.
 #[derive(Debug, Clone, Copy)]
 pub struct Pending<'a> {
-    /// All bytes from here on that have come.
+    /// All received bytes from here on.
     pub bytes: &'a [u8],
-    /// Of the first of them in the buffer.
+    /// Index of the first one in the buffer.
     pub at: usize,
-    /// Of the first of them in the stream.
+    /// Offset of the first one in the stream.
     pub offset: u64,
-    /// Whether the byte before ended a telegram.
+    /// True if the previous byte ended a telegram.
     pub in_step: bool,
 }
 
-/// What stands at the current byte.
+/// Classification of the bytes at the current position.
 #[derive(Debug)]
 pub enum Judgement {
-    /// A telegram with this many bytes before, of and after its content.
+    /// A telegram; its bytes before, of and after the content.
     Frame {
         /// Bytes before the content.
         prefix: usize,
@@ -69,44 +68,41 @@ pub enum Judgement {
         /// Bytes after the content.
         suffix: usize,
     },
-    /// More bytes have to come.
     Incomplete,
-    /// No telegram.
+    /// Not a telegram.
     Rejected(SickError),
 }
 
-/// A telegram with the right checksum and a content that makes sense.
+/// Telegram with a valid checksum and a content that can be parsed.
 #[derive(Debug, Clone)]
 pub struct Frame<'a, T> {
-    /// Of its first byte in the stream.
+    /// Offset of its first byte in the stream.
     pub offset: u64,
-    /// Without what frames it.
+    /// Content without the framing.
     pub content: &'a [u8],
-    /// What the content says.
     pub telegram: T,
-    /// Bytes between the telegram before and this one that belong to none.
+    /// Number of bytes since the previous telegram that belong to no telegram.
     pub skipped: u64,
 }
 
-/// A push parser: [`Framer::push`] takes bytes, [`Framer::next_frame`] hands
-/// out what they hold.
+/// Push parser: [`Framer::push`] takes bytes, [`Framer::next_frame`] returns the telegrams in them.
 #[derive(Debug)]
 pub struct Framer<P> {
     protocol: P,
     bytes: Vec<u8>,
-    /// The first byte that has not been judged.
+    /// Index of the first byte that has not been judged.
     at: usize,
-    /// Bytes of the stream before `bytes`.
+    /// Number of bytes of the stream before `bytes`.
     released: u64,
-    /// Bytes rejected since the last telegram.
+    /// Number of bytes rejected since the last telegram.
     skipped: u64,
-    /// The first byte after `at` where a telegram may begin that stands alone.
+    /// Index of the first byte after `at` where a standalone telegram may begin.
     looked: usize,
     ended: bool,
 }
 
 impl<P: Protocol> Framer<P> {
-    /// A framer at the start of a stream.
+    /// Creates a framer at the start of a stream.
     #[must_use]
     pub fn of(protocol: P) -> Self {
         Framer {
@@ -120,25 +116,23 @@ impl<P: Protocol> Framer<P> {
         }
     }
 
-    /// Takes the next piece of the stream.
+    /// Appends the next piece of the stream.
     pub fn push(&mut self, piece: &[u8]) {
         self.release();
         self.bytes.extend_from_slice(piece);
         self.protocol.extend(piece);
     }
 
-    /// Says that the stream has ended: what is incomplete now stays so.
+    /// Marks the end of the stream: incomplete telegrams are now errors.
     pub fn finish(&mut self) {
         self.ended = true;
     }
 
-    /// The next telegram, or the next place where there should have been one;
-    /// `None` until more bytes come.
+    /// Returns the next telegram or the next error; `None` until more bytes arrive.
     ///
     /// # Errors
-    /// The first reason for losing step, and each wrong checksum or unreadable
-    /// content. Then bytes are skipped in silence up to the next telegram, which
-    /// says how many.
+    /// The first reason for losing synchronization, and each wrong checksum or unreadable content.
+    /// After that, bytes are skipped silently up to the next telegram, which reports their number.
     pub fn next_frame(&mut self) -> Option<Result<Frame<'_, P::Telegram<'_>>, SickError>> {
         loop {
             match self.judge(self.at) {
@@ -160,8 +154,8 @@ impl<P: Protocol> Framer<P> {
         }
     }
 
-    /// What is pending may claim more bytes than it has: looks for a telegram
-    /// behind its first byte that refutes it, and goes there.
+    /// Looks for a standalone telegram inside the pending one, whose claimed length may be wrong.
+    /// If there is one, continues there and returns the error.
     fn look_ahead(&mut self) -> Option<SickError> {
         let mut first_open = None;
         for at in self.looked.max(self.at + 1)..self.bytes.len() {
@@ -234,7 +228,7 @@ impl<P: Protocol> Framer<P> {
         })
     }
 
-    /// Drops judged bytes, only once they outweigh what has to move.
+    /// Drops judged bytes once they are more than the bytes that have to be moved.
     fn release(&mut self) {
         if self.at > self.bytes.len() / 2 {
             self.bytes.drain(..self.at);
@@ -245,7 +239,6 @@ impl<P: Protocol> Framer<P> {
         }
     }
 
-    /// Bytes that the buffer has room for.
     #[cfg(test)]
     pub(crate) fn capacity(&self) -> usize {
         self.bytes.capacity()
@@ -258,7 +251,7 @@ impl<P: Protocol + Default> Default for Framer<P> {
     }
 }
 
-/// Whether a telegram was most likely sent here, though it cannot be used.
+/// Returns true if a telegram was most likely sent here but cannot be used.
 fn is_a_lost_telegram(error: &SickError) -> bool {
     matches!(
         error,

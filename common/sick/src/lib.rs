@@ -1,17 +1,17 @@
 //! Telegrams of SICK's laser scanners, in both directions.
 //!
-//! Pure: bytes in, typed telegrams or located errors out, and back. It opens
-//! nothing and knows no clock; what the values mean for a robot is not decided
-//! here, but for which of a device's angles points ahead, where its documents say so.
+//! Pure: bytes in, typed telegrams or located errors out, and back. It opens nothing and uses no
+//! clock. It does not interpret values, except that it knows which device angle points ahead if a
+//! document states it.
 //!
-//! | module | of | framing |
+//! | module | devices and content | framing |
 //! |---|---|---|
 //! | [`cola`] | LMS1xx, LMS5xx, TiM and others: commands, answers, `LMDscandata` | CoLa A (text) and CoLa B (binary): one model, two encodings |
 //! | [`lms2xx`] | LMS200, 211, 220, 221, 291: commands, answers, scans | serial telegrams with a CRC |
-//! | [`framer`] | all of them | finds telegrams in a stream, and finds them again after garbage |
+//! | [`framer`] | all of them | finds telegrams in a stream, also after garbage |
 //!
-//! Reading allocates nothing: telegrams borrow the framer's buffer, and what is
-//! written goes into a buffer that the caller keeps.
+//! Reading allocates nothing: telegrams borrow the framer's buffer, and output goes into a buffer
+//! of the caller.
 
 pub mod cola;
 mod error;

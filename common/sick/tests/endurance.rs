@@ -1,6 +1,6 @@
-//! A million telegrams of each format with faults between them: what comes out is
-//! right, nothing piles up, a fault costs no more than its own telegram, and sound
-//! streams cost no memory at all.
+//! A million telegrams of each format with faults between them: accepted scans are correct, no
+//! memory accumulates, a fault costs no more than its own telegram, and valid streams allocate
+//! nothing.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -12,9 +12,9 @@ use rand::{RngExt, SeedableRng};
 use sick::cola::{Channel, Channels, Encoding, Framer, LmdScanData, Telegram};
 use sick::lms2xx::{Answer, Reply, ReplyFramer, Scan, Status, Unit};
 
-/// Readings of a scan.
+/// Number of readings per scan.
 const READINGS: u16 = 41;
-/// Telegrams that are made, and played again and again.
+/// Number of distinct telegrams, played `ROUNDS` times.
 const TELEGRAMS: u16 = 1000;
 const ROUNDS: usize = 1000;
 
@@ -28,7 +28,7 @@ enum Format {
 impl Format {
     const ALL: [Format; 3] = [Format::ColaA, Format::ColaB, Format::Lms2xx];
 
-    /// Scan `number`: every reading encodes it.
+    /// Returns scan `number`, which every reading encodes.
     fn telegram(self, number: u16) -> Vec<u8> {
         let readings: Vec<u16> = (0..READINGS).map(|beam| reading(number, beam)).collect();
         let mut out = Vec::new();
@@ -50,7 +50,7 @@ impl Format {
     }
 }
 
-/// Thirteen bits, as an LMS2xx has.
+/// Returns a reading of thirteen bits, as on an LMS2xx.
 fn reading(number: u16, beam: u16) -> u16 {
     (number.wrapping_mul(31).wrapping_add(beam * 17)) & 0x1fff
 }
@@ -92,7 +92,7 @@ fn cola<'a>(number: u16, channels: &'a [Channel<'a>]) -> Telegram<'a> {
     })
 }
 
-/// Either framer; says of each scan which one it is, `None` where it is wrong.
+/// Framer of either kind; reports the number of each scan, or `None` if it is wrong.
 enum Reader {
     Cola(Framer),
     Lms2xx(ReplyFramer),
@@ -134,7 +134,7 @@ impl Reader {
     }
 }
 
-/// The scan with these readings, all of them.
+/// Returns the number of the scan with these readings, if all of them fit.
 fn number(readings: impl Iterator<Item = u16>) -> Option<u16> {
     let (mut count, mut first, mut is_sound) = (0, 0, true);
     for found in readings {
@@ -148,14 +148,14 @@ fn number(readings: impl Iterator<Item = u16>) -> Option<u16> {
     (is_sound && count == READINGS).then(|| first.wrapping_mul(7135) & 0x1fff)
 }
 
-/// What a bad line makes of the telegrams: their bytes, and which come whole.
+/// Returns the telegrams with random faults, and which of them are intact.
 fn faulty(format: Format, random: &mut Xoshiro256PlusPlus) -> (Vec<Vec<u8>>, Vec<bool>) {
     let numbers = 0..TELEGRAMS;
     let pairs = numbers.map(|number| {
         let mut bytes = format.telegram(number);
         let mut is_whole = true;
         match random.random_range(0..100) {
-            // CoLa A has no checksum: nothing distinguishes a wrong digit from a right one.
+            // CoLa A has no checksum: a wrong digit cannot be told from a right one.
             0 if format != Format::ColaA => {
                 let at = random.random_range(0..bytes.len());
                 bytes[at] ^= 1 << random.random_range(0..8);
@@ -213,15 +213,15 @@ fn a_million_telegrams_with_faults_leave_nothing_behind() {
                 play(&mut reader);
             }
         });
-        // A buffer may grow by the longest pieces that chance brings together, a
-        // few thousand bytes; a leak of one byte a telegram would be a million.
+        // The buffer may grow by the longest pieces that occur, a few thousand bytes; a leak of one
+        // byte per telegram would be a million.
         let kept = used.bytes_current;
         assert!(kept < 20_000, "{format:?} keeps {kept} bytes");
         let most = used.bytes_max;
         assert!(most < 40_000, "{format:?} takes {most} bytes");
         let expected = whole.iter().filter(|whole| **whole).count() * ROUNDS;
         assert!(found <= expected, "{format:?}: {found} of {expected}");
-        // A cut telegram may claim bytes of the next one, which is found again.
+        // A truncated telegram may claim bytes of the next one, which is still found.
         assert!(
             found + ROUNDS >= expected,
             "{format:?}: {found} of {expected}"
@@ -248,8 +248,8 @@ fn sound_streams_allocate_nothing() {
     }
 }
 
-/// Damage to one telegram, at every place: with the last byte of the next whole
-/// one, that one and all others have been handed out.
+/// Damages one telegram at every place: after the last byte of the next intact one, that one and
+/// all others must have been returned.
 #[test]
 fn after_a_fault_the_next_scan_is_there_with_its_last_byte() {
     for format in Format::ALL {

@@ -1,5 +1,5 @@
-//! What is written is read again as it was, in every format, whatever stands
-//! between; and damage never passes where there is a checksum.
+//! Round trips: every format reads back what it writes, also with garbage in between, and damage
+//! never passes where there is a checksum.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -13,7 +13,7 @@ use sick::cola::{
 };
 use sick::lms2xx::{Answer, Part, Reply, ReplyFramer, Scan, Status, Unit};
 
-/// What a scan is made of, owned.
+/// Owned data of a scan.
 #[derive(Debug, Clone)]
 struct Parts {
     numbers: [u32; 4],
@@ -54,7 +54,7 @@ fn parts() -> impl Strategy<Value = Parts> {
 }
 
 impl Parts {
-    /// Lends the scan that these parts make.
+    /// Passes the scan that these parts make to `take`.
     fn scan<R>(&self, take: impl FnOnce(LmdScanData<'_>) -> R) -> R {
         let channel = |name, start, step, values| Channel {
             name,
@@ -132,7 +132,7 @@ impl Parts {
     }
 }
 
-/// The contents of the scans in a stream that comes in pieces of this length.
+/// Returns the contents of the scans in a stream that is read in pieces of this length.
 fn scans(encoding: Encoding, stream: &[u8], piece: usize) -> Vec<Vec<u8>> {
     let mut framer = Framer::new(encoding);
     let mut found = Vec::new();
@@ -163,7 +163,7 @@ fn lms_scan(readings: &[u16], quarter: u8) -> Reply<'_> {
     Reply::Answer(Answer::Scan(scan), Status(0x10))
 }
 
-/// The readings of the scans in a stream that comes in pieces of this length.
+/// Returns the readings of the scans in a stream that is read in pieces of this length.
 fn lms_scans(stream: &[u8], piece: usize) -> Vec<Vec<u16>> {
     let mut framer = ReplyFramer::default();
     let mut found = Vec::new();
@@ -201,7 +201,7 @@ proptest! {
         garbage in vec(0u8..5, 0..40),
         piece in 1usize..300,
     ) {
-        // A start in the garbage would claim what follows it.
+        // A start byte in the garbage would claim the bytes after it.
         let garbage: Vec<u8> = garbage.into_iter().map(|byte| byte + 4).collect();
         for encoding in [Encoding::Text, Encoding::Binary] {
             let mut stream = Vec::new();
@@ -246,8 +246,8 @@ proptest! {
         let mut one = Vec::new();
         lms_scan(&readings, 4).frame(&mut one);
         let mut stream = [&one[..], &one, &one].concat();
-        // All bits that change lie in one byte: the polynomial notices each
-        // such change, also of the byte's second entry.
+        // All changed bits are in one byte: the CRC detects each such change, although a byte
+        // enters it twice.
         match cut {
             true => { stream.drain(at..at + 3); }
             false => stream[at % one.len()] ^= bits,
@@ -259,7 +259,7 @@ proptest! {
 
     #[test]
     fn no_bytes_panic(bytes in vec(any::<u8>(), 0..600), dense in any::<bool>()) {
-        // Few values reach deeper: starts, addresses, lengths, codes.
+        // Few distinct values reach deeper code: starts, addresses, lengths, codes.
         let few = [2, 3, 0, 0x80, 1, 6, 0x15, b's', b' ', 0xb0];
         let bytes: Vec<u8> = match dense {
             true => bytes.iter().map(|byte| few[usize::from(*byte) % few.len()]).collect(),
@@ -281,7 +281,7 @@ proptest! {
             let at = at.index(stream.len());
             stream[at] = byte;
         }
-        // There is no checksum; what passes can be read to its end.
+        // There is no checksum, but accepted scans can be read to the end.
         let mut framer = Framer::new(Encoding::Text);
         framer.push(&stream);
         while let Some(next) = framer.next_frame() {

@@ -1,5 +1,5 @@
-//! The codec against telegrams that a real TiM781 sent, and their decoded
-//! fields beside them (tests/data/SOURCE.txt).
+//! Tests the codec against telegrams of a real TiM781 and their decoded fields
+//! (tests/data/SOURCE.txt).
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -12,10 +12,10 @@ use sick::{Frame, SickError};
 
 const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
 const MANIFEST: &str = include_str!("data/tim781_manifest.json");
-/// Each of the 16 telegrams, with start, length and checksum.
+/// Length of each of the 16 telegrams, with start, length and checksum.
 const TELEGRAM: usize = 3374;
 
-/// Feeds pieces; hands each frame or error to `see` in order.
+/// Feeds pieces and passes each frame or error to `see` in order.
 fn read<'a>(
     pieces: impl IntoIterator<Item = &'a [u8]>,
     mut see: impl FnMut(Result<Frame<'_, Telegram<'_>>, SickError>),
@@ -33,12 +33,12 @@ fn read<'a>(
     }
 }
 
-/// The scan counter of each scan, and how often there was anything else.
+/// Returns the scan counter of each scan, and the number of other items.
 fn counters(stream: &[u8]) -> (Vec<u16>, usize) {
     let (mut good, mut errors) = (Vec::new(), 0);
     read([stream], |next| match next.map(|frame| frame.telegram) {
         Ok(Telegram::ScanData(data)) => good.push(data.scan_counter),
-        // Damage may turn a scan into another command.
+        // Damage may turn a scan into another telegram.
         Ok(_) | Err(_) => errors += 1,
     });
     (good, errors)
@@ -73,8 +73,8 @@ fn check(frame: &Frame<'_, Telegram<'_>>, expected: &Value, index: usize) {
     assert_eq!(frequency, expected["scan_freq"].as_f64().unwrap());
     check_channels(data, expected["channels"].as_array().unwrap());
     check_tail(data, frame.content, expected["tail"].as_str().unwrap());
-    // Not in the manifest, read off the bytes; outputs and frequency are those
-    // of the device at rest, 16200 shots a second.
+    // Not in the manifest but read off the bytes: outputs and frequency of the device at rest,
+    // 16200 shots per second.
     assert_eq!((data.version, data.device_number), (1, 1), "{index}");
     assert_eq!((data.status, data.digital_inputs), ([0, 0], [0, 0]));
     assert_eq!((data.digital_outputs, data.layer_angle_raw), ([8, 0], 0));
@@ -100,7 +100,7 @@ fn check_channels(data: &LmdScanData<'_>, expected: &[Value]) {
     assert_eq!(data.channels_8_bit.clone().count(), 0);
 }
 
-/// The manifest gives the blocks after the 16-bit channels as they were sent.
+/// Compares the blocks after the 16-bit channels, which the manifest gives as hex.
 fn check_tail(data: &LmdScanData<'_>, content: &[u8], expected: &str) {
     let tail = &content[content.len() - expected.len() / 2..];
     let hex: String = tail.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -134,8 +134,7 @@ fn the_real_telegrams_say_the_same_in_text_and_binary_again() {
 
 #[test]
 fn every_flipped_bit_costs_one_telegram_and_is_noticed() {
-    // Around a whole telegram in the middle of three, so that a claim that
-    // grew or shrank has neighbours to damage.
+    // Damages the middle one of three telegrams, so that a wrong length has neighbours to damage.
     let three = &CAPTURE[..3 * TELEGRAM];
     let (all, _) = counters(three);
     let mut stream = three.to_vec();
@@ -181,8 +180,8 @@ proptest! {
         for (at, value) in edits {
             stream[at] = value;
         }
-        // An even number of edits may cancel in the checksum, so a damaged scan
-        // may pass; what passes is one of the four, and there are no more.
+        // An even number of edits may cancel in the checksum, so a damaged scan may pass; but there
+        // are never more than the original four.
         let (good, _) = counters(&stream);
         prop_assert!(good.len() <= all.len());
         counters(&stream[cut..]);

@@ -1,25 +1,25 @@
-//! What a user can set of a drive.
+//! Settings of a simulated drive.
 
 use geometry::{Mount, MountError, Pose};
 
 use crate::numbers::{parse, parse_share, within};
 use crate::{LaserConfig, Noise, OdometryConfig, SonarConfig};
 
-/// How the robot drives and what it sees.
+/// Motion, sensors and errors of the robot.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct DriveConfig {
-    /// Speed along the path, metres a second, 0.01..=10.
+    /// Speed along the path, metres per second, 0.01..=10.
     #[arg(long, value_name = "M_PER_S", default_value_t = 0.5, value_parser = parse_speed)]
     pub speed: f64,
-    /// How fast it turns on the spot at corners, degrees a second, 1..=360.
+    /// Turn rate on the spot at corners, degrees per second, 1..=360.
     #[arg(long, value_name = "DEG_PER_S", default_value_t = 45.0, value_parser = parse_turn_rate)]
     pub turn_rate: f64,
-    /// Scans a second, 0.01..=1000.
+    /// Scan rate, hertz, 0.01..=1000.
     #[arg(long, value_name = "HZ", default_value_t = 5.0, value_parser = parse_rate)]
     pub rate: f64,
-    /// Where the sensor sits on the robot: metres ahead of the base and left of
-    /// it, degrees counter-clockwise. A fourth number of 180 is a laser upside
-    /// down, rolled by half a turn about its x axis.
+    /// Mount of the sensor on the robot: metres ahead and left of the base, and degrees
+    /// counter-clockwise. A fourth number of 180 is a laser upside down, rolled by half a turn
+    /// about its x axis.
     #[arg(
         long,
         value_name = "X,Y,YAW_DEG[,180]",
@@ -28,8 +28,8 @@ pub struct DriveConfig {
         allow_hyphen_values = true
     )]
     pub mount: Mount,
-    /// A laser with its name and mount, as front=0.4,0,0; repeat it for several lasers,
-    /// the main one first.
+    /// A laser with its name and mount, such as front=0.4,0,0; repeat it for several lasers, the
+    /// main one first.
     #[arg(
         long = "laser",
         value_name = "NAME=X,Y,YAW_DEG[,180]",
@@ -37,47 +37,42 @@ pub struct DriveConfig {
         conflicts_with_all = ["mount", "sonar"]
     )]
     pub lasers: Vec<NamedMount>,
-    /// Time from the first beam of a scan to the last, seconds, 0..=1: the robot keeps
-    /// driving meanwhile. 0 measures all beams at once.
+    /// Time from the first beam of a scan to the last, seconds, 0..=1; the robot keeps moving. 0
+    /// measures all beams at once.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_duration, conflicts_with = "sonar")]
     pub scan_duration: f64,
-    /// Standard deviation of a reading: metres, and with a second number what is
-    /// added for each metre of range.
+    /// Standard deviation of a reading: metres, and optionally an increase per metre of range.
     #[arg(long, value_name = "METRES[,SHARE]", default_value = "0.01,0.002")]
     pub noise: Noise,
-    /// Share of random readings, from 0 to the longest range, 0..=1.
+    /// Share of random readings, uniform from 0 to the maximum range, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = parse_share)]
     pub outliers: f64,
-    /// People who walk about near the path, discs of 0.2 m radius, 0..=1000.
+    /// People who walk near the path, discs of 0.2 m radius, 0..=1000.
     #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub people: u32,
-    /// Nothing returns from farther, metres, 0.1..=1000 [default: 30, or 5 with
-    /// --sonar].
+    /// Maximum range, metres, 0.1..=1000 [default: 30, or 5 with --sonar].
     #[arg(long, value_name = "METRES", value_parser = parse_reach)]
     pub range_max: Option<f64>,
     /// Seed of all random numbers.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
-    /// Errors of the wheels.
     #[command(flatten)]
     pub odometry: OdometryConfig,
-    /// The laser.
     #[command(flatten)]
     pub laser: LaserConfig,
-    /// The ring of sonars that can take its place.
     #[command(flatten)]
     pub sonar: SonarConfig,
 }
 
 impl DriveConfig {
-    /// Nothing returns from farther, metres.
+    /// Maximum range, in metres.
     #[must_use]
     pub fn range_max_m(&self) -> f64 {
         self.range_max
             .unwrap_or(if self.sonar.sonar { 5.0 } else { 30.0 })
     }
 
-    /// The sensors on the robot, the first one first; the only one has no name.
+    /// Sensors on the robot, the main one first; a single sensor has no name.
     #[must_use]
     pub fn mounts(&self) -> Vec<NamedMount> {
         match &self.lasers[..] {
@@ -89,23 +84,22 @@ impl DriveConfig {
         }
     }
 
-    /// From one beam of a scan to the next, seconds, in the 32 bits of a `LaserScan`.
+    /// Time between beams of a scan, in seconds, in the 32-bit precision of a `LaserScan`.
     #[must_use]
     pub fn time_increment_s(&self, beams: usize) -> f32 {
         (self.scan_duration / beams.saturating_sub(1).max(1) as f64) as f32
     }
 }
 
-/// A sensor and where it sits on the robot.
+/// A sensor with its mount on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedMount {
-    /// What it is called; empty where it is the only one.
+    /// Empty for a single sensor.
     pub name: String,
-    /// Where it sits.
     pub mount: Mount,
 }
 
-/// Most bytes of a laser's name, as in the messages of the graph.
+/// Maximum length of a laser's name in bytes, the same as in the messages of the graph.
 const MAX_NAME: usize = 32;
 
 fn parse_mount(text: &str) -> Result<Mount, String> {

@@ -1,4 +1,4 @@
-//! A drive: scan by scan, what is true and what the robot gets of it.
+//! A drive: the true pose, the odometry and the readings, scan by scan.
 
 use geometry::{Mount, Pose};
 use map::OccupancyGrid;
@@ -14,74 +14,73 @@ use crate::scene::Scene;
 use crate::sonar::Ring;
 use crate::{Bearings, DriveConfig, NamedMount, Path, SimulationError, laser};
 
-/// Most scans of a drive: a day at ten a second.
+/// Maximum number of scans: a day at 10 Hz.
 const MAX_SCANS: u64 = 864_000;
 
-/// One scan and where it was taken.
+/// One scan with its poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// Since the start of the drive, nanoseconds.
+    /// Time since the start of the drive, in nanoseconds.
     pub time_ns: i64,
-    /// Where the base truly is.
+    /// True pose of the base at the first beam.
     pub map_from_base: Pose,
-    /// Where the sensor truly is, of several the first one.
+    /// True pose of the (first) sensor at the middle of the scan.
     pub map_from_laser: Pose,
-    /// Where the wheels say that the base is.
+    /// Pose of the base by odometry, at the first beam.
     pub odom_from_base: Pose,
-    /// How fast the wheels say that the base moves since what they said before,
-    /// in its own frame: m/s, m/s and rad/s; zero in the first.
+    /// Velocity of the base by odometry since its previous sample, in the base's frame: m/s, m/s
+    /// and rad/s; zero in the first scan.
     pub twist: Pose,
-    /// By bearing, metres; infinite where nothing returned, NaN where there is no
-    /// transducer. Of several sensors the first one's.
+    /// Readings of the (first) sensor by bearing, in metres; infinite without a return, NaN without
+    /// a transducer.
     pub ranges: Vec<f32>,
-    /// Those of the other lasers, in their order.
+    /// Readings of the other lasers, in their order.
     pub others: Vec<Vec<f32>>,
-    /// What the wheels say at the last beam, where a scan takes time.
+    /// Odometry at the last beam, if a scan takes time.
     pub after: Option<Wheels>,
 }
 
-/// What the wheels say.
+/// A sample of the odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wheels {
-    /// Since the start of the drive, nanoseconds.
+    /// Time since the start of the drive, in nanoseconds.
     pub time_ns: i64,
-    /// Where the base is.
+    /// Pose of the base.
     pub odom_from_base: Pose,
-    /// As in [`Snapshot`].
+    /// Velocity as in [`Snapshot::twist`].
     pub twist: Pose,
 }
 
-/// What is on the robot.
 #[derive(Debug)]
 enum Sensor {
     Laser(Bearings),
     Sonar(Ring),
 }
 
-/// Iterates over the scans of a drive.
+/// Iterator over the scans of a drive.
 #[derive(Debug)]
 pub struct Drive {
     scene: Scene,
     timetable: Timetable,
     sensor: Sensor,
-    /// Of each sensor, the first one first.
+    /// Each sensor, the main one first.
     sensors: Vec<(Mount, Receiver)>,
     odometer: Odometer,
-    /// From one beam to the next, seconds.
+    /// Time between beams, in seconds.
     time_increment_s: f64,
     rate: f64,
     scans: u64,
     taken: u64,
-    /// When the wheels were read last, seconds, and where the base truly was.
+    /// Time in seconds and true pose of the base at the last odometry sample.
     before: Option<(f64, Pose)>,
 }
 
 impl Drive {
-    /// A drive along a path through a map.
+    /// Prepares a drive along a path through a map.
     ///
     /// # Errors
-    /// The path or the sensor on its mount is blocked or leaves the map, the drive
-    /// is too long, or people find no place.
+    /// The path or a sensor on its mount is blocked or leaves the map, the drive is too long, or
+    /// there is no free place for people.
     pub fn new(
         map: &OccupancyGrid,
         path: &Path,
@@ -93,7 +92,8 @@ impl Drive {
         let scans = count(&timetable, config.rate)?;
         let mounts = config.mounts();
         check_names(&mounts)?;
-        // One source for each purpose: a setting of one does not change the others.
+        // A generator for each purpose, so that one setting does not change the random numbers of
+        // another.
         let mut seeds = Xoshiro256PlusPlus::seed_from_u64(config.seed);
         let mut rng = || Xoshiro256PlusPlus::seed_from_u64(seeds.random());
         let receiver = |rng| Receiver {
@@ -138,7 +138,6 @@ impl Drive {
         Ok(drive)
     }
 
-    /// The bearings of every scan.
     #[must_use]
     pub fn bearings(&self) -> Bearings {
         match &self.sensor {
@@ -147,18 +146,18 @@ impl Drive {
         }
     }
 
-    /// Scans from start to end.
+    /// Total number of scans.
     #[must_use]
     pub fn scans(&self) -> u64 {
         self.scans
     }
 
-    /// How long a scan takes, seconds.
+    /// Duration of a scan, in seconds.
     fn duration_s(&self) -> f64 {
         self.time_increment_s * self.bearings().count.saturating_sub(1) as f64
     }
 
-    /// Checks the places of the sensors at the first and last beam of every scan.
+    /// Checks that the sensors are free at the first and last beam of every scan.
     fn check_sensors(&self) -> Result<(), SimulationError> {
         let obstacles = &self.scene.obstacles;
         for scan in 0..self.scans {
@@ -186,12 +185,12 @@ impl Drive {
 
     fn snapshot(&mut self, start_s: f64, map_from_base: Pose) -> Snapshot {
         if self.before.is_some() {
-            // The world continues by the time between two scans.
+            // People walk for the time between two scans.
             let people = &mut self.scene.people;
             people.walk(1.0 / self.rate, &self.scene.obstacles);
         }
         let wheels = self.wheels(start_s, map_from_base);
-        // A scan is of its middle: there the beams before and after weigh the same.
+        // The pose of a scan is that at its middle, which weights all beams alike.
         let middle = self.timetable.at(start_s + 0.5 * self.duration_s());
         let base_from_laser = self.sensors[0].0.base_from_laser;
         let map_from_laser = middle.unwrap_or(map_from_base).then(base_from_laser);
@@ -211,7 +210,7 @@ impl Drive {
         }
     }
 
-    /// The readings of each sensor. People stand still meanwhile.
+    /// Takes the readings of each sensor. People stand still meanwhile.
     fn scan(&mut self, start_s: f64, map_from_base: Pose) -> Vec<Vec<f32>> {
         let (scene, timetable, increment_s) = (&self.scene, &self.timetable, self.time_increment_s);
         let at_beam = |beam: usize| {
@@ -231,7 +230,7 @@ impl Drive {
         each.collect()
     }
 
-    /// Reads the wheels.
+    /// Samples the odometry.
     fn wheels(&mut self, time_s: f64, map_from_base: Pose) -> Wheels {
         let twist = match self.before.replace((time_s, map_from_base)) {
             Some((before_s, before)) => {
@@ -278,10 +277,10 @@ impl Iterator for Drive {
     }
 }
 
-/// Scans of a drive: one at the start, and then as long as it continues.
+/// Number of scans of a drive: one at the start, and then as long as it lasts.
 fn count(timetable: &Timetable, rate: f64) -> Result<u64, SimulationError> {
     let seconds = timetable.seconds();
-    // Up to rounding, a drive that ends with a scan has it.
+    // A drive that ends with a scan includes it, up to rounding.
     let scans = (seconds * rate + 1e-9) as u64 + 1;
     match scans <= MAX_SCANS {
         true => Ok(scans),

@@ -1,4 +1,4 @@
-//! A laser: one ray a beam, all at one moment or one after the other.
+//! A laser: one ray per beam, all at the same time or one after the other.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,21 +9,18 @@ use crate::noise::Receiver;
 use crate::numbers::parse;
 use crate::scene::Scene;
 
-/// Where a laser looks. Its default is that of the recordings: half a turn, two
-/// beams a degree.
+/// Beams of the laser. The default is that of the recordings: 180 degrees, two beams per degree.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct LaserConfig {
-    /// From the first beam to the last, degrees, 1..=360; ahead is the middle
-    /// [default: 180].
+    /// Angle from the first beam to the last, degrees, 1..=360, centred ahead [default: 180].
     #[arg(long, value_name = "DEGREES", value_parser = parse_field_of_view, conflicts_with = "sonar")]
     pub field_of_view: Option<f64>,
-    /// Beams of a scan, 2..=65536 [default: 361].
+    /// Number of beams per scan, 2..=65536 [default: 361].
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=65_536), conflicts_with = "sonar")]
     pub beams: Option<u32>,
 }
 
 impl LaserConfig {
-    /// The bearings of the beams.
     #[must_use]
     pub fn bearings(&self) -> Bearings {
         let beams = self.beams.map_or(361, |beams| beams as usize);
@@ -31,14 +28,13 @@ impl LaserConfig {
     }
 }
 
-/// An angle of a field of view, degrees in and radians out.
+/// Parses a field of view in degrees; returns radians.
 fn parse_field_of_view(text: &str) -> Result<f64, String> {
     let degrees = parse(text, 1.0..=360.0, "degrees")?;
     Ok(degrees.to_radians().min(TAU))
 }
 
-/// The readings of all beams, metres; `map_from_base` says where the robot is at a
-/// beam.
+/// Readings of all beams, in metres; `map_from_base` returns the pose of the robot at a beam.
 pub(crate) fn scan(
     scene: &Scene,
     map_from_base: impl Fn(usize) -> Pose,

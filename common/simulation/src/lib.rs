@@ -1,12 +1,10 @@
-//! Drives through a map, as a laser or a ring of sonars would see them.
+//! Simulates drives through a map with lasers or a ring of sonars.
 //!
-//! [`Drive`] takes a map, a [`Path`] and a [`DriveConfig`] and gives a
-//! [`Snapshot`] for each scan: the true pose, the odometry and the readings.
-//! Rays are cast continuously through the occupied cells as squares, not along
-//! the engine's lines of cells, so that what is tested with the readings is not
-//! what made them. Everything is seeded: the same numbers give the same drive.
-//! It knows no file, no clock and no engine, and refuses a path through an
-//! obstacle.
+//! [`Drive`] takes a map, a [`Path`] and a [`DriveConfig`] and returns a [`Snapshot`] for each
+//! scan: the true pose, the odometry and the readings. Rays are cast continuously through the
+//! occupied cells as squares, not along the engine's lines of cells, so that tests of the engine
+//! are independent of it. Everything is seeded: the same numbers give the same drive. The crate
+//! uses no files, no clock and no engine, and rejects a path through an obstacle.
 
 mod angles;
 mod config;

@@ -1,4 +1,4 @@
-//! Errors of single readings.
+//! Errors of individual readings.
 
 use std::str::FromStr;
 
@@ -8,22 +8,22 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::numbers::{numbers, within};
 
-/// Readings are in whole millimetres, as devices give them.
+/// Readings are rounded to millimetres, as on real devices.
 const STEPS_PER_METRE: f64 = 1000.0;
 
 /// Normal errors that grow with the range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Standard deviation at no distance, metres, 0..=2.
+    /// Standard deviation at zero range, metres, 0..=2.
     pub sigma_m: f64,
-    /// What each metre of range adds to it, 0..=0.25.
+    /// Increase per metre of range, 0..=0.25.
     pub sigma_per_m: f64,
 }
 
 impl FromStr for Noise {
     type Err = String;
 
-    /// Reads `METRES` or `METRES,SHARE`.
+    /// Parses `METRES` or `METRES,SHARE`.
     fn from_str(text: &str) -> Result<Self, String> {
         let [metres, share] = numbers(text)
             .or_else(|| numbers(text).map(|[metres]| [metres, 0.0]))
@@ -35,21 +35,20 @@ impl FromStr for Noise {
     }
 }
 
-/// What becomes of a true range on its way to a reading.
+/// Converts true ranges to readings.
 #[derive(Debug)]
 pub(crate) struct Receiver {
     pub noise: Noise,
-    /// Share of the readings that are anything.
+    /// Share of random readings.
     pub outliers: f64,
-    /// Metres.
     pub range_max_m: f64,
     pub rng: Xoshiro256PlusPlus,
 }
 
 impl Receiver {
-    /// The reading of a true range, metres; infinite where nothing returns.
+    /// Returns the reading for a true range, in metres; infinite without a return.
     pub(crate) fn reading(&mut self, true_m: Option<f64>) -> f32 {
-        // Drawn for each reading, so that one does not change those after it.
+        // Drawn for every reading, so that one does not change those after it.
         let error: f64 = StandardNormal.sample(&mut self.rng);
         let [chance, share]: [f64; 2] = [self.rng.random(), self.rng.random()];
         if chance < self.outliers {
@@ -99,8 +98,8 @@ mod tests {
             let mean = readings.iter().sum::<f64>() / count;
             let squares = readings.iter().map(|reading| (reading - true_m).powi(2));
             let deviation = (squares.sum::<f64>() / count).sqrt();
-            // The mean of n is off by σ/√n, the deviation by σ/√2n, in one of three
-            // cases; four times that, and the rounding to a millimetre, are allowed.
+            // The mean of n is off by σ/√n, the deviation by σ/√2n, in one of three cases; allowed
+            // are four times that, and the rounding to a millimetre.
             let allowed = 4.0 * sigma_m / count.sqrt() + 0.0005;
             assert!((mean - true_m).abs() < allowed, "{noise}: mean {mean}");
             assert!(
@@ -115,8 +114,8 @@ mod tests {
         let readings = readings("0", 0.2, Some(4.0));
         let outliers: Vec<f64> = readings.into_iter().filter(|&r| r != 4.0).collect();
         let share = outliers.len() as f64 / READINGS as f64;
-        // Four standard deviations of a count of 20,000 at 0.2 are 0.0113; one
-        // outlier in 10,000 rounds to the true range.
+        // Four standard deviations of a count of 20,000 at 0.2 are 0.0113; one outlier in 10,000
+        // rounds to the true range.
         assert!((share - 0.2).abs() < 0.012, "{share}");
         let mean = outliers.iter().sum::<f64>() / outliers.len() as f64;
         // Uniform over 10 m: 2.89 m / √4000 is 0.046 m; four of those.

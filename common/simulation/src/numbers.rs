@@ -1,14 +1,14 @@
-//! Parsers of numbers that a user types; their refusals say what is allowed.
+//! Parsers for numbers in options; their errors name the allowed values.
 
 use std::ops::RangeInclusive;
 
-/// Numbers with commas between them, if they are so many.
+/// Parses N numbers separated by commas.
 pub(crate) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let parsed = text.split(',').map(|word| word.trim().parse().ok());
     parsed.collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
-/// A number that is within a range; NaN never is.
+/// Checks that a number is within a range; NaN never is.
 pub(crate) fn within(value: f64, allowed: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let (low, high) = (allowed.start(), allowed.end());
     match allowed.contains(&value) {
@@ -17,7 +17,7 @@ pub(crate) fn within(value: f64, allowed: RangeInclusive<f64>, unit: &str) -> Re
     }
 }
 
-/// A number within a range.
+/// Parses a number within a range.
 pub(crate) fn parse(text: &str, allowed: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let value = text
         .parse()
@@ -25,7 +25,7 @@ pub(crate) fn parse(text: &str, allowed: RangeInclusive<f64>, unit: &str) -> Res
     within(value, allowed, unit)
 }
 
-/// A share of a whole, 0..=1.
+/// Parses a share, 0..=1.
 pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=1.0, "as a share")
 }

@@ -1,13 +1,12 @@
-//! What blocks a ray: the map's occupied cells, each a solid square.
+//! Casts rays through the occupied cells of a map, each a solid square.
 
 use geometry::Pose;
 use map::{OccupancyGrid, UNKNOWN};
 
-/// Occupancy from which a cell is an obstacle, per cent: the default of map
-/// savers.
+/// Occupancy from which a cell is an obstacle, per cent: the default of map savers.
 const OCCUPIED_FROM: u8 = 65;
 
-/// The obstacles of a map. Unknown cells are no obstacles.
+/// Obstacles of a map. Unknown cells are not obstacles.
 #[derive(Debug)]
 pub struct Obstacles {
     sides: [i64; 2],
@@ -17,14 +16,14 @@ pub struct Obstacles {
     occupied: Vec<bool>,
 }
 
-/// A ray's way along one axis of the grid, in cells.
+/// Progress of a ray along one axis of the grid, in cells.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
     cell: i64,
     step: i64,
-    /// Where along the ray the next cell begins.
+    /// Distance along the ray to the next cell border.
     next: f64,
-    /// From there to the one after it.
+    /// Distance along the ray between cell borders.
     apart: f64,
 }
 
@@ -39,7 +38,7 @@ impl Axis {
         Axis {
             cell: cell as i64,
             step: if slope > 0.0 { 1 } else { -1 },
-            // A ray along the other axis never gets to the next cell.
+            // A ray parallel to the other axis never reaches the next cell.
             next: if slope == 0.0 {
                 f64::INFINITY
             } else {
@@ -49,7 +48,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the next cell; says how far that is along the ray.
+    /// Moves to the next cell; returns the distance of its border along the ray.
     fn advance(&mut self) -> f64 {
         let entered = self.next;
         self.cell += self.step;
@@ -59,7 +58,6 @@ impl Axis {
 }
 
 impl Obstacles {
-    /// The occupied cells of a map.
     #[must_use]
     pub fn of(map: &OccupancyGrid) -> Self {
         let is_occupied = |&cell: &u8| cell >= OCCUPIED_FROM && cell != UNKNOWN;
@@ -72,8 +70,7 @@ impl Obstacles {
         }
     }
 
-    /// Least and greatest coordinate of the map's corners along x and along y,
-    /// metres.
+    /// Minimum and maximum of the map's corners along x and along y, in metres.
     pub(crate) fn extent(&self) -> [[f64; 2]; 2] {
         let [width, height] = self.sides.map(|side| side as f64 * self.resolution_m);
         let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)]
@@ -85,18 +82,17 @@ impl Obstacles {
         [span(corners.map(|(x, _)| x)), span(corners.map(|(_, y)| y))]
     }
 
-    /// Whether a point is on the map.
+    /// True if the point is on the map.
     pub(crate) fn holds(&self, x: f64, y: f64) -> bool {
         let [column, row] = self.cells(x, y).map(|cells| cells.floor() as i64);
         self.at(column, row).is_some()
     }
 
-    /// How far a ray goes from a point on the map to the first obstacle, metres:
-    /// 0 from within one, and none if it leaves the map or `reach_m` before.
+    /// Range of a ray from a point on the map to the first obstacle, in metres: 0 from inside one,
+    /// and `None` if it leaves the map or exceeds `reach_m` first.
     ///
-    /// A walk from cell to cell (Amanatides and Woo, A Fast Voxel Traversal
-    /// Algorithm for Ray Tracing, 1987); the range is to where the ray enters
-    /// the square, up to rounding.
+    /// Walks from cell to cell (Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray
+    /// Tracing, 1987); the range ends where the ray enters the square, up to rounding.
     #[must_use]
     pub fn range(&self, x: f64, y: f64, angle: f64, reach_m: f64) -> Option<f64> {
         let [start_x, start_y] = self.cells(x, y);
@@ -120,7 +116,7 @@ impl Obstacles {
         }
     }
 
-    /// Whether the straight way between two points on the map is free.
+    /// True if the line between two points on the map is free.
     pub(crate) fn is_free(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         self.holds(to[0], to[1])
@@ -134,7 +130,7 @@ impl Obstacles {
         [x / self.resolution_m, y / self.resolution_m]
     }
 
-    /// Whether a cell is occupied, if it is on the map.
+    /// True if the cell is occupied; `None` outside the map.
     fn at(&self, column: i64, row: i64) -> Option<bool> {
         let [width, height] = self.sides;
         let inside = (0..width).contains(&column) && (0..height).contains(&row);
@@ -149,7 +145,7 @@ mod tests {
     use super::*;
     use crate::testing::drawn;
 
-    /// Five cells of 0.5 m a side, a pillar in the middle.
+    /// Five by five cells of 0.5 m, with a pillar in the middle.
     fn pillar() -> OccupancyGrid {
         drawn(&[".....", ".....", "..#..", ".....", "....."], 0.5)
     }
@@ -158,7 +154,7 @@ mod tests {
     fn check(from: [f64; 2], angle: f64, expected: Option<f64>) {
         let range = Obstacles::of(&pillar()).range(from[0], from[1], angle, 10.0);
         match (range, expected) {
-            // A few roundings of numbers near 1.
+            // Tolerance for a few roundings of numbers near 1.
             (Some(range), Some(expected)) => assert!((range - expected).abs() < 1e-12, "{range}"),
             _ => assert_eq!(range, expected),
         }

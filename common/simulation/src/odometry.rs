@@ -1,4 +1,4 @@
-//! What the wheels make of the motion: true increments with errors that add up.
+//! Wheel odometry: true increments with errors that accumulate.
 
 use geometry::Pose;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -6,26 +6,23 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::numbers::parse_share;
 
-/// Errors of the wheels. Variances grow with the way, so that the rate of the
-/// scans does not matter.
+/// Errors of the odometry. Variances grow with the distance, so that the scan rate does not matter.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct OdometryConfig {
-    /// Standard deviation of the odometry after one metre: of the distance in
-    /// metres and of the heading in radians, 0..=1.
+    /// Standard deviation of the odometry after one metre: of the distance in metres and of the
+    /// heading in radians, 0..=1.
     #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = parse_share)]
     pub odometry_noise_per_metre: f64,
-    /// Standard deviation of the heading after turning by one radian, radians,
-    /// 0..=1.
+    /// Standard deviation of the heading after turning by one radian, radians, 0..=1.
     #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = parse_share)]
     pub odometry_noise_per_radian: f64,
 }
 
-/// The wheels of a robot.
 #[derive(Debug)]
 pub(crate) struct Odometer {
     config: OdometryConfig,
     rng: Xoshiro256PlusPlus,
-    /// Begins where the drive does, whatever the map says.
+    /// Starts at the identity, independent of the map.
     odom_from_base: Pose,
 }
 
@@ -42,8 +39,8 @@ impl Odometer {
         self.odom_from_base
     }
 
-    /// Takes the true motion between two moments; gives what is reported of it,
-    /// in the base's frame before it.
+    /// Takes the true motion between two times; returns the reported motion, in the base's frame
+    /// before it.
     pub(crate) fn advance(&mut self, before: Pose, after: Pose) -> Pose {
         let moved = before.inverse().then(after);
         let distance = moved.x.hypot(moved.y);
@@ -55,7 +52,7 @@ impl Odometer {
         );
         let along = along * (per_metre * distance).sqrt();
         let turn = turn * (per_metre * distance + per_radian * moved.yaw.abs()).sqrt();
-        // On the spot there is no direction in which the distance could err.
+        // A turn on the spot has no direction for an error of distance.
         let scale = if distance > 0.0 {
             1.0 + along / distance
         } else {
@@ -75,7 +72,7 @@ mod tests {
 
     const DRIVES: u64 = 2000;
 
-    /// What the odometer says at the end of each of many drives.
+    /// Odometry at the end of each of many drives.
     fn ends(noise: [f64; 2], steps: usize, step: Pose) -> Vec<Pose> {
         let config = OdometryConfig {
             odometry_noise_per_metre: noise[0],
@@ -110,7 +107,7 @@ mod tests {
 
     #[test]
     fn errors_grow_with_the_root_of_the_way_whatever_the_steps() {
-        // The deviation of 2000 is off by 1.6 % in one of three cases; four of those.
+        // The deviation of 2000 values is off by 1.6 % in one of three cases; four of those.
         const ALLOWED: f64 = 0.065;
         for steps in [4, 40] {
             let straight = ends([0.05, 0.0], steps, Pose::new(4.0 / steps as f64, 0.0, 0.0));
@@ -120,7 +117,7 @@ mod tests {
             let heading = deviation(turn.iter().map(|end| end.yaw - 1.0));
             assert!((heading / 0.05 - 1.0).abs() < ALLOWED, "{heading}");
         }
-        // One step, so that the heading's error cannot shorten the way.
+        // A single step, so that the heading's error cannot shorten the distance.
         let single = ends([0.05, 0.0], 1, Pose::new(4.0, 0.0, 0.0));
         let distance = deviation(single.iter().map(|end| end.x - 4.0));
         assert!((distance / 0.1 - 1.0).abs() < ALLOWED, "{distance}");

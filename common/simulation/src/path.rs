@@ -1,5 +1,4 @@
-//! The way that the robot takes: straight from corner to corner, turning on the
-//! spot.
+//! Path of the robot: straight from corner to corner, turning on the spot.
 
 use std::str::FromStr;
 
@@ -9,20 +8,19 @@ use crate::SimulationError;
 use crate::numbers::numbers;
 use crate::obstacles::Obstacles;
 
-/// Most corners of a path.
 const MAX_CORNERS: usize = 10_000;
 
-/// Farthest corner from the map's origin along each axis, metres.
+/// Largest coordinate of a corner, in metres.
 const MAX_METRES: f64 = 1e8;
 
-/// Corners in the map, metres.
+/// Corners in the map, in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path(Vec<[f64; 2]>);
 
 impl FromStr for Path {
     type Err = String;
 
-    /// Reads `X,Y X,Y …`.
+    /// Parses `X,Y X,Y …`.
     fn from_str(text: &str) -> Result<Self, String> {
         let corner = |word: &str| {
             numbers::<2>(word)
@@ -41,17 +39,16 @@ impl FromStr for Path {
 }
 
 impl Path {
-    /// Corner by corner.
     #[must_use]
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.0
     }
 
-    /// Checks that the robot's centre can take it.
+    /// Checks that the robot's centre can follow the path.
     ///
     /// # Errors
-    /// Names the first corner that is off the map or the same as the one
-    /// before, or the first obstacle on the way.
+    /// Names the first corner that is off the map or equal to the previous one, or the first
+    /// obstacle on the path.
     pub(crate) fn check(&self, obstacles: &Obstacles) -> Result<(), SimulationError> {
         for (corner, &[x, y]) in (1..).zip(&self.0) {
             if !obstacles.holds(x, y) {
@@ -93,7 +90,7 @@ impl Path {
 /// A straight part of the path.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
-    /// At the corner, looking along the leg.
+    /// Pose at the corner, looking along the leg.
     start: Pose,
     length_m: f64,
 }
@@ -113,23 +110,21 @@ impl Leg {
     }
 }
 
-/// Part of a drive.
 #[derive(Debug, Clone, Copy)]
 enum Motion {
-    /// Along a leg.
     Straight(Leg),
-    /// On the spot, by an angle.
+    /// Turn on the spot by an angle.
     Turn(Pose, f64),
 }
 
-/// Where the robot is when. It stands nowhere, and changes its speed at once.
+/// Pose of the robot over time. It never stands still, and changes its speed at once.
 #[derive(Debug)]
 pub(crate) struct Timetable {
-    /// Seconds at which each part ends, and the part.
+    /// End of each part in seconds, and the part.
     parts: Vec<(f64, Motion)>,
-    /// Metres a second.
+    /// Metres per second.
     speed: f64,
-    /// Radians a second.
+    /// Radians per second.
     turn_rate: f64,
 }
 
@@ -165,13 +160,11 @@ impl Timetable {
         self.parts.push((self.seconds() + seconds, motion));
     }
 
-    /// How long the drive takes.
     pub(crate) fn seconds(&self) -> f64 {
         self.parts.last().map_or(0.0, |&(end, _)| end)
     }
 
-    /// `map_from_base` at a time since the start; at the end of the path from
-    /// its end on.
+    /// `map_from_base` at a time since the start, in seconds; clamped to the drive.
     pub(crate) fn at(&self, seconds: f64) -> Option<Pose> {
         let seconds = seconds.clamp(0.0, self.seconds());
         let i = self.parts.partition_point(|&(end, _)| end < seconds);
@@ -244,7 +237,7 @@ mod tests {
     #[test]
     fn it_drives_straight_and_turns_on_the_spot() {
         let timetable = Timetable::new(&path("1,1 3,1 3,2"), 0.5, FRAC_PI_2 / 2.0);
-        // Two metres, a quarter turn at half of one a second, and one metre.
+        // Two metres, a quarter turn at an eighth of a turn per second, and one metre.
         assert!((timetable.seconds() - 8.0).abs() < 1e-12);
         let check = |seconds, expected| {
             let pose = timetable.at(seconds).unwrap();

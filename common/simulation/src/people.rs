@@ -1,4 +1,4 @@
-//! People who walk about: discs that go straight from goal to goal.
+//! People who walk: discs that move straight from goal to goal.
 
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -6,19 +6,19 @@ use rand::rngs::Xoshiro256PlusPlus;
 use crate::obstacles::Obstacles;
 use crate::{Path, SimulationError};
 
-/// Radius of a person as a sensor at the height of a knee or hip sees one, metres.
+/// Radius of a person at the height of a knee or hip, metres.
 pub(crate) const RADIUS_M: f64 = 0.2;
 
-/// How fast people walk, metres a second.
+/// Walking speed, metres per second.
 const SPEED: f64 = 1.0;
 
-/// How far from the path people walk, and how far a goal is at most, metres.
+/// Largest distance of people from the path, and of a goal along each axis, metres.
 const WITHIN_M: f64 = 4.0;
 
-/// Random goals that are tried before a person stands still for a while.
+/// Number of random goals tried before a person stands still for a step.
 const TRIES: usize = 30;
 
-/// Random places that are tried before a person finds none at all.
+/// Number of random places tried for each person.
 const PLACES: usize = 1_000;
 
 #[derive(Debug, Clone, Copy)]
@@ -27,8 +27,8 @@ struct Person {
     goal: [f64; 2],
 }
 
-/// All people. They walk round obstacles, and through each other and the robot:
-/// one who stands where the sensor is is not seen.
+/// All people. They walk around obstacles, but through each other and the robot: a person who
+/// stands at the sensor is not seen.
 #[derive(Debug)]
 pub(crate) struct People {
     people: Vec<Person>,
@@ -37,7 +37,7 @@ pub(crate) struct People {
 }
 
 impl People {
-    /// Puts people near the path.
+    /// Places people near the path.
     ///
     /// # Errors
     /// There is no free place for them.
@@ -67,13 +67,13 @@ impl People {
         Ok(people)
     }
 
-    /// Everybody walks on for a time.
+    /// Moves all people by the distance that they walk in this time.
     pub(crate) fn walk(&mut self, seconds: f64, obstacles: &Obstacles) {
         for i in 0..self.people.len() {
             let mut person = self.people[i];
             let mut way_m = SPEED * seconds;
-            // A goal that is reached early leaves way for the next; a person who
-            // finds none stays.
+            // A goal that is reached early leaves distance for the next one; a person who finds no
+            // goal stays.
             for _ in 0..TRIES {
                 person.at = towards(person, &mut way_m);
                 if way_m <= 0.0 {
@@ -89,14 +89,14 @@ impl People {
         }
     }
 
-    /// How far a ray goes to the first person, metres.
+    /// Range of a ray to the nearest person, in metres.
     pub(crate) fn range(&self, x: f64, y: f64, angle: f64) -> Option<f64> {
         let (sin, cos) = angle.sin_cos();
         let ranges = self.people.iter().filter_map(|person| {
             let [dx, dy] = [person.at[0] - x, person.at[1] - y];
             let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
             let half_chord = (RADIUS_M * RADIUS_M - across * across).sqrt();
-            // NaN where the ray misses; negative from within or behind.
+            // NaN if the ray misses; negative from inside the disc or beyond it.
             Some(along - half_chord).filter(|&range| range > 0.0)
         });
         ranges.min_by(f64::total_cmp)
@@ -121,8 +121,8 @@ impl People {
     }
 }
 
-/// Where a person is who walks towards the goal, at most so far; what is left
-/// of the way.
+/// Position after walking towards the goal, at most `way_m`, which is reduced by the distance
+/// walked.
 fn towards(person: Person, way_m: &mut f64) -> [f64; 2] {
     let Person { at, goal } = person;
     let distance = (goal[0] - at[0]).hypot(goal[1] - at[1]);
@@ -175,8 +175,8 @@ mod tests {
                 assert!(people.distance_to_path(after.at) <= WITHIN_M + 1e-9);
             }
         }
-        // At corners between goals the straight step is shorter than the way, and
-        // a goal is 2 m away and more in most cases: three quarters stay.
+        // Around corners the straight step is shorter than the path walked, and most goals are at
+        // least 2 m away: three quarters remain.
         assert!(walked > 0.75 * 20.0 * 200.0 * 0.5 * SPEED, "{walked}");
     }
 
@@ -185,7 +185,7 @@ mod tests {
         let (mut people, _) = people(1);
         people.people[0].at = [3.0, 1.0];
         assert!((people.range(1.0, 1.0, 0.0).unwrap() - 1.8).abs() < 1e-12);
-        // At 0.12 m across, the disc of 0.2 m begins 0.16 m before its middle.
+        // At 0.12 m across, the disc of 0.2 m begins 0.16 m before its centre.
         assert!((people.range(1.0, 0.88, 0.0).unwrap() - 1.84).abs() < 1e-12);
         assert_eq!(people.range(1.0, 1.21, 0.0), None);
         assert_eq!(people.range(5.0, 1.0, 0.0), None, "behind");

@@ -1,9 +1,8 @@
-//! What a sensor can see: obstacles and people.
+//! Everything that a sensor can see: obstacles and people.
 
 use crate::obstacles::Obstacles;
 use crate::people::People;
 
-/// The world at a moment.
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub obstacles: Obstacles,
@@ -11,11 +10,10 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// How far a ray goes from a point on the map, metres; none beyond the
-    /// reach.
+    /// Range of a ray from a point on the map, in metres; `None` beyond the reach.
     pub(crate) fn range(&self, x: f64, y: f64, angle: f64, reach_m: f64) -> Option<f64> {
         let person = self.people.range(x, y, angle).filter(|&m| m <= reach_m);
-        // Nothing behind a person is seen.
+        // A person hides everything behind.
         let reach_m = person.unwrap_or(reach_m);
         self.obstacles.range(x, y, angle, reach_m).or(person)
     }

@@ -1,10 +1,8 @@
-//! A ring of eight sonars: wide beams, walls that reflect like mirrors, and
-//! cross-talk.
+//! A ring of eight sonars: wide beams, walls that reflect like mirrors, and cross-talk.
 //!
-//! A transducer answers with the nearest surface in its cone that is met nearly
-//! head on; a wall that is met at a flat angle sends the sound away (Leonard and
-//! Durrant-Whyte, Directed Sonar Sensing for Mobile Robot Navigation, 1992). Echoes
-//! that are reflected by two walls are left out, and all transducers sit at one
+//! A transducer returns the nearest surface in its cone that is met nearly head on; a wall met at a
+//! flat angle reflects the sound away (Leonard and Durrant-Whyte, Directed Sonar Sensing for Mobile
+//! Robot Navigation, 1992). Double reflections are not simulated, and all transducers are at one
 //! point.
 
 use std::f32::consts::PI;
@@ -18,32 +16,32 @@ use crate::noise::Receiver;
 use crate::numbers::{parse, parse_share};
 use crate::scene::Scene;
 
-/// Where the transducers look, degrees counter-clockwise from ahead: six ahead
-/// and two behind, as on the AmigoBot of section IV of the paper.
+/// Bearings of the transducers, degrees counter-clockwise from ahead: six ahead and two behind, as
+/// on the AmigoBot of section IV of the paper.
 pub const TRANSDUCERS_DEG: [i32; 8] = [-145, -90, -41, -15, 15, 41, 90, 145];
 
-/// Rays that a turn is looked at with, two a degree.
+/// Number of rays per turn, two per degree.
 const RAYS: usize = 720;
 
-/// A surface is what the rays to both sides meet, as far as this.
+/// Number of neighbouring rays on each side that can belong to a surface.
 const NEIGHBOURS: usize = 4;
 
-/// The fewest points that make a surface; fewer are an edge or a post, which
-/// sends sound everywhere.
+/// Minimum number of points of a surface; fewer are an edge or a post, which reflect in all
+/// directions.
 const MIN_POINTS: usize = 3;
 
-/// What sets the ring apart from a laser.
+/// Settings of the sonar ring.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 #[command(next_help_heading = "Sonar")]
 pub struct SonarConfig {
-    /// Eight sonars in place of the laser, six ahead and two behind; other
-    /// bearings of the scan are NaN.
+    /// Eight sonars in place of the laser, six ahead and two behind; other bearings of the scan are
+    /// NaN.
     #[arg(long)]
     pub sonar: bool,
     /// Full width of a transducer's cone, degrees, 1..=90.
     #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = parse_beam_width, requires = "sonar")]
     pub beam_width: f64,
-    /// Walls answer when met at most so far from head on, degrees, 0..=90.
+    /// Largest angle from head on at which walls return an echo, degrees, 0..=90.
     #[arg(long, value_name = "DEGREES", default_value_t = 15.0, value_parser = parse_limit, requires = "sonar")]
     pub specular_limit: f64,
     /// Share of the readings that are another transducer's echo, 0..=1.
@@ -59,7 +57,6 @@ fn parse_limit(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=90.0, "degrees")
 }
 
-/// What a ray meets.
 #[derive(Debug, Clone, Copy)]
 struct Hit {
     range_m: f64,
@@ -67,7 +64,6 @@ struct Hit {
     point: [f64; 2],
 }
 
-/// The ring.
 #[derive(Debug)]
 pub(crate) struct Ring {
     config: SonarConfig,
@@ -75,7 +71,7 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// A bearing a degree, beginning at the rear.
+    /// One bearing per degree, from the rear.
     pub(crate) const BEARINGS: Bearings = Bearings {
         angle_min: -PI,
         angle_increment: PI / 180.0,
@@ -86,7 +82,7 @@ impl Ring {
         Ring { config, rng }
     }
 
-    /// The readings by bearing, metres; NaN where there is no transducer.
+    /// Readings by bearing, in metres; NaN without a transducer.
     pub(crate) fn scan(
         &mut self,
         scene: &Scene,
@@ -106,12 +102,12 @@ impl Ring {
         ranges
     }
 
-    /// The first echo of each transducer, metres.
+    /// First echo of each transducer, in metres.
     fn echoes(&self, hits: &[Option<Hit>]) -> [Option<f64>; TRANSDUCERS_DEG.len()] {
         let answers: Vec<_> = (0..RAYS).map(|ray| self.answer(hits, ray)).collect();
         TRANSDUCERS_DEG.map(|degrees| {
             let axis = f64::from(degrees).to_radians();
-            // A thousandth of a degree is a margin for rounding.
+            // The margin of a thousandth of a degree allows for rounding.
             let half_width = (self.config.beam_width / 2.0 + 1e-3).to_radians();
             let in_cone = |&ray: &usize| angle_between(bearing(ray), axis) <= half_width;
             let received = (0..RAYS).filter(in_cone).filter_map(|ray| answers[ray]);
@@ -119,7 +115,7 @@ impl Ring {
         })
     }
 
-    /// How far what a ray meets is, if it sends the sound back.
+    /// Range of a ray's hit, if its surface reflects the sound back.
     fn answer(&self, hits: &[Option<Hit>], ray: usize) -> Option<f64> {
         let hit = hits[ray]?;
         let incidence = incidence(&surface(hits, ray), bearing(ray));
@@ -142,8 +138,7 @@ fn surroundings(scene: &Scene, map_from_laser: Pose, reach_m: f64) -> Vec<Option
     (0..RAYS).map(hit).collect()
 }
 
-/// Points of the surface that a ray meets: what its neighbours meet, as far as
-/// no range differs from the last by a jump.
+/// Points of the surface that a ray hits: hits of its neighbours up to the first jump in range.
 fn surface(hits: &[Option<Hit>], ray: usize) -> Vec<[f64; 2]> {
     let mut points: Vec<_> = hits[ray].iter().map(|hit| hit.point).collect();
     for step in [1, RAYS - 1] {
@@ -153,8 +148,8 @@ fn surface(hits: &[Option<Hit>], ray: usize) -> Vec<[f64; 2]> {
             let (Some(from), Some(to)) = (last, next) else {
                 break;
             };
-            // Half a degree farther, a wall met at 80 degrees is 5 % farther; cells
-            // make steps of some centimetres.
+            // Half a degree farther, a wall met at 80 degrees is 5 % farther; cells cause steps of
+            // some centimetres.
             if (to.range_m - from.range_m).abs() > 0.05 + 0.05 * from.range_m {
                 break;
             }
@@ -165,8 +160,8 @@ fn surface(hits: &[Option<Hit>], ray: usize) -> Vec<[f64; 2]> {
     points
 }
 
-/// Angle between a ray and the normal of the line through points, radians; 0
-/// for what is no surface.
+/// Angle between a ray and the normal of the line through points, in radians; 0 if they are too few
+/// for a surface.
 fn incidence(points: &[[f64; 2]], angle: f64) -> f64 {
     if points.len() < MIN_POINTS {
         return 0.0;
@@ -180,7 +175,7 @@ fn incidence(points: &[[f64; 2]], angle: f64) -> f64 {
         xy += dx * dy;
         yy += dy * dy;
     }
-    // The direction of the greatest spread.
+    // Direction of the largest spread.
     let tangent = 0.5 * (2.0 * xy).atan2(xx - yy);
     (angle - tangent).cos().abs().asin()
 }
@@ -217,10 +212,10 @@ mod tests {
         let first = &drive("5,2 6,2", "--cross-talk 0 --range-max 2.5")[0];
         let millimetre = |a: f32, b: f32| (a - b).abs() < 0.0011;
         assert!(millimetre(reading(first, -90), 1.9), "the axis is the foot");
-        // The cone reaches to 49 degrees from the foot, the wall answers to 15.
+        // The cone ends 49 degrees from the foot, and the wall reflects up to 15.
         assert!(reading(first, -41).is_infinite());
         assert!(reading(first, 90).is_infinite(), "out of range");
-        // With a wide limit the near edge of the cone answers: 1.9 / cos 34°.
+        // With a wide limit the near edge of the cone returns: 1.9 / cos 34°.
         let options = "--cross-talk 0 --range-max 2.5 --specular-limit 80";
         let first = &drive("5,2 6,2", options)[0];
         assert!(millimetre(
@@ -247,8 +242,8 @@ mod tests {
                 others += f64::from(u8::from(received != own));
             }
         }
-        // 14,600 readings give a share of 0.1 to 0.0025: four of those to each side,
-        // and 2 % fewer because two echoes may be equal by chance.
+        // With 14,600 readings a share of 0.1 is known to 0.0025: four of those to each side, and 2
+        // % fewer because two echoes may be equal by chance.
         let share: f64 = others / total;
         assert!((0.088..0.11).contains(&share), "{share}");
     }
@@ -257,10 +252,10 @@ mod tests {
     fn the_line_through_points_says_how_flat_a_wall_is_met() {
         let wall = |x: f64| [x, 1.0 - x];
         let points = [0.0, 0.1, 0.2, 0.3].map(wall);
-        // The normal of that line looks along 45 degrees.
+        // The normal of that line points along 45 degrees.
         for (degrees, expected) in [(45.0, 0.0), (60.0, 15.0), (0.0, 45.0), (225.0, 0.0)] {
             let incidence = incidence(&points, f64::to_radians(degrees)).to_degrees();
-            // Near head on, the arc sine is good to the root of a rounding.
+            // Near head on, the arc sine is accurate only to the root of a rounding error.
             assert!(
                 (incidence - expected).abs() < 1e-5,
                 "{degrees}: {incidence}"

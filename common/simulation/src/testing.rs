@@ -1,4 +1,4 @@
-//! Worlds drawn in the source, for the tests of this crate.
+//! Worlds for the tests of this crate.
 
 use clap::Parser;
 use geometry::Pose;
@@ -6,7 +6,7 @@ use map::OccupancyGrid;
 
 use crate::DriveConfig;
 
-/// A map whose first row is the lowest; `#` is occupied, `?` unknown.
+/// A map drawn in text; the first row is the lowest; `#` is occupied, `?` unknown.
 pub(crate) fn drawn(rows: &[&str], resolution_m: f64) -> OccupancyGrid {
     let cell = |cell| match cell {
         b'#' => 100,
@@ -34,7 +34,7 @@ struct Line {
     config: DriveConfig,
 }
 
-/// Settings as they are typed.
+/// Parses settings as on the command line.
 pub(crate) fn config(options: &str) -> DriveConfig {
     let words = std::iter::once("drive").chain(options.split_whitespace());
     Line::try_parse_from(words).unwrap().config

@@ -1,4 +1,4 @@
-//! What `backcast soak` takes, and what it does.
+//! Options and entry point of `backcast soak`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use super::filler;
 use super::maps::Maps;
 use crate::SoakError;
 
-/// What stands below the options.
+/// Notes below the options in the help text.
 pub const NOTES: &str = "\
 A recording is played again and again, and every pose that the tracker is sure of is
 compared with the recording's /ground_truth. What the graph itself says goes to standard
@@ -41,23 +41,23 @@ const DEFAULT_MINUTES: f64 = 60.0;
 /// Options of `backcast soak`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The graph's descriptor
+    /// Descriptor of the graph
     #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// How long it runs, hours [default: 1]
+    /// Duration in hours [default: 1]
     #[arg(long, value_name = "H", value_parser = positive, conflicts_with = "minutes")]
     hours: Option<f64>,
 
-    /// How long it runs, minutes
+    /// Duration in minutes
     #[arg(long, value_name = "M", value_parser = positive)]
     minutes: Option<f64>,
 
-    /// Replay this recording, which must hold the truth [default: what the descriptor plays]
+    /// Recording to replay, which must contain the ground truth [default: that of the descriptor]
     #[arg(long, value_name = "FILE")]
     replay: Option<PathBuf>,
 
-    /// Serve this map [default: the one that the descriptor names]
+    /// Map to serve [default: that of the descriptor]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
@@ -78,7 +78,7 @@ pub struct Config {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
 
-    /// The graph's name [default: one of its own]
+    /// Name of the graph [default: a generated name]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     graph: Option<GraphName>,
 
@@ -87,10 +87,10 @@ pub struct Config {
     json: bool,
 }
 
-/// Runs a graph and does it harm; says how it fared.
+/// Runs a graph, injects faults, and prints a report.
 ///
 /// # Errors
-/// The graph cannot be set up, or something cannot be done to it.
+/// The graph cannot be set up, or a fault cannot be injected.
 pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
@@ -134,7 +134,7 @@ impl Config {
         Duration::from_secs_f64(60.0 * minutes.unwrap_or(DEFAULT_MINUTES))
     }
 
-    /// What the graph is started with, after `run`.
+    /// Arguments for the launcher, after `run`.
     fn arguments(&self, graph: &GraphName, maps: &Maps) -> Vec<String> {
         let text = |path: &Path| path.display().to_string();
         let mut arguments = vec![text(&self.dataflow), "--json".into(), "--loop".into()];
@@ -163,7 +163,7 @@ impl Config {
     }
 }
 
-/// The file that the descriptor gives one of these nodes; else `instead` has to name it.
+/// File that the descriptor gives to one of these nodes; the error asks for option `instead`.
 fn named(
     descriptor: &Descriptor,
     executables: &[&str],
@@ -183,7 +183,7 @@ fn named(
     }
 }
 
-/// The nodes that are killed and stopped: those that are started again.
+/// Nodes that can be killed and stopped: those that are restarted.
 fn victims(descriptor: &Descriptor) -> Vec<String> {
     let nodes = descriptor.dataflow.nodes.iter();
     let again = nodes.filter(|node| node.restart.policy != RestartPolicy::Never);
@@ -200,7 +200,7 @@ fn truths(recording: &Path) -> Result<BTreeMap<i64, Pose>, SoakError> {
     Ok(truths.into_iter().map(pose).collect())
 }
 
-/// Whether what is to be filled may be.
+/// Checks that the file systems to be filled are small enough.
 fn check_room(config: &Config) -> Result<(), SoakError> {
     if config.faults.contains(&Fault::Shm) {
         filler::check(Path::new("/dev/shm"))?;
@@ -224,7 +224,7 @@ fn folder_of(file: &Path) -> PathBuf {
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
-        // A year, which no clock overflows with.
+        // More than a year, but no overflow of any clock.
         Ok(value) if value > 0.0 && value <= 1e4 => Ok(value),
         _ => Err("allowed is a number above 0, up to 10000".to_owned()),
     }

@@ -1,4 +1,4 @@
-//! The course of a run: start, do harm and see what comes, stop, sum up.
+//! Course of a run: start, inject faults and observe the effects, stop, and summarize.
 
 use std::collections::BTreeMap;
 use std::fs::remove_file;
@@ -26,35 +26,35 @@ use super::tally::{Gap, Tally};
 use super::usage::Usage;
 use crate::SoakError;
 
-/// How long the first sure pose may take, and any pose after a fault, before the graph is
-/// given up: everything that it does by itself takes less.
+/// Timeout for the first Unique pose, and for a pose after a fault, after which the run fails; the
+/// graph needs less for everything that it does by itself.
 const TIMEOUT: Duration = Duration::from_secs(60);
-/// A longer time without a pose is reported at once, so that it can be found in the log.
+/// Longer gaps between poses are logged at once, so that they can be found in the log.
 const LONG_GAP_S: f64 = 0.5;
-/// Between two looks at the processes.
+/// Interval between samples of the processes.
 const LOOK: Duration = Duration::from_secs(1);
-/// Between two looks at whether something is over.
+/// Interval between checks while waiting.
 const TICK: Duration = Duration::from_millis(50);
-/// As which node the launcher is listed.
+/// Node name of the launcher in the report.
 const LAUNCHED: &str = LAUNCHER;
 
-/// What is to be done.
+/// Settings of a run.
 #[derive(Debug)]
 pub(super) struct Plan {
-    /// Of the launcher, after `run`.
+    /// Arguments of the launcher, after `run`.
     pub(super) arguments: Vec<String>,
-    /// The nodes that are killed and stopped.
+    /// Nodes that are killed and stopped.
     pub(super) victims: Vec<String>,
     pub(super) graph: GraphName,
     pub(super) lasts: Duration,
     pub(super) pause: Duration,
     pub(super) faults: Vec<Fault>,
     pub(super) seed: u64,
-    /// The folder whose disk is filled.
+    /// Folder whose disk is filled.
     pub(super) disk: Option<PathBuf>,
 }
 
-/// A run that has begun.
+/// A running test.
 pub(super) struct Course {
     plan: Plan,
     maps: Maps,
@@ -66,21 +66,20 @@ pub(super) struct Course {
     losses: Losses,
     nodes: Vec<NodeStatus>,
     next_look: Instant,
-    /// Restarts that launchers which have ended have counted.
+    /// Number of restarts counted by launchers that have ended.
     earlier_restarts: u64,
     nodes_ended_s: Distribution,
     failures: Vec<String>,
     stop: Arc<AtomicBool>,
 }
 
-/// Why watching has ended.
+/// Reason why watching has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Watched {
-    /// What was waited for has come.
+    /// The condition is met.
     Enough,
-    /// The time is over.
     Late,
-    /// The graph has ended, or we are to.
+    /// The graph has ended, or the run is to stop.
     Over,
 }
 
@@ -118,12 +117,12 @@ impl Course {
         })
     }
 
-    /// Does harm until the time is over, then stops the graph.
+    /// Injects faults until the time is over, then stops the graph.
     ///
     /// # Errors
-    /// Something cannot be done to it.
+    /// A fault cannot be injected.
     pub(super) fn run(mut self) -> Result<Report, SoakError> {
-        // A build may come first, which takes as long as it takes.
+        // The graph may be built first, which may take any time.
         while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             if self.status().is_some() {
                 self.failures
@@ -162,7 +161,7 @@ impl Course {
         self.finish()
     }
 
-    /// Takes what comes for so long, or until it is enough.
+    /// Processes output until the condition is met or the time is over.
     fn watch(&mut self, patience: Duration, enough: impl Fn(&Tally) -> bool) -> Watched {
         let deadline = Instant::now() + patience;
         loop {
@@ -202,14 +201,14 @@ impl Course {
         }
     }
 
-    /// Looks at what the processes take.
+    /// Samples the usage of the processes.
     fn look(&mut self) {
         self.next_look = Instant::now() + LOOK;
         let Some(status) = self.status() else {
             return;
         };
         self.nodes = status.nodes;
-        // What it takes before it works says nothing of what grows.
+        // Usage during start-up says nothing about growth.
         if !self.tally.is_sure() && self.usage.nodes.is_empty() {
             return;
         }
@@ -222,7 +221,7 @@ impl Course {
         self.usage.look_at_files(&files_of(&self.plan.graph));
     }
 
-    /// What the launcher says of its nodes; nothing while it does not answer.
+    /// Asks the launcher for the status of its nodes; `None` while it does not answer.
     fn status(&self) -> Option<Status> {
         match ask(&control_socket(&self.plan.graph), &Question::Status) {
             Ok(Answer::Status(status)) => Some(status),
@@ -271,7 +270,7 @@ impl Course {
         Ok(())
     }
 
-    /// Running nodes that are started again, by chance.
+    /// Chooses running nodes at random, from those that are restarted.
     fn choose(&mut self, count: usize) -> Vec<(String, i32)> {
         if count == 0 {
             return Vec::new();
@@ -290,16 +289,16 @@ impl Course {
         chosen.into_iter().cloned().collect()
     }
 
-    /// What a cleaning of the temporary folder does.
+    /// Removes files as a cleaner of the temporary folder would.
     fn remove_files(&self) {
         let files = files_of(&self.plan.graph).into_iter();
         for file in files.filter(|file| !file.starts_with("/dev/shm")) {
-            // What is gone meanwhile is gone.
+            // A file may have been removed meanwhile.
             let _ = remove_file(file);
         }
     }
 
-    /// When room was made again.
+    /// Fills a folder for a while; returns the time at which it was emptied.
     fn fill(&mut self, folder: &Path, fault: Fault) -> Result<i64, SoakError> {
         let filler = Filler::fill(folder)?;
         self.watch(fault.lasts(), |_| false);
@@ -307,7 +306,7 @@ impl Course {
         Ok(monotonic_ns())
     }
 
-    /// When the next one was started.
+    /// Kills the launcher and starts another; returns the time of the start.
     fn kill_launcher(&mut self) -> Result<i64, SoakError> {
         if let Some(status) = self.status() {
             self.nodes = status.nodes;

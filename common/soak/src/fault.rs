@@ -1,4 +1,4 @@
-//! What is done to a graph, and in which order. Pure.
+//! Faults, and the order in which they are injected. Pure.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::seq::{IndexedRandom, SliceRandom};
 use serde::Serialize;
 
-/// Something that is done to a running graph.
+/// A fault of a running graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Fault {
@@ -17,7 +17,7 @@ pub(crate) enum Fault {
     Pair,
     /// A node is stopped for ten seconds
     Stop,
-    /// The map is replaced by one of another size, which shows the same place
+    /// The map is replaced by one of another size that shows the same place
     Map,
     /// The launcher is killed and, once its nodes have ended, started again
     Launcher,
@@ -30,7 +30,7 @@ pub(crate) enum Fault {
 }
 
 impl Fault {
-    /// How it is called on the command line and in the report.
+    /// Name on the command line and in the report.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Fault::Kill => "kill",
@@ -44,7 +44,7 @@ impl Fault {
         }
     }
 
-    /// How long it lasts; time to the next pose counts from its end.
+    /// Duration; the time to the next pose counts from its end.
     pub(crate) fn lasts(self) -> Duration {
         Duration::from_secs(match self {
             Fault::Stop => 10,
@@ -54,7 +54,7 @@ impl Fault {
         })
     }
 
-    /// How many nodes it meets.
+    /// Number of nodes affected.
     pub(crate) fn nodes(self) -> usize {
         match self {
             Fault::Kill | Fault::Stop => 1,
@@ -63,7 +63,7 @@ impl Fault {
         }
     }
 
-    /// How often it comes in a round: what is quickly over comes most often.
+    /// Frequency within a round: faults with quick recovery come most often.
     fn share(self) -> usize {
         match self {
             Fault::Kill => 8,
@@ -73,7 +73,7 @@ impl Fault {
     }
 }
 
-/// Draws faults: round by round, each in its share, in an order of chance.
+/// Draws faults in rounds; each round contains all faults by frequency, in random order.
 #[derive(Debug)]
 pub(crate) struct Draw {
     faults: Vec<Fault>,
@@ -82,7 +82,6 @@ pub(crate) struct Draw {
 }
 
 impl Draw {
-    /// Of these, with randomness from `seed`.
     pub(crate) fn new(faults: &[Fault], seed: u64) -> Self {
         Draw {
             faults: faults.to_owned(),
@@ -91,7 +90,7 @@ impl Draw {
         }
     }
 
-    /// The next one; none where there are none at all.
+    /// Returns the next fault; `None` if there are no faults at all.
     pub(crate) fn fault(&mut self) -> Option<Fault> {
         if self.round.is_empty() {
             let shares = self.faults.iter();
@@ -103,7 +102,7 @@ impl Draw {
         self.round.pop()
     }
 
-    /// `count` different ones of `all`, or all where there are no more.
+    /// Chooses `count` different items, or all if there are fewer.
     pub(crate) fn some_of<'n, T>(&mut self, all: &'n [T], count: usize) -> Vec<&'n T> {
         all.sample(&mut self.random, count).collect()
     }

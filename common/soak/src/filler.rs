@@ -1,4 +1,4 @@
-//! Fills a file system for a while.
+//! Fills a file system for a limited time.
 
 use std::fs::{File, remove_file};
 use std::io::{ErrorKind, Write};
@@ -9,18 +9,18 @@ use nix::sys::statvfs::statvfs;
 
 use crate::SoakError;
 
-/// What may be free at most, bytes: whoever has more shares it with others, who would be
-/// harmed, and memory may end before a large /dev/shm does.
+/// Largest free space that may be filled, in bytes: a larger file system is shared with others, who
+/// would be harmed, and memory may end before a large /dev/shm does.
 const MAX_FREE: u64 = 1 << 30;
 
-/// A file that takes all room of its file system, until this is dropped.
+/// A file that fills its file system; removed on drop.
 #[derive(Debug)]
 pub(super) struct Filler(PathBuf);
 
-/// Refuses a file system that is too large to be filled.
+/// Rejects a file system with too much free space.
 ///
 /// # Errors
-/// It is, or cannot be asked.
+/// It has too much, or its state cannot be read.
 pub(super) fn check(folder: &Path) -> Result<(), SoakError> {
     let found = statvfs(folder).map_err(|errno| failed("look at", folder, errno.into()))?;
     let free = found
@@ -43,12 +43,12 @@ impl Filler {
     /// Fills the file system of `folder`.
     ///
     /// # Errors
-    /// A file cannot be made there, or something else than the lack of room stops it.
+    /// A file cannot be created, or writing fails for a reason other than lack of space.
     pub(super) fn fill(folder: &Path) -> Result<Self, SoakError> {
         let path = folder.join(format!("backcast-soak-{}", std::process::id()));
         let mut file = File::create(&path).map_err(|source| failed("create", &path, source))?;
         let filler = Filler(path);
-        // The rest of a block may still find room where the block did not.
+        // Smaller blocks fill the rest that is too small for a larger one.
         for size in [1 << 20, 1 << 12, 1] {
             let block = vec![0; size];
             loop {
@@ -65,7 +65,7 @@ impl Filler {
 
 impl Drop for Filler {
     fn drop(&mut self) {
-        // Whoever removed it made the room that is wanted.
+        // If another process removed the file, the space is free already.
         let _ = remove_file(&self.0);
     }
 }

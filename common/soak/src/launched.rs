@@ -1,4 +1,4 @@
-//! The launcher as a child process, as a user starts it, and what it prints.
+//! The launcher as a child process, started as by a user, and its output.
 
 use std::io::{self, BufRead, BufReader};
 use std::os::unix::process::CommandExt;
@@ -14,28 +14,28 @@ use serde::Deserialize;
 
 use crate::SoakError;
 
-/// A line that it prints.
+/// A line of the launcher's output.
 #[derive(Debug, Deserialize)]
 pub(super) struct Printed {
-    /// Where the tracker has the robot; none where it said nothing of the scan.
+    /// Pose of the tracker; `None` if there is none for the scan.
     #[serde(default)]
     pub(super) pose: Option<SentPose>,
-    /// In the last line alone.
+    /// Only in the last line.
     #[serde(default)]
     pub(super) summary: Option<Losses>,
 }
 
-/// A pose, as far as it matters here.
+/// The fields of a pose that matter here.
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct SentPose {
-    /// Of the scan, nanoseconds since 1970.
+    /// Stamp of the scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
     pub(super) state: String,
     pub(super) x: Option<f64>,
     pub(super) y: Option<f64>,
     pub(super) heading_deg: Option<f64>,
     pub(super) latency_ms: f64,
-    /// On the machine's monotonic clock.
+    /// By the machine's monotonic clock.
     pub(super) sent_ns: i64,
 }
 
@@ -49,18 +49,17 @@ pub(super) struct Losses {
 }
 
 impl SentPose {
-    /// Of the laser in the map, where it is known.
+    /// Pose of the laser in the map, if known.
     pub(super) fn pose(&self) -> Option<Pose> {
         Some(Pose::new(self.x?, self.y?, self.heading_deg?.to_radians()))
     }
 
-    /// When its scan entered the graph, on the machine's monotonic clock.
+    /// Time at which the scan entered the graph, by the machine's monotonic clock.
     pub(super) fn entered_ns(&self) -> i64 {
         self.sent_ns - (self.latency_ms * 1e6) as i64
     }
 }
 
-/// A launcher that runs.
 #[derive(Debug)]
 pub(super) struct Launched {
     child: Child,
@@ -68,7 +67,7 @@ pub(super) struct Launched {
 }
 
 impl Launched {
-    /// Starts this executable with `arguments` after `run`.
+    /// Starts this executable with `run` and the arguments.
     ///
     /// # Errors
     /// It cannot be started.
@@ -83,7 +82,7 @@ impl Launched {
             .args(arguments)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            // Ctrl-C is for us, who stop it in order.
+            // Ctrl-C goes to this process, which stops the launcher in order.
             .process_group(0)
             .spawn()
             .map_err(not_started)?;
@@ -94,7 +93,7 @@ impl Launched {
                 .into_iter()
                 .flat_map(|out| BufReader::new(out).lines());
             for line in lines.map_while(Result::ok) {
-                // Lines of a later version may hold what this one does not know.
+                // Other versions may print lines that this one cannot parse.
                 if let Ok(printed) = serde_json::from_str(&line)
                     && send.send(printed).is_err()
                 {
@@ -107,17 +106,16 @@ impl Launched {
         Ok(Launched { child, lines })
     }
 
-    /// What it prints; the end where it prints no more.
+    /// Lines of output; disconnected at the end of the output.
     pub(super) fn lines(&self) -> &Receiver<Printed> {
         &self.lines
     }
 
-    /// Its number.
     pub(super) fn pid(&self) -> i32 {
         self.child.id().cast_signed()
     }
 
-    /// Asks it to stop in order.
+    /// Requests a regular stop.
     ///
     /// # Errors
     /// It cannot be signalled.
@@ -128,15 +126,15 @@ impl Launched {
     /// Waits for its end.
     ///
     /// # Errors
-    /// It is not ours to wait for.
+    /// Waiting fails.
     pub(super) fn wait(&mut self) -> Result<ExitStatus, SoakError> {
         self.child.wait().map_err(not_started)
     }
 
-    /// Ends it at once.
+    /// Kills it and waits for its end.
     ///
     /// # Errors
-    /// It is not ours to wait for.
+    /// Killing or waiting fails.
     pub(super) fn kill(&mut self) -> Result<(), SoakError> {
         self.child.kill().map_err(not_started)?;
         self.wait().map(drop)
@@ -145,16 +143,16 @@ impl Launched {
 
 impl Drop for Launched {
     fn drop(&mut self) {
-        // Where something failed; its nodes follow it.
+        // After an error; the launcher's nodes end with it.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Signals a process. One that has ended meanwhile is nothing to wonder at.
+/// Signals a process. A process that has ended is no error.
 ///
 /// # Errors
-/// It is not ours.
+/// The process belongs to another user.
 pub(super) fn signal(pid: i32, signal: Signal) -> Result<(), SoakError> {
     match kill(Pid::from_raw(pid), signal) {
         Ok(()) | Err(nix::errno::Errno::ESRCH) => Ok(()),

@@ -1,10 +1,10 @@
-//! `backcast soak`: runs a graph for hours, does it harm at random, and returns whether it
-//! met its guarantees.
+//! `backcast soak`: runs a graph for hours, injects random faults, and reports whether it met its
+//! guarantees.
 //!
-//! `fault` says what can be done and draws what is done next, `tally` counts the poses and
-//! how long each fault had an effect, `report` puts both into words: these are pure. `launched`
-//! is the launcher as a child process, `usage` what its processes take, `maps` and
-//! `filler` what some faults need, `course` does all of it.
+//! `fault` defines the faults and draws the next one, `tally` counts the poses and the effect of
+//! each fault, `report` formats the results: these are pure. `launched` is the launcher as a child
+//! process, `usage` measures its processes, `maps` and `filler` implement two of the faults,
+//! `course` runs everything.
 
 mod command;
 mod course;

@@ -1,8 +1,8 @@
 //! Two maps of the same place, to be swapped.
 //!
-//! The second one has more cells at its lower left, all unknown, and its origin there. A
-//! pose is the same on both; a node that mixed the cells of one with the other would be
-//! two metres off.
+//! The second one has additional unknown cells at its lower left, and its origin there. A pose is
+//! the same on both; a node that mixed the cells of one with the origin of the other would be two
+//! metres off.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,10 +13,10 @@ use map::{MapError, OccupancyGrid, UNKNOWN};
 
 use crate::SoakError;
 
-/// How far the second map goes beyond the first, metres.
+/// Margin of the second map, metres.
 const MARGIN_M: f64 = 2.0;
 
-/// A map file in a folder of its own, which has one map or the other.
+/// A map file in a separate folder, which contains one map or the other.
 #[derive(Debug)]
 pub(super) struct Maps {
     served: PathBuf,
@@ -25,10 +25,10 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    /// Of the map at `yaml`; `folder` keeps what is made.
+    /// Prepares both variants of the map at `yaml` in `folder`.
     ///
     /// # Errors
-    /// The map cannot be read, or the others not be written.
+    /// The map cannot be read, or a file cannot be written.
     pub(super) fn new(yaml: &Path, folder: &Path) -> Result<Self, SoakError> {
         let grid = map::load(yaml)?;
         let variants = ["as_given.yaml", "larger.yaml"].map(|name| folder.join(name));
@@ -43,12 +43,12 @@ impl Maps {
         Ok(maps)
     }
 
-    /// What a map server is to serve.
+    /// Path of the map for the map server.
     pub(super) fn served(&self) -> &Path {
         &self.served
     }
 
-    /// Puts the other map in its place, in one step.
+    /// Replaces the map by the other one, atomically.
     ///
     /// # Errors
     /// A file cannot be written.

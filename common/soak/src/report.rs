@@ -1,4 +1,4 @@
-//! What a run has shown, as text and as JSON. Pure.
+//! Report of a run, as text and as JSON. Pure.
 
 use std::fmt::Write;
 
@@ -11,39 +11,38 @@ use super::usage::{Span, Usage};
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Report {
-    /// How long it ran.
+    /// Duration of the run.
     pub(super) seconds: f64,
-    /// Where the randomness began.
+    /// Seed of the random numbers.
     pub(super) seed: u64,
     #[serde(flatten)]
     pub(super) poses: PoseFigures,
-    /// By the summaries of launchers that ended in order; one that is killed prints none.
+    /// From the summaries of launchers that ended regularly; a killed one prints none.
     #[serde(flatten)]
     pub(super) losses: Losses,
     pub(super) faults: Vec<FaultFigures>,
-    /// From the end of a killed launcher to that of its last node, seconds.
+    /// Time from the end of a killed launcher to that of its last node, in seconds.
     pub(super) nodes_ended_s: Gap,
-    /// Nodes that were started again.
+    /// Number of restarts of nodes.
     pub(super) restarts: u64,
     pub(super) usage: Usage,
-    /// Files that were there after the end.
+    /// Files that were left after the end.
     pub(super) leftovers: Vec<String>,
-    /// Why the run is no success, beside wrong poses and leftovers.
+    /// Failures in addition to wrong poses and leftovers.
     pub(super) failures: Vec<String>,
 }
 
 impl Report {
-    /// Whether the graph met its guarantees.
+    /// True if the graph met its guarantees.
     pub(super) fn is_good(&self) -> bool {
         self.poses.wrong == 0 && self.leftovers.is_empty() && self.failures.is_empty()
     }
 
-    /// One line of JSON.
     pub(super) fn json(&self) -> String {
         json::object(self) + "\n"
     }
 
-    /// A table for people.
+    /// Formats the figures for the terminal.
     pub(super) fn text(&self) -> String {
         let Report { poses, losses, .. } = self;
         let mut text = format!(
@@ -95,7 +94,7 @@ impl Report {
     }
 }
 
-// Writing to a text does not fail.
+// Writing to a string cannot fail.
 
 fn faults(text: &mut String, faults: &[FaultFigures]) {
     if faults.is_empty() {

@@ -1,4 +1,4 @@
-//! Counts the poses of a run, and how long each fault kept them away. Pure.
+//! Counts the poses of a run, and the time without poses after each fault. Pure.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -11,15 +11,15 @@ use statistics::{Distribution, SUCCESS, Tail};
 use super::fault::Fault;
 use super::launched::SentPose;
 
-/// Parts of a run whose latencies are listed one by one.
+/// Number of parts of a run for which latencies are listed.
 const PARTS: usize = 10;
-/// Wrong poses that are listed one by one.
+/// Maximum number of wrong poses that are listed.
 const MAX_WRONG_LISTED: usize = 20;
-/// Values of a figure that are kept: more than a run of days has in a part.
+/// Maximum number of values kept per figure: more than a part of a run of days has.
 const WINDOW: usize = 1_000_000;
 const NS_PER_S: f64 = 1e9;
 
-/// What was received so far.
+/// Poses and faults so far.
 #[derive(Debug)]
 pub(super) struct Tally {
     truths: BTreeMap<i64, Pose>,
@@ -31,19 +31,19 @@ pub(super) struct Tally {
     wrong: u64,
     first_wrong: Vec<Wrong>,
     latency_ms: Vec<Distribution>,
-    /// Faults after which a pose is missing still.
+    /// Faults from which the graph has not fully recovered.
     open: Vec<Open>,
     faults: BTreeMap<Fault, FaultEffect>,
-    /// From the end of the last fault to the next pose, seconds.
+    /// Time from the end of the last fault to the next pose, in seconds.
     last_gap_s: f64,
 }
 
-/// A pose that the tracker was sure of, and that is not true.
+/// A Unique pose that is wrong.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Wrong {
-    /// Of its scan, nanoseconds since 1970.
+    /// Stamp of its scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
-    /// When it was sent, seconds after the start.
+    /// Time at which it was sent, in seconds after the start.
     pub(super) after_s: f64,
     pub(super) off_m: f64,
     pub(super) off_deg: f64,
@@ -53,7 +53,7 @@ pub(super) struct Wrong {
 struct Open {
     fault: Fault,
     over_ns: i64,
-    /// Whether any pose came since; one that is `Unique` has not.
+    /// True if a pose came since; none of them was Unique.
     any: bool,
 }
 
@@ -65,46 +65,46 @@ struct FaultEffect {
     to_unique_s: Distribution,
 }
 
-/// The effect of one kind of fault.
+/// Effect of one kind of fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,
     pub(super) times: u64,
-    /// Processes of nodes that were killed by it.
+    /// Number of processes of nodes that it killed.
     pub(super) killed: u64,
-    /// From the end of the fault to a pose of a scan that came after it, seconds.
+    /// Time from the end of the fault to a pose of a later scan, in seconds.
     pub(super) to_pose_s: Gap,
-    /// The same, to a pose that the tracker was sure of.
+    /// Time from the end of the fault to a Unique pose of a later scan, in seconds.
     pub(super) to_unique_s: Gap,
 }
 
-/// How long something took, seconds.
+/// Duration in seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Gap {
     pub(super) median: Option<f64>,
     pub(super) max: Option<f64>,
 }
 
-/// The figures of poses.
+/// Figures about poses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct PoseFigures {
-    /// Poses of scans, in whatever state.
+    /// Number of poses of scans, in any state.
     pub(super) poses: u64,
-    /// Those of them with a position, and with known truth.
+    /// Number of poses with a position and a known truth.
     pub(super) judged: u64,
-    /// Those of them that the tracker was sure of.
+    /// Number of judged poses that were Unique.
     pub(super) unique: u64,
-    /// Those of them beyond 0.5 m or 10°.
+    /// Number of Unique poses beyond 0.5 m or 10°.
     pub(super) wrong: u64,
-    /// The first of those.
+    /// The first wrong poses.
     pub(super) first_wrong: Vec<Wrong>,
-    /// From the scan's entry into the graph to its pose, for each tenth of the run.
+    /// Latency from the scan's entry into the graph to its pose, for each tenth of the run.
     pub(super) latency_ms: Vec<Tail>,
 }
 
 impl Tally {
-    /// Of a recording with these truths; the run begins at `now_ns` of the monotonic clock,
-    /// and is to last for `planned`.
+    /// Tally for a recording with these truths; the run begins at `now_ns` of the monotonic clock,
+    /// and is planned to last `planned`.
     pub(super) fn new(truths: BTreeMap<i64, Pose>, now_ns: i64, planned: Duration) -> Self {
         Tally {
             truths,
@@ -122,7 +122,7 @@ impl Tally {
         }
     }
 
-    /// A fault was over at `over_ns`, after it had killed this many processes of nodes.
+    /// Adds a fault that ended at `over_ns` and killed this many processes of nodes.
     pub(super) fn suffered(&mut self, fault: Fault, killed: usize, over_ns: i64) {
         let effect = self.faults.entry(fault).or_insert_with(|| FaultEffect {
             times: 0,
@@ -139,12 +139,12 @@ impl Tally {
         });
     }
 
-    /// The tracker's pose of a scan.
+    /// Adds the tracker's pose of a scan.
     pub(super) fn pose(&mut self, pose: &SentPose) {
         self.poses += 1;
         let since_s = self.since_s(pose.sent_ns);
         let part = since_s / self.planned.as_secs_f64() * PARTS as f64;
-        // What comes after the planned end belongs to the last part.
+        // Poses after the planned end belong to the last part.
         let part = (part.max(0.0) as usize).min(PARTS - 1);
         self.latency_ms[part].add(pose.latency_ms);
         let is_unique = pose.state == TrackState::Unique.as_str();
@@ -177,7 +177,7 @@ impl Tally {
         }
     }
 
-    /// Faults before the pose's scan are overcome.
+    /// Ends the effect of faults that were over before the pose's scan entered the graph.
     fn close(&mut self, pose: &SentPose, is_unique: bool) {
         let (faults, entered_ns) = (&mut self.faults, pose.entered_ns());
         let last_gap_s = &mut self.last_gap_s;
@@ -198,27 +198,26 @@ impl Tally {
         });
     }
 
-    /// Whether a pose came since every fault.
+    /// True if a pose came since every fault.
     pub(super) fn has_recovered(&self) -> bool {
         self.open.iter().all(|open| open.any)
     }
 
-    /// How long the last fault from which it has recovered kept poses away, seconds.
+    /// Time without poses after the last fault from which the graph has recovered, in seconds.
     pub(super) fn last_gap_s(&self) -> f64 {
         self.last_gap_s
     }
 
-    /// Whether the tracker has been sure of a pose since every fault.
+    /// True if a Unique pose came since every fault.
     pub(super) fn is_sure(&self) -> bool {
         self.unique > 0 && self.open.is_empty()
     }
 
-    /// Faults after which the tracker has not been sure of a pose.
+    /// Faults without a Unique pose since.
     pub(super) fn not_overcome(&self) -> Vec<Fault> {
         self.open.iter().map(|open| open.fault).collect()
     }
 
-    /// The figures so far.
     pub(super) fn figures(&self) -> (PoseFigures, Vec<FaultFigures>) {
         let poses = PoseFigures {
             poses: self.poses,
@@ -244,7 +243,6 @@ impl Tally {
 }
 
 impl Gap {
-    /// Of these times.
     pub(super) fn of(seconds: &Distribution) -> Self {
         let [median, max] = seconds.percentiles([50.0, 100.0]);
         Gap { median, max }
@@ -257,7 +255,7 @@ mod tests {
 
     const SECOND: i64 = 1_000_000_000;
 
-    /// A pose at `(x, 0)`, of the scan `stamp_ns` that came at `entered_s` seconds.
+    /// A pose at `(x, 0)` of the scan `stamp_ns`, which entered at `entered_s` seconds.
     fn pose(stamp_ns: i64, entered_s: i64, x: f64, state: TrackState) -> SentPose {
         SentPose {
             stamp_ns,
@@ -298,7 +296,7 @@ mod tests {
     fn a_fault_is_overcome_by_a_pose_of_a_later_scan() {
         let mut tally = tally();
         tally.suffered(Fault::Kill, 1, 10 * SECOND);
-        // Its scan came before, so nothing had to work for it again.
+        // Its scan entered before the fault ended, so it proves no recovery.
         tally.pose(&pose(1, 9, 0.0, TrackState::Unique));
         assert!(!tally.has_recovered());
         tally.pose(&pose(1, 11, 0.0, TrackState::Searching));

@@ -1,4 +1,4 @@
-//! What the processes of a graph take, as Linux reports in /proc.
+//! Memory and file descriptors of a graph's processes, as Linux reports in /proc.
 
 use std::collections::BTreeMap;
 use std::fs::{read_dir, read_to_string};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-/// A figure at the first look, at the last one, and the highest of all.
+/// First, last and highest value of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Span {
     pub(super) start: f64,
@@ -27,26 +27,25 @@ impl Span {
     }
 }
 
-/// What one node took, over all its processes.
+/// Usage of one node, over all its processes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Taken {
-    /// Memory of its own, without what is shared, MB of 10⁶ bytes.
+    /// Private memory, without shared memory, MB of 10⁶ bytes.
     pub(super) memory_mb: Option<Span>,
-    /// Open files, sockets and the like.
+    /// Number of open files, sockets and other descriptors.
     pub(super) descriptors: Option<Span>,
 }
 
-/// What the graph took.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Usage {
-    /// By node; the launcher is one.
+    /// By node; the launcher counts as one.
     pub(super) nodes: BTreeMap<String, Taken>,
-    /// What its files in /dev/shm take, MB of 10⁶ bytes.
+    /// Size of the graph's files in /dev/shm, MB of 10⁶ bytes.
     pub(super) shared_memory_mb: Option<Span>,
 }
 
 impl Usage {
-    /// Looks at a process of a node; one that has ended just now is left out.
+    /// Samples a process of a node; one that has just ended is skipped.
     pub(super) fn look_at(&mut self, node: &str, pid: i32) {
         let process = PathBuf::from(format!("/proc/{pid}"));
         let status = read_to_string(process.join("status"));
@@ -60,7 +59,7 @@ impl Usage {
         }
     }
 
-    /// Looks at the files of the graph that are in shared memory.
+    /// Samples the graph's files in shared memory.
     pub(super) fn look_at_files(&mut self, files: &[PathBuf]) {
         let shared = files.iter().filter(|file| file.starts_with("/dev/shm"));
         let bytes = shared.map(|file| room_of(file)).sum::<u64>();
@@ -68,14 +67,14 @@ impl Usage {
     }
 }
 
-/// What a file takes, which may be less than it claims.
+/// Allocated size of a file, which may be less than its length.
 fn room_of(file: &Path) -> u64 {
-    // The unit is fixed, see stat(2). One that is gone takes nothing.
+    // The unit is fixed, see stat(2). A missing file has no size.
     file.symlink_metadata()
         .map_or(0, |found| found.blocks() * 512)
 }
 
-/// The line `RssAnon:      1968 kB`, where the unit is KiB.
+/// Parses the line `RssAnon:      1968 kB`; its unit is KiB.
 fn own_bytes(status: &str) -> Option<f64> {
     let rest = status.lines().find_map(|l| l.strip_prefix("RssAnon:"))?;
     let kib: f64 = rest.trim().strip_suffix("kB")?.trim().parse().ok()?;
@@ -108,7 +107,7 @@ mod tests {
         assert_eq!(usage.nodes.keys().collect::<Vec<_>>(), ["self"]);
         let own = &usage.nodes["self"];
         assert!(own.memory_mb.unwrap().peak > 0.0);
-        // The standard ones, and the folder that is being looked at.
+        // The standard ones, and the folder that is being read.
         assert!(own.descriptors.unwrap().peak >= 4.0);
         assert_eq!(own_bytes("RssFile: 1 kB\nRssAnon:\t 2 kB\n"), Some(2048.0));
     }

@@ -1,5 +1,5 @@
-//! Figures over many scans: percentiles, and how often and how far poses are
-//! off the truth. Pure; the launcher and the evaluation share it.
+//! Statistics over many scans: percentiles, success rates and errors of poses. Pure; used by the
+//! launcher and the evaluation.
 
 use std::collections::VecDeque;
 
@@ -7,24 +7,23 @@ use geometry::{Covariance, Pose};
 use messages::Verdict;
 use serde::Serialize;
 
-/// Metres and degrees within which a pose is a success.
+/// Error in metres and degrees up to which a pose is a success.
 pub const SUCCESS: (f64, f64) = (0.5, 10.0);
-/// Metres and degrees within which a pose is a close success.
+/// Error in metres and degrees up to which a pose is a close success.
 pub const CLOSE_SUCCESS: (f64, f64) = (0.2, 3.0);
 
-/// The share of the truths that the ellipses are to hold.
+/// Share of the truths that error ellipses should contain.
 const HELD: f64 = 0.95;
 
-/// Whether a position that lies so far off, x and y in metres, is in the ellipse of a
-/// covariance that is to hold 95 % of the truths.
+/// True if an offset from the mean, x and y in metres, is inside the 95 % ellipse of a covariance.
 pub fn holds(covariance: Covariance, off: (f64, f64)) -> bool {
-    // The distribution of χ² with two degrees of freedom is exponential.
+    // χ² with two degrees of freedom is exponentially distributed.
     covariance.squared_deviations(off) <= -2.0 * (1.0 - HELD).ln()
 }
-/// The hypotheses among which recall looks for the truth.
+/// Number of hypotheses that count for recall.
 const RECALL_DEPTH: usize = 16;
 
-/// The values of one figure.
+/// Values of one figure.
 #[derive(Debug, Clone)]
 pub struct Distribution {
     values: VecDeque<f64>,
@@ -40,7 +39,7 @@ impl Distribution {
         }
     }
 
-    /// Adds a value; one that is not a number is left out.
+    /// Adds a value; NaN is ignored.
     pub fn add(&mut self, value: f64) {
         if value.is_nan() {
             return;
@@ -51,8 +50,8 @@ impl Distribution {
         self.values.push_back(value);
     }
 
-    /// The nearest-rank percentiles: the least value that is at or above
-    /// `percent` of all, for each in 0..=100. None where there is no value.
+    /// Nearest-rank percentiles, in per cent 0..=100: the smallest value with at least that share
+    /// of values at or below it. `None` without values.
     pub fn percentiles<const N: usize>(&self, percents: [f64; N]) -> [Option<f64>; N] {
         let mut sorted: Vec<f64> = self.values.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
@@ -93,16 +92,16 @@ pub struct Spread {
     pub p90: Option<f64>,
 }
 
-/// What was found for one scan: `map_from_laser`, best first.
+/// Result of one scan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// The poses found, best first.
+    /// Poses `map_from_laser`, best first.
     pub poses: Vec<Pose>,
-    /// The verdict, where one is known.
+    /// The verdict, if known.
     pub verdict: Option<Verdict>,
 }
 
-/// Counts answers against the truth.
+/// Compares results with the truth.
 #[derive(Debug, Clone)]
 pub struct Accuracy {
     truths: u64,
@@ -116,7 +115,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Nothing yet. Errors keep the newest `capacity` values.
+    /// Errors keep the newest `capacity` values.
     pub fn new(capacity: usize) -> Self {
         Accuracy {
             truths: 0,
@@ -130,7 +129,7 @@ impl Accuracy {
         }
     }
 
-    /// Judges one answer. Without a pose it is a failure that has no error.
+    /// Judges one result. A result without a pose is a failure without an error value.
     pub fn add(&mut self, truth: Pose, answer: &Answer) {
         let success = |pose: &Pose| within(truth, *pose, SUCCESS);
         self.truths += 1;
@@ -149,7 +148,6 @@ impl Accuracy {
         self.error_deg.add(truth.angle_to(*best).to_degrees());
     }
 
-    /// The figures so far.
     pub fn figures(&self) -> Figures {
         let share = |count| (self.truths > 0).then(|| count as f64 / self.truths as f64);
         Figures {
@@ -165,29 +163,29 @@ impl Accuracy {
     }
 }
 
-/// The poses differ by at most this many metres and degrees.
+/// True if the poses differ by at most this many metres and degrees.
 fn within(a: Pose, b: Pose, (metres, degrees): (f64, f64)) -> bool {
     a.is_within(b, metres, f64::to_radians(degrees))
 }
 
-/// How good the answers were; shares are 0..=1 of `truths`.
+/// Accuracy over all results; shares are 0..=1 of `truths`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figures {
-    /// Answers for which the truth is known.
+    /// Number of results with a known truth.
     pub truths: u64,
-    /// Best pose within 0.5 m and 10°.
+    /// Share of results whose best pose is within 0.5 m and 10°.
     pub success_50cm_10deg: Option<f64>,
-    /// Best pose within 0.2 m and 3°.
+    /// Share of results whose best pose is within 0.2 m and 3°.
     pub success_20cm_3deg: Option<f64>,
-    /// Any of the best 16 poses within 0.5 m and 10°.
+    /// Share of results with any of the best 16 poses within 0.5 m and 10°.
     pub top16_recall: Option<f64>,
-    /// Answers with the verdict Unique.
+    /// Number of results with the verdict Unique.
     pub unique: u64,
-    /// Those of them beyond 0.5 m or 10°.
+    /// Number of Unique results beyond 0.5 m or 10°.
     pub unique_wrong: u64,
-    /// Distance of the best pose, metres.
+    /// Distance of the best pose from the truth, in metres.
     pub error_m: Spread,
-    /// Angle to the best pose, degrees.
+    /// Angle between the best pose and the truth, in degrees.
     pub error_deg: Spread,
 }
 
@@ -277,10 +275,10 @@ mod tests {
         assert_eq!(figures.success_20cm_3deg, Some(0.2));
         assert_eq!(figures.top16_recall, Some(0.6));
         assert_eq!((figures.unique, figures.unique_wrong), (3, 1));
-        // Of the errors 0.1, 0.4, 0 and 8 m; one sum and one root of rounding.
+        // Errors are 0.1, 0.4, 0 and 8 m; rounded by one sum and one root.
         assert!((figures.error_m.median.unwrap() - 0.1).abs() < 1e-12);
         assert!((figures.error_m.p90.unwrap() - 8.0).abs() < 1e-12);
-        // Of 1, 5, 20 and 0 degrees, to the rounding of radians and back.
+        // Errors are 1, 5, 20 and 0 degrees, rounded by the conversion to radians and back.
         assert!((figures.error_deg.median.unwrap() - 1.0).abs() < 1e-9);
     }
 

@@ -1,4 +1,4 @@
-//! What `backcast top` does.
+//! `backcast top`: shows a running graph.
 
 use std::io::{IsTerminal, stdout};
 use std::process::ExitCode;
@@ -9,26 +9,25 @@ use command_line::stdout as output;
 use super::{lines, screen, source};
 use crate::TopError;
 
-/// Options of `backcast top`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// Address of the monitor
     #[arg(default_value = "127.0.0.1:7440", value_name = "HOST:PORT")]
     address: String,
 
-    /// The robot [default: the first that the monitor knows]
+    /// Name of the robot [default: the first that the monitor knows]
     #[arg(long, value_name = "NAME")]
     robot: Option<String>,
 
-    /// Print the current state once, and exit; so does an output that is not a terminal
+    /// Print the current state once, and exit; this is also done if the output is not a terminal
     #[arg(long)]
     once: bool,
 }
 
-/// Shows the graph until `q` or Ctrl-C.
+/// Shows the graph until `q`, Esc or Ctrl-C.
 ///
 /// # Errors
-/// There is no monitor at first, or the terminal fails.
+/// No monitor answers at the start, or the terminal fails.
 pub fn run(config: &Config) -> Result<ExitCode, TopError> {
     let robot = source::find(&config.address, config.robot.as_deref())?;
     let known = source::snapshot(&config.address, &robot)?;

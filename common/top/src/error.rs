@@ -4,15 +4,15 @@ use std::io;
 
 use command_line::{CommandError, OutputError};
 
-/// Why a graph cannot be shown.
+/// Error of `backcast top`.
 #[derive(Debug, thiserror::Error)]
 pub enum TopError {
-    /// A monitor does not answer, or not as one does.
+    /// No monitor answers, or its answer is invalid.
     #[error("no monitor answers at {address}: is a graph running? ({reason})")]
     NoMonitor {
         /// Host and port.
         address: String,
-        /// What went wrong.
+        /// Description of the error.
         reason: String,
     },
     /// The monitor does not know the robot.
@@ -20,15 +20,15 @@ pub enum TopError {
     NoRobot {
         /// Host and port.
         address: String,
-        /// As it was given.
+        /// Robot as given.
         robot: String,
-        /// The robots that it knows.
+        /// Robots known by the monitor.
         known: Vec<String>,
     },
     /// The terminal cannot be used.
     #[error("cannot use the terminal")]
     Terminal(#[source] io::Error),
-    /// Standard output takes no more.
+    /// Standard output cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

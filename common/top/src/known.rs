@@ -1,35 +1,35 @@
-//! What the monitor has received, and how old it is. Fields that it does not send are at
-//! rest. Pure: received the time, and knowing no clock.
+//! State received from the monitor, and its age. Missing fields have default values. Pure: times
+//! are passed in.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-/// Scans and poses come more often than that where they come.
+/// Age after which data counts as missing; scans and poses are more frequent.
 const SILENT_AFTER: Duration = Duration::from_secs(2);
 
-/// Latencies that are kept: as many as a line can show.
+/// Number of latencies kept, which fill a line.
 const LATENCIES: usize = 120;
 
-/// A message of the monitor, as far as it is shown here.
+/// Message of the monitor, with the fields shown here.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Message {
-    /// All that is known.
+    /// Complete state.
     Snapshot(Snapshot),
-    /// Of one scan.
+    /// Answer to one scan.
     Answer(Answer),
-    /// Where the tracker has the robot.
+    /// Pose from the tracker.
     Pose(Tracked),
-    /// The state of a node.
+    /// State of a node.
     Node(Node),
-    /// What is not shown here.
+    /// Message that is not shown here.
     #[serde(other)]
     Other,
 }
 
-/// All that is known.
+/// Complete state.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Snapshot {
@@ -40,7 +40,7 @@ pub(super) struct Snapshot {
     nodes: Vec<Node>,
 }
 
-/// How old what the monitor knows is; none where it knows none.
+/// Ages of the monitor's data in seconds; `None` without data.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(default)]
 struct Ages {
@@ -48,7 +48,6 @@ struct Ages {
     pose_s: Option<f64>,
 }
 
-/// The answer to a scan.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Answer {
@@ -62,7 +61,7 @@ pub(super) struct Answer {
     pub(super) hypotheses: Vec<Place>,
 }
 
-/// Where the tracker has the robot.
+/// Pose from the tracker.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Tracked {
@@ -79,7 +78,7 @@ pub(super) struct Tracked {
     pub(super) sent_age_ms: f64,
 }
 
-/// Of one standard deviation: metres and radians.
+/// One-sigma ellipse: metres and radians.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Ellipse {
@@ -87,7 +86,7 @@ pub(super) struct Ellipse {
     pub(super) yaw: f64,
 }
 
-/// One place: metres and radians in the map.
+/// Candidate pose: metres and radians in the map.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Place {
@@ -96,7 +95,7 @@ pub(super) struct Place {
     pub(super) probability: f64,
 }
 
-/// Metres and radians.
+/// Pose: metres and radians.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Pose {
@@ -105,7 +104,6 @@ pub(super) struct Pose {
     pub(super) yaw: f64,
 }
 
-/// The state of a node.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
@@ -119,7 +117,7 @@ pub(super) struct Node {
     pub(super) last_error: String,
 }
 
-/// How old something is: so old when it was received, and older since.
+/// Age of data: its age when it was received, plus the time since.
 #[derive(Debug, Clone, Copy)]
 struct Age {
     received: Instant,
@@ -141,25 +139,25 @@ impl Age {
     }
 }
 
-/// The state of the graph.
+/// State of the graph.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub(super) robot: String,
     pub(super) answer: Option<Answer>,
-    /// None where the graph has no tracker.
+    /// `None` if the graph has no tracker.
     pub(super) pose: Option<Tracked>,
-    /// Of the newest scan that was answered, since it entered the graph.
+    /// Age of the newest answered scan since it entered the graph.
     scan_age: Option<Age>,
-    /// Of the tracker's newest pose, since it was sent.
+    /// Age of the tracker's newest pose since it was sent.
     pose_age: Option<Age>,
     pub(super) nodes: BTreeMap<String, Node>,
     pub(super) latencies_ms: VecDeque<f64>,
-    /// Why nothing is received at the moment.
+    /// Reason why the connection is lost.
     pub(super) lost: Option<String>,
 }
 
 impl Known {
-    /// Takes a message that came at `now`.
+    /// Handles a message received at `now`.
     pub(super) fn receive(&mut self, message: Message, now: Instant) {
         let age = |seconds: f64| Age::of(seconds, now);
         self.lost = None;
@@ -195,8 +193,7 @@ impl Known {
         }
     }
 
-    /// Why what is shown is not how it is at `now`: nothing new came for a while. None
-    /// where it came.
+    /// Returns a warning if no new data came for a while before `now`.
     pub(super) fn silence(&self, now: Instant) -> Option<String> {
         let quiet = |age: Option<Age>, what: &str| {
             let age = age?.at(now);
@@ -206,7 +203,8 @@ impl Known {
         quiet(self.scan_age, "data").or_else(|| quiet(self.pose_age, "pose"))
     }
 
-    /// Whether what is shown is of a scan: between scans the tracker counts odometry.
+    /// True if the state shown belongs to a scan: between scans the tracker's counter is that of
+    /// odometry.
     pub(super) fn is_of_scan(&self) -> bool {
         self.pose.as_ref().is_none_or(|pose| pose.from_scan)
     }
@@ -254,7 +252,7 @@ mod tests {
             None,
             "nothing came yet"
         );
-        // Whoever looks a minute after the laser died is received so at once.
+        // A viewer who connects a minute after the laser died gets this snapshot.
         let old = r#"{"type":"snapshot","ages":{"scan_s":61.5},"answer":{"verdict":"Unique"}}"#;
         assert_eq!(receive(old, 0).unwrap(), "no data for 61 s");
         assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 1), None);

@@ -1,7 +1,7 @@
-//! `backcast top`: a running graph in the terminal, by the API of its monitor.
+//! `backcast top`: shows a running graph in the terminal, with the API of its monitor.
 //!
-//! `known` reads what the monitor sends, `lines` puts it into words, both pure;
-//! `source` asks and listens, `screen` shows.
+//! `known` parses the monitor's messages, `lines` formats them, both pure; `source` connects to the
+//! monitor, `screen` draws.
 
 mod command;
 mod error;

@@ -1,4 +1,4 @@
-//! The state of a graph, line by line, as the terminal and the snapshot show it.
+//! Formats the state of a graph in lines, for the terminal and for `--once`.
 
 use std::time::Instant;
 
@@ -8,13 +8,13 @@ use ratatui::text::{Line, Span, Text};
 
 use super::known::{Answer, Known, Node, Place, Tracked};
 
-/// Places that are shown.
+/// Number of places shown.
 const PLACES: usize = 5;
 
 /// Eight heights of a bar.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// All of it, as it is at `now`.
+/// Formats the whole state at `now`.
 pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
     let mut lines = vec![title(known, now), Line::default()];
     if let Some(pose) = &known.pose {
@@ -48,7 +48,7 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
     Text::from(lines)
 }
 
-/// The same without colours.
+/// Formats the state without colours.
 pub(super) fn plain(known: &Known, now: Instant) -> String {
     let lines = text(known, now).lines;
     lines
@@ -65,7 +65,7 @@ fn title(known: &Known, now: Instant) -> Line<'static> {
         (None, None) => ("", None),
     };
     let color = match &silence {
-        // What was is not what is.
+        // Old data must not look current.
         Some(_) => Color::DarkGray,
         None => color_of(state),
     };
@@ -96,7 +96,7 @@ fn color_of(state: &str) -> Color {
     }
 }
 
-/// Where the tracker has the robot, and why it thinks so.
+/// Formats the tracker's pose and its reason.
 fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     let mut lines = vec![Line::from(format!("{}.", pose.says))];
     if let Some(laser) = pose.laser {

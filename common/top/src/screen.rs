@@ -1,4 +1,4 @@
-//! The terminal: drawn when something is new, restored in the end.
+//! Terminal output: drawn when there is new data, restored at the end.
 
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
@@ -12,13 +12,13 @@ use super::lines;
 use super::source::Update;
 use crate::TopError;
 
-/// Between two looks at what was updates and at the keys.
+/// Longest wait for a key between two checks for updates.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// Ages are shown again as often, where nothing comes.
+/// Redraw interval for ages without new data.
 const AGES: Duration = Duration::from_millis(500);
 
-/// Shows what is known and what is updates, until somebody wants no more.
+/// Shows the state and its updates until the user quits.
 ///
 /// # Errors
 /// The terminal fails.
@@ -55,7 +55,7 @@ fn follow(
         if event::poll(FRAME).map_err(TopError::Terminal)? {
             match event::read().map_err(TopError::Terminal)? {
                 Event::Key(key) if ends(key.code, key.modifiers) => return Ok(()),
-                // The window may have another size.
+                // The window may have a new size.
                 _ => is_new = true,
             }
         }

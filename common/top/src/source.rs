@@ -1,4 +1,4 @@
-//! Asks the monitor, and listens to it.
+//! Connects to the monitor: requests and stream of updates.
 
 use std::net::TcpStream;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -11,19 +11,19 @@ use tungstenite::client;
 use super::known::{Known, Message};
 use crate::TopError;
 
-/// Messages that wait for the screen; more wait at the monitor.
+/// Largest number of messages queued for the screen; the monitor queues more.
 const WAITING: usize = 256;
 
-/// Until the next try to connect.
+/// Pause before reconnecting.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// A monitor that says nothing for so long is gone: its nodes report each second.
+/// Timeout of the monitor: its nodes report every second.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// A message, or why there is none.
+/// A message, or the reason for a lost connection.
 pub(super) type Update = Result<Message, String>;
 
-/// The robot to watch.
+/// Returns the robot to watch.
 ///
 /// # Errors
 /// No monitor answers, or it does not know the robot.
@@ -44,7 +44,7 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopErro
     })
 }
 
-/// All that is known now.
+/// Returns the current state.
 ///
 /// # Errors
 /// No monitor answers.
@@ -74,8 +74,7 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, T
     response.body_mut().read_json().map_err(no_monitor)
 }
 
-/// What happens from now on, from a thread of its own that comes back to a
-/// monitor that was gone.
+/// Receives updates on a thread, which reconnects to a lost monitor.
 ///
 /// # Errors
 /// The thread cannot be started.
@@ -97,7 +96,7 @@ pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Update>, Top
     Ok(received)
 }
 
-/// Passes on all messages; returns when nobody wants them any more.
+/// Forwards all messages; returns when the receiver is gone.
 fn listen(address: &str, robot: &str, updates: &SyncSender<Update>) -> Result<(), String> {
     let stream = TcpStream::connect(address).map_err(|error| error.to_string())?;
     let patience = stream.set_read_timeout(Some(TIMEOUT));

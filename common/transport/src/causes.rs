@@ -1,12 +1,11 @@
-//! An error and what caused it, in words.
+//! Formats an error with its causes.
 
 use std::error::Error;
 
-/// An error and its causes, on one line.
+/// Returns an error and its causes on one line.
 ///
-/// Errors here say what their cause is by `source` alone and not in their own
-/// words too, or it would be said twice. So whoever shows an error to people, in
-/// a log or in health, shows it by this.
+/// The messages of our errors do not include that of their `source`, so this must be used wherever
+/// an error is shown to users, in a log or in health.
 #[must_use]
 pub fn with_causes(error: &dyn Error) -> String {
     let mut text = error.to_string();

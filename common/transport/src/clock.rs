@@ -1,12 +1,12 @@
-//! The clock of latencies, which counts from the host's start and is of no use for
-//! dates; and the one of dates, which may be set.
+//! The monotonic clock for latencies, which counts from the host's start, and the wall clock for
+//! dates, which may be set.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use nix::time::{ClockId, clock_gettime};
 
-/// `CLOCK_MONOTONIC` in nanoseconds: the same clock in every process of a host,
-/// started at boot, never set back.
+/// Returns `CLOCK_MONOTONIC` in nanoseconds: the same clock in every process of a host, started at
+/// boot, never set back.
 #[must_use]
 pub fn monotonic_ns() -> i64 {
     // The clock exists on every Linux, and 292 years of nanoseconds fit.
@@ -14,7 +14,7 @@ pub fn monotonic_ns() -> i64 {
     now.tv_sec() * 1_000_000_000 + now.tv_nsec()
 }
 
-/// The wall clock, nanoseconds since 1970; 0 where it is set before that.
+/// Returns the wall clock in nanoseconds since 1970; 0 if it is set before that.
 #[must_use]
 pub fn wall_ns() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);

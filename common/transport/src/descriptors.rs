@@ -1,29 +1,29 @@
-//! Whether the process may open as many files as a member needs, asked before it joins.
+//! Checks, before a process joins, that it may open as many files as a member needs.
 
 use nix::sys::resource::{Resource, getrlimit, setrlimit};
 
 use crate::TransportError;
 
-/// What a member may need: an end of a topic opens a few files for each of its partners.
+/// Number of files that a member may need: each port opens a few files for each of its peers.
 const NEEDED: u64 = 512;
 
-/// Raises the limit of this process as far as that is needed.
+/// Raises the soft limit of this process to [`NEEDED`] if it is lower.
 ///
 /// # Errors
 /// [`TransportError::Descriptors`] if the hard limit is lower.
 pub(crate) fn ensure() -> Result<(), TransportError> {
     let Ok((soft, hard)) = getrlimit(Resource::RLIMIT_NOFILE) else {
-        // Where it cannot be asked it shows when it is reached.
+        // An unknown limit shows when it is reached.
         return Ok(());
     };
     if decide(soft, hard)? {
-        // A limit that cannot be raised shows when it is reached, too.
+        // So does a limit that cannot be raised.
         let _ = setrlimit(Resource::RLIMIT_NOFILE, NEEDED, hard);
     }
     Ok(())
 }
 
-/// Whether the limit is to be raised.
+/// Returns true if the soft limit must be raised.
 fn decide(soft: u64, hard: u64) -> Result<bool, TransportError> {
     match hard < NEEDED {
         true => Err(TransportError::Descriptors {

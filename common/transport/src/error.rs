@@ -1,72 +1,66 @@
-//! What can go wrong between a node and its graph.
+//! Errors between a node and its graph.
 //!
-//! Each variant says what was tried, what was found and what is allowed; the
-//! words of iceoryx2 are kept as the reason where it alone knows more.
+//! Each variant says what was tried, what was found and what is allowed. The text of iceoryx2 is
+//! the reason where only iceoryx2 knows more.
 
 use std::path::PathBuf;
 
 use crate::GraphName;
 
-/// A failure of the transport.
+/// Error of the transport.
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
-    /// Not a name for a graph.
+    /// Invalid name of a graph.
     #[error(
         "{name:?} is not a graph name: allowed are 1 to {} of a-z, 0-9, '-' and '_'",
         GraphName::CAPACITY
     )]
     GraphName {
-        /// What was given.
+        /// Name as given.
         name: String,
     },
-    /// Not a name for a node.
+    /// Invalid name of a node.
     #[error("{name:?} is not a node name: allowed are 1 to {capacity} bytes", capacity = messages::Name::CAPACITY)]
     NodeName {
-        /// What was given.
+        /// Name as given.
         name: String,
     },
-    /// The folder of this user's graphs belongs to somebody else.
+    /// The folder of this user's graphs belongs to another user.
     #[error(
         "{} belongs to user {owner}, but this process runs as user {user}: remove it as its owner or as root, \
          for it is where this user's graphs meet",
         path.display()
     )]
     ForeignFolder {
-        /// The folder.
         path: PathBuf,
-        /// The user id that owns it.
+        /// User id of the folder's owner.
         owner: u32,
-        /// The user id of this process.
+        /// User id of this process.
         user: u32,
     },
-    /// Something that is no folder stands where this user's folder should be.
+    /// The path of this user's folder is not a folder.
     #[error("{} is not a folder (owner: user {owner}): remove it, for it is where this user's graphs meet", path.display())]
     NotAFolder {
-        /// What is in the way.
         path: PathBuf,
-        /// The user id that owns it.
+        /// User id of the owner.
         owner: u32,
     },
     /// A file or folder of the graph could not be used.
     #[error("cannot {action} {}", path.display())]
     File {
-        /// What was tried, as a verb.
+        /// Verb of what was tried.
         action: &'static str,
-        /// With what.
         path: PathBuf,
-        /// Why it failed.
         source: std::io::Error,
     },
     /// The process could not become a member of the graph.
     #[error("node {node} cannot join graph {graph} under {}: {reason}", root.display())]
     Join {
-        /// The node.
         node: String,
-        /// The graph.
         graph: GraphName,
-        /// The folder where the graph's processes meet.
+        /// Folder where the graph's processes meet.
         root: PathBuf,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
     /// Signals could not be caught.
@@ -78,152 +72,139 @@ pub enum TransportError {
          build all nodes from one version and restart the graph"
     )]
     TypeMismatch {
-        /// The topic.
         topic: &'static str,
         /// Header and items that this process was built with.
         expected: String,
-        /// Header and items that are in use.
+        /// Header and items in use in the graph.
         found: String,
     },
     /// The topic could not be opened.
     #[error("cannot open topic {topic}: {reason}")]
     Open {
-        /// The topic.
         topic: &'static str,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
-    /// As many publishers as the topic allows are there already.
+    /// The topic has its maximum number of publishers.
     #[error("topic {topic} has {limit} publishers already, which is the maximum")]
     TooManyPublishers {
-        /// The topic.
         topic: &'static str,
-        /// Most publishers at the same time.
+        /// Maximum number of publishers.
         limit: usize,
     },
-    /// As many subscribers as the topic allows are there already.
+    /// The topic has its maximum number of subscribers.
     #[error("topic {topic} has {limit} subscribers already, which is the maximum")]
     TooManySubscribers {
-        /// The topic.
         topic: &'static str,
-        /// Most subscribers at the same time.
+        /// Maximum number of subscribers.
         limit: usize,
     },
-    /// A publisher or subscriber could not be made.
+    /// A publisher, a subscriber or a port of its wake-up channel could not be created.
     #[error("cannot create the {port} of topic {topic}: {reason}")]
     Port {
-        /// The topic.
         topic: &'static str,
-        /// Publisher, subscriber, or one of the ends of its wake-up channel.
+        /// Kind of port.
         port: &'static str,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
-    /// Shared memory has no room for what is to be written.
+    /// Shared memory is full.
     #[error(
         "shared memory is full: topic {topic} needs {needed} bytes, {} has {free} free; \
          remove files there or make it larger (docker run --shm-size, mount -o remount,size=)",
         path.display()
     )]
     SharedMemoryFull {
-        /// The topic.
         topic: &'static str,
-        /// Bytes that are needed.
+        /// Bytes needed.
         needed: u64,
-        /// Bytes that are free.
+        /// Bytes free.
         free: u64,
-        /// Where shared memory is mounted.
+        /// Mount point of shared memory.
         path: PathBuf,
     },
-    /// A sample of this many items has no size that a machine could hold.
+    /// A sample of this many items exceeds any possible memory size.
     #[error("topic {topic} cannot carry a sample of {items} items of {item_bytes} bytes")]
     TooLarge {
-        /// The topic.
         topic: &'static str,
-        /// Items that were asked for.
+        /// Number of items requested.
         items: usize,
-        /// Size of one.
+        /// Size of an item in bytes.
         item_bytes: usize,
     },
     /// No memory could be loaned for a sample.
     #[error("cannot loan a sample of {items} items on topic {topic}: {reason}")]
     Loan {
-        /// The topic.
         topic: &'static str,
-        /// Items that were asked for.
+        /// Number of items requested.
         items: usize,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
     /// A sample could not be sent, or its subscribers could not be woken.
     #[error("cannot send on topic {topic}: {reason}")]
     Send {
-        /// The topic.
         topic: &'static str,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
-    /// Samples could not be taken.
+    /// Samples could not be received.
     #[error("cannot receive on topic {topic}: {reason}")]
     Receive {
-        /// The topic.
         topic: &'static str,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
     /// Waiting for inputs failed.
     #[error("cannot wait for inputs: {reason}")]
     Wait {
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
-    /// The processes of a graph could not be looked up.
+    /// The processes of a graph could not be listed.
     #[error("cannot list the processes of graph {graph} under {}: {reason}", root.display())]
     List {
-        /// The graph.
         graph: GraphName,
-        /// The folder where the graph's processes meet.
+        /// Folder where the graph's processes meet.
         root: PathBuf,
-        /// What iceoryx2 says.
+        /// Error of iceoryx2.
         reason: String,
     },
-    /// The process may not open as many files as it needs.
+    /// The process may not open as many files as a member needs.
     #[error(
         "this process may open {found} files at most, and a node needs up to {needed}: raise the limit \
          (ulimit -n {needed}, LimitNOFILE= of a unit, docker run --ulimit nofile=)"
     )]
     Descriptors {
-        /// The hard limit.
+        /// Hard limit of the process.
         found: u64,
-        /// What a member may need.
+        /// Limit that a member may need.
         needed: u64,
     },
-    /// A file of another user stands where one of the graph belongs.
+    /// A file of another user has a name that this user's graph needs.
     #[error(
         "{} belongs to user {owner}, and the graph of user {user} needs that name: \
          have it removed, or give the graph another name (--graph)",
         path.display()
     )]
     ForeignFile {
-        /// What is in the way.
         path: PathBuf,
-        /// The user id that owns it.
+        /// User id of the file's owner.
         owner: u32,
-        /// The user id of this process.
+        /// User id of this process.
         user: u32,
     },
-    /// Files by which the processes of a graph find each other have been removed.
+    /// Files by which the processes of a graph find each other were removed.
     #[error("files of the running graph were removed from {}: no node can join it any more", root.display())]
     Vanished {
-        /// The folder where the graph's processes meet.
+        /// Folder where the graph's processes meet.
         root: PathBuf,
     },
-    /// The graph's files cannot be removed while processes use them.
+    /// The graph's files cannot be removed while its processes are running.
     #[error("graph {graph} still runs: {}; stop it first", processes.join(", "))]
     StillRunning {
-        /// The graph.
         graph: GraphName,
-        /// Its living nodes: name and process.
+        /// Name and process id of each running node, or the lock that is held.
         processes: Vec<String>,
     },
 }

@@ -1,7 +1,7 @@
-//! Waiting for inputs, ticks and signals.
+//! Event loop: waits for inputs, ticks and signals.
 //!
-//! The process sleeps until there is something to do; it never polls faster
-//! than its tick. What it does then is the node's business.
+//! The process sleeps until there is something to do; it never polls faster than its tick. The node
+//! decides what to do then.
 
 use std::time::{Duration, Instant};
 
@@ -14,11 +14,11 @@ use iceoryx2::prelude::{
 use crate::signals::Signals;
 use crate::{Graph, Input, TransportError};
 
-/// The system counts a sleep in milliseconds that end after 24 days. Waking once
-/// a day for nothing costs nothing.
+/// Longest sleep. The system call takes milliseconds, which overflow after 24 days; waking once a
+/// day costs nothing.
 const LONGEST_SLEEP: Duration = Duration::from_secs(86_400);
 
-/// Whether an event loop continues.
+/// Decision to continue or end an event loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// Wait for the next input or tick.
@@ -27,31 +27,27 @@ pub enum Flow {
     Stop,
 }
 
-/// What a call of the event loop is about. Every call is to look at all inputs:
-/// an input that nobody announced, because its publisher was killed between
-/// sending and waking, is found with the next tick.
+/// Reason for a call of the event loop. Every call should look at all inputs: a sample without a
+/// wake-up, because its publisher was killed between sending and waking, is found at the next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wake {
-    /// A tick has passed since the last call in which this was set; set in the
-    /// first call.
+    /// True if a tick has passed since the last call with this flag; true in the first call.
     pub tick: bool,
 }
 
 impl Graph {
-    /// Calls `step` at once, then whenever one of `inputs` has something, a
-    /// [`crate::Waker`] wakes or a `tick` has passed, until it returns
-    /// [`Flow::Stop`] or an error, or until the stop flag is set. In between it
-    /// sleeps, unless `tick` is zero.
+    /// Calls `step` at once, and then whenever one of `inputs` has a sample, a [`crate::Waker`]
+    /// wakes or a `tick` has passed. Returns when `step` returns [`Flow::Stop`] or an error, or
+    /// when the stop flag is set. In between it sleeps, unless `tick` is zero.
     ///
-    /// `step` is to take all samples that its subscribers have; one left there
-    /// waits for the next input or tick. A signal ends the sleep at once; a flag
-    /// that the program sets itself is seen with the next input or tick. Before
-    /// each call, the publishers of this graph connect with late joiners, who thus
-    /// wait for a latched sample a tick at most, or as long as `step` takes. What
-    /// the process logs is sent after each call.
+    /// `step` should receive all samples of its subscribers; a sample left there waits for the next
+    /// input or tick. A signal ends the sleep at once; a stop flag set by the program itself is
+    /// seen at the next input or tick. Before each call, the publishers of this graph connect with
+    /// late joiners, so that these wait for a latched sample for a tick at most, or as long as
+    /// `step` takes. After each call, the process's log lines are published.
     ///
     /// # Errors
-    /// What `step` returns, and [`TransportError`] if waiting or serving fails.
+    /// Errors of `step`, and [`TransportError`] if waiting or serving late joiners fails.
     pub fn run<E: From<TransportError>>(
         &self,
         inputs: &[&dyn Input],
@@ -86,8 +82,8 @@ impl Graph {
     }
 }
 
-/// When the next tick is due: never, if that is beyond what the clock can say.
-/// A tick that comes late is not made up for.
+/// Time of the next tick; `None` if it is beyond the range of the clock. Missed ticks are not made
+/// up for.
 struct Ticks {
     period: Duration,
     due: Option<Instant>,
@@ -135,8 +131,8 @@ fn attach<'w, 'a>(
 }
 
 fn wait(waitset: &WaitSet<ipc::Service>, timeout: Duration) -> Result<(), TransportError> {
-    // Which one woke does not matter, since every call looks at all inputs. An
-    // interrupt by a signal is no error either.
+    // It does not matter which input woke, as every call looks at all inputs. An interrupt by a
+    // signal is not an error either.
     let ignore = |_: WaitSetAttachmentId<ipc::Service>| CallbackProgression::Continue;
     waitset
         .wait_and_process_once_with_timeout(ignore, timeout)
@@ -144,16 +140,16 @@ fn wait(waitset: &WaitSet<ipc::Service>, timeout: Duration) -> Result<(), Transp
         .map_err(|error| wait_failed(&error))
 }
 
-/// Takes the notifications, before the samples are looked at: one that comes
-/// later stays, and ends the next sleep.
+/// Clears the notifications before the samples are received: a later notification remains and ends
+/// the next sleep.
 fn take_notifications(inputs: &[&dyn Input]) -> Result<bool, TransportError> {
     let mut any = false;
     for input in inputs {
         if take(input.listener())? {
             any = true;
-            // A notification that arrives while iceoryx2 takes another one can
-            // be taken along while its mark stays, and later ones would then
-            // not end the sleep. Taking again, which is cheap, removes the mark.
+            // A notification that arrives while iceoryx2 takes another one can be cleared while its
+            // mark stays; then later ones would not end the sleep. A second, cheap call removes the
+            // mark.
             take(input.listener())?;
         }
     }

@@ -1,25 +1,24 @@
-//! Losses, computed from the counters of the received samples.
+//! Computes losses from the counters of the received samples.
 //!
-//! What is lost after the last sample shows only when another one comes.
+//! A loss after the last sample is only detected when another sample comes.
 
-/// Counts the samples of one publisher that never arrived. Pure: fed with the
-/// counters of the stamps, in the order of arrival.
+/// Counts the lost samples of one publisher. Pure: fed with the counters of the stamps, in the
+/// order of arrival.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GapCounter {
     next: Option<u64>,
 }
 
 impl GapCounter {
-    /// A counter that has seen nothing.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The number of samples lost just before the one with `counter`.
+    /// Returns the number of samples lost just before the one with `counter`.
     ///
-    /// The first sample shows nothing, for one may join late; a counter at or
-    /// below the last one belongs to a publisher that has started again.
+    /// It is 0 for the first sample, as a subscriber may join late, and for a counter at or below
+    /// the last one, as the publisher has restarted.
     pub fn lost_before(&mut self, counter: u64) -> u64 {
         let lost = self.next.map_or(0, |next| counter.saturating_sub(next));
         self.next = Some(counter.saturating_add(1));

@@ -1,7 +1,7 @@
 //! A process's membership of a graph.
 //!
-//! Makes what a node needs: ends of topics, a health reporter, a stop flag. It
-//! sends and waits for nothing itself.
+//! Creates what a node needs: publishers, subscribers, a health reporter, a stop flag. It neither
+//! sends nor waits by itself.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -26,11 +26,11 @@ use crate::{
     root,
 };
 
-/// How long joining waits for another process that is cleaning up after a dead
-/// one, whose place may be needed.
+/// Longest wait when joining, while another process cleans up after a dead one whose slot may be
+/// needed.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);
 
-/// One process's membership of one graph; it stays on the thread that joined.
+/// Membership of one process in one graph; it stays on the thread that joined.
 pub struct Graph {
     node_name: String,
     membership: Membership,
@@ -38,30 +38,30 @@ pub struct Graph {
     signals: Signals,
     publishers: IdlePublishers,
     losses: Losses,
-    /// What iceoryx2 has put down for this process.
+    /// Files that iceoryx2 has created for this process.
     own_files: Vec<PathBuf>,
-    /// Against the cleaning of temporary folders, unless another process has it.
+    /// Lock against the cleaning of temporary folders; `None` while another process has it.
     root_lock: RefCell<Option<Flock<File>>>,
-    /// Says that a member is alive; let go of after the node.
+    /// Lock that marks this member as alive; dropped after the node.
     _alive: alive::Lock,
-    /// Where the process logs through `tracing`.
+    /// Publisher of the log, if the process logs through `tracing`.
     log: Option<Rc<RefCell<LogSender>>>,
 }
 
 impl Graph {
-    /// Joins the graph that `BACKCAST_GRAPH` names, as `node_name`.
+    /// Joins the graph named by `BACKCAST_GRAPH`, as `node_name`.
     ///
     /// # Errors
-    /// As [`Graph::join_named`], and if the variable holds no valid name.
+    /// See [`Graph::join_named`]; also if the variable is not a valid name.
     pub fn join(node_name: &str) -> Result<Graph, TransportError> {
         Self::join_named(node_name, &GraphName::from_environment()?)
     }
 
-    /// Joins `graph` as `node_name`, and cleans up after members that died.
+    /// Joins `graph` as `node_name`, and cleans up after dead members.
     ///
     /// # Errors
-    /// If the name is unusable, this user's folder cannot be used, signals
-    /// cannot be caught, or iceoryx2 refuses.
+    /// The name is invalid, this user's folder cannot be used, signals cannot be caught, or
+    /// iceoryx2 fails.
     pub fn join_named(node_name: &str, graph: &GraphName) -> Result<Graph, TransportError> {
         log::route_to_tracing();
         if node_name.is_empty() || node_name.len() > Name::CAPACITY {
@@ -104,7 +104,7 @@ impl Graph {
             log: None,
         };
         if log_lines::are_kept() {
-            // No line makes it grow, as with health.
+            // Its memory never grows, for the reason given in `health`.
             let publisher = graph.publisher_for(LogHeader::TEXT_CAPACITY)?;
             let sender = LogSender::new(node_name, publisher);
             graph.log = Some(Rc::new(RefCell::new(sender)));
@@ -112,56 +112,55 @@ impl Graph {
         Ok(graph)
     }
 
-    /// The graph's name.
     #[must_use]
     pub fn name(&self) -> &GraphName {
         &self.membership.graph
     }
 
-    /// The name under which this process joined.
+    /// Name under which this process joined.
     #[must_use]
     pub fn node_name(&self) -> &str {
         &self.node_name
     }
 
-    /// A sender for topic `T`.
+    /// Creates a publisher of topic `T`.
     ///
     /// # Errors
-    /// If the topic carries other types, has its publishers already, or shared
-    /// memory is full.
+    /// The topic carries other types or has its maximum number of publishers, or shared memory is
+    /// full.
     pub fn publisher<T: Topic>(&self) -> Result<Publisher<T>, TransportError> {
-        // It grows with what it is asked for, so it starts small.
+        // It grows with the requested samples, so it starts small.
         self.publisher_for::<T>(1)
     }
 
-    /// A sender for topic `T` whose samples have up to `items` items: for samples of
-    /// changing size, since a publisher that grows takes along what a subscriber has
-    /// not looked at when it ends. It grows all the same if it is asked for more.
+    /// Creates a publisher of topic `T` for samples of up to `items` items. It avoids growing,
+    /// which would lose samples that a subscriber has not received yet when the publisher ends. It
+    /// still grows for larger samples.
     ///
     /// # Errors
-    /// As [`Graph::publisher`].
+    /// See [`Graph::publisher`].
     pub fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
         let publisher = Publisher::create(&self.node, items, self.losses.clone())?;
         self.publishers.add(publisher.for_event_loop());
         Ok(publisher)
     }
 
-    /// A receiver for topic `T`.
+    /// Creates a subscriber of topic `T`.
     ///
     /// # Errors
-    /// If the topic carries other types, has its subscribers already, or shared
-    /// memory is full.
+    /// The topic carries other types or has its maximum number of subscribers, or shared memory is
+    /// full.
     pub fn subscriber<T: Topic>(&self) -> Result<Subscriber<T>, TransportError> {
         Subscriber::create(&self.node)
     }
 
-    /// A reporter of this node's health.
+    /// Creates the reporter of this node's health.
     ///
     /// # Errors
-    /// As [`Graph::publisher`].
+    /// See [`Graph::publisher`].
     pub fn health(&self) -> Result<Health, TransportError> {
-        // No error message makes it grow: what it says last, just before it goes,
-        // then lies in memory that its subscribers know already.
+        // No error message makes it grow, so that the last message before its end is in memory that
+        // its subscribers have mapped already.
         let publisher = self.publisher_for(HealthHeader::ERROR_CAPACITY)?;
         Health::new(
             &self.node_name,
@@ -171,45 +170,45 @@ impl Graph {
         )
     }
 
-    /// A flag that SIGINT, SIGTERM and SIGHUP set: to be looked at in long computations.
+    /// Flag that SIGINT, SIGTERM and SIGHUP set, to be polled in long computations.
     #[must_use]
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         self.signals.flag()
     }
 
-    /// A handle by which another thread ends the sleep of [`Graph::run`].
+    /// Returns a handle with which another thread ends the sleep of [`Graph::run`].
     ///
     /// # Errors
-    /// If the process has no file descriptor left.
+    /// The process has no free file descriptor.
     pub fn waker(&self) -> Result<Waker, TransportError> {
         self.signals.waker()
     }
 
-    /// Frees what members that died have left, so that others can take their
-    /// places; returns how many there were. For a supervisor, now and then.
+    /// Frees the slots of dead members and returns their number. To be called by a supervisor from
+    /// time to time.
     pub fn cleanup_dead_nodes(&self) -> u64 {
         let mut lock = self.root_lock.borrow_mut();
         if lock.is_none() {
-            // Who had it may have gone.
+            // The process that had the lock may have ended.
             *lock = root::keep_from_cleaning(&self.membership.root);
         }
         self.node.try_cleanup_dead_nodes().cleanups
     }
 
-    /// Sends what was logged since the last call, if the process logs through
-    /// [`crate::node::start_logging`]. [`Graph::run`] does so after each step. Lines
-    /// that cannot be sent are counted, and reported when others can.
+    /// Publishes the lines logged since the last call, if the process logs through
+    /// [`crate::node::start_logging`]. [`Graph::run`] calls this after each step. Lines that cannot
+    /// be sent are counted and reported later.
     pub fn send_log(&self) {
         if let Some(log) = &self.log {
             log.borrow_mut().send_waiting();
         }
     }
 
-    /// Whether the files by which others find this process are there: something that
-    /// cleans temporary folders may have removed them.
+    /// Checks that the files exist by which other processes find this one; cleaning of temporary
+    /// folders may have removed them.
     ///
     /// # Errors
-    /// [`TransportError::Vanished`] if they are not.
+    /// [`TransportError::Vanished`] if one is missing.
     pub fn ensure_intact(&self) -> Result<(), TransportError> {
         let missing = |path: &PathBuf| matches!(path.try_exists(), Ok(false));
         if self.own_files.iter().any(missing) {

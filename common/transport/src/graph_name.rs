@@ -1,7 +1,7 @@
-//! The name of a graph, by which its processes find each other.
+//! Name of a graph, by which its processes find each other.
 //!
-//! A name is checked once, here; everything derived from it (the prefix of
-//! files in shared memory) may rely on its characters and length.
+//! Its characters and length are checked once, here; names derived from it (the prefix of files in
+//! shared memory) rely on that.
 
 use std::net::Ipv4Addr;
 
@@ -10,7 +10,7 @@ use twox_hash::XxHash3_64;
 use crate::TransportError;
 use crate::root::current_user;
 
-/// The environment variable that names the graph which a process joins.
+/// Environment variable with the name of the graph that a process joins.
 pub const GRAPH_VARIABLE: &str = "BACKCAST_GRAPH";
 
 /// A valid graph name: 1 to [`GraphName::CAPACITY`] of `a-z`, `0-9`, `-`, `_`.
@@ -18,17 +18,16 @@ pub const GRAPH_VARIABLE: &str = "BACKCAST_GRAPH";
 pub struct GraphName(String);
 
 impl GraphName {
-    /// Most bytes of a name. Wake-up sockets carry the name in their path, and
-    /// a socket's path has at most 107 bytes, most of which are taken.
+    /// Longest name in bytes. Wake-up sockets have the name in their path, which is limited to 107
+    /// bytes, most of them used otherwise.
     pub const CAPACITY: usize = 20;
-    /// The graph that a process joins if nobody names another.
+    /// Graph that a process joins by default.
     pub const DEFAULT: &'static str = "backcast";
 
     /// Checks `name`.
     ///
     /// # Errors
-    /// [`TransportError::GraphName`] if it is empty, too long, or holds another
-    /// character than those allowed.
+    /// [`TransportError::GraphName`] if it is empty, too long, or has an invalid character.
     pub fn new(name: &str) -> Result<Self, TransportError> {
         let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b"-_".contains(&b);
         if name.is_empty() || name.len() > Self::CAPACITY || !name.bytes().all(allowed) {
@@ -37,10 +36,10 @@ impl GraphName {
         Ok(GraphName(name.into()))
     }
 
-    /// The name in [`GRAPH_VARIABLE`], or [`GraphName::DEFAULT`] where it is unset.
+    /// Returns the name in [`GRAPH_VARIABLE`], or [`GraphName::DEFAULT`] if it is unset.
     ///
     /// # Errors
-    /// [`TransportError::GraphName`] if the variable holds no valid name.
+    /// [`TransportError::GraphName`] if the variable is not a valid name.
     pub fn from_environment() -> Result<Self, TransportError> {
         match std::env::var_os(GRAPH_VARIABLE) {
             None => Self::new(Self::DEFAULT),
@@ -48,9 +47,9 @@ impl GraphName {
         }
     }
 
-    /// An address of this machine alone that is the graph's own: what its nodes
-    /// say to each other over sockets does not meet another graph, or one of the same
-    /// name of another user. Two share one in 16 million times.
+    /// Returns the loopback address of this graph. Sockets of its nodes on this address do not
+    /// collide with those of another graph or another user's graph of this name. Two graphs share
+    /// one with a probability of 1 in 16 million.
     #[must_use]
     pub fn loopback(&self) -> Ipv4Addr {
         self.loopback_of(current_user())
@@ -63,7 +62,7 @@ impl GraphName {
         Ipv4Addr::new(127, b.max(1), c, d.clamp(1, 254))
     }
 
-    /// HOST:PORT where the host `graph` means [`GraphName::loopback`].
+    /// Replaces the host `graph` of HOST:PORT by [`GraphName::loopback`].
     #[must_use]
     pub fn resolve(&self, address: &str) -> String {
         match address.strip_prefix("graph:") {
@@ -72,7 +71,6 @@ impl GraphName {
         }
     }
 
-    /// The text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
@@ -103,7 +101,7 @@ mod tests {
         assert_eq!(name.resolve("10.0.0.9:2112"), "10.0.0.9:2112");
         let all: std::collections::BTreeSet<_> =
             (0..1000).map(|pid| address(&format!("bc{pid}"))).collect();
-        // By chance two of a thousand share one in 3 % of all choices of names.
+        // Two of a thousand names share an address with a probability of 3 %.
         assert!(all.len() >= 999, "{}", all.len());
     }
 

@@ -1,11 +1,11 @@
-//! The header as it lies in a sample: the topic's own, and nothing around it.
+//! The user header of a sample: a topic's own header without any additions.
 
 use iceoryx2::prelude::ZeroCopySend;
 use messages::Message;
 
-/// A topic's header with a default of zeros, which iceoryx2 writes into each
-/// loaned sample. It has the layout and the type name of the header itself, so
-/// that programs without this wrapper read the same topic.
+/// A topic's header with a default of zeros, which iceoryx2 writes into each loaned sample. It has
+/// the layout and type name of the header itself, so that programs without this wrapper can read
+/// the topic.
 #[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub(crate) struct Header<H>(pub(crate) H);

@@ -1,6 +1,6 @@
-//! A node's report on itself.
+//! Reports a node's health.
 //!
-//! It reports what the node sets; what makes a node ready or degraded, the node knows.
+//! It publishes the state that the node sets; only the node knows when it is ready or degraded.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use crate::log_sender::LogSender;
 use crate::losses::Losses;
 use crate::{Publisher, TransportError, monotonic_ns, with_causes};
 
-/// Between two reports, nanoseconds.
+/// Interval between two reports, in nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
 
 /// Counts what a node does and publishes it on topic `health`.
@@ -21,11 +21,11 @@ pub struct Health {
     publisher: Publisher<topic::Health>,
     report: HealthHeader,
     last_error: String,
-    /// Samples that found no room.
+    /// Lost samples of all publishers of the process, because shared memory was full.
     losses: Losses,
-    /// How many of them the last report counted.
+    /// Number of losses in the last report.
     losses_reported: u64,
-    /// The node's, for nodes that have a loop of their own.
+    /// Log sender of the node, for nodes that do not use [`crate::Graph::run`].
     log: Option<Rc<RefCell<LogSender>>>,
 }
 
@@ -53,15 +53,16 @@ impl Health {
         Ok(health)
     }
 
-    /// Counts samples taken from inputs.
+    /// Counts samples received from inputs.
     pub fn count_received(&mut self, samples: u64) {
         self.report.received += samples;
     }
 
-    /// Counts samples taken until there are `total`, and reports that now, for whoever waits for it.
+    /// Sets the number of received samples to `total` if that is more, and reports it at once, for
+    /// nodes that wait for it.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn count_received_to(&mut self, total: u64) -> Result<(), TransportError> {
         if total <= self.report.received {
             return Ok(());
@@ -70,25 +71,24 @@ impl Health {
         self.send()
     }
 
-    /// Counts samples sent.
     pub fn count_sent(&mut self, samples: u64) {
         self.report.sent += samples;
     }
 
-    /// Counts samples lost before they could be taken.
+    /// Counts samples lost before they were received.
     pub fn count_dropped(&mut self, samples: u64) {
         self.report.dropped += samples;
     }
 
-    /// Counts samples taken and refused as unusable.
+    /// Counts received samples that were rejected as unusable.
     pub fn count_refused(&mut self, samples: u64) {
         self.report.refused += samples;
     }
 
-    /// Says what the node is doing; sent at once if that is new.
+    /// Sets the node's state; published at once if it changes.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn state(&mut self, state: NodeState) -> Result<(), TransportError> {
         if self.report.state == state as u32 {
             return Ok(());
@@ -97,11 +97,11 @@ impl Health {
         self.send()
     }
 
-    /// Keeps `error` as the last one and sends it at once, cut to
-    /// [`HealthHeader::ERROR_CAPACITY`] bytes between characters.
+    /// Sets the last error and publishes it at once, cut to [`HealthHeader::ERROR_CAPACITY`] bytes
+    /// at a character boundary.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn error(&mut self, error: &str) -> Result<(), TransportError> {
         let end = error.floor_char_boundary(HealthHeader::ERROR_CAPACITY);
         self.last_error.clear();
@@ -109,16 +109,15 @@ impl Health {
         self.send()
     }
 
-    /// Forgets the last error, where it turned out to be none; reported with the next
-    /// report.
+    /// Clears the last error when the cause is gone; published with the next report.
     pub fn forget_error(&mut self) {
         self.last_error.clear();
     }
 
-    /// Sends a report if the last one is a second old, and what was logged.
+    /// Publishes a report if the last one is a second old, and the waiting log lines.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn tick(&mut self) -> Result<(), TransportError> {
         if let Some(log) = &self.log {
             log.borrow_mut().send_waiting();
@@ -132,12 +131,12 @@ impl Health {
     /// Reports that the node is about to end.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn stop(mut self) -> Result<(), TransportError> {
         self.state(NodeState::Stopped)
     }
 
-    /// A report that finds no room is lost: the next one holds what it held.
+    /// Publishes a report. If shared memory is full, it is lost; the next one has the same data.
     fn send(&mut self) -> Result<(), TransportError> {
         self.report.sent_ns = monotonic_ns();
         let losses = self.losses.count();

@@ -1,24 +1,23 @@
-//! What the event loop does for publishers while they are idle.
+//! Work of the event loop for idle publishers.
 //!
-//! iceoryx2 connects a publisher with subscribers that came since, and hands
-//! them the sample that it keeps, only when the publisher does something. An
-//! idle publisher does nothing, so the event loop does it: late joiners of a
-//! latched topic get the newest sample, and on the others the first sample does
-//! not wait until connections stand.
+//! iceoryx2 connects a publisher with new subscribers, and delivers the sample that it keeps, only
+//! when the publisher is used. The event loop does so for idle publishers: late joiners of a
+//! latched topic get the newest sample, and on other topics the first sample does not wait for the
+//! connection.
 
 use std::cell::RefCell;
 use std::rc::Weak;
 
 use crate::TransportError;
 
-/// What the event loop knows of a publisher.
+/// A publisher as seen by the event loop.
 pub(crate) trait Connects {
-    /// Connects with subscribers that came since the last call; hands them the
-    /// newest sample and wakes them, if the topic is latched.
+    /// Connects with subscribers that came since the last call. If the topic is latched, delivers
+    /// the newest sample and wakes them.
     fn serve_late_joiners(&self) -> Result<(), TransportError>;
 }
 
-/// The publishers of one process, as long as they live.
+/// The living publishers of one process.
 #[derive(Default)]
 pub(crate) struct IdlePublishers(RefCell<Vec<Weak<dyn Connects>>>);
 

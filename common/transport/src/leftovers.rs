@@ -1,8 +1,7 @@
-//! Removing what a graph has left, after its last process.
+//! Removes the files that a graph has left after its last process.
 //!
-//! Processes that end in order take their files along, but for a tiny one;
-//! killed ones leave all of theirs. Refuses to touch a graph that still runs,
-//! and never touches another graph's files.
+//! Processes that end in order remove all their files except a tiny one; killed ones leave all of
+//! theirs. Refuses to touch a graph that is still running, and never touches another graph's files.
 
 use std::ffi::OsStr;
 use std::fs::{read_dir, remove_dir, remove_file};
@@ -18,21 +17,21 @@ use crate::membership::{Membership, SHARED_MEMORY, alive, graph_of_file};
 use crate::root::current_user;
 use crate::{Claim, GraphName, TransportError, log, with_causes};
 
-/// How long to wait for another process that cleans up the same dead node.
+/// Longest wait for another process that cleans up the same dead node.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);
 
-/// Removes every file of this user's `graph`, all of whose processes have ended,
-/// in whatever way. For the launcher, before it starts the first process of the
-/// graph and after the last one has ended; its own membership has ended too.
+/// Removes every file of this user's `graph` after all its processes have ended. For the launcher,
+/// before it starts the first process of the graph and after the last one has ended; it must not be
+/// a member itself.
 ///
 /// # Errors
-/// [`TransportError::StillRunning`] if a process of the graph is alive, which is
-/// then left alone; [`TransportError::File`] if a file cannot be removed.
+/// [`TransportError::StillRunning`] if a process of the graph is alive; then nothing is removed.
+/// [`TransportError::File`] if a file cannot be removed.
 pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
     log::route_to_tracing();
     let membership = Membership::of(graph);
     let dead = refuse_living(&membership)?;
-    // Members that iceoryx2 does not see here: in a container with another /tmp.
+    // Detects members that iceoryx2 does not see here: in a container with another /tmp.
     let Some(_nobody_joins) = alive::as_only_one(&membership)? else {
         let lock = alive::path(&membership, alive::MEMBERS);
         return Err(TransportError::StillRunning {
@@ -41,8 +40,8 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
         });
     };
     for node in dead {
-        // iceoryx2 knows best what belongs together. What it cannot take away,
-        // because a process died while making it, is found by its name below.
+        // iceoryx2 knows best which resources belong together. Those that it cannot remove, because
+        // a process died while creating them, are found by name below.
         if let Err(error) = node.blocking_remove_stale_resources(CLEANUP_WAIT) {
             tracing::debug!(?error, "a dead node was not cleaned away as a whole");
         }
@@ -50,14 +49,14 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
     remove_files(&membership)
 }
 
-/// Removes what graphs of this user have left that were killed as a whole, whatever
-/// their names: those whose files nobody holds. For a launcher, before it starts.
+/// Removes the files of all graphs of this user without a living process. For a launcher, before it
+/// starts.
 ///
-/// What cannot be removed is logged and stays; it keeps nobody from starting.
+/// Files that cannot be removed are logged and stay; they do not keep a graph from starting.
 pub fn remove_dead_graphs() {
     let user = current_user();
     let names = match entries(Path::new(SHARED_MEMORY)) {
-        // Members hold locks on these files, or held them.
+        // Members hold locks on these files.
         Ok(paths) => {
             let graph = |path: &PathBuf| graph_of_file(path, user, alive::MEMBERS);
             paths.iter().filter_map(graph).collect::<Vec<_>>()
@@ -70,7 +69,7 @@ pub fn remove_dead_graphs() {
     for name in names {
         match remove_leftovers(&name) {
             Ok(()) => {
-                // Its launcher's claim goes when it is let go of, unless it has a new one.
+                // Dropping the claim removes the launcher's file, unless a new launcher has it.
                 drop(Claim::take(&name));
                 tracing::info!("removed what graph {name} had left");
             }
@@ -80,12 +79,12 @@ pub fn remove_dead_graphs() {
     }
 }
 
-/// Every file that this user's `graph` has: in shared memory, and in the user's folder.
+/// Returns every file of this user's `graph`, in shared memory and in the user's folder.
 #[must_use]
 pub fn files_of(graph: &GraphName) -> Vec<PathBuf> {
     let membership = Membership::of(graph);
     let nodes = entries(&membership.root.join("nodes")).unwrap_or_default();
-    // Others remove files and folders of theirs meanwhile.
+    // Other processes may remove their files and folders meanwhile.
     let folders = shared_folders(&membership).into_iter().chain(nodes);
     let files = folders.flat_map(|folder| entries(&folder).unwrap_or_default());
     files
@@ -93,7 +92,7 @@ pub fn files_of(graph: &GraphName) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Those that hold files of several graphs.
+/// Folders that hold files of several graphs.
 fn shared_folders(membership: &Membership) -> [PathBuf; 4] {
     [
         PathBuf::from(SHARED_MEMORY),
@@ -146,8 +145,8 @@ fn remove_files(membership: &Membership) -> Result<(), TransportError> {
     for folder in shared_folders(membership) {
         remove_own(&folder, membership)?;
     }
-    // Each node has a folder of its own, named after its number alone. Whose it
-    // is shows in the files; an empty one may be another graph's, just made.
+    // Each node has a folder, named only by its number. Its files show whose it is; an empty one
+    // may have just been created for another graph.
     for folder in entries(&membership.root.join("nodes"))? {
         if folder.is_dir() && remove_own(&folder, membership)? {
             gone(&folder, remove_dir(&folder))?;
@@ -156,11 +155,11 @@ fn remove_files(membership: &Membership) -> Result<(), TransportError> {
     Ok(())
 }
 
-/// Removes the graph's files in `folder`; says if there were any.
+/// Removes the graph's files in `folder`; returns true if there were any.
 fn remove_own(folder: &Path, membership: &Membership) -> Result<bool, TransportError> {
     let mut any = false;
     for path in entries(folder)? {
-        // Who claims a graph removes the claim, and nobody else.
+        // The claim is only removed by the process that holds it.
         let is_claim = path.extension() == Some(OsStr::new(alive::LAUNCHER));
         if is_of(membership, &path) && !is_claim {
             gone(&path, remove_file(&path))?;
@@ -170,7 +169,7 @@ fn remove_own(folder: &Path, membership: &Membership) -> Result<bool, TransportE
     Ok(any)
 }
 
-/// What `folder` holds; nothing where there is none.
+/// Lists the entries of `folder`; empty if it does not exist.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, TransportError> {
     let failed = |source| TransportError::File {
         action: "list",
@@ -186,7 +185,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, TransportError> {
     }
 }
 
-/// Whether it is gone, whoever did it, is all that counts.
+/// Ignores the error if the file is already gone.
 fn gone(path: &Path, outcome: std::io::Result<()>) -> Result<(), TransportError> {
     match outcome {
         Err(source) if source.kind() != ErrorKind::NotFound => Err(TransportError::File {

@@ -1,8 +1,8 @@
-//! The processes of a graph, and the topics that flow between them.
+//! Processes of a graph, and the topics between them.
 //!
-//! A node joins a [`Graph`], takes the ends of its topics from it and runs its
-//! event loop. Everything about iceoryx2, which carries the samples, stays in
-//! this crate; what the samples hold is the business of `messages`.
+//! A node joins a [`Graph`], creates its publishers and subscribers from it and runs its event
+//! loop. Everything about iceoryx2, which carries the samples, stays in this crate; the content of
+//! samples is defined in `messages`.
 //!
 //! ```no_run
 //! use std::process::ExitCode;
@@ -34,66 +34,62 @@
 //!
 //! # Files
 //!
-//! | file | what it is about |
+//! | file | content |
 //! |---|---|
-//! | `graph_name`, `membership`, `root` | which graph; what keeps it apart from others; the user's folder |
-//! | `graph` | joining, and making the ends of topics |
+//! | `graph_name`, `membership`, `root` | name of a graph; isolation; the user's folder |
+//! | `graph` | joining, and creating publishers and subscribers |
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
 //! | `publisher` (`loan`), `idle` | sending; filling in place; late joiners |
-//! | `subscriber`, `gaps` | receiving; counting what was lost |
-//! | `peers` | who is at the other end of a topic |
-//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT, SIGTERM and SIGHUP, other threads |
-//! | `health`, `clock` | a node's report on itself; the clocks |
+//! | `subscriber`, `gaps` | receiving; counting losses |
+//! | `peers` | subscribers of a publisher, publishers of a subscriber |
+//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, signals, other threads |
+//! | `health`, `clock` | health of a node; the clocks |
 //! | `node`, `log` | `main` of a node: logging, exit code |
-//! | `log_lines`, `log_sender`, `log_limit` | what a node logs, on its way to topic `log`; what repeats too fast |
-//! | `space`, `losses` | room in shared memory, looked up before it is used; what was lost without it |
-//! | `membership/alive`, `leftovers` | who lives, by locks; removing what a graph leaves |
-//! | `descriptors` | whether the process may open enough files |
-//! | `error`, `causes` | what can go wrong; an error with its causes on one line |
+//! | `log_lines`, `log_sender`, `log_limit` | publishing log lines; limit on repeated ones |
+//! | `space`, `losses` | check for room in shared memory before use; samples lost without it |
+//! | `membership/alive`, `leftovers` | locks of living processes; removing files of dead graphs |
+//! | `descriptors` | limit on open files |
+//! | `error`, `causes` | errors; an error with its causes on one line |
 //! | `testing` | for tests of nodes: a graph of their own, the node as a process |
 //!
 //! # Invariants
 //!
-//! - **Nothing is copied.** A loan is filled in shared memory, and a sample is
-//!   read there, in the same file at the same offset. A sample never changes
-//!   while somebody holds it, even if its publisher is killed.
-//! - **Nobody waits for a slow subscriber.** It loses its oldest samples beyond
+//! - **Nothing is copied.** A loan is filled in shared memory, and a sample is read there, in the
+//!   same file at the same offset. A sample never changes while a subscriber holds it, even if its
+//!   publisher is killed.
+//! - **Publishers do not wait for slow subscribers.** These lose their oldest samples beyond
 //!   [`messages::Topic::DEPTH`]; [`GapCounter`] counts them.
-//! - **No sample stays unseen for longer than a tick.** Each send is followed by
-//!   a wake-up, and wake-ups are taken before samples are. Where one is missing
-//!   all the same (the publisher was killed in between), the next tick finds the
-//!   sample. It does not matter who starts first: an end that comes is connected
-//!   by the next send, receive or tick of the other one.
+//! - **No sample stays unseen for longer than a tick.** Each send is followed by a wake-up, and
+//!   wake-ups are cleared before samples are received. If one is missing (the publisher was killed
+//!   in between), the next tick finds the sample. The order of starts does not matter: a new port
+//!   is connected by the next send, receive or tick of the other one.
 //! - **Late joiners get the newest sample of a latched topic**, or the newest
-//!   [`messages::Topic::HISTORY`], within a tick of its publisher, which must be
-//!   in [`Graph::run`]; the topic has none any more when its publisher has gone.
+//!   [`messages::Topic::HISTORY`], within a tick of its publisher, which must be in [`Graph::run`].
+//!   The samples are gone when the publisher has ended.
 //! - **Graphs do not receive each other's messages**, nor do users: the prefix of every file
-//!   holds user and graph, and no prefix begins another one.
-//! - **The dead make way.** Whoever joins cleans up after members that were
-//!   killed, and so do members that leave and [`Graph::cleanup_dead_nodes`].
-//!   Until then a dead subscriber counts as one.
-//! - **Full shared memory ends nothing.** A sample that finds no room is lost and
-//!   counted, and so are log lines and reports of health; only a sender of a latched topic
-//!   gets an error. iceoryx2 would be killed by SIGBUS, so room is looked up before.
+//!   contains user and graph, and no prefix begins another one.
+//! - **Slots of dead members are freed** by processes that join or leave and by
+//!   [`Graph::cleanup_dead_nodes`]. Until then a dead subscriber counts as a subscriber.
+//! - **Full shared memory ends no process.** A sample without room is lost and counted, and so are
+//!   log lines and health messages; only the publisher of a latched topic gets an error. Room is
+//!   checked before use, because iceoryx2 would be killed by SIGBUS.
 //! - **iceoryx2 handles no signals and prints nothing**; both are done here.
 //!
-//! One loss remains: a publisher that goes takes along what it sent to a
-//! subscriber that has not looked since the publisher came, or since it last grew
-//! its memory. A source that ends by itself waits for [`Publisher::is_settled`].
+//! One kind of loss remains: when a publisher ends, a subscriber loses the samples of this
+//! publisher if it has not received any since the publisher was created or last grew its memory. A
+//! source that ends by itself waits for [`Publisher::is_settled`].
 //!
 //! # Memory
 //!
-//! A publisher has one segment in `/dev/shm` for
-//! `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2 + 1` chunks, each as large as
-//! its largest sample so far, rounded up to a power of two. The file is sparse:
-//! chunks are taken last in, first out, and only those count that were ever in
-//! use at the same time. For a map of 8 million cells that is 43 chunks of 8 MiB:
-//! the file claims 344 MiB, and takes 8 MiB at first, 16 MiB once a second map
-//! was filled while the first was kept, and 8 MiB more for each further map that
-//! a subscriber holds. The worst case, all that the file claims, needs every
-//! subscriber to hold four different maps. A larger sample begins a new segment;
-//! the old one goes with its last sample. Wake-ups and connections take about
-//! 20 KiB for each pair of publisher and subscriber.
+//! A publisher has one segment in `/dev/shm` for `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2 + 1`
+//! chunks, each as large as its largest sample so far, rounded up to a power of two. The file is
+//! sparse: chunks are reused last in, first out, so only the largest number of chunks ever in use
+//! at the same time takes memory. For a map of 8 million cells these are 43 chunks of 8 MiB: the
+//! file has a size of 344 MiB, but takes 8 MiB at first, 16 MiB once a second map was filled while
+//! the first was held, and 8 MiB more for each further map that a subscriber holds. The worst case,
+//! the whole size of the file, needs every subscriber to hold four different maps. A larger sample
+//! begins a new segment; the old one is freed with its last sample. Wake-ups and connections take
+//! about 20 KiB for each pair of publisher and subscriber.
 
 mod causes;
 mod clock;

@@ -1,5 +1,4 @@
-//! What iceoryx2 says, as events of `tracing` instead of lines on the console.
-//! A program that listens to none of them receives nothing.
+//! Routes iceoryx2's log to `tracing` instead of the console.
 
 use std::fmt::Arguments;
 
@@ -11,7 +10,7 @@ struct ToTracing;
 
 impl Log for ToTracing {
     fn log(&self, level: LogLevel, origin: Arguments, message: Arguments) {
-        // The origin is a dump of whole structures, of use to developers only.
+        // The origin is a dump of whole structures, useful to developers only.
         match level {
             LogLevel::Trace => tracing::trace!(target: "iceoryx2", %origin, "{message}"),
             LogLevel::Debug => tracing::debug!(target: "iceoryx2", %origin, "{message}"),
@@ -24,8 +23,8 @@ impl Log for ToTracing {
 
 /// Routes iceoryx2's messages to `tracing`, at the level that is enabled there.
 ///
-/// Messages are formatted before `tracing` can refuse them, so iceoryx2 itself
-/// is set to drop what nobody listens to.
+/// Messages are formatted before `tracing` can filter them, so iceoryx2 itself is set to drop those
+/// below this level.
 pub(crate) fn route_to_tracing() {
     set_logger(&ToTracing);
     set_log_level(match LevelFilter::current() {

@@ -1,6 +1,6 @@
-//! Keeps one message from filling a log: a device that toggles its state thousands of
-//! times a second, say. A message is what is written, with its numbers: one with
-//! something new each time is never left out.
+//! Keeps one message from filling a log, e.g. of a device that toggles its state thousands of times
+//! a second. Messages are compared by their whole text, including numbers: a text that differs each
+//! time is never limited.
 
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
@@ -14,13 +14,13 @@ use tracing_subscriber::layer::Context;
 
 use crate::log_lines::text_of;
 
-/// Lines of one message within [`PERIOD`]; the next ones are left out and counted.
+/// Number of equal lines within [`PERIOD`]; further ones are omitted and counted.
 const LINES: u32 = 20;
 const PERIOD: Duration = Duration::from_secs(10);
-/// Messages that are remembered at most. Where there are more, counting begins again.
+/// Largest number of messages tracked. Beyond it, all counts are reset.
 const MESSAGES: usize = 256;
 
-/// Leaves out what repeats too fast. Whoever asks for `debug` gets all of that.
+/// Layer that omits lines which repeat too fast. Lines of level `debug` and below are not limited.
 #[derive(Debug, Default)]
 pub(crate) struct Limit {
     recent: Mutex<HashMap<u64, Recent>>,
@@ -32,11 +32,11 @@ struct Recent {
     lines: u32,
 }
 
-/// What becomes of a line.
+/// Decision on a line.
 #[derive(Debug, PartialEq, Eq)]
 enum Fate {
     Written,
-    /// This many like it were not.
+    /// Written, after this number of equal lines was omitted.
     WrittenAfter(u32),
     LeftOut,
 }

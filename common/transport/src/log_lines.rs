@@ -1,7 +1,7 @@
-//! What the process logs, until it can be sent.
+//! Queue of log lines until they can be published.
 //!
-//! Any thread may log, but only the one that joined a graph can send. So lines
-//! wait here, a set number at most; those beyond are dropped and counted.
+//! Any thread may log, but only the one that joined a graph can publish. So lines wait here in a
+//! bounded queue; lines beyond its capacity are dropped and counted.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -16,21 +16,21 @@ use tracing_subscriber::layer::Context;
 
 use crate::{monotonic_ns, wall_ns};
 
-/// The target of events that the console alone may see: secrets, say.
+/// Target of events that only the console may show, such as secrets.
 pub const CONSOLE_ONLY: &str = "console_only";
 
-/// Lines that wait at most, so that a subscriber has room for all of them and for
-/// the one that reports losses.
+/// Capacity of the queue: a subscriber has room for all its lines and for the one that reports
+/// losses.
 const CAPACITY: usize = topic::Log::DEPTH - 1;
 
 static WAITING: Mutex<Waiting> = Mutex::new(Waiting::none());
 
 thread_local! {
-    /// What is logged while lines are being sent would be about these lines.
+    /// True while lines are being sent: lines logged meanwhile would be about these lines.
     static SENDING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// A line, when it was written, and how grave it is.
+/// A log line with its times and level.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Line {
     pub(crate) written_ns: i64,
@@ -50,10 +50,9 @@ impl Line {
     }
 }
 
-/// Lines in their order.
 #[derive(Debug)]
 struct Waiting {
-    /// Whether anything is kept.
+    /// True if lines are kept.
     kept: bool,
     lines: VecDeque<Line>,
     dropped: u64,
@@ -76,14 +75,14 @@ impl Waiting {
     }
 }
 
-/// The receiver of events that keeps their lines from now on.
+/// Starts to keep lines, and returns the layer for it.
 pub(crate) fn keep() -> KeepLines {
     waiting().kept = true;
     KeepLines
 }
 
-/// Keeps a line for topic `log` that is no event: what the process has printed
-/// already, in a form of its own. Without a log there it goes nowhere.
+/// Adds a line to topic `log` that is no `tracing` event, because the process has printed it
+/// already in another form. Does nothing if logging was not started.
 pub fn log_in_graph(level: LogLevel, text: &str) {
     let mut waiting = waiting();
     if waiting.kept {
@@ -91,13 +90,13 @@ pub fn log_in_graph(level: LogLevel, text: &str) {
     }
 }
 
-/// Whether there is one.
+/// True if lines are kept.
 pub(crate) fn are_kept() -> bool {
     waiting().kept
 }
 
-/// Calls for each line that waits, and with how many were dropped since the process
-/// began; what it logs itself is not kept.
+/// Calls `send` for each waiting line, with the number of lines dropped since the process began.
+/// Lines that `send` logs are not kept.
 pub(crate) fn send_each(mut send: impl FnMut(Line, u64)) {
     let (lines, dropped) = {
         let mut waiting = waiting();
@@ -112,7 +111,7 @@ fn waiting() -> MutexGuard<'static, Waiting> {
     WAITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps what is logged.
+/// Layer that queues all events.
 #[derive(Debug)]
 pub(crate) struct KeepLines;
 
@@ -126,7 +125,7 @@ impl<S: Subscriber> Layer<S> for KeepLines {
     }
 }
 
-/// The message of an event, and what it names beside.
+/// Returns the message of an event followed by its fields.
 pub(crate) fn text_of(event: &Event<'_>) -> String {
     let mut text = Text::default();
     event.record(&mut text);
@@ -141,7 +140,7 @@ struct Text {
 
 impl Visit for Text {
     fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
-        // Writing to a text does not fail.
+        // Writing to a string cannot fail.
         let _ = match field.name() {
             "message" => write!(self.message, "{value:?}"),
             name => write!(self.fields, " {name}={value:?}"),

@@ -1,19 +1,19 @@
-//! Sends what the process logs on topic `log`.
+//! Publishes the log lines of the process on topic `log`.
 
 use messages::{LogHeader, LogLevel, Name, topic};
 
 use crate::log_lines::{self, Line};
 use crate::{Publisher, TransportError};
 
-/// The node's end of topic `log`.
+/// Publisher of topic `log` with its counters.
 #[derive(Debug)]
 pub(crate) struct LogSender {
     node: Name,
     publisher: Publisher<topic::Log>,
     sent: u64,
-    /// Lines that found no space in shared memory.
+    /// Lines lost because shared memory was full.
     unsent: u64,
-    /// Losses that were reported already, of the first kind and the second.
+    /// Losses already reported: dropped lines, unsent lines.
     reported: (u64, u64),
 }
 
@@ -28,8 +28,8 @@ impl LogSender {
         }
     }
 
-    /// Sends the lines that wait, and a line about those that were lost. Nothing fails
-    /// here: a log that ended what it logs of would be worse than none.
+    /// Sends the waiting lines, and a line about lost ones. Errors are only counted: logging must
+    /// not end a process.
     pub(crate) fn send_waiting(&mut self) {
         let mut last = None;
         log_lines::send_each(|line, dropped| {

@@ -1,14 +1,14 @@
-//! Samples that were not sent because shared memory was full.
+//! Counts samples that were not sent because shared memory was full.
 //!
-//! A node continues without them: whoever fills shared memory must not end a graph. They
-//! are counted for the node's health and said once, when they begin and when they end.
+//! A node continues without them, so that full shared memory does not end a graph. They are counted
+//! in the node's health and logged twice: when losses begin and when they end.
 
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use crate::TransportError;
 
-/// What all publishers of one process have lost; a handle on it.
+/// Handle to the losses of all publishers of one process.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Losses(Rc<Inner>);
 
@@ -19,12 +19,12 @@ struct Inner {
 }
 
 impl Losses {
-    /// How many samples, since the process joined.
+    /// Number of samples lost since the process joined.
     pub(crate) fn count(&self) -> u64 {
         self.0.count.get()
     }
 
-    /// Why the last one was lost; empty where none was.
+    /// Reason of the last loss; empty without one.
     pub(crate) fn reason(&self) -> String {
         self.0.reason.borrow().clone()
     }

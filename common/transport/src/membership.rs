@@ -1,5 +1,5 @@
-//! What iceoryx2 must know so that one graph of one user stays apart from all
-//! others: the folder where its processes meet and the prefix of its files.
+//! Separates one graph of one user from all others in iceoryx2: by the folder where its processes
+//! meet and the prefix of its files.
 
 pub(crate) mod alive;
 
@@ -16,17 +16,17 @@ use crate::{GraphName, TransportError};
 pub use alive::Claim;
 use alive::{LAUNCHER, LockedFiles};
 
-/// Where Linux keeps POSIX shared memory.
+/// Mount point of POSIX shared memory on Linux.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";
 
-/// Ends the name of a launcher's socket.
+/// Suffix of the name of a launcher's socket.
 const CONTROL: &str = "control";
 
-/// How long a process waits for another one that is just creating a topic. A
-/// loaded machine takes its time; one that died meanwhile never ends.
+/// Longest wait for another process that is creating a topic. A loaded machine takes its time; a
+/// process that died meanwhile never finishes.
 const CREATION_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The places in which one graph of one user lives.
+/// Paths and prefix of one graph of one user.
 #[derive(Debug, Clone)]
 pub(crate) struct Membership {
     pub(crate) graph: GraphName,
@@ -44,12 +44,13 @@ impl Membership {
         }
     }
 
-    /// The same with this folder of the user.
+    /// Sets the folder of the user.
     pub(crate) fn in_folder(self, root: PathBuf) -> Self {
         Membership { root, ..self }
     }
 
-    /// Refuses a name that another user has taken in shared memory, which is common to all.
+    /// Fails if another user has files with this graph's prefix in shared memory, which all users
+    /// share.
     pub(crate) fn refuse_foreign_files(&self, user: u32) -> Result<(), TransportError> {
         for path in self.shared_files() {
             let Ok(found) = path.symlink_metadata() else {
@@ -63,15 +64,15 @@ impl Membership {
         Ok(())
     }
 
-    /// Takes the rights of others on files that iceoryx2 opens to everybody: what they
-    /// write there would end every process of the graph.
+    /// Removes the access of others to files that iceoryx2 creates with access for all: a write of
+    /// another user could end every process of the graph.
     pub(crate) fn restrict_files(&self) {
         for path in self.shared_files() {
             let Ok(found) = path.symlink_metadata() else {
                 continue;
             };
             if found.is_file() && found.mode() & 0o077 != 0 {
-                // It may be gone, and then nobody can write to it.
+                // The file may be gone already.
                 let _ = set_permissions(&path, Permissions::from_mode(0o600));
             }
         }
@@ -86,17 +87,17 @@ impl Membership {
         entries.filter(is_ours).map(|entry| entry.path())
     }
 
-    /// What iceoryx2 has put down for the node with this number.
+    /// Returns the files that iceoryx2 has created for the node with this number.
     pub(crate) fn files_of_node(&self, node: u128) -> Vec<PathBuf> {
         let folder = self.root.join("nodes").join(node.to_string());
         let entries = read_dir(folder).into_iter().flatten().flatten();
         entries.map(|entry| entry.path()).collect()
     }
 
-    /// The configuration for every node of the graph. Files of the host are not
-    /// consulted: two members that read different ones would not meet.
+    /// Returns the configuration for every node of the graph. Configuration files of the host are
+    /// ignored: two members that read different ones would not meet.
     pub(crate) fn config(&self) -> Config {
-        // Both are short, and made of characters that are valid.
+        // Both are short and have only valid characters.
         let root = IoxPath::new(self.root.as_os_str().as_encoded_bytes())
             .expect("the folder of a user is a valid path");
         let prefix =
@@ -109,7 +110,7 @@ impl Membership {
     }
 }
 
-/// Where the launcher of `graph` takes questions of its user.
+/// Returns the path of the socket on which the launcher of `graph` receives control requests.
 #[must_use]
 pub fn control_socket(graph: &GraphName) -> PathBuf {
     let membership = Membership::of(graph);
@@ -118,20 +119,20 @@ pub fn control_socket(graph: &GraphName) -> PathBuf {
         .join(format!("{}{CONTROL}", membership.prefix))
 }
 
-/// Whether a launcher runs `graph`.
+/// True if a launcher is running `graph`.
 #[must_use]
 pub fn is_launched(graph: &GraphName) -> bool {
     Claim::is_taken(graph)
 }
 
-/// The graphs of this user that have a launcher, by its socket.
+/// Returns the graphs of this user that have a launcher, found by its socket.
 #[must_use]
 pub fn running_graphs() -> Vec<GraphName> {
     let user = current_user();
     let entries = read_dir(path_for(user)).into_iter().flatten().flatten();
     let name = |entry: DirEntry| {
         let name = graph_of_file(&entry.path(), user, CONTROL)?;
-        // Who holds the name lives; a socket may be left over.
+        // The claim shows that the launcher lives; a socket may be left over.
         Claim::is_taken(&name).then_some(name)
     };
     let mut names: Vec<_> = entries.filter_map(name).collect();
@@ -139,8 +140,8 @@ pub fn running_graphs() -> Vec<GraphName> {
     names
 }
 
-/// Graphs that other users of the machine run, with these users' numbers. Their files are closed to
-/// us; their names and owners, and which of them are locked, are not.
+/// Returns the graphs that other users run on this machine, with their user ids. Their files cannot
+/// be opened, but names, owners and locks are visible.
 #[must_use]
 pub fn graphs_of_others() -> Vec<(u32, GraphName)> {
     let locks = LockedFiles::now();
@@ -155,13 +156,13 @@ pub fn graphs_of_others() -> Vec<(u32, GraphName)> {
     graphs
 }
 
-/// The user is part of it, for all users share one folder of shared memory. The
-/// dot ends it: no name holds one, so no graph's prefix begins another's.
+/// Returns the prefix of the graph's files. It includes the user, as all users share one folder of
+/// shared memory. The dot ends it: no name contains one, so no graph's prefix begins another's.
 fn prefix(user: u32, graph: &GraphName) -> String {
     format!("bc{user}_{graph}.")
 }
 
-/// The graph of `user` to which a file belongs that is called after its prefix and `end`.
+/// Returns the graph of `user` whose prefix followed by `end` is the name of a file.
 pub(crate) fn graph_of_file(path: &Path, user: u32, end: &str) -> Option<GraphName> {
     let (graph, rest) = path.file_name()?.to_str()?.split_once('.')?;
     let name = GraphName::new(graph.strip_prefix(&format!("bc{user}_"))?).ok()?;
@@ -207,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_longest_socket_path_fits() {
-        // A socket's file is named after a 128-bit number in decimal.
+        // The name of a socket's file is a 128-bit number in decimal.
         let graph = GraphName::new(&"x".repeat(GraphName::CAPACITY)).unwrap();
         let folder = Path::new("/").join("x".repeat(root::MAX_BYTES - 1));
         assert!(path_for(u32::MAX).as_os_str().len() <= root::MAX_BYTES);

@@ -1,7 +1,7 @@
-//! What every node's `main` does: logging, joining, running, the exit code.
+//! The `main` function of nodes: logging, joining, running, exit code.
 //!
-//! The one place where an outcome becomes an exit code. Arguments are parsed
-//! before, by the node itself.
+//! The one place where an outcome becomes an exit code. The node itself parses its arguments
+//! before.
 
 use std::env::VarError;
 use std::error::Error;
@@ -19,26 +19,25 @@ use tracing_subscriber::{EnvFilter, Layer};
 use crate::log_limit::Limit;
 use crate::{Graph, log_lines, with_causes};
 
-/// The environment variable that picks the form of log lines: `text`, `short` or `json`.
-/// Where it is unset, lines are `short` on a terminal, without date, microseconds and
-/// module path, else `text`.
+/// Environment variable with the format of log lines: `text`, `short` or `json`. `short` has
+/// neither date, microseconds nor module path. Default: `short` on a terminal, else `text`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 
-/// The environment variable that ends a node as soon as it has taken its arguments, before
-/// it joins a graph or opens anything: exit code 0, or 2 where they are wrong.
+/// Environment variable that makes a node exit after parsing its arguments, before it joins a graph
+/// or opens anything: with code 0, or 2 if they are wrong.
 pub const CHECK_ARGUMENTS_VARIABLE: &str = "BACKCAST_CHECK_ARGUMENTS";
 
-/// Runs one node: starts logging to standard error and topic `log`, joins the graph as `name`
-/// and calls `run`.
+/// Runs one node: starts logging to standard error and topic `log`, joins the graph as `name` and
+/// calls `run`.
 ///
-/// Returns 0 if `run` did, 1 if it or joining failed, 2 if a logging variable
-/// holds something that is not allowed.
+/// Returns 0 on success, 1 if joining or `run` failed, 2 if a logging variable has an invalid
+/// value.
 pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(), E>) -> ExitCode {
     main_with_log(name, "", run)
 }
 
-/// As [`main`], for a node that is to log more than `info` where nobody says what:
-/// `filter` is then what `RUST_LOG` would hold.
+/// Like [`main`], with `filter` in place of an unset `RUST_LOG`, for a node that logs more than
+/// `info` by default.
 pub fn main_with_log<E: Error + 'static>(
     name: &str,
     filter: &str,
@@ -55,7 +54,7 @@ pub fn main_with_log<E: Error + 'static>(
         Ok(graph) => graph,
         Err(error) => return failed(&error),
     };
-    // The graph receives the error before it is left.
+    // The error is logged before the graph is dropped, so that the graph receives it.
     match run(&graph) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => failed(&error),
@@ -67,14 +66,13 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// Sends events of `tracing` to standard error, and to topic `log` of a graph that
-/// is joined later: `RUST_LOG` filters them (`info` where it is unset),
-/// [`LOG_FORMAT_VARIABLE`] picks their form on standard error. A message that repeats more
-/// than twenty times within ten seconds is left out and counted.
+/// Sends events of `tracing` to standard error, and to topic `log` of a graph that is joined later.
+/// `RUST_LOG` filters them (default `info`), [`LOG_FORMAT_VARIABLE`] sets the format on standard
+/// error. Repetitions of a message beyond twenty within ten seconds are omitted and counted.
 ///
 /// # Errors
-/// A sentence that names the variable, its value and what is allowed; or that
-/// logging has been started already.
+/// A sentence with the variable, its value and the allowed values, or that logging has been started
+/// already.
 pub fn start_logging() -> Result<(), String> {
     start_logging_by("")
 }
@@ -115,14 +113,13 @@ fn log_format() -> Result<String, String> {
     )
 }
 
-/// Whether somebody reads the log on a terminal, also through the launcher: pictures of
-/// characters are for these alone.
+/// True if the log goes to a terminal, also through the launcher: only then can it show pictures
+/// made of characters.
 #[must_use]
 pub fn logs_to_terminal() -> bool {
     log_format().is_ok_and(|format| format == "short")
 }
 
-/// Hours, minutes and seconds, UTC.
 struct TimeOfDay;
 
 impl FormatTime for TimeOfDay {

@@ -1,8 +1,7 @@
-//! Who is at the other end of a topic.
+//! Processes at the other end of a topic.
 
-/// The subscribers of a publisher, or the publishers of a subscriber, at one moment. One
-/// that was killed is among them until it has been cleaned away, and a process that is
-/// started again is another one.
+/// The subscribers of a publisher, or the publishers of a subscriber, at one moment. A killed one
+/// is included until it has been cleaned up; a restarted process is a new peer.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Peers {
     ids: Vec<u128>,
@@ -13,7 +12,7 @@ impl Peers {
         Peers { ids }
     }
 
-    /// Whether somebody is here who was not `before`.
+    /// True if there is a peer that was not in `before`.
     #[must_use]
     pub fn any_new_since(&self, before: &Peers) -> bool {
         self.ids.iter().any(|id| !before.ids.contains(id))

@@ -1,7 +1,6 @@
-//! The sending end of a topic.
+//! Publisher of a topic.
 //!
-//! A subscriber that is too slow loses its oldest samples; it never holds the
-//! publisher up, and the publisher never waits for anybody.
+//! A subscriber that is too slow loses its oldest samples; the publisher never waits for it.
 
 mod loan;
 
@@ -28,8 +27,8 @@ pub use loan::Loan;
 pub(crate) type Port<T> =
     IoxPublisher<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
 
-/// Sends samples of topic `T`. When it is dropped, its memory goes with the last
-/// sample that somebody holds.
+/// Publishes samples of topic `T`. After it is dropped, its memory is freed with the last sample
+/// that a subscriber holds.
 #[derive(Debug)]
 pub struct Publisher<T: Topic> {
     inner: Rc<Inner<T>>,
@@ -40,22 +39,22 @@ struct Inner<T: Topic> {
     port: Port<T>,
     notifier: Notifier<ipc::Service>,
     samples: Samples<T>,
-    /// The subscribers that were there when late joiners were last served.
+    /// Subscribers at the time late joiners were last served.
     served: RefCell<Vec<u128>>,
-    /// Where the sample lies that was sent last.
+    /// Address of the last sample sent.
     last_sent: Cell<Option<usize>>,
-    /// Of the whole process.
+    /// Losses of the whole process.
     losses: Losses,
-    /// Of this publisher, since one was sent last.
+    /// Samples lost by this publisher since it last sent one.
     unsent: Cell<u64>,
 }
 
 impl<T: Topic> Publisher<T> {
-    /// Samples that may be filled at the same time.
+    /// Largest number of samples being filled at the same time.
     pub const MAX_LOANED: usize = service::MAX_LOANED;
 
-    /// A publisher whose first segment holds samples of up to `items` items; it
-    /// grows by itself.
+    /// Creates a publisher whose first segment is for samples of up to `items` items; it grows when
+    /// needed.
     pub(crate) fn create(
         node: &Node<ipc::Service>,
         items: usize,
@@ -90,60 +89,57 @@ impl<T: Topic> Publisher<T> {
         })
     }
 
-    /// For the event loop.
+    /// Returns the handle for the event loop.
     pub(crate) fn for_event_loop(&self) -> Weak<dyn Connects> {
         let weak: Weak<Inner<T>> = Rc::downgrade(&self.inner);
         weak
     }
 
-    /// Memory for a sample of `items` items in shared memory, all of them and
-    /// the header zero, to be filled in place.
+    /// Loans memory for a sample of `items` items in shared memory. Header and items are zero, to
+    /// be filled in place.
     ///
     /// # Errors
-    /// [`TransportError::SharedMemoryFull`] where shared memory has no room for
-    /// it and the topic is latched, or the process has no room for it either (on other
-    /// topics it is lost when it is sent, and counted),
-    /// [`TransportError::TooLarge`] where no memory could have,
-    /// [`TransportError::Loan`] where [`Publisher::MAX_LOANED`] samples are being
-    /// filled already.
+    /// [`TransportError::SharedMemoryFull`] if shared memory is full and the topic is latched, or
+    /// if private memory is full, too (without latching, the sample gets private memory, and is
+    /// lost and counted when it is sent), [`TransportError::TooLarge`] if the size exceeds any
+    /// possible memory, [`TransportError::Loan`] if [`Publisher::MAX_LOANED`] samples are loaned
+    /// already.
     pub fn loan(&self, items: usize) -> Result<Loan<'_, T>, TransportError> {
         Loan::of(self, items)
     }
 
-    /// Whether anybody would get what is sent. A subscriber that was killed
-    /// counts until it has been cleaned away.
+    /// True if the topic has subscribers. A killed subscriber counts until it has been cleaned up.
     #[must_use]
     pub fn has_subscribers(&self) -> bool {
         self.inner.samples.dynamic_config().number_of_subscribers() > 0
     }
 
-    /// Those who get what is sent from now on.
+    /// Returns the current subscribers.
     #[must_use]
     pub fn subscribers(&self) -> Peers {
         Peers::of(self.inner.subscribers())
     }
 
-    /// Whether every subscriber is done with the sample that was sent last, and
-    /// so with all before it: has taken it and let go of it, or has left. One
-    /// that was killed counts until it has been cleaned away.
+    /// Returns true if every subscriber is done with the last sample sent, and so with all before
+    /// it: has received and dropped it, or has left. A killed subscriber counts until it has been
+    /// cleaned up.
     ///
-    /// A publisher that ends takes along what it has sent since a subscriber
-    /// last looked, so a source that ends by itself waits for this before, though
-    /// not for ever: where a subscriber drops samples in another order than
-    /// they came, this may stay false. A latched topic keeps its newest sample
-    /// and has no such moment.
+    /// When a publisher ends, its samples are lost for subscribers that have not received them yet,
+    /// so a source that ends by itself waits for this before. The wait needs a time limit: if a
+    /// subscriber drops samples in another order than they came, this may stay false. A latched
+    /// topic keeps its newest sample and is never settled.
     ///
     /// # Errors
-    /// As [`Publisher::loan`]; there must be no loan at the time.
+    /// See [`Publisher::loan`]; there must be no loan at the time.
     pub fn is_settled(&self) -> Result<bool, TransportError> {
         const { assert!(!T::LATCHED, "a latched topic keeps its newest sample") };
         let Some(last) = self.inner.last_sent.get() else {
             return Ok(true);
         };
-        // Those that have left give back what they had.
+        // Reclaims the samples of subscribers that have left.
         self.inner.update_connections()?;
-        // iceoryx2 does not say who has taken what. But it gives memory out
-        // again only once nobody holds it, and then what came back last first.
+        // iceoryx2 does not tell which samples were received. But it reuses memory only after all
+        // subscribers have dropped it, and the last returned first.
         Ok(self.loan(0)?.address() == last)
     }
 
@@ -151,7 +147,7 @@ impl<T: Topic> Publisher<T> {
         &self.inner.port
     }
 
-    /// Wakes the subscribers, after the sample at `address` was sent.
+    /// Wakes the subscribers after the sample at `address` was sent.
     pub(crate) fn sent(&self, address: usize) -> Result<(), TransportError> {
         self.inner.last_sent.set(Some(address));
         let unsent = self.inner.unsent.replace(0);
@@ -164,7 +160,7 @@ impl<T: Topic> Publisher<T> {
 }
 
 impl<T: Topic> Publisher<T> {
-    /// A sample is not sent, because of `full`.
+    /// Counts a sample that is not sent because of `full`.
     pub(crate) fn lost(&self, full: &TransportError) {
         let unsent = self.inner.unsent.get();
         if unsent == 0 {
@@ -202,7 +198,7 @@ impl<T: Topic> Inner<T> {
 impl<T: Topic> Connects for Inner<T> {
     fn serve_late_joiners(&self) -> Result<(), TransportError> {
         let subscribers = self.subscribers();
-        // To connect takes room, too. Without it they wait for another tick.
+        // Connecting needs room, too. Without it, late joiners wait for another tick.
         if *self.served.borrow() == subscribers || space::ensure_free(T::NAME, 0).is_err() {
             return Ok(());
         }

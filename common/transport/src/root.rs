@@ -1,12 +1,12 @@
 //! The folder where the processes of one user's graphs meet.
 //!
-//! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that it
-//! makes for whoever comes first; a second user is then locked out. So each
-//! user has their own folder, which is locked against the cleaning of /tmp. A name in /tmp
-//! can be taken by another user, so there are others: of all places in one order, the first
-//! where this user has the folder already is taken, else the first where it can be made. A
-//! service and a shell of the same user thereby find each other, whatever is in their
-//! environment.
+//! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that the first process
+//! creates; a second user would be locked out. So each user has their own folder, which is locked
+//! against the cleaning of /tmp.
+//!
+//! Another user can take a name in /tmp, so there are several candidates in a fixed order: the
+//! first existing folder of this user is used, or else the first that can be created. Thus a
+//! service and a shell of the same user find each other regardless of their environment.
 
 use std::fs::{DirBuilder, File, Permissions, symlink_metadata};
 use std::io::ErrorKind;
@@ -18,42 +18,42 @@ use nix::unistd::{Uid, User};
 
 use crate::TransportError;
 
-/// Name of the folder in one that is the user's own.
+/// Name of our folder within a folder of the user.
 const NAME: &str = "backcast";
 
-/// Longest path of the folder, bytes: a socket in it has a path of at most 107.
+/// Longest path of the folder in bytes: a socket in it has a path of at most 107.
 pub(crate) const MAX_BYTES: usize = 27;
 
-/// The user that this process acts as.
+/// Returns the effective user id of this process.
 pub(crate) fn current_user() -> u32 {
     nix::unistd::geteuid().as_raw()
 }
 
-/// Where the graphs of `user` meet, or would where there is no folder yet.
+/// Returns the folder of `user`, or the one in `/tmp` if there is none yet.
 pub(crate) fn path_for(user: u32) -> PathBuf {
     let places = Places::of(user);
     let found = places.all().find(|path| is_of(path, user));
     found.unwrap_or_else(|| places.temporary.clone())
 }
 
-/// Makes sure that `user` has a folder that nobody else can use, and returns it.
+/// Makes sure that `user` has a private folder, and returns it.
 pub(crate) fn prepare(user: u32) -> Result<PathBuf, TransportError> {
     Places::of(user).prepare()
 }
 
-/// The places where a user's folder may be.
+/// Candidates for a user's folder.
 struct Places {
     user: u32,
-    /// Those in `$XDG_RUNTIME_DIR` and `/run/user`, where these are the user's own.
+    /// Candidates in `$XDG_RUNTIME_DIR` and `/run/user`, if these are private folders of the user.
     own: Vec<PathBuf>,
-    /// The one in `/tmp`, which another user may have taken.
+    /// Candidate in `/tmp`, which another user may have taken.
     temporary: PathBuf,
 }
 
 impl Places {
     fn of(user: u32) -> Self {
         let variable = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
-        // Where it is on most systems, for a service that is not told.
+        // Usual place on most systems, for a service without the variable.
         let usual = PathBuf::from(format!("/run/user/{user}"));
         Self::among(user, variable.into_iter().chain([usual]), Path::new("/tmp"))
     }
@@ -70,8 +70,8 @@ impl Places {
         }
     }
 
-    /// All of them in their order; the last one is in the home folder, in which no other user
-    /// can make anything, and counts where it is the only one that is left.
+    /// Returns all candidates in order. The last one is in the home folder, where no other user can
+    /// create files; it is the last resort.
     fn all(&self) -> impl Iterator<Item = PathBuf> {
         let user = self.user;
         let home = move || {
@@ -92,7 +92,7 @@ impl Places {
         for path in self.all() {
             match make(&path, user) {
                 Ok(()) => return Ok(path),
-                // The one in /tmp says best what is in the way.
+                // The error for /tmp is the most useful one.
                 Err(error) if path == self.temporary => failed = Some(error),
                 Err(error) => failed = failed.or(Some(error)),
             }
@@ -104,12 +104,12 @@ impl Places {
     }
 }
 
-/// Whether a folder is there and `user` owns it; a link is none.
+/// True if there is a folder that `user` owns; a link does not count.
 fn is_of(path: &Path, user: u32) -> bool {
     symlink_metadata(path).is_ok_and(|found| found.is_dir() && found.uid() == user)
 }
 
-/// Whether it is a folder that `user` alone can use.
+/// True if there is a folder that only `user` can access.
 fn is_private(path: &Path, user: u32) -> bool {
     let has_mode = |found: std::fs::Metadata| found.mode() & 0o777 == 0o700;
     is_of(path, user) && symlink_metadata(path).is_ok_and(has_mode)
@@ -119,7 +119,7 @@ fn is_short(path: &Path) -> bool {
     path.as_os_str().len() <= MAX_BYTES && path.to_str().is_some()
 }
 
-/// Makes sure that `path` is a folder of `user` that nobody else can use.
+/// Makes sure that `path` is a private folder of `user`.
 fn make(path: &Path, user: u32) -> Result<(), TransportError> {
     let failed = |action| {
         move |source| TransportError::File {
@@ -133,7 +133,7 @@ fn make(path: &Path, user: u32) -> Result<(), TransportError> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
         Err(error) => return Err(failed("create folder")(error)),
     }
-    // A link is not followed: it could lead into a folder of somebody else.
+    // A link is not followed: it could lead into a folder of another user.
     let found = symlink_metadata(path).map_err(failed("look at"))?;
     let owner = found.uid();
     if !found.is_dir() {
@@ -151,8 +151,8 @@ fn make(path: &Path, user: u32) -> Result<(), TransportError> {
     Ok(())
 }
 
-/// Keeps systemd from cleaning `path`: it leaves out a folder that is locked, and all
-/// that is below. One process of the user is enough, so nothing where another one has it.
+/// Locks `path`, as systemd does not clean a locked folder and its content. One process of the user
+/// is enough: `None` if another one holds the lock.
 pub(crate) fn keep_from_cleaning(path: &Path) -> Option<Flock<File>> {
     let folder = File::open(path).ok()?;
     Flock::lock(folder, FlockArg::LockExclusiveNonblock).ok()
@@ -227,7 +227,7 @@ mod tests {
         );
     }
 
-    /// A world of its own: a folder for all, and one of the user alone.
+    /// Returns candidates in test folders: a shared one and a private one.
     fn places(folder: &Path, own: &Path) -> Places {
         let own = [own.to_owned()].into_iter();
         Places::among(current_user(), own, folder)
@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(first.prepare().unwrap(), own.join(NAME));
         assert_eq!(first.prepare().unwrap(), own.join(NAME));
         std::fs::remove_dir(own.join(NAME)).unwrap();
-        // A service without the variable was there before.
+        // Another process without the variable has created this one before.
         make(&first.temporary, current_user()).unwrap();
         assert_eq!(first.prepare().unwrap(), first.temporary);
     }

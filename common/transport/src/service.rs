@@ -1,7 +1,6 @@
-//! A topic as iceoryx2 sees it: a service for samples and one for wake-ups.
+//! A topic in iceoryx2: a service for samples and one for wake-ups.
 //!
-//! The quality of service comes from the [`Topic`] alone, so that every process
-//! asks for the same.
+//! The quality of service comes only from the [`Topic`], so that every process uses the same.
 
 use iceoryx2::node::Node;
 use iceoryx2::port::listener::{Listener, ListenerCreateError};
@@ -16,9 +15,9 @@ use messages::Topic;
 use crate::TransportError;
 use crate::header::Header;
 
-/// Samples of one publisher that a subscriber may hold at the same time.
+/// Largest number of samples of one publisher that a subscriber may hold at the same time.
 pub(crate) const MAX_BORROWED: usize = 4;
-/// Samples that one publisher may fill at the same time.
+/// Largest number of samples that one publisher may loan at the same time.
 pub(crate) const MAX_LOANED: usize = 2;
 
 pub(crate) type Samples<T> = publish_subscribe::PortFactory<
@@ -27,7 +26,7 @@ pub(crate) type Samples<T> = publish_subscribe::PortFactory<
     Header<<T as Topic>::Header>,
 >;
 
-/// Opens the samples of a topic, or creates them for the first who comes.
+/// Opens the sample service of a topic, or creates it.
 pub(crate) fn open_samples<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Samples<T>, TransportError> {
@@ -51,7 +50,7 @@ pub(crate) fn open_samples<T: Topic>(
         })
 }
 
-/// Opens the wake-ups of a topic.
+/// Opens the wake-up service of a topic, or creates it.
 pub(crate) fn open_wakeups<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<event::PortFactory<ipc::Service>, TransportError> {
@@ -65,7 +64,7 @@ pub(crate) fn open_wakeups<T: Topic>(
         .map_err(|error| open_failed::<T>(&error))
 }
 
-/// The end that wakes.
+/// Creates the sending end of the wake-ups.
 pub(crate) fn notifier<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Notifier<ipc::Service>, TransportError> {
@@ -78,7 +77,7 @@ pub(crate) fn notifier<T: Topic>(
         })
 }
 
-/// The end that is woken.
+/// Creates the receiving end of the wake-ups.
 pub(crate) fn listener<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Listener<ipc::Service>, TransportError> {
@@ -116,7 +115,7 @@ pub(crate) fn port_failed<T: Topic>(
     }
 }
 
-/// A process that died counts until it has been cleaned away, so there is room
+/// Largest number of nodes. A dead process counts until it has been cleaned up, so there is room
 /// for one more than can be alive.
 fn max_nodes<T: Topic>() -> usize {
     T::MAX_PUBLISHERS + T::MAX_SUBSCRIBERS + 1
@@ -134,7 +133,7 @@ fn open_failed<T: Topic>(error: &dyn std::fmt::Debug) -> TransportError {
 }
 
 fn type_mismatch<T: Topic>(node: &Node<ipc::Service>, name: &ServiceName) -> TransportError {
-    // SAFETY: the names are only shown.
+    // SAFETY: the names are only printed.
     let expected = unsafe {
         use iceoryx2::prelude::ZeroCopySend;
         describe(

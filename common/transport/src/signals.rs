@@ -1,9 +1,8 @@
-//! SIGINT, SIGTERM and SIGHUP as a flag and as something to wait for.
+//! SIGINT, SIGTERM and SIGHUP as a flag and as an event to wait for.
 //!
-//! A flag alone would be seen a tick late, and a signal between looking at the
-//! flag and falling asleep would interrupt nothing. So each signal also writes
-//! to a socket pair whose other end the event loop waits on. Other threads end its
-//! sleep in the same way.
+//! A flag alone would be seen a tick late, and a signal between checking the flag and falling
+//! asleep would interrupt nothing. So each signal also writes to a socket pair whose other end the
+//! event loop waits on. Other threads end its sleep in the same way.
 
 use std::io::Read;
 use std::os::fd::AsRawFd;
@@ -50,7 +49,7 @@ impl Signals {
             if signal == SIGHUP && hangups_are_ignored() {
                 continue;
             }
-            // Actions run in this order: whoever is woken finds the flag set.
+            // Actions run in this order: the flag is set before the event loop wakes.
             let flag = signal_hook::flag::register(signal, Arc::clone(&signals.stop))?;
             signals.registrations.push(flag);
             let end = signals.waker.try_clone()?;
@@ -68,14 +67,14 @@ impl Signals {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// An end for another thread.
+    /// Returns a waker for another thread.
     pub(crate) fn waker(&self) -> Result<Waker, TransportError> {
         let end = self.waker.try_clone();
         end.map(Waker::new).map_err(TransportError::Signals)
     }
 
-    /// Takes what signals and wakers wrote, so that the next wait can sleep;
-    /// returns whether there was something.
+    /// Reads all bytes that signals and wakers wrote, so that the next wait can sleep. Returns true
+    /// if there were any.
     pub(crate) fn drain(&self) -> bool {
         let mut bytes = [0; 256];
         let mut any = false;
@@ -86,7 +85,7 @@ impl Signals {
     }
 }
 
-/// Whether whoever started the process wants it to outlive the terminal, as `nohup` does.
+/// True if SIGHUP is ignored, e.g. with `nohup`: the process should outlive the terminal.
 fn hangups_are_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status

@@ -1,7 +1,6 @@
-//! The receiving end of a topic.
+//! Subscriber of a topic.
 //!
-//! Samples are read where the publisher wrote them. Nothing waits here: that is
-//! the event loop's part.
+//! Samples are read where the publisher wrote them. Waiting is done by the event loop.
 
 use iceoryx2::node::Node;
 use iceoryx2::port::listener::Listener;
@@ -14,7 +13,6 @@ use crate::header::Header;
 use crate::service::{self, Samples};
 use crate::{Peers, TransportError, space};
 
-/// Receives samples of topic `T`.
 #[derive(Debug)]
 pub struct Subscriber<T: Topic> {
     listener: Listener<ipc::Service>,
@@ -23,15 +21,15 @@ pub struct Subscriber<T: Topic> {
 }
 
 impl<T: Topic> Subscriber<T> {
-    /// Samples of one publisher that may be held at the same time: the current
-    /// map, the one before it while work on it ends, the newest found so far
-    /// while looking for a newer one, and that one.
+    /// Largest number of samples of one publisher that may be held at the same time: the current
+    /// map, the one before while work on it ends, the newest received so far, and the next one
+    /// being received.
     pub const MAX_HELD: usize = service::MAX_BORROWED;
 
     pub(crate) fn create(node: &Node<ipc::Service>) -> Result<Self, TransportError> {
         space::ensure_free(T::NAME, 0)?;
         let samples = service::open_samples::<T>(node)?;
-        // Whoever sees the subscriber finds the listener there already.
+        // The listener exists before the subscriber becomes visible.
         let listener = service::listener::<T>(node)?;
         let port = samples
             .subscriber_builder()
@@ -49,12 +47,12 @@ impl<T: Topic> Subscriber<T> {
         })
     }
 
-    /// The oldest sample that has not been taken, if there is one. Where several
-    /// publishers send, the order holds for each of them.
+    /// Receives the oldest sample that was not received yet. With several publishers, the order
+    /// holds for each of them.
     ///
     /// # Errors
-    /// [`TransportError::Receive`] if [`Subscriber::MAX_HELD`] samples of the
-    /// publisher are held already, or its memory cannot be mapped.
+    /// [`TransportError::Receive`] if [`Subscriber::MAX_HELD`] samples of the publisher are held
+    /// already, or its memory cannot be mapped.
     pub fn receive(&self) -> Result<Option<Sample<T>>, TransportError> {
         match self.port.receive() {
             Ok(sample) => Ok(sample.map(|inner| Sample { inner })),
@@ -65,7 +63,7 @@ impl<T: Topic> Subscriber<T> {
         }
     }
 
-    /// Those whose samples come from now on.
+    /// Returns the current publishers.
     #[must_use]
     pub fn publishers(&self) -> Peers {
         let mut ids = Vec::new();
@@ -76,17 +74,16 @@ impl<T: Topic> Subscriber<T> {
         Peers::of(ids)
     }
 
-    /// Whether somebody sends on the topic.
     #[must_use]
     pub fn has_publishers(&self) -> bool {
         self.samples.dynamic_config().number_of_publishers() > 0
     }
 
-    /// Takes everything that has come and keeps the newest: for topics with one
-    /// publisher whose samples replace each other, as the latched ones do.
+    /// Receives all samples and returns the newest: for topics with one publisher whose samples
+    /// replace each other, like latched topics.
     ///
     /// # Errors
-    /// As [`Subscriber::receive`].
+    /// See [`Subscriber::receive`].
     pub fn newest(&self) -> Result<Option<Sample<T>>, TransportError> {
         let mut newest = None;
         while let Some(sample) = self.receive()? {
@@ -96,28 +93,26 @@ impl<T: Topic> Subscriber<T> {
     }
 }
 
-/// A sample in the publisher's memory. It stays as it is while this lives, even
-/// if the publisher goes or is killed.
+/// A sample in the publisher's memory. It stays valid and unchanged while this lives, even if the
+/// publisher ends or is killed.
 #[derive(Debug)]
 pub struct Sample<T: Topic> {
     inner: IoxSample<ipc::Service, [T::Item], Header<T::Header>>,
 }
 
 impl<T: Topic> Sample<T> {
-    /// The header.
     #[must_use]
     pub fn header(&self) -> &T::Header {
         &self.inner.user_header().0
     }
 
-    /// The items.
     #[must_use]
     pub fn items(&self) -> &[T::Item] {
         self.inner.payload()
     }
 }
 
-/// What an event loop can wait for: the subscribers.
+/// Input that can wake an event loop: a subscriber.
 pub trait Input: sealed::Wakes {}
 
 pub(crate) mod sealed {

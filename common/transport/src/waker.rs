@@ -1,12 +1,12 @@
 //! Ends the event loop's sleep from another thread.
 //!
-//! For what comes from elsewhere than the graph: a network library that calls
-//! back on threads of its own. It carries nothing but the wake-up.
+//! For events that do not come from the graph, e.g. a network library with callbacks on its own
+//! threads. It carries no data.
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
 
-/// Wakes the event loop of the graph that it was taken from; may go to any thread.
+/// Wakes the event loop of its graph; may be sent to any thread.
 #[derive(Debug)]
 pub struct Waker(UnixStream);
 
@@ -15,11 +15,10 @@ impl Waker {
         Waker(end)
     }
 
-    /// Lets [`crate::Graph::run`] call its step once more, at once or after the
-    /// one that runs.
+    /// Makes [`crate::Graph::run`] call its step once more, at once or after the current one.
     pub fn wake(&self) {
-        // Where the socket is full, wake-ups are waiting already; where nobody
-        // holds the other end, nobody sleeps.
+        // If the socket is full, wake-ups are pending already; if the other end is closed, there is
+        // no event loop.
         let _ = (&self.0).write(&[0]);
     }
 }

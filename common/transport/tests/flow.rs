@@ -1,4 +1,4 @@
-//! What flows within one process: order, loss, growth, health, the event loop.
+//! Samples within one process: order, loss, growth, health, the event loop.
 
 #![allow(
     clippy::unwrap_used,

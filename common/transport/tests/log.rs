@@ -1,5 +1,4 @@
-//! What a process logs arrives on topic `log`. One test, for a process has one
-//! log.
+//! Log lines of a process arrive on topic `log`. This is a single test, as a process has one log.
 
 use std::time::Duration;
 
@@ -7,7 +6,7 @@ use messages::{LogHeader, LogLevel, topic};
 use transport::testing::Isolated;
 use transport::{Flow, TransportError};
 
-/// More than may wait, by 37.
+/// Number of lines, 37 more than the capacity of the queue.
 const FLOOD: usize = 100;
 
 #[test]
@@ -62,7 +61,7 @@ fn lines_arrive_with_their_level_and_losses_are_reported() {
         "37 log lines were lost: they arrived faster than they could be sent"
     );
 
-    // Who comes late gets the newest lines, within a tick.
+    // A late subscriber gets the newest lines within a tick.
     let late = graph.subscriber::<topic::Log>().unwrap();
     let mut history = Vec::new();
     let outcome = graph.run(&[&late], Duration::from_millis(10), |_| {

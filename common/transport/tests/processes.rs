@@ -1,5 +1,4 @@
-//! Several processes in one graph: what they share, and what happens when one
-//! comes late, stops or is killed.
+//! Several processes in one graph: shared memory, and processes that come late, stop or are killed.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,7 +15,7 @@ use nix::sys::signal::Signal;
 use transport::testing::Isolated;
 use transport::{TransportError, remove_leftovers};
 
-/// The process that the other tests start; on its own, starts itself.
+/// Process that the other tests start; when run as a test, it starts itself.
 #[test]
 fn member() {
     if serve_if_asked() {
@@ -34,7 +33,7 @@ fn main_turns_outcomes_into_exit_codes() {
     for (outcome, code) in [("ok", ExitCode::SUCCESS), ("wrong", ExitCode::FAILURE)] {
         let mut member = Member::start(isolated.name(), "outer");
         assert_eq!(member.ask(&format!("main {outcome}")), format!("{code:?}"));
-        // Logging has been started by now, and is not started twice.
+        // Logging has been started by now and cannot be started twice.
         let usage = format!("{:?}", ExitCode::from(2));
         assert_eq!(member.ask("main ok"), usage);
         member.end();
@@ -110,7 +109,7 @@ fn a_killed_publisher_can_be_replaced_while_the_subscriber_goes_on() {
     let graph = isolated.join("tester");
     let subscriber = graph.subscriber::<topic::Map>().unwrap();
     let mut held = Vec::new();
-    // More often than there is room for publishers: the dead must make way.
+    // More often than there are slots for publishers: those of dead ones must be freed.
     let times = u8::try_from(topic::Map::MAX_PUBLISHERS).unwrap() + 2;
     for id in 1..=times {
         let mut publisher = Member::start(isolated.name(), "publisher");
@@ -131,7 +130,7 @@ fn a_killed_subscriber_can_be_replaced_while_the_publisher_goes_on() {
     let mut publisher = Member::start(isolated.name(), "publisher");
     publisher.ask("publish 7 100");
     assert_eq!(publisher.ask("idle 10"), "idle");
-    // More often than there is room for subscribers.
+    // More often than there are slots for subscribers.
     for _ in 0..topic::Map::MAX_SUBSCRIBERS + 2 {
         let mut subscriber = Member::start(isolated.name(), "subscriber");
         assert_eq!(subscriber.ask("subscribe"), "subscribed");

@@ -145,7 +145,7 @@ fn impossible_sizes_are_refused() {
     publisher.loan(1).unwrap().send().unwrap();
 }
 
-/// Topic `map` as a process with another version of its header would use it.
+/// Topic `map` as used by a process with another version of its header.
 #[derive(Debug)]
 struct OtherMap;
 
@@ -166,7 +166,7 @@ fn another_version_of_a_message_is_refused_by_name() {
         error,
         TransportError::TypeMismatch { topic: "map", .. }
     ));
-    // Both with their versions, whichever they are now, and their sizes.
+    // Both names have a version number and a size.
     for (whose, header, size) in [
         ("carries", "MapHeader", size_of::<MapHeader>()),
         ("expects", "ScanHeader", size_of::<ScanHeader>()),

@@ -1,4 +1,4 @@
-//! Opens a file, and decides by what is open.
+//! Opens a file, and checks the open file.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read};
@@ -10,23 +10,23 @@ use nix::libc::{O_NOCTTY, O_NOFOLLOW, O_NONBLOCK};
 
 use crate::{TrustError, check_owner, current_user};
 
-/// Permissions of others to change a file.
+/// Permissions of other users to write a file.
 const WRITE: u32 = 0o022;
 
-/// Opens a regular file of this user or of root to which nobody else can write; `None` where
-/// there is none. A link is not followed, and a pipe without a writer is not waited for.
+/// Opens a regular file of this user or of root that no other user can write; `None` if there is no
+/// file. It neither follows a link nor waits for the writer of a pipe.
 ///
 /// # Errors
-/// The file is something else, belongs to another user, can be changed by others, or cannot
-/// be opened.
+/// It is not a regular file, belongs to another user, can be changed by others, or cannot be
+/// opened.
 pub fn open(path: &Path) -> Result<Option<File>, TrustError> {
     open_as(current_user(), path)
 }
 
-/// The text of such a file, of at most so many bytes; `None` where there is none.
+/// Reads the text of such a file, with at most `most` bytes; `None` if there is no file.
 ///
 /// # Errors
-/// As [`open`], or the file is longer, or no text.
+/// See [`open`]; also if the file is longer or not UTF-8.
 pub fn read(path: &Path, most: u64) -> Result<Option<String>, TrustError> {
     let Some(file) = open(path)? else {
         return Ok(None);
@@ -50,7 +50,7 @@ fn open_as(user: u32, path: &Path) -> Result<Option<File>, TrustError> {
     let file = match options.open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        // A link, and a socket.
+        // A link or a socket.
         Err(error)
             if [Errno::ELOOP, Errno::ENXIO]
                 .map(|e| e as i32)
@@ -79,7 +79,7 @@ fn code(error: &io::Error) -> i32 {
     error.raw_os_error().unwrap_or_default()
 }
 
-/// The error of what the system refuses to do with a file or folder.
+/// Returns a function that converts an error of a file operation.
 pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> TrustError {
     move |source| TrustError::File {
         action,
@@ -109,7 +109,7 @@ mod tests {
         let long = read(&path, 3).unwrap_err();
         assert!(matches!(long, TrustError::TooLong { most: 3, .. }));
         let me = current_user();
-        // To root, who runs tests in a container, files of root are always sound.
+        // If root runs the tests, as in a container, files of root are always trusted.
         if me != 0 {
             let foreign = open_as(me + 1, &path).unwrap_err();
             assert!(matches!(foreign, TrustError::Foreign { owner, .. } if owner == me));

@@ -1,4 +1,4 @@
-//! The folders on the way to a file that is to be written.
+//! Checks the folders on the path of a file before it is written.
 
 use std::fs::{canonicalize, symlink_metadata};
 use std::os::unix::fs::MetadataExt;
@@ -7,18 +7,18 @@ use std::path::{Path, absolute};
 use crate::file::failed;
 use crate::{TrustError, check_owner, current_user};
 
-/// Permission of everybody to put names into a folder, and the bit that keeps them from
-/// replacing names of others there.
+/// Permission of all users to create files in a folder, and the bit that prevents replacing files
+/// of others there.
 const EVERYBODY: u32 = 0o002;
 const STICKY: u32 = 0o1000;
 
-/// Makes sure that no other user decides in which folder a file at `path` is written: each
-/// folder and link on the way belongs to this user or to root, and in one that everybody may
-/// write to, as `/tmp`, nobody can replace names of others. What is at `path` itself must be
-/// a regular file that this user or root owns, or nothing.
+/// Checks that no other user can redirect a write to `path`: each folder and link on the path
+/// belongs to this user or to root, and in folders writable by all, such as `/tmp`, users cannot
+/// replace files of others. The file at `path` must be a regular file of this user or root, or not
+/// exist.
 ///
 /// # Errors
-/// Names the first folder, link or file that is not so.
+/// A folder, link or file fails this check; the error names it.
 pub fn check_place(path: &Path) -> Result<(), TrustError> {
     check_place_as(current_user(), path)
 }
@@ -30,7 +30,7 @@ fn check_place_as(user: u32, path: &Path) -> Result<(), TrustError> {
         return Err(no_name());
     };
     let real = canonicalize(folder).map_err(failed("find folder", folder))?;
-    // Links are the owner's own, and so is what they lead to.
+    // Checks the links on the path and the real folders.
     for way in [folder, &real] {
         way.ancestors()
             .try_for_each(|step| check_step(user, step))?;

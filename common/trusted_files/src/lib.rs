@@ -1,8 +1,8 @@
-//! Files that only their owner could have changed.
+//! Files that only their owner can have changed.
 //!
-//! A file in a folder that others may write to, as `/tmp`, may be anything: another user's, a
-//! link, a pipe that never ends. This crate opens what belongs to this user or to root and to
-//! which nobody else can write, and refuses the rest by name and owner. It writes nothing.
+//! A file in a folder that others can write to, such as `/tmp`, can be anything: another user's
+//! file, a link, a pipe that never ends. This crate opens files of this user or of root that no
+//! other user can write, and rejects others with their name and owner. It writes nothing.
 
 mod error;
 mod file;
@@ -16,12 +16,12 @@ use std::fs::Metadata;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-/// The user that this process acts as.
+/// Returns the effective user id of this process.
 fn current_user() -> u32 {
     nix::unistd::geteuid().as_raw()
 }
 
-/// Refuses what belongs neither to `user` nor to root.
+/// Fails unless the owner is `user` or root.
 fn check_owner(path: &Path, found: &Metadata, user: u32) -> Result<(), TrustError> {
     let owner = found.uid();
     if [0, user].contains(&owner) {

@@ -1,26 +1,24 @@
-//! Errors of opening a session.
+//! Errors of the network session.
 
 use std::path::PathBuf;
 
 use transport::TransportError;
 
-/// What Zenoh says.
+/// Error of Zenoh.
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// A key cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {key}")]
 pub struct KeyError {
-    /// What was tried.
+    /// Verb of what was tried.
     pub action: &'static str,
-    /// The key.
     pub key: String,
-    /// What Zenoh says.
     pub source: Cause,
 }
 
 impl KeyError {
-    /// Makes one of what Zenoh says.
+    /// Returns a function that converts an error of Zenoh.
     pub fn when(action: &'static str, key: &str) -> impl FnOnce(Cause) -> Self {
         move |source| KeyError {
             action,
@@ -30,37 +28,33 @@ impl KeyError {
     }
 }
 
-/// What was tried, what was found and what is allowed.
+/// Error of opening a session.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// Zenoh's configuration cannot be used.
+    /// Zenoh's configuration file cannot be used.
     #[error("cannot use {}", file.display())]
     ConfigFile {
-        /// The file.
         file: PathBuf,
-        /// What Zenoh says.
+        /// Error of Zenoh or of reading the file.
         source: Cause,
     },
-    /// The file is invalid that Zenoh's configuration is read from.
+    /// The configuration file has an unknown extension.
     #[error("{} is not a configuration file: allowed are files in JSON5 that end in .json5 or .json", file.display())]
     Format {
-        /// The file.
+        /// Path as given.
         file: PathBuf,
     },
-    /// An option cannot be put into Zenoh's configuration.
+    /// An option is invalid in Zenoh's configuration.
     #[error("{value} is nothing for {key} of Zenoh's configuration")]
     Setting {
-        /// The key of the configuration.
+        /// Key in the configuration.
         key: &'static str,
-        /// What was to stand there.
         value: String,
-        /// What Zenoh says.
         source: Cause,
     },
-    /// The session cannot be opened.
     #[error("cannot open the Zenoh session")]
     Session(#[source] Cause),
-    /// The graph fails meanwhile.
+    /// The graph failed in the meantime.
     #[error(transparent)]
     Transport(#[from] TransportError),
 }

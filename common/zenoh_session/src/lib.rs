@@ -1,8 +1,8 @@
-//! The Zenoh session of a node, as a user sets it: a file in Zenoh's own words,
-//! options on top, and below both what keeps a machine to itself. What comes from
-//! unknown senders is taken, counted and refused in the same way everywhere.
+//! The Zenoh session of a node: settings from a configuration file of Zenoh, from options that
+//! override it, and from defaults that keep a machine to itself. Messages from unknown senders are
+//! received, counted and rejected in the same way everywhere.
 //!
-//! For the nodes that join machines; nothing else links Zenoh.
+//! Only for the nodes that connect machines; no other crate links Zenoh.
 
 mod error;
 mod options;

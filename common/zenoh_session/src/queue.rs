@@ -1,8 +1,7 @@
-//! Messages from the network, on their way to the thread that owns the graph.
+//! Queue of messages from the network for the thread that owns the graph.
 //!
-//! Zenoh calls on threads of its own; they only put what came into a queue that
-//! never grows, and wake the event loop. A flood pushes out the oldest, which is
-//! counted.
+//! Zenoh calls back on its own threads; they only put messages into a bounded queue and wake the
+//! event loop. In a flood, the oldest messages are dropped and counted.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -16,22 +15,22 @@ use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig,
 
 use crate::KeyError;
 
-/// What opening a queue tries.
+/// Verb for errors.
 const ACTION: &str = "subscribe to";
 
-/// How much may wait.
+/// Limits of a queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueueLimits {
-    /// Messages.
+    /// Largest number of waiting messages.
     pub messages: usize,
-    /// Bytes of one message.
+    /// Largest size of one message, in bytes.
     pub message_bytes: usize,
-    /// Bytes of all of them.
+    /// Largest total size of waiting messages, in bytes.
     pub bytes: usize,
 }
 
 impl QueueLimits {
-    /// For this many messages, each as long as it may be.
+    /// Returns limits for this many messages of the largest size.
     #[must_use]
     pub fn for_any(messages: usize, message_bytes: usize) -> Self {
         QueueLimits {
@@ -42,51 +41,50 @@ impl QueueLimits {
     }
 }
 
-/// Which messages come that were sent before somebody listened.
+/// Selects messages that were sent before the subscription.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Past {
-    /// None.
     Gone,
-    /// This many of each sender, who keeps them by Zenoh's advanced publisher.
+    /// This many of each sender that keeps them with Zenoh's advanced publisher.
     Last(usize),
 }
 
-/// What came and was not looked at yet. Receives as long as it lives.
+/// Waiting messages of one subscription, which ends when this is dropped.
 pub struct Queue {
     waiting: Arc<Waiting>,
     _subscriber: Subscription,
 }
 
-/// Listens until it is dropped.
+/// Subscription to a key; ends when it is dropped.
 enum Subscription {
-    /// To what comes. The advanced one would take a message for a repetition that has
-    /// an earlier time than one before it by the same clock, and a router that gives
-    /// the times has one for all who send through it.
+    /// Only new messages. The advanced subscriber is not used: it would take a message for a
+    /// repetition if its time is before that of an earlier one by the same clock, and a router that
+    /// adds the times has one clock for all its senders.
     Live { _subscriber: Subscriber<()> },
-    /// Also to what was. Those who send it number their messages.
+    /// New and earlier messages. Their senders number them.
     Kept { _subscriber: AdvancedSubscriber<()> },
 }
 
 struct Waiting {
     samples: ArrayQueue<Sample>,
     limits: QueueLimits,
-    /// Of all payloads that wait.
+    /// Total size of the waiting payloads, in bytes.
     bytes: AtomicUsize,
-    /// Pushed out by later ones, or too large.
+    /// Messages dropped because the queue was full.
     dropped: AtomicU64,
-    /// Longer than a message can be; and the size of the last such.
+    /// Messages above the size limit, and the size of the last one.
     too_long: AtomicU64,
     too_long_bytes: AtomicUsize,
 }
 
 impl Queue {
-    /// Subscribes to a key.
+    /// Subscribes to `key`.
     ///
     /// # Errors
-    /// If Zenoh refuses.
+    /// Zenoh cannot subscribe.
     ///
     /// # Panics
-    /// If there is room for no message.
+    /// `limits.messages` is 0.
     pub fn open(
         session: &Session,
         key: &str,
@@ -130,27 +128,27 @@ impl Queue {
         })
     }
 
-    /// The oldest that waits.
+    /// Returns the oldest waiting message.
     #[must_use]
     pub fn next(&self) -> Option<Sample> {
         self.waiting.take()
     }
 
-    /// Most messages that can wait: who takes no more at once keeps nobody else
-    /// waiting, however fast they come.
+    /// Returns the limits. An event loop that takes at most `messages` at once does not starve its
+    /// other inputs, however fast messages come.
     #[must_use]
     pub fn limits(&self) -> QueueLimits {
         self.waiting.limits
     }
 
-    /// How many were lost since the last call because the queue was full.
+    /// Returns the number of messages lost since the last call because the queue was full.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.waiting.dropped.swap(0, Ordering::Relaxed)
     }
 
-    /// The bytes of a message that was not let in at all, once for each such; where
-    /// there were several, those of the last.
+    /// Returns the size in bytes of a message above the size limit, once for each; if there were
+    /// several, the size of the last one.
     #[must_use]
     pub fn next_too_long(&self) -> Option<usize> {
         let take = |count: u64| count.checked_sub(1);

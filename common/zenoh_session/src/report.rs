@@ -1,33 +1,32 @@
-//! What a node that joins a network says of itself.
+//! Health of a node that joins a network.
 //!
-//! Strangers decide how much is refused, so it is counted always and said now and
-//! then.
+//! Remote senders decide how much is rejected, so rejections are always counted but logged at a
+//! limited rate.
 
 use std::error::Error;
 
 use messages::{HealthHeader, NodeState};
 use transport::{Health, TransportError, monotonic_ns, with_causes};
 
-/// Between two refusals that are reported, nanoseconds.
+/// Shortest time between two logged rejections, in nanoseconds.
 const QUIET_NS: i64 = 1_000_000_000;
 
-/// Counts, and says what is wrong.
+/// Counts messages and reports problems.
 #[derive(Debug)]
 pub struct Report {
     health: Health,
     said_ns: i64,
-    /// Refusals that were counted and not reported.
+    /// Rejections counted but not logged.
     unsaid: u64,
-    /// What is waited for, in words; none where all that is needed is there.
+    /// Text for what is waited for; `None` if everything needed is there.
     waiting: Option<String>,
-    /// Whether those words are the last error.
+    /// True if this text is the last error in health.
     is_said: bool,
-    /// Whether the last map was refused.
+    /// True if the last map was rejected.
     is_map_refused: bool,
 }
 
 impl Report {
-    /// Reports by `health`.
     #[must_use]
     pub fn new(health: Health) -> Self {
         Report {
@@ -40,21 +39,21 @@ impl Report {
         }
     }
 
-    /// All that is needed is there.
+    /// Reports that everything needed is there.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn ready(&mut self) -> Result<(), TransportError> {
         self.is_map_refused = false;
         self.waiting_for(None)
     }
 
-    /// What is waited for, in words that stand behind "waiting for"; empty where it is too
-    /// early to say, none where all that is needed is there. The words stand as the last
-    /// error for as long as they hold.
+    /// Reports what is waited for, as words after "waiting for"; empty if it is too early to say,
+    /// `None` if everything needed is there. The words are the last error in health while they
+    /// hold.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn waiting_for(&mut self, words: Option<&str>) -> Result<(), TransportError> {
         if self.waiting.as_deref() != words {
             self.waiting = words.map(str::to_owned);
@@ -70,10 +69,10 @@ impl Report {
         self.health.state(self.state())
     }
 
-    /// A map was taken: one that was refused before is no more what is wanted.
+    /// Reports that a map was accepted, which ends the state after a rejected one.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn map_taken(&mut self) -> Result<(), TransportError> {
         self.is_map_refused = false;
         self.health.state(self.state())
@@ -87,43 +86,43 @@ impl Report {
         }
     }
 
-    /// To be called now and then.
+    /// Publishes health when due; to be called regularly.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn tick(&mut self) -> Result<(), TransportError> {
         self.health.tick()
     }
 
-    /// A message came.
+    /// Counts a received message.
     pub fn received(&mut self) {
         self.health.count_received(1);
     }
 
-    /// A message went.
+    /// Counts a sent message.
     pub fn sent(&mut self) {
         self.health.count_sent(1);
     }
 
-    /// This many messages were lost.
+    /// Counts lost messages.
     pub fn dropped(&mut self, messages: u64) {
         self.health.count_dropped(messages);
     }
 
-    /// A map was refused, and the one before stays.
+    /// Reports a rejected map; the previous one stays in use.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn map_refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.refused(error)?;
         self.is_map_refused = true;
         self.health.state(self.state())
     }
 
-    /// A message was refused.
+    /// Counts a rejected message, and logs it unless one was logged just before.
     ///
     /// # Errors
-    /// If the graph fails.
+    /// The graph failed.
     pub fn refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.health.count_refused(1);
         let now_ns = monotonic_ns();
@@ -133,7 +132,7 @@ impl Report {
         }
         let unsaid = std::mem::take(&mut self.unsaid);
         self.said_ns = now_ns;
-        // Strangers decide what stands in it, too.
+        // Remote senders influence the text, too.
         let mut problem = with_causes(error);
         problem.truncate(problem.floor_char_boundary(HealthHeader::ERROR_CAPACITY));
         tracing::warn!(unsaid, "rejected: {problem}");

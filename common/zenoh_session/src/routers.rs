@@ -1,29 +1,29 @@
-//! Whether those are there whom the session is to connect to.
+//! Detects missing connections to the configured endpoints.
 
 use zenoh::{Session, Wait};
 
 use crate::session::{CONNECT, settings};
 use crate::{NetworkError, Options};
 
-/// Where the session is to connect to.
+/// Endpoints that the session should connect to.
 #[derive(Debug, Clone)]
 pub struct Routers {
     endpoints: Vec<String>,
 }
 
 impl Routers {
-    /// As options or the file of the configuration name them.
+    /// Reads the endpoints from the options or the configuration file.
     ///
     /// # Errors
-    /// If the file or an option cannot be used.
+    /// The file or an option cannot be used.
     pub fn of(options: &Options) -> Result<Self, NetworkError> {
         let named = settings(options)?.get_json(CONNECT).unwrap_or_default();
-        // By the kind of node where the file says so; then nobody is missed.
+        // If the file has endpoints by mode, they are ignored and none is reported missing.
         let endpoints = serde_json::from_str(&named).unwrap_or_default();
         Ok(Routers { endpoints })
     }
 
-    /// Who is missing before the session is there; empty where nobody was named.
+    /// Returns a text on the missing routers before the session is open; empty without endpoints.
     #[must_use]
     pub fn awaited(&self) -> String {
         match &self.endpoints[..] {
@@ -32,8 +32,8 @@ impl Routers {
         }
     }
 
-    /// Who is missing: empty as soon as the session has a connection, or where it is to
-    /// connect to nobody.
+    /// Returns a text on the missing routers; empty if the session has a connection or no
+    /// endpoints.
     #[must_use]
     pub fn missing(&self, session: &Session) -> String {
         let is_connected = || session.info().transports().wait().next().is_some();

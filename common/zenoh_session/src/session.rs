@@ -1,4 +1,4 @@
-//! Opens the session.
+//! Opens the Zenoh session.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -11,7 +11,7 @@ use zenoh::{Config, Session, Wait};
 
 use crate::{Cause, NetworkError, Options};
 
-/// How soon the end of opening is seen, and how often health is reported before.
+/// Polling interval while opening, and tick of health meanwhile.
 const TICK: Duration = Duration::from_millis(100);
 
 const MODE: &str = "mode";
@@ -19,45 +19,42 @@ const LISTEN: &str = "listen/endpoints";
 pub(crate) const CONNECT: &str = "connect/endpoints";
 const SCOUTING: &str = "scouting/multicast/enabled";
 
-/// What a node logs that joins a network, in the words of `RUST_LOG`: also who is let
-/// in, and who is not and why, of which Zenoh would be silent.
+/// Default log filter of a node that joins a network, in the syntax of `RUST_LOG`. It includes
+/// accepted and rejected connections with the reason, which Zenoh would not log.
 pub const LOG: &str = "info,zenoh_transport::unicast::establishment::accept=debug";
 
-/// Where a node listens by default: on this machine only.
+/// Default endpoint to listen on: this machine only.
 const LOOPBACK: &str = r#"["tcp/127.0.0.1:7447"]"#;
 
-/// What a file with Zenoh's configuration may end with.
+/// Extensions of a configuration file.
 const EXTENSIONS: [&str; 2] = ["json5", "json"];
 
-/// What holds where the user's file names nothing else.
+/// Settings used unless the user's file has them.
 const DEFAULTS: [(&str, &str); 7] = [
-    // Those who connect to the same machine are to reach each other: peers hand
-    // nothing on.
+    // Clients of one machine must reach each other, and peers do not forward.
     (MODE, "'router'"),
-    // Nobody is called over the network that was not named.
+    // No connections to machines that were not named.
     (SCOUTING, "false"),
     ("scouting/delay", "0"),
-    // Who is named is called until they are there, each second at least.
+    // Named endpoints are retried without end, at least once a second.
     ("connect/timeout_ms", "-1"),
     (
         "connect/retry",
         "{ period_init_ms: 500, period_max_ms: 1000, period_increase_factor: 2 }",
     ),
-    // A cable that was pulled is noticed after this many milliseconds. Zenoh waits for
-    // ten seconds; TCP alone would then try again as late as that.
+    // Milliseconds after which a pulled cable is detected. Zenoh's default is ten seconds, and TCP
+    // alone would then also retry that late.
     ("transport/link/tx/lease", "4000"),
-    // The largest message that is put together, bytes: a map and its frame. Zenoh's
-    // own limit is 1 GiB.
+    // Largest reassembled message in bytes: a map and its frame. Zenoh's default is 1 GiB.
     ("transport/link/rx/max_message_size", "67174400"),
 ];
 
-/// Opens the session, however long that takes: as a client, Zenoh waits for whom it
-/// is to connect to. Meanwhile `tick` is called now and then. None if the process is
-/// to end before.
+/// Opens the session, however long that takes: as a client, Zenoh waits until it is connected.
+/// Meanwhile `tick` is called regularly. Returns `None` if the process is stopped before.
 ///
 /// # Errors
-/// If the file or an option cannot be used, Zenoh cannot listen where configured
-/// to, or `tick` fails.
+/// The file or an option cannot be used, Zenoh cannot listen at a configured endpoint, or `tick`
+/// fails.
 pub fn open(
     graph: &Graph,
     options: &Options,
@@ -92,17 +89,17 @@ fn start(
     let (sender, opening) = channel();
     let waker = graph.waker()?;
     std::thread::spawn(move || {
-        // Nobody listens where the process ends meanwhile.
+        // The receiver is gone if the process ends meanwhile.
         let _ = sender.send(zenoh::open(settings).wait());
         waker.wake();
     });
     Ok(opening)
 }
 
-/// What [`open`] passes to Zenoh.
+/// Returns the configuration that [`open`] passes to Zenoh.
 ///
 /// # Errors
-/// If the file or an option cannot be used.
+/// The file or an option cannot be used.
 pub fn settings(options: &Options) -> Result<Config, NetworkError> {
     let (mut settings, named) = match &options.config {
         None => (Config::default(), Value::Null),
@@ -126,8 +123,8 @@ pub fn settings(options: &Options) -> Result<Config, NetworkError> {
     Ok(settings)
 }
 
-/// The settings in a file, and the file as it stands: a setting that it names is the
-/// user's, even where Zenoh would have taken the same without it.
+/// Returns the settings in a file, and its content: a setting in the file overrides our default,
+/// even if it equals Zenoh's.
 fn read(file: &Path) -> Result<(Config, Value), NetworkError> {
     let extension = file.extension().and_then(OsStr::to_str);
     if !extension.is_some_and(|found| EXTENSIONS.contains(&found)) {
@@ -143,7 +140,7 @@ fn read(file: &Path) -> Result<(Config, Value), NetworkError> {
     Ok((Config::from_file(file).map_err(failed)?, named))
 }
 
-/// Whether a file names a setting, or a part of it.
+/// True if the file has a setting, or a part of it.
 fn is_named(file: &Value, key: &str) -> bool {
     file.pointer(&format!("/{key}")).is_some()
 }
@@ -157,7 +154,7 @@ fn set(settings: &mut Config, key: &'static str, value: &str) -> Result<(), Netw
     settings.insert_json5(key, value).map_err(failed)
 }
 
-/// As JSON; Debug escapes what JSON does.
+/// Formats endpoints as JSON; `Debug` has the same escapes.
 fn list(endpoints: &[String]) -> String {
     format!("{endpoints:?}")
 }
@@ -166,8 +163,7 @@ fn list(endpoints: &[String]) -> String {
 mod tests {
     use super::*;
 
-    /// The session's settings where this is in a file, and the option that follows
-    /// is given on the command line.
+    /// Checks the settings with this file and this command-line option.
     fn check(option: [&str; 2], file: Option<&str>, expected: [&str; 4]) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("zenoh.json5");
@@ -216,7 +212,7 @@ mod tests {
         check(option, file, [ROUTER, here, "[]", "true"]);
     }
 
-    /// A setting stays where the file names it, be it what Zenoh takes by itself.
+    /// A setting in the file stays, even if it is Zenoh's default.
     #[test]
     fn what_the_file_names_stays_as_it_is() {
         let file = "{ mode: 'peer', scouting: { multicast: { enabled: true } }, \
@@ -234,7 +230,7 @@ mod tests {
         }
         let retry = found("connect/retry");
         assert!(!retry.contains("500"), "{retry}");
-        // What it does not name is ours.
+        // Settings not in the file have our defaults.
         assert_eq!(found("transport/link/rx/max_message_size"), "67174400");
     }
 

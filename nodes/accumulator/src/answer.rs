@@ -1,4 +1,4 @@
-//! What the messages say about a scan. Asks the engine, and measures nothing.
+//! Searches scans with the engine and fills in the messages about them.
 
 use bytemuck::Zeroable;
 use engine::EngineError;
@@ -11,19 +11,18 @@ use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHea
 
 use crate::preparation::PreparedMap;
 
-/// What is sent about a scan that was answered: header and items of `votes`,
-/// which lie where the engine found them.
+/// Header and items of `votes`; the items are borrowed from the engine's workspace.
 pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 
 /// Header and items of `field`.
 pub type Image<'a> = (FieldHeader, &'a [u16]);
 
-/// Asks the engine, each map in a workspace of its own; the number of the map that leads, or
-/// `None` if `stop` said so before it was done. The maps must be prepared for a known heading
-/// if and only if there is one.
+/// Searches the maps, each in a workspace of its own. Returns the index of the leading map, or
+/// `None` if `stop` interrupted the search. The maps must be prepared for a known heading if and
+/// only if there is one.
 ///
 /// # Errors
-/// If the engine refuses the scan or the heading.
+/// If the engine rejects the scan or the heading.
 ///
 /// # Panics
 /// If there is no map.
@@ -47,7 +46,7 @@ pub fn ask(
     Localizer::search_together(searched, scan, heading, stop)
 }
 
-/// What to send about a scan to which the engine replied within `engine_ns`.
+/// Returns the message about a scan for which the engine took `engine_ns`.
 #[must_use]
 pub fn answered<'w>(
     scan: &ScanHeader,
@@ -64,12 +63,11 @@ pub fn answered<'w>(
     (votes, &outcome.found.votes)
 }
 
-/// The image of the scan that was answered last in this workspace: the
-/// intensities of all cells where the heading was known, else their upper
-/// bounds, block by block.
+/// Returns the image of the scan that was last searched in this workspace: the intensities of all
+/// cells if the heading was known, else the upper bound of each block.
 ///
 /// # Errors
-/// If the engine refuses the scan.
+/// If the engine rejects the scan.
 pub fn image<'w>(
     votes: &VotesHeader,
     localizer: &Localizer,
@@ -84,7 +82,7 @@ pub fn image<'w>(
     Ok((bounds_header(votes, blocks), &blocks.bounds))
 }
 
-/// Which map was searched, and how it and the scan were read.
+/// Map that was searched, and the settings that the search used.
 struct Terms {
     map_id: u64,
     beams: BeamConfig,
@@ -128,7 +126,7 @@ fn votes_header(
     }
 }
 
-/// The header of a refused scan's votes; `map_id` is 0 where there is no map.
+/// Returns the header of the votes of a refused scan; `map_id` is 0 if there is no map.
 #[must_use]
 pub fn refused(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     VotesHeader {
@@ -137,7 +135,7 @@ pub fn refused(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     }
 }
 
-/// The header of the votes of a scan that is kept until somebody asks for it.
+/// Returns the header of the votes of a scan that is kept until a search is requested.
 #[must_use]
 pub fn kept(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     VotesHeader {
@@ -161,7 +159,7 @@ fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
     FieldHeader {
         stamp: votes.stamp,
         map_id: votes.map_id,
-        // No side of a grid has more than 15 bits.
+        // A side of a grid has at most 15 bits.
         width: grid.width() as u32,
         height: grid.height() as u32,
         block: votes.pooling,
@@ -172,12 +170,12 @@ fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
     }
 }
 
-/// The heading is invalid: the bounds hold for all.
+/// The heading field is 0: the bounds hold for all headings.
 fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
     FieldHeader {
         stamp: votes.stamp,
         map_id: votes.map_id,
-        // Not more than there are cells along a side.
+        // At most the number of cells along a side.
         width: blocks.columns as u32,
         height: blocks.rows() as u32,
         block: blocks.side as u32 * votes.pooling,

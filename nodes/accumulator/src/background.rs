@@ -1,21 +1,19 @@
-//! One piece of work on a thread of its own.
+//! Runs one job on a thread of its own.
 //!
-//! Its outcome is asked for now and then, never waited for: whoever asks has
-//! scans to answer meanwhile. Work that nobody asks for any more runs to its
-//! end, or to that of the process.
+//! The result is polled, never waited for, because the caller answers scans meanwhile. A job that
+//! is dropped runs to its end or to the end of the process.
 
 use std::any::Any;
 use std::io;
 use std::thread::{Builder, JoinHandle};
 
-/// Work under way.
 #[derive(Debug)]
 pub(crate) struct Background<T> {
     thread: JoinHandle<T>,
 }
 
 impl<T: Send + 'static> Background<T> {
-    /// Starts `work` on a thread with a name that debuggers show.
+    /// Starts `work` on a thread with this name, which debuggers show.
     pub(crate) fn start(
         name: &str,
         work: impl FnOnce() -> T + Send + 'static,
@@ -24,12 +22,12 @@ impl<T: Send + 'static> Background<T> {
         Ok(Background { thread })
     }
 
-    /// Whether the outcome is there: [`Background::finish`] returns at once.
+    /// Returns true if [`Background::finish`] would return at once.
     pub(crate) fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// The outcome, or with what words the work panicked.
+    /// Returns the result, or the message with which the work panicked.
     pub(crate) fn finish(self) -> Result<T, String> {
         self.thread.join().map_err(|panic| words_of(&*panic))
     }

@@ -8,11 +8,11 @@ use engine::localizer::{LocalizerConfig, Prior};
 use engine::regions::SonarConfig;
 use index_cache::IndexCacheConfig;
 
-/// Most votes in a message: what the readers of `votes` are made for.
+/// Largest number of votes in a message, for which readers of `votes` are built.
 const MAX_VOTES: u32 = 65_536;
 
-/// Steps after which a search ends where nothing else is set, millions: some five seconds.
-/// Of the scans of `docs/accuracy.md` none takes a tenth of that.
+/// Default limit of steps after which a search ends, millions: about five seconds. No scan of
+/// `docs/accuracy.md` takes a tenth of that.
 const WORK_LIMIT: f64 = 5_000.0;
 
 /// Searches the poses at which each scan fits the map and publishes them as
@@ -20,48 +20,46 @@ const WORK_LIMIT: f64 = 5_000.0;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "accumulator", version)]
 pub struct Config {
-    /// How scans are matched with the map.
     #[command(flatten)]
     pub localizer: LocalizerConfig,
 
-    /// Where prepared maps are kept.
     #[command(flatten)]
     pub index_cache: IndexCacheConfig,
 
-    /// What is known of the heading.
+    /// Source of the heading, if it is known.
     #[command(flatten)]
     pub heading: HeadingConfig,
 
-    /// Which lasers are joined, and how their motion is known.
+    /// Lasers to join, and the source of their motion.
     #[command(flatten)]
     pub join: JoinConfig,
 
-    /// How scans of sonars are read.
+    /// Settings for scans of sonars.
     #[command(flatten)]
     pub sonar: SonarConfig,
 
-    /// Which scans are searched.
+    /// Scans to search.
     #[arg(long, value_enum, default_value_t = Searched::All)]
     pub search: Searched,
 
-    /// Maximum number of images per second on `field`, 0.1..=100. They are sent while
-    /// somebody subscribes: the intensities of all cells if the heading is known, else
-    /// the upper bound for each block of cells.
+    /// Maximum number of images per second on `field`, 0.1..=100. They are sent while the topic has
+    /// a subscriber: the intensities of all cells if the heading is known, else the upper bound for
+    /// each block of cells.
     #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = field_rate)]
     pub field_rate: f64,
 }
 
-/// Which scans are searched.
+/// Selection of the scans that are searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Searched {
     /// Every scan.
     All,
-    /// Those that `attention` asks for, of the last 64.
+    /// Scans that `attention` asks for, of the last 64.
     Asked,
 }
 
 impl Config {
-    /// Reads the command line; ends the process with code 2 where it is wrong.
+    /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
         let config = Config::parse();
@@ -73,20 +71,21 @@ impl Config {
         }
     }
 
-    /// The settings of the localizer, where not even clutter keeps a robot waiting.
+    /// Returns the settings of the localizer, with a default work limit so that even clutter does
+    /// not block the robot.
     pub(crate) fn localizer(&self) -> LocalizerConfig {
         let mut localizer = self.localizer.clone();
         localizer.collect.work_limit.get_or_insert(WORK_LIMIT);
         localizer
     }
 
-    /// Whether the localizer has to search the heading.
+    /// Returns the prior knowledge of the heading: none, or a known heading.
     #[must_use]
     pub fn prior(&self) -> Prior {
         self.heading.source().prior()
     }
 
-    /// Checks what no option can check alone.
+    /// Checks rules that concern more than one option.
     fn check(&self) -> Result<(), String> {
         Directions::new(self.localizer.headings).map_err(|error| error.to_string())?;
         let max_votes = self.localizer.collect.max_votes;

@@ -1,40 +1,39 @@
-//! The last scans, brought to one time, until somebody asks for a search.
+//! Recent scans, kept at a common time until a search is requested.
 
 use std::collections::VecDeque;
 
 use engine::joined::{Kept, Seen};
 use messages::{ScanHeader, Stamp};
 
-/// Scans that are kept, and requests for scans that have not come yet.
+/// Number of scans kept, and of requests waiting for scans that have not arrived.
 const KEPT: usize = 64;
 
-/// A scan that may be searched.
+/// Kept scan that may be searched.
 #[derive(Debug)]
 pub(crate) struct KeptScan {
     pub(crate) header: ScanHeader,
-    /// Lasers that were joined; 0 where none are.
+    /// Number of joined lasers; 0 if lasers are not joined.
     pub(crate) lasers: u32,
     pub(crate) kept: Kept,
 }
 
-/// The last scans, and which of them are to be searched.
+/// Recent scans, and requests to search them.
 #[derive(Debug, Default)]
 pub(crate) struct KeptScans {
     scans: VecDeque<KeptScan>,
     requests: VecDeque<Stamp>,
 }
 
-/// What is to be done next.
+/// Next step with a request.
 #[derive(Debug)]
 pub(crate) enum Asked {
-    /// To search this scan.
     Search(Box<KeptScan>),
-    /// To refuse a request for a scan that is not here any more.
+    /// Refuse the request: its scan is no longer kept.
     Refuse(Stamp),
 }
 
 impl KeptScans {
-    /// Keeps a scan.
+    /// Stores a scan, and drops the oldest one if there are too many.
     pub(crate) fn keep(&mut self, header: &ScanHeader, lasers: u32, seen: &Seen<'_>) {
         if self.scans.len() == KEPT {
             self.scans.pop_front();
@@ -46,7 +45,6 @@ impl KeptScans {
         });
     }
 
-    /// Takes a request.
     pub(crate) fn request(&mut self, stamp: Stamp) {
         if self.requests.len() == KEPT {
             self.requests.pop_front();
@@ -54,8 +52,8 @@ impl KeptScans {
         self.requests.push_back(stamp);
     }
 
-    /// The next request that can be met, or never will be. One whose scan is still to come
-    /// waits.
+    /// Returns the next request that can be answered or has to be refused. Requests for scans that
+    /// have not arrived keep waiting.
     pub(crate) fn next(&mut self) -> Option<Asked> {
         let newest = self.scans.back()?.header.stamp.counter;
         let at = self
@@ -112,7 +110,7 @@ mod tests {
         };
         assert_eq!(found.header.stamp, stamp(3));
         assert_eq!(found.kept, Kept::of(&found.kept.seen()));
-        // It is not known yet whether it is still to come.
+        // Scan 3 might still arrive.
         scans.request(stamp(3));
         assert!(scans.next().is_none());
         (4..=3 + KEPT as u64).for_each(|counter| keep(&mut scans, counter));

@@ -1,11 +1,10 @@
-//! Node `accumulator`: where on the map could each scan have been taken? From
-//! `scan`, `map` and `boundary` to `votes`, and to `field` while somebody looks.
+//! Node `accumulator`: finds the poses on the map at which each scan may have been taken. From
+//! `scan`, `map` and `boundary` to `votes`, and to `field` while it has a subscriber.
 //!
-//! Each scan is answered by exactly one message of `votes`, also where it is
-//! refused or explains nothing. A new map is prepared in the background while
-//! scans are answered with the one before. The search itself is the engine's;
-//! `preparation` knows what a map has to be, `answer` what a message says, `sonar` what
-//! wide beams are read as. Only `run` touches the graph and the clock.
+//! Each scan is answered by exactly one message of `votes`, even if it is refused or nothing
+//! explains it. A new map is prepared in the background while scans are answered with the previous
+//! one. The engine does the search; `preparation` checks and prepares maps, `answer` builds the
+//! messages, `sonar` interprets wide beams. Only `run` uses the graph and the clock.
 
 pub mod answer;
 mod background;

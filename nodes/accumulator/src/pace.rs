@@ -1,6 +1,6 @@
-//! How often something may happen. Pure: the time is an argument.
+//! Limits the rate of an event. Pure: the time is an argument.
 
-/// Lets through at most one event a period.
+/// Rate limiter: lets through at most one event per period.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pace {
     period_ns: i64,
@@ -8,7 +8,7 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// `rate` events a second at most; the first one passes at once.
+    /// Creates a limiter for at most `rate` events per second; the first one passes at once.
     pub(crate) fn new(rate: f64) -> Self {
         Pace {
             period_ns: (1e9 / rate) as i64,
@@ -16,7 +16,7 @@ impl Pace {
         }
     }
 
-    /// Whether an event may happen now; if so, it is taken to happen.
+    /// Returns true if an event may happen now, and counts it as happened.
     pub(crate) fn pass(&mut self, now_ns: i64) -> bool {
         if self.next_ns.is_some_and(|next| now_ns < next) {
             return false;

@@ -1,8 +1,7 @@
-//! From a map and its boundary, or each map of a set, to a localizer.
+//! Prepares a localizer from a map and its boundary, or from each map of a set.
 //!
-//! Both come from other processes, so nothing in them is believed before it has
-//! been checked. That a boundary is complete cannot be seen without extracting
-//! it again, and is left to its sender.
+//! Both come from other processes, so everything in them is checked first. Only the completeness of
+//! a boundary is left to its sender, since checking it would mean extracting it again.
 
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Preparation, Prior};
@@ -13,20 +12,19 @@ use twox_hash::XxHash3_64;
 
 use crate::{AccumulatorError, Subject};
 
-/// What a localizer is made from: equal ones make equal localizers.
+/// Identity of a localizer's inputs: equal keys give equal localizers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Key {
-    /// The map.
     pub map_id: u64,
-    /// By which its cells are read.
+    /// Rules for reading its cells.
     pub rules: CellRules,
-    /// Hash of the boundary's cells; none of a map of a set.
+    /// Hash of the boundary cells; `None` for a map of a set.
     boundary: Option<u64>,
 }
 
 impl Key {
-    /// The key of a map and a boundary; `None` where the boundary is of another
-    /// map, whose own one is still to come.
+    /// Returns the key of a map and a boundary; `None` if the boundary belongs to another map, so
+    /// that the right one is still to come.
     ///
     /// # Errors
     /// If the map's rules are out of range.
@@ -42,7 +40,7 @@ impl Key {
         Ok((map.map_id == boundary.map_id).then_some(key))
     }
 
-    /// The key of a map of a set.
+    /// Returns the key of a map of a set.
     ///
     /// # Errors
     /// If the map's rules are out of range.
@@ -55,34 +53,32 @@ impl Key {
     }
 }
 
-/// A map that scans can be matched with.
+/// Map that is ready to be searched.
 #[derive(Debug, Clone)]
 pub struct PreparedMap {
-    /// The map.
     pub map_id: u64,
-    /// Made from it.
     pub localizer: Localizer,
-    /// That of the map as it is: its cells may be finer than those that are searched.
+    /// Space of the original map, whose cells may be finer than the searched ones.
     pub space: Space,
 }
 
-/// A map, with its boundary unless it is one of a set, on the way to a localizer.
+/// Input for a localizer: a map, with its boundary unless it belongs to a set.
 #[derive(Debug, Clone)]
 pub struct Job {
     map: MapHeader,
     occupancy: Vec<u8>,
     rules: CellRules,
     boundary: Option<Vec<BoundaryCell>>,
-    /// Up to which length beams count, where that is more than the map's own.
+    /// Length up to which beams count, metres, if it exceeds the map's own.
     reach_m: f64,
 }
 
 impl Job {
-    /// Takes a map of a set on which beams count up to this length, metres. Its boundary is
-    /// extracted here: topic `boundary` has one map's.
+    /// Copies a map of a set on which beams count up to `reach_m` metres. Its boundary is extracted
+    /// here, because topic `boundary` covers only one map.
     ///
     /// # Errors
-    /// If the map has impossible rules.
+    /// If the rules of the map are invalid.
     pub fn in_set(
         map: &MapHeader,
         occupancy: &[u8],
@@ -97,10 +93,10 @@ impl Job {
         })
     }
 
-    /// Takes a copy along: samples stay on the thread that received them.
+    /// Copies the messages, because samples must stay on the thread that received them.
     ///
     /// # Errors
-    /// If the boundary has another size than it says, or the map impossible rules.
+    /// If the size of the boundary does not match its header, or the rules of the map are invalid.
     pub fn new(
         map: &MapHeader,
         occupancy: &[u8],
@@ -120,14 +116,13 @@ impl Job {
         })
     }
 
-    /// The map.
+    /// Returns the map's id and name, for messages.
     #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::map(&self.map)
     }
 
-    /// Makes the localizer, which takes from milliseconds to seconds, unless what takes
-    /// long is in a file that was kept.
+    /// Prepares the localizer, which takes milliseconds to seconds unless the index is cached.
     ///
     /// # Errors
     /// If map or boundary cannot be used, or do not belong together.
@@ -159,7 +154,7 @@ impl Job {
     }
 }
 
-/// The engine takes each cell for an obstacle of its grid, and each but once.
+/// Checks that each boundary cell is occupied and occurs once, since the engine relies on it.
 fn check_boundary(
     map: &MapHeader,
     (occupancy, rules): (&[u8], CellRules),
@@ -189,7 +184,7 @@ mod tests {
 
     use super::*;
 
-    /// The messages of a map and its boundary.
+    /// Messages of a map and its boundary.
     struct Pair {
         map: MapHeader,
         occupancy: Vec<u8>,
@@ -197,7 +192,7 @@ mod tests {
         cells: Vec<BoundaryCell>,
     }
 
-    /// A room of 6 by 4 cells with bare walls.
+    /// Returns a room of 6 by 4 cells with bare walls.
     fn room() -> Pair {
         let is_wall = |x, y| x == 0 || x == 5 || y == 0 || y == 3;
         let occupancy: Vec<u8> = (0..24)
@@ -225,7 +220,7 @@ mod tests {
         }
     }
 
-    /// Prepares the room after `change` has been at it.
+    /// Prepares the room after `change` has modified it.
     fn prepare(change: impl FnOnce(&mut Pair)) -> Result<PreparedMap, AccumulatorError> {
         let mut pair = room();
         change(&mut pair);
@@ -264,7 +259,7 @@ mod tests {
         let (map, kept) = prepare(&pair);
         assert!(kept.is_read && kept.unsaved.is_none());
         assert_eq!((map.map_id, map.localizer.searchable_cells()), (77, 8));
-        // Of two rules that class all cells alike one index will do.
+        // One index serves two rules that classify all cells alike.
         pair.map.occupied_from = 66;
         assert!(prepare(&pair).1.is_read);
         pair.occupancy[7] = 50;

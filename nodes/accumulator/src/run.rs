@@ -1,4 +1,4 @@
-//! Receives scans and sends votes.
+//! Receives scans and publishes votes.
 
 mod inputs;
 mod outputs;
@@ -28,19 +28,19 @@ use inputs::Inputs;
 use outputs::Outputs;
 use supply::Supply;
 
-/// How long a map that has been prepared waits to be used at most, while no
-/// scan comes; a scan that waits for odometry is looked at as often.
+/// Longest time before a prepared map is used while no scan arrives; also the interval at which a
+/// scan waiting for odometry is checked.
 const TICK: Duration = Duration::from_millis(25);
 
-/// Readings of each kind that are kept to take headings and poses from: ten seconds
-/// of odometry at 100 Hz.
+/// Number of readings of each kind kept to interpolate headings and poses: ten seconds of odometry
+/// at 100 Hz.
 const POSES_KEPT: usize = 1024;
 
-/// Answers each scan with its votes until the stop flag is set.
+/// Publishes the votes of each scan until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or the thread that prepares a map dies. A scan or a map
-/// that is refused is reported in `health`.
+/// If the transport fails, or the thread that prepares a map panics. A rejected scan or map is
+/// reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let source = config.heading.source();
     let inputs = Inputs::open(graph, config)?;
@@ -68,7 +68,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     graph.run(&inputs.all(), TICK, |_| node.step(&inputs))
 }
 
-/// A ring of sonars is read through a window of its own.
+/// Disables deskewing for a ring of sonars, which has its own window.
 fn join_config(config: &Config) -> JoinConfig {
     let mut join = config.join.clone();
     join.motion.deskew &= config.sonar.sonar_way.is_none();
@@ -79,23 +79,23 @@ struct Node {
     source: HeadingSource,
     headings: u32,
     history: History,
-    /// The newest scans, and how the robot moved.
+    /// Newest scans, and the motion of the robot.
     joiner: Joiner,
-    /// A scan that is to be answered, and when it came.
+    /// Scan to be answered, and its time of arrival.
     pending: Option<(ScanHeader, Instant)>,
-    /// The last scans, where only those are searched that somebody asks for.
+    /// Recent scans, if only requested ones are searched.
     kept: Option<KeptScans>,
-    /// What the scan saw that is searched, where it is one of those.
+    /// Content of the requested scan during its search.
     recalled: Option<Kept>,
     supply: Supply,
-    /// That are searched; none where there is no map yet.
+    /// Maps to search; empty before the first map.
     maps: Vec<PreparedMap>,
-    /// What scans are read through, where they are those of sonars.
+    /// Window that collects sonar echoes, if the scans are from sonars.
     sonar: Option<Sonar>,
-    /// One for each map.
+    /// Workspaces, one for each map.
     workspaces: Vec<Workspace>,
     readings: Readings,
-    /// By laser.
+    /// Gap counters by laser name.
     gaps: BTreeMap<String, GapCounter>,
     last_notes: String,
     last_refusal: String,
@@ -105,7 +105,8 @@ struct Node {
 }
 
 impl Node {
-    /// Looks at the maps between any two scans, for a search may take long.
+    /// Processes the inputs; checks for new maps between any two scans, because a search may take
+    /// long.
     fn step(&mut self, inputs: &Inputs) -> Result<Flow, AccumulatorError> {
         while !self.stopped() {
             if let Some(prepared) = self.supply.poll(inputs, &mut self.health)? {
@@ -113,7 +114,7 @@ impl Node {
             }
             self.health.tick()?;
             while self.pending.is_none() && self.take_scan(inputs)? {}
-            // What was sent before the scan has arrived by now.
+            // Messages sent before the scan have arrived by now.
             inputs.take_poses(&mut self.joiner, &mut self.history, &mut self.health)?;
             let Some((scan, since)) = self.pending.take() else {
                 if self.answer_asked(inputs)? {
@@ -141,7 +142,7 @@ impl Node {
         Ok(Flow::Stop)
     }
 
-    /// Searches the next scan that somebody asks for; whether there was one.
+    /// Searches the next requested scan; returns false if there was none.
     fn answer_asked(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
         let (Some(kept), Some(attention)) = (&mut self.kept, &inputs.attention) else {
             return Ok(false);
@@ -173,7 +174,7 @@ impl Node {
         Ok(true)
     }
 
-    /// Takes the next scan that has come, if there is one.
+    /// Takes the next scan; returns false if none has arrived.
     fn take_scan(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
         let Some(scan) = inputs.scans.receive()? else {
             return Ok(false);
@@ -198,7 +199,7 @@ impl Node {
         scan: &ScanHeader,
         brought: Result<u32, AccumulatorError>,
     ) -> Result<(), TransportError> {
-        // What is sent lies in the workspace.
+        // The messages borrow from the workspaces.
         let mut workspaces = std::mem::take(&mut self.workspaces);
         let mut readings = std::mem::take(&mut self.readings);
         let found =
@@ -210,7 +211,7 @@ impl Node {
                 self.send_votes(&votes, &by_map)
                     .and_then(|()| self.send_field((leading, &mut workspaces[leading]), &votes))
             }
-            // Stopped half-way: nobody waits for the answer any more.
+            // Interrupted by the stop flag: no one waits for the answer.
             Ok(None) => Ok(()),
             Err(error) => self.refuse(scan, &error),
         };
@@ -218,8 +219,8 @@ impl Node {
         done
     }
 
-    /// Brings the scan to one time with those of the other lasers, or with those
-    /// before it if it is one of sonars; how many lasers were joined.
+    /// Joins the scan with those of the other lasers at a common time, or adds it to the sonar
+    /// window. Returns the number of joined lasers.
     fn bring(&mut self, scan: &ScanHeader) -> Result<u32, AccumulatorError> {
         let brought = self.joiner.bring()?;
         if let Some(sonar) = &mut self.sonar
@@ -235,7 +236,7 @@ impl Node {
         })
     }
 
-    /// Says what is not as it should be, once for as long as it stays so.
+    /// Reports problems of joining, once for as long as they stay the same.
     fn note(&mut self, notes: &str) -> Result<(), TransportError> {
         if notes != self.last_notes {
             if !notes.is_empty() {
@@ -286,7 +287,7 @@ impl Node {
         Ok(Some((leading, by_map.collect())))
     }
 
-    /// What is to vote.
+    /// Returns the observation to search.
     fn seen(&self) -> Seen<'_> {
         match (&self.sonar, &self.recalled) {
             (Some(sonar), _) => Seen::Still(sonar.scan()),
@@ -313,7 +314,7 @@ impl Node {
         Ok(())
     }
 
-    /// Sends the image of the scan that was answered last, if one is due.
+    /// Publishes the image of the last answered scan, if one is due.
     fn send_field(
         &mut self,
         searched: (usize, &mut Workspace),
@@ -328,8 +329,8 @@ impl Node {
         Ok(())
     }
 
-    /// The image of a scan that was answered, so that nothing can be wrong with
-    /// it any more, on the map of a number.
+    /// Returns the image of an answered scan on the map with this index; errors are not possible
+    /// for a scan that was searched.
     fn image<'w>(
         &self,
         (map, workspace): (usize, &'w mut Workspace),
@@ -339,7 +340,7 @@ impl Node {
         answer::image(votes, localizer, workspace, self.seen().observation()).ok()
     }
 
-    /// Answers a refused scan all the same, for its source may be waiting.
+    /// Answers a refused scan, because its sender may be waiting, and reports the reason.
     fn refuse(
         &mut self,
         scan: &ScanHeader,
@@ -353,7 +354,7 @@ impl Node {
         let (counter, reason) = (scan.stamp.counter, with_causes(error));
         self.health
             .error(&format!("scan {counter} rejected: {reason}"))?;
-        // A source that is always wrong would fill the log.
+        // A persistent fault would otherwise fill the log.
         if reason != self.last_refusal {
             tracing::warn!("scan {counter} rejected: {reason}");
             self.last_refusal = reason;

@@ -1,6 +1,6 @@
-//! What a ring of sonars saw on its way, in place of its newest scan.
+//! Combines the recent echoes of a ring of sonars into one scan.
 //!
-//! Where the robot was is looked up here; what its echoes mean is the engine's.
+//! This module looks up the robot's poses; the engine interprets the echoes.
 
 use engine::heading::History;
 use engine::regions::{self, Window};
@@ -9,10 +9,10 @@ use messages::ScanHeader;
 
 use crate::AccumulatorError;
 
-/// Odometry that was measured longer before its scan is not used, nanoseconds.
+/// Largest age of odometry relative to its scan, nanoseconds.
 const MAX_AGE_NS: i64 = 200_000_000;
 
-/// The echoes of the last metres, and what they are read as.
+/// Echoes of the last metres and the ranges derived from them.
 #[derive(Debug, Clone)]
 pub struct Sonar {
     window: Window,
@@ -20,7 +20,7 @@ pub struct Sonar {
 }
 
 impl Sonar {
-    /// Reads through this window.
+    /// Creates a sonar reader with this window.
     #[must_use]
     pub fn new(window: Window) -> Self {
         Sonar {
@@ -29,11 +29,10 @@ impl Sonar {
         }
     }
 
-    /// Takes in a scan.
+    /// Adds a scan to the window.
     ///
     /// # Errors
-    /// If no odometry covers it, or the engine refuses it; it is left
-    /// out then.
+    /// If no odometry covers the scan, or the engine rejects it; the scan is then left out.
     pub fn receive(
         &mut self,
         header: &ScanHeader,
@@ -47,7 +46,7 @@ impl Sonar {
         Ok(())
     }
 
-    /// What the newest scan is read as.
+    /// Returns the combined scan.
     #[must_use]
     pub fn scan(&self) -> Scan<'_> {
         regions::scan_of(&self.ranges)

@@ -1,4 +1,4 @@
-//! What a message to people is about: a map or a set of maps.
+//! Subject of a log or health message: a map or a set of maps.
 
 use std::fmt;
 
@@ -6,25 +6,23 @@ use messages::{MapHeader, MapName};
 
 use crate::AccumulatorError;
 
-/// What was refused, and why. The error is large, and rare.
+/// Refused map or set, and the reason. The error is boxed because it is large and rare.
 pub(crate) type Refused = (Subject, Box<AccumulatorError>);
 
-/// A map, by its name where it has one, or a set of maps.
+/// Map, displayed by its name if it has one, or set of maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// A map.
     Map {
-        /// Its id.
         map_id: u64,
-        /// Empty of a map that is served alone.
+        /// Name of the map; empty for a map that is served alone.
         name: MapName,
     },
-    /// All maps of a set, by its id.
+    /// All maps of a set, by the set's id.
     Set(u64),
 }
 
 impl Subject {
-    /// The map of a message.
+    /// Returns the subject for the map of a message.
     #[must_use]
     pub fn map(header: &MapHeader) -> Self {
         Subject::Map {
@@ -33,7 +31,7 @@ impl Subject {
         }
     }
 
-    /// That it is refused for an error.
+    /// Combines the subject with the reason for its refusal.
     #[must_use]
     pub(crate) fn refused(self, error: impl Into<AccumulatorError>) -> Refused {
         (self, Box::new(error.into()))

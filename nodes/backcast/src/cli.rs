@@ -1,4 +1,4 @@
-//! The command line: reads it, calls the command, picks the exit code.
+//! Command line: parses it, calls the command, and chooses the exit code.
 
 #[cfg(feature = "tools")]
 mod shell;
@@ -16,8 +16,7 @@ use tools::{OnRecordings, OnTheSide};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
-/// Without a command, `run` is meant: `backcast --rate max` is `backcast run
-/// --rate max`.
+/// Without a command, `run` is assumed: `backcast --rate max` is `backcast run --rate max`.
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 struct Cli {
@@ -29,7 +28,7 @@ struct Cli {
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
 
-/// One variant a command. The tools stand where they do in the help.
+/// Commands, in the order of the help text.
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Builds and starts the graph, and prints a pose for each scan
@@ -58,7 +57,7 @@ enum Command {
     OnTheSide(Box<OnTheSide>),
 }
 
-/// Runs the command that the process was started with.
+/// Runs the command of this process's command line.
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -77,7 +76,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Says on standard error why a command failed; its exit code.
+/// Prints the error of a failed command on standard error; returns the exit code.
 fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", transport::with_causes(&error));

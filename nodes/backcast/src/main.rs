@@ -1,4 +1,4 @@
-//! The command `backcast`; all that it does is in the library.
+//! Entry point of the command `backcast`; see the library.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The node's one function: from a map to its boundary.
+//! Core of the node: computes the boundary of a map.
 
 use engine::EngineError;
 use engine::boundary;
@@ -7,24 +7,24 @@ use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::BoundaryError;
 
-/// The message of topic `boundary`.
+/// Message of topic `boundary`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Extraction {
-    /// What was counted, and in which map.
+    /// Header with the counts and the map id.
     pub header: BoundaryHeader,
-    /// By (y, x).
+    /// Boundary cells, ordered by (y, x).
     pub cells: Vec<BoundaryCell>,
 }
 
-/// Finds the boundary of a map whose cells are `occupancy`.
+/// Extracts the boundary of a map with the cells `occupancy`.
 ///
 /// # Errors
-/// If the grid's sides, resolution or origin are out of range, the number of
-/// cells is not what the sides say, or the map has no free cell, no occupied
-/// one, or none of these where a ray could reach it.
+/// If the grid's sides, resolution or origin are out of range, the number of cells does not match
+/// the sides, or the map has no free cell, no occupied cell, or no occupied cell that a ray can
+/// reach.
 pub fn extract(map: &MapHeader, occupancy: &[u8]) -> Result<Extraction, BoundaryError> {
-    // The boundary needs no frame, but whoever uses it does: a map that nobody can
-    // use is to be refused before anybody prepares for it.
+    // The boundary does not need the frame, but its users do: an unusable map should be rejected
+    // before other nodes prepare for it.
     GridFrame::of(map)?;
     let rules = CellRules::of(map).map_err(EngineError::from)?;
     let (width, height) = (map.width as usize, map.height as usize);
@@ -76,7 +76,7 @@ mod tests {
         }
     }
 
-    /// A wall along the left, unknown cells along the right.
+    /// Walls along the left, unknown cells along the right.
     const CELLS: [u8; 12] = [
         100, 100, 0, UNKNOWN, //
         100, 100, 0, UNKNOWN, //

@@ -1,8 +1,8 @@
-//! Node `boundary_extractor`: the obstacle cells that a laser can hit, from
-//! `map` to `boundary`.
+//! Node `boundary_extractor`: finds the obstacle cells that a laser can hit, from `map` to
+//! `boundary`.
 //!
-//! `extraction` is the node without a graph; `run` receives and sends. A map that
-//! cannot be used is refused, and the boundary of the one before stays in service.
+//! `extraction` is the node without a graph; `run` receives and publishes. An unusable map is
+//! refused, and the previous boundary stays published.
 
 mod config;
 mod error;

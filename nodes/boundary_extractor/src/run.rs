@@ -1,4 +1,4 @@
-//! Receives maps and sends their boundaries.
+//! Receives maps and publishes their boundaries.
 
 use std::time::Duration;
 
@@ -8,13 +8,13 @@ use transport::{Flow, Graph, Health, Publisher, Sample, TransportError, with_cau
 use crate::BoundaryError;
 use crate::extraction::{Extraction, extract};
 
-/// How long a late joiner waits for the boundary at most.
+/// Longest time that a late joiner waits for the boundary.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Answers each map with its boundary until the stop flag is set.
+/// Publishes the boundary of each map until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails; a map that is refused is reported in `health`.
+/// If the transport fails; a rejected map is reported in `health`.
 pub fn run(graph: &Graph) -> Result<(), BoundaryError> {
     let maps = graph.subscriber::<topic::Map>()?;
     let boundaries = graph.publisher::<topic::Boundary>()?;
@@ -54,7 +54,7 @@ fn serve(
     health.state(NodeState::Ready)
 }
 
-/// The boundary that was served last stays.
+/// Reports a rejected map; the previous boundary stays published.
 fn refuse(
     map: &Sample<topic::Map>,
     error: &BoundaryError,

@@ -1,4 +1,4 @@
-//! The node as a process: maps go in, boundaries come out.
+//! Tests of the node as a process: maps go in, boundaries come out.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -22,7 +22,7 @@ fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-/// Sends the map that is drawn so, and gives its id.
+/// Publishes the map of a drawing and returns its id.
 fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
     let cells = occupancy(rows);
     let mut loan = maps.loan(cells.len()).unwrap();
@@ -95,7 +95,7 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     let maps = graph.publisher::<topic::Map>().unwrap();
     let room = publish(&maps, 5, &ROOM);
     let node = start(&graph);
-    // The map was there before the node: it comes to a late joiner.
+    // The map was published before the node started; it is delivered to late joiners.
     wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Ready as u32
     });

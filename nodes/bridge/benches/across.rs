@@ -1,11 +1,10 @@
-//! Prints what the network adds: from a new map to its arrival, and from scan to pose
-//! without the time that the engine computes, on one machine and over a cable between
-//! two network namespaces; and how long who joins late waits for the map and its
-//! boundary.
+//! Prints the delay added by the network: from a new map to its arrival, and from scan to pose
+//! without the engine's computing time, on one machine and over a cable between two network
+//! namespaces; and the time in which a late joiner receives the map and its boundary.
 //!
 //!     cargo bench -p bridge --bench across
 //!
-//! It needs the right to make network namespaces, as the tests do.
+//! It needs the right to create network namespaces, like the tests.
 #![allow(clippy::unwrap_used, reason = "it fails where a test would")]
 
 use std::time::Instant;
@@ -17,15 +16,15 @@ use tests::world::{World, as_the_graph_has_it};
 use transport::monotonic_ns;
 use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until, wait_until_ready};
 
-/// Times that the recording is gone through.
+/// Number of times that the recording is played.
 const ROUNDS: usize = 4;
-/// Maps that are sent.
+/// Number of maps sent.
 const MAPS: u64 = 40;
-/// Times that somebody joins.
+/// Number of late joiners measured.
 const JOINS: usize = 10;
-/// Cells along x and y: 3 MB.
+/// Number of cells along x and y: 3 MB.
 const SIDES: (u32, u32) = (2000, 1500);
-/// The hub of the network, and who calls there.
+/// Options of the machine that listens, and of the others, which connect to it.
 const LISTEN: [&str; 2] = ["--listen", "tcp/0.0.0.0:7447"];
 const CONNECT: [&str; 2] = ["--connect", "tcp/10.77.1.1:7447"];
 
@@ -89,7 +88,7 @@ fn late_joiners(places: &[Namespace; 2], world: &World) {
         let engine = machine(&format!("late{i}"), ENGINE, &places[1]);
         let health = engine.graph.subscriber().unwrap();
         let mut there = engine.engine();
-        // All but the bridge has started.
+        // All nodes but the bridge have started.
         wait_for_health(&engine.graph, &health, |report| {
             report.node.as_str() == "boundary_extractor"
         });
@@ -104,7 +103,7 @@ fn late_joiners(places: &[Namespace; 2], world: &World) {
     Times(nodes).print("late node: map and boundary");
 }
 
-/// Milliseconds until somebody who joins the graph of a machine now has both.
+/// Returns the milliseconds until a new member of the machine's graph has received both.
 fn map_and_boundary(machine: &Machine<'_>, start: Instant) -> f64 {
     let maps = machine.graph.subscriber::<topic::Map>().unwrap();
     let boundaries = machine.graph.subscriber::<topic::Boundary>().unwrap();
@@ -113,7 +112,7 @@ fn map_and_boundary(machine: &Machine<'_>, start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// Sends maps on one machine until each has come to the other.
+/// Sends maps on one machine, each after the previous one has arrived on the other.
 fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
     let publisher = from.graph.publisher::<topic::Map>().unwrap();
     let received = to.graph.subscriber::<topic::Map>().unwrap();
@@ -121,7 +120,7 @@ fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
     let mut cells = repeated(world);
     let mut times = Vec::new();
     for counter in 1..=MAPS {
-        // Each is another one, by a single cell.
+        // Each map differs by a single cell.
         cells[counter as usize] ^= 1;
         let mut map = MapHeader {
             stamp: stamp(counter),
@@ -141,12 +140,12 @@ fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
         });
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
-    // The first one waits for the bridges to find each other.
+    // The first map includes the time in which the bridges find each other.
     times.remove(0);
     Times(times)
 }
 
-/// The map of the recording, side by side until it is large enough.
+/// Returns the map of the recording, repeated until it is large enough.
 fn repeated(world: &World) -> Vec<u8> {
     let map = map::load(world.map()).unwrap();
     let (width, height) = SIDES;
@@ -156,10 +155,10 @@ fn repeated(world: &World) -> Vec<u8> {
         .collect()
 }
 
-/// Sends scans on one machine, each after the answer to the one before; the times
-/// without those of computing.
+/// Sends scans on one machine, each after the answer to the previous one; returns the times without
+/// computing.
 fn scans(laser: &Machine<'_>, world: &World) -> Times {
-    // Wherever they are, their health is received here.
+    // The health of these nodes is received here, wherever they run.
     for node in ["accumulator", "peak_extractor"] {
         wait_until_ready(&laser.graph, node);
     }
@@ -172,7 +171,7 @@ fn scans(laser: &Machine<'_>, world: &World) -> Times {
         let start = Instant::now();
         let mut loan = publisher.loan(scan.ranges.len()).unwrap();
         *loan.header_mut() = ScanHeader {
-            // The recording is gone through several times, and time does not.
+            // The recording is played several times, but stamps must increase.
             stamp: stamp(counter),
             ..as_the_graph_has_it(scan, counter)
         };
@@ -195,7 +194,7 @@ fn stamp(counter: u64) -> Stamp {
     }
 }
 
-/// Milliseconds.
+/// Times in milliseconds.
 struct Times(Vec<f64>);
 
 impl Times {

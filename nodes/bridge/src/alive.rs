@@ -1,8 +1,8 @@
-//! Signs of life: a liveliness token for the bridge, and one for each node whose
-//! health it receives.
+//! Signs of life: a liveliness token for the bridge, and one for each node whose health it
+//! receives.
 //!
-//! Tokens go when the process that holds them is killed or cut off, without
-//! anybody asking: whoever watches is notified by Zenoh.
+//! Zenoh removes tokens when the process that holds them is killed or disconnected, and notifies
+//! those who watch them.
 
 use std::collections::BTreeMap;
 
@@ -14,16 +14,16 @@ use zenoh_session::KeyError;
 
 use crate::BridgeError;
 
-/// A node that said nothing for so long is taken for dead, nanoseconds; it
-/// speaks each second.
+/// Time without a report after which a node counts as dead, nanoseconds; nodes report every second.
 const SILENCE_NS: i64 = 5_000_000_000;
 
-/// Holds the tokens of one graph.
+/// Owner of the tokens of one graph.
 pub(crate) struct Alive {
     session: Session,
     robot: String,
     _bridge: LivelinessToken,
-    /// None where health comes in: what is received is then not of this machine.
+    /// `None` if health is received from other machines, because the nodes are then not on this
+    /// one.
     health: Option<Subscriber<topic::Health>>,
     nodes: BTreeMap<String, Node>,
 }
@@ -54,7 +54,7 @@ impl Alive {
         })
     }
 
-    /// Takes the nodes that are alive, and drops those that are not.
+    /// Adds tokens for nodes that are alive, and drops those of nodes that are not.
     pub(crate) fn step(&mut self) -> Result<(), BridgeError> {
         let now_ns = monotonic_ns();
         while let Some(report) = self.next()? {

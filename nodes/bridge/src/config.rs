@@ -8,21 +8,21 @@ use crate::Rate;
 
 /// Connects graphs on several machines over Zenoh.
 ///
-/// Listens on this machine only by default. The descriptor says which topics are sent
-/// and received: inputs of the bridge are sent, its outputs are received.
+/// Listens on this machine only by default. The descriptor defines the topics: inputs of the bridge
+/// are sent, its outputs are received.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "bridge", version)]
 pub struct Config {
-    /// The robot's name, a part of every key. All bridges of one robot have the same
+    /// Name of the robot, a part of every key. It must be the same for all bridges of one robot
     /// [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
-    /// The descriptor that says which topics are sent and received
+    /// Descriptor that defines which topics are sent and received
     #[arg(long, value_name = "FILE", default_value = "dataflow.yaml")]
     pub dataflow: PathBuf,
 
-    /// The id of this bridge in it
+    /// Id of this bridge in the descriptor
     #[arg(long, value_name = "ID", default_value = "bridge")]
     pub id: String,
 
@@ -31,17 +31,15 @@ pub struct Config {
     #[arg(long, value_name = "TOPIC=HZ")]
     pub rate: Vec<Rate>,
 
-    /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,
 
-    /// How it joins the network.
     #[command(flatten)]
     pub network: zenoh_session::Options,
 }
 
 impl Config {
-    /// The robot's name.
+    /// Returns the name of the robot.
     #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();

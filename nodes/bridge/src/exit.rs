@@ -1,36 +1,35 @@
-//! Where payloads leave the process.
+//! Sending of payloads to the network.
 //!
-//! What is live goes at once or not at all. What is kept goes for good: where the
-//! network is slower, Zenoh holds up whoever sends it, for seconds where a cable was
-//! pulled. That is done on a thread of its own, so that nothing else waits; of what
-//! comes meanwhile it sends the newest.
+//! Live messages are sent at once or dropped. Kept messages are sent reliably: if the network is
+//! slower, Zenoh blocks the sender, for seconds after a cable was pulled. They are therefore sent
+//! on a thread of their own, which sends only the newest one of those that arrive meanwhile.
 
 use crossbeam::channel::{Receiver, Sender, TrySendError, bounded, unbounded};
 use zenoh::Wait;
 use zenoh_ext::AdvancedPublisher;
 
-/// What Zenoh says of a payload.
+/// Result of sending a payload.
 type Outcome = zenoh::Result<()>;
 
-/// Sends the payloads of one topic.
+/// Sender for the payloads of one topic.
 pub(crate) enum Exit {
-    /// From the thread that calls.
+    /// Sends on the calling thread.
     Here(AdvancedPublisher<'static>),
-    /// From one of its own.
+    /// Sends on a thread of its own.
     Aside(Aside),
 }
 
-/// A thread that sends, and what is on the way to it and back.
+/// Sender thread and its channels.
 pub(crate) struct Aside {
     to: Sender<Vec<u8>>,
-    /// The thread's own end, to take out what it did not come to.
+    /// Receiver of the thread's queue, to remove a payload that the thread has not taken.
     waiting: Receiver<Vec<u8>>,
     outcomes: Receiver<Outcome>,
 }
 
 impl Exit {
-    /// Whether anybody would get it. If Zenoh does not know, it is sent; so is what
-    /// is kept, for those who come later.
+    /// Returns true if there is a subscriber, or if Zenoh does not know. Always true for kept
+    /// messages, because of late joiners.
     pub(crate) fn has_subscribers(&self) -> bool {
         match self {
             Exit::Here(publisher) => {
@@ -41,7 +40,7 @@ impl Exit {
         }
     }
 
-    /// Sends a payload; what came of it, if that is known at once.
+    /// Sends a payload; returns the result if it is known at once.
     pub(crate) fn put(&self, payload: Vec<u8>) -> Option<Outcome> {
         match self {
             Exit::Here(publisher) => Some(publisher.put(payload).wait()),
@@ -52,7 +51,7 @@ impl Exit {
         }
     }
 
-    /// What came of an earlier one.
+    /// Returns the result of an earlier payload.
     pub(crate) fn outcome(&self) -> Option<Outcome> {
         match self {
             Exit::Here(_) => None,
@@ -66,14 +65,14 @@ impl Aside {
         Aside::by(move |payload| publisher.put(payload).wait())
     }
 
-    /// The thread ends with this, or with the process where `send` holds it up.
+    /// Starts the thread, which ends when this is dropped, or with the process if `send` blocks.
     fn by(send: impl Fn(Vec<u8>) -> Outcome + Send + 'static) -> Self {
         let (to, from) = bounded(1);
         let (done, outcomes) = unbounded();
         let waiting = from.clone();
         std::thread::spawn(move || {
             for payload in from {
-                // Where nobody wants to know, the process is about to end.
+                // Without a receiver the process is about to end.
                 let _ = done.send(send(payload));
             }
         });
@@ -87,7 +86,7 @@ impl Aside {
     fn put(&self, payload: Vec<u8>) {
         if let Err(TrySendError::Full(payload)) = self.to.try_send(payload) {
             let _ = self.waiting.try_recv();
-            // There is limits, for nobody else sends.
+            // There is room now, because no one else sends.
             let _ = self.to.try_send(payload);
         }
     }
@@ -107,7 +106,7 @@ mod tests {
         });
         aside.put(vec![0]);
         assert_eq!(begins.recv().unwrap(), [0]);
-        // Meanwhile the network takes nothing.
+        // Meanwhile the network is blocked.
         for number in 1..=5 {
             aside.put(vec![number]);
         }

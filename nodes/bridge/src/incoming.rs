@@ -1,7 +1,7 @@
-//! A topic on its way in.
+//! A topic received from the network.
 //!
-//! It waits in a queue; the thread that owns the graph checks it, and writes it into
-//! shared memory.
+//! Messages wait in a queue; the thread that owns the graph checks them and writes them into shared
+//! memory.
 
 use map::MemoryLimit;
 use messages::{MapHeader, Topic, topic};
@@ -12,14 +12,12 @@ use zenoh_session::{Past, Queue, QueueLimits, Report};
 
 use crate::BridgeError;
 
-/// Receives one topic.
 pub(crate) struct Incoming<T: Wire> {
     queue: Queue,
     publisher: Publisher<T>,
     arrivals: Arrivals,
-    /// The header of the kept sample that entered last, as it came.
+    /// Header of the last kept sample, as received.
     last: Option<T::Header>,
-    /// What the graph may take for a map.
     memory_limit: MemoryLimit,
 }
 
@@ -44,7 +42,7 @@ impl<T: Wire> Incoming<T> {
         })
     }
 
-    /// Lets what has come since the last call into the graph, if it is sound.
+    /// Publishes the valid messages received since the last call.
     pub(crate) fn step(&mut self, report: &mut Report) -> Result<(), BridgeError> {
         report.dropped(self.queue.dropped());
         while let Some(found) = self.queue.next_too_long() {
@@ -53,7 +51,7 @@ impl<T: Wire> Incoming<T> {
             let error = WireError::TooLong { topic, found, most };
             report.refused(&BridgeError::from(error))?;
         }
-        // As many as fit at once: a flood must not keep the others waiting.
+        // Limited to one queue length, so that a flood does not block the other topics.
         for _ in 0..self.queue.limits().messages {
             let Some(sample) = self.queue.next() else {
                 break;
@@ -79,7 +77,7 @@ impl<T: Wire> Incoming<T> {
         let preamble = message.preamble;
         match self.arrivals.note(preamble.sender, preamble.sequence) {
             Arrival::Repeated => return Ok(()),
-            // What is kept says all by itself; the ones before it are no loss.
+            // A kept message is complete in itself; missing earlier ones are no loss.
             Arrival::New { lost } if !T::KEPT => report.dropped(lost),
             Arrival::New { .. } => {}
         }
@@ -94,26 +92,25 @@ impl<T: Wire> Incoming<T> {
         loan.send()?;
         report.sent();
         if T::NAME == topic::Map::NAME {
-            // One that was refused before is no more what is wanted.
+            // A map that was refused before is superseded.
             report.map_taken()?;
         }
         Ok(())
     }
 
-    /// Whether it is in the graph already: its sender was started again, and
-    /// nothing else is.
+    /// Returns true if this sample was published last: then its sender has just restarted.
     fn is_last(&self, header: &T::Header) -> bool {
         let last = self.last.as_ref();
         last.is_some_and(|last| bytemuck::bytes_of(last) == bytemuck::bytes_of(header))
     }
 }
 
-/// What came small may be more than the nodes can hold once they prepare for it.
+/// Rejects a map that is small as a message but too large for the nodes to prepare.
 fn refuse_too_large<T: Wire>(message: &Received<T>, limit: MemoryLimit) -> Result<(), BridgeError> {
     if T::NAME != topic::Map::NAME {
         return Ok(());
     }
-    // Every topic is received alike; the map alone is what others prepare for.
+    // All topics are received in the same way, but only the map needs memory in other nodes.
     match bytemuck::try_from_bytes::<MapHeader>(bytemuck::bytes_of(&message.header)) {
         Ok(map) => {
             let cells = bytemuck::cast_slice(&message.items);

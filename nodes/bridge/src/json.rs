@@ -1,11 +1,11 @@
-//! Poses and health as JSON, for programs that have no decoder of postcard.
+//! Poses and health as JSON, for programs without a postcard decoder.
 
 use std::borrow::Cow;
 
 use messages::{HealthHeader, NodeState, Pose2, PoseHeader, TrackState};
 use serde::Serialize;
 
-/// A pose in the map, metres and radians.
+/// Pose in the map, metres and radians.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Placed {
     x: f64,
@@ -18,7 +18,7 @@ struct Pose<'a> {
     stamp_ns: i64,
     state: &'a str,
     says: Cow<'a, str>,
-    /// In hexadecimal: a number of 64 bits is not safe in JSON.
+    /// Map id in hexadecimal, because JSON numbers do not hold 64 bits safely.
     map_id: String,
     probability: Option<f64>,
     from_scan: bool,
@@ -45,7 +45,7 @@ impl From<Pose2> for Placed {
     }
 }
 
-/// A message of topic `pose` as an object.
+/// Returns a message of topic `pose` as a JSON object.
 pub(crate) fn pose(header: &PoseHeader, words: &[u8]) -> String {
     let (laser, base) = (header.laser(), header.base());
     let state = TrackState::from_code(header.state);
@@ -63,7 +63,7 @@ pub(crate) fn pose(header: &PoseHeader, words: &[u8]) -> String {
     })
 }
 
-/// A message of topic `health` as an object.
+/// Returns a message of topic `health` as a JSON object.
 pub(crate) fn health(header: &HealthHeader, error: &[u8]) -> String {
     json::object(&Health {
         node: Cow::Borrowed(header.node.as_str()),

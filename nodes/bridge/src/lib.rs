@@ -1,14 +1,13 @@
 //! Joins graphs on several machines over Zenoh.
 //!
-//! Which topics leave this graph and which enter it is in `dataflow.yaml`: what
-//! the bridge takes as inputs goes out, what it lists as outputs comes in. A topic
-//! stands at `backcast/<robot>/<topic>`, as crate `network_payload` writes it, so that
-//! whoever speaks Zenoh can read it. Maps, boundaries and regions are kept for late
-//! joiners. What comes from the network is checked before it enters the graph,
-//! refused if it is wrong, and counted in `health`.
+//! `dataflow.yaml` defines which topics leave this graph and which enter it: inputs of the bridge
+//! are sent, its outputs are received. A topic has the key `backcast/<robot>/<topic>` and the
+//! format of crate `network_payload`, so that any Zenoh program can read it. Maps, boundaries and
+//! regions are kept for late joiners. Messages from the network are checked before they enter the
+//! graph, refused if invalid, and counted in `health`.
 //!
-//! It trusts nobody and hides nothing: users and rules of access are Zenoh's own,
-//! in its configuration.
+//! It neither trusts senders nor hides data: users and access rules belong to the configuration of
+//! Zenoh.
 
 mod alive;
 mod config;

@@ -1,4 +1,4 @@
-//! Starts the node; see the library.
+//! Entry point of the node; see the library.
 
 use std::process::ExitCode;
 

@@ -1,8 +1,7 @@
-//! A topic on its way out.
+//! A topic sent to the network.
 //!
-//! Of a live topic a sample is dropped where the network is slower than the
-//! graph: the next one is fresher. What is kept for late joiners is sent for good, and
-//! holds up nobody.
+//! Samples of a live topic are dropped if the network is slower than the graph: the next one is
+//! newer. Messages kept for late joiners are sent reliably, without blocking other topics.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -19,12 +18,11 @@ use crate::exit::{Aside, Exit};
 use crate::rates::Limit;
 use crate::{BridgeError, Rate};
 
-/// How soon a reader learns that it missed the newest of what is kept.
+/// Interval at which readers learn whether they missed the newest kept message.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
-/// Sends one topic.
 pub(crate) struct Outgoing<T: Wire> {
-    /// None while nobody would get what is computed on demand.
+    /// `None` while a topic that is computed on demand has no remote subscriber.
     subscriber: Option<Rc<Subscriber<T>>>,
     key: String,
     exit: Exit,
@@ -65,13 +63,13 @@ impl<T: Wire> Outgoing<T> {
         })
     }
 
-    /// What the event loop waits for.
+    /// Returns the input for the event loop.
     pub(crate) fn input(&self) -> Option<Rc<dyn Input>> {
         let subscriber = self.subscriber.clone()?;
         Some(subscriber)
     }
 
-    /// Sends what has come since the last call.
+    /// Sends the samples received since the last call.
     pub(crate) fn step(
         &mut self,
         graph: &Graph,
@@ -94,7 +92,7 @@ impl<T: Wire> Outgoing<T> {
         Ok(())
     }
 
-    /// Subscribes while somebody beyond the bridge does.
+    /// Subscribes to the topic while there is a remote subscriber.
     fn follow(&mut self, graph: &Graph) -> Result<(), TransportError> {
         match (self.exit.has_subscribers(), &self.subscriber) {
             (true, None) => self.subscriber = Some(Rc::new(graph.subscriber()?)),
@@ -145,14 +143,14 @@ fn declare<T: Wire>(
     let publisher = if T::KEPT {
         publisher
             .congestion_control(CongestionControl::Block)
-            // Behind what is live.
+            // Lower priority than live messages.
             .priority(Priority::DataLow)
             .cache(CacheConfig::default().max_samples(1))
             .sample_miss_detection(MissDetectionConfig::default().heartbeat(HEARTBEAT))
             .publisher_detection()
     } else {
-        // Not express: each message would take one of the two batches of its
-        // priority, so that a third at once is dropped, and Zenoh may go on to drop.
+        // Not express: each message would take one of the two batches of its priority, so that a
+        // third one at the same time is dropped, and Zenoh might keep dropping.
         publisher
             .congestion_control(CongestionControl::Drop)
             .advanced()

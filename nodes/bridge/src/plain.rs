@@ -15,7 +15,7 @@ use crate::rates::Limit;
 use crate::route::Route;
 use crate::{BridgeError, Rate};
 
-/// Sends the messages of a topic as JSON while there is a subscriber.
+/// Sender of a topic as JSON while there is a subscriber.
 pub(crate) struct Plain<T: Topic> {
     subscriber: Rc<Subscriber<T>>,
     key: String,

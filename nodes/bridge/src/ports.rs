@@ -1,4 +1,4 @@
-//! Which topics leave the graph and which enter it, by the descriptor.
+//! Topics that leave and enter the graph, from the descriptor.
 
 use std::path::Path;
 
@@ -7,22 +7,21 @@ use messages::{Topic, topic};
 
 use crate::BridgeError;
 
-/// The ports of a bridge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ports {
-    /// Topics that go out: the inputs of the node, and the health of all nodes
-    /// unless it comes in.
+    /// Topics that are sent: the inputs of the node, and the health of all nodes unless it is
+    /// received.
     pub out: Vec<String>,
-    /// Topics that come in: the outputs of the node.
+    /// Topics that are received: the outputs of the node.
     pub into: Vec<String>,
 }
 
 impl Ports {
-    /// The ports of node `id` in the descriptor at `file`.
+    /// Reads the ports of node `id` from the descriptor `file`.
     ///
     /// # Errors
-    /// If the descriptor cannot be read or is wrong, has no such node, or lets a
-    /// topic go out and come in.
+    /// If the descriptor cannot be read or is invalid, has no such node, or both sends and receives
+    /// a topic.
     pub fn read(file: &Path, id: &str) -> Result<Self, BridgeError> {
         let topics = Topics {
             names: topic::NAMES,
@@ -44,7 +43,7 @@ impl Ports {
         let into = node.outputs.clone();
         let mut out: Vec<String> = Vec::new();
         for input in &node.inputs {
-            // Of several lasers, all scans are one topic.
+            // Scans of several lasers share one topic.
             if !out.contains(&input.topic) {
                 out.push(input.topic.clone());
             }

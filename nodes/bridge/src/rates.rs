@@ -1,20 +1,19 @@
-//! How often a topic goes out.
+//! Rate limits of the topics sent.
 //!
-//! What comes faster is left out, not kept for later: a reader at a slow link
-//! wants the present. What is kept for late joiners has no rate: it holds until it is
-//! said again, so none of it may be left out.
+//! Messages beyond the limit are dropped, not delayed: a reader on a slow link needs current data.
+//! Topics kept for late joiners have no limit: each message is valid until the next one, so none
+//! may be dropped.
 
 use std::str::FromStr;
 
 use messages::{Topic, topic};
 use network_payload::{Visit, Wire};
 
-/// Most messages a second of one topic.
+/// Rate limit of one topic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rate {
-    /// The topic.
     pub topic: String,
-    /// Messages a second, 0.001 to 10,000.
+    /// Messages per second, 0.001 to 10,000.
     pub hz: f64,
 }
 
@@ -41,7 +40,7 @@ impl FromStr for Rate {
     }
 }
 
-/// Whether a topic is kept for late joiners.
+/// Query of whether a topic is kept for late joiners.
 struct IsKept;
 
 impl Visit for IsKept {
@@ -52,7 +51,7 @@ impl Visit for IsKept {
     }
 }
 
-/// Decides which messages of one topic may go. Pure: the time is an argument.
+/// Rate limiter of one topic. Pure: the time is an argument.
 #[derive(Debug)]
 pub(crate) struct Limit {
     period_ns: i64,
@@ -60,7 +59,7 @@ pub(crate) struct Limit {
 }
 
 impl Limit {
-    /// The limit of topic `T` among those that were given: the last one of it.
+    /// Creates the limiter of topic `T` from the configured rates; the last matching one counts.
     pub(crate) fn of<T: Topic>(rates: &[Rate]) -> Self {
         let default = (T::NAME == topic::Field::NAME).then_some(2.0);
         let given = rates.iter().rfind(|rate| rate.topic == T::NAME);
@@ -71,10 +70,10 @@ impl Limit {
         }
     }
 
-    /// Whether a message may go at `now_ns`; the one that may is counted.
+    /// Returns true if a message may be sent at `now_ns`, and counts it.
     ///
-    /// One that comes less than a period late does not push the next ones back, so
-    /// that over time as many go as are allowed; after a pause none is made up for.
+    /// A message that is less than a period late does not delay the next ones, so that the average
+    /// rate is reached; after a longer pause there is no catching up.
     pub(crate) fn admits(&mut self, now_ns: i64) -> bool {
         if now_ns < self.due_ns {
             return false;
@@ -110,7 +109,7 @@ mod tests {
             admitted(&["scan=50", "scan=5", "odometry=1"], 10, 10_000),
             50
         );
-        // Of 40 a second, 30 are not every other one.
+        // 30 of 40 per second cannot be reached by dropping every other one.
         assert_eq!(admitted(&["scan=30"], 25, 10_000), 300);
         assert_eq!(admitted(&["scan=100"], 25, 1_000), 40);
     }

@@ -1,4 +1,4 @@
-//! What the event loop does with each topic.
+//! Interface of a topic to the event loop.
 
 use std::rc::Rc;
 
@@ -7,7 +7,7 @@ use zenoh_session::Report;
 
 use crate::BridgeError;
 
-/// One topic, out or in.
+/// One topic, sent or received.
 pub(crate) trait Route {
     fn input(&self) -> Option<Rc<dyn Input>>;
     fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;

@@ -1,4 +1,4 @@
-//! Joins both sides, and carries messages between them.
+//! Opens both sides and carries messages between them.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -17,16 +17,15 @@ use crate::ports::Ports;
 use crate::route::Route;
 use crate::{BridgeError, Config, json};
 
-/// How long a late joiner of the graph, an image that somebody beyond the bridge
-/// wants, and a silent node may wait.
+/// Longest delay for a late joiner of the graph, a remote subscriber to the image, and the
+/// detection of a silent node.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Carries messages until the stop flag is set.
 ///
 /// # Errors
-/// If the descriptor or Zenoh's configuration cannot be used, the session cannot
-/// be opened, or the graph fails. A network that is not there is no error: it is
-/// waited for.
+/// If the descriptor or Zenoh's configuration cannot be used, the session cannot be opened, or the
+/// transport fails. An unreachable network is not an error: the bridge waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let ports = Ports::read(&config.dataflow, &config.id)?;
     let robot = config.robot();
@@ -71,8 +70,7 @@ impl<T: Wire> Route for Incoming<T> {
     }
 }
 
-/// Everything that the ports name; the descriptor knows no other topics than
-/// `network_payload` does.
+/// Opens all topics of the ports; `network_payload` knows every topic that a descriptor may name.
 fn ways(
     graph: &Graph,
     session: &Session,

@@ -1,7 +1,7 @@
-//! A device that speaks CoLa: answers, refusals and scan telegrams.
+//! Emulated CoLa device: answers, refusals and scan telegrams.
 //!
-//! Pure: commands in, answers out. It refuses what a device refuses: changes
-//! without a login, values that it cannot do, names that it does not know.
+//! Pure: commands in, answers out. It rejects what a real device rejects: changes without a login,
+//! unsupported values, unknown names.
 
 use sick::cola::{
     AUTHORIZED_CLIENT, AngleConvention, Answer, Channel, Channels, Command, DeviceTime, Encoding,
@@ -11,31 +11,31 @@ use sick::cola::{
 
 use crate::sweep::{AHEAD_RAW, Sweep};
 
-/// Distances below are codes.
+/// Smallest raw value that is a distance; lower values are codes.
 const FIRST_DISTANCE: f64 = 16.0;
-/// The farthest that sixteen bits of millimetres say.
+/// Longest distance of 16 bits in millimetres.
 const FARTHEST_M: f32 = 65.535;
 
-/// One client of the device.
+/// State of one client.
 #[derive(Debug, Default)]
 pub(crate) struct Session {
-    /// Whether it may change settings.
+    /// True if the client may change settings.
     logged_in: bool,
-    /// Whether every scan is sent to it.
+    /// True if every scan is sent to the client.
     pub(crate) subscribed: bool,
 }
 
-/// Which device it is.
+/// Emulated device type.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Model {
-    /// As it says it.
+    /// Name that the device reports.
     name: &'static str,
-    /// How it counts its angles.
+    /// Angle convention of the device.
     convention: AngleConvention,
 }
 
 impl Model {
-    /// A device of the table, an LMS111 where none is asked for.
+    /// Returns a device of the table, by default an LMS111.
     pub(crate) fn of(row: Option<&KnownDevice>) -> Self {
         let usual = AngleConvention::USUAL;
         Model {
@@ -44,8 +44,8 @@ impl Model {
         }
     }
 
-    /// The device's angle of an angle of the recording, which has 90° ahead and
-    /// counts counter-clockwise, and the other way round.
+    /// Converts an angle of the recording, which counts counter-clockwise with 90° ahead, to the
+    /// device's angle.
     fn turn(&self, angle_raw: i32) -> i32 {
         let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
         match self.convention.clockwise {
@@ -54,7 +54,7 @@ impl Model {
         }
     }
 
-    /// The recording's angle of one of the device.
+    /// Converts a device angle to the angle of the recording.
     fn turn_back(&self, device_raw: i32) -> i32 {
         let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
         match self.convention.clockwise {
@@ -64,21 +64,21 @@ impl Model {
     }
 }
 
-/// The device, as all clients see it.
+/// State of the device, shared by all clients.
 #[derive(Debug)]
 pub(crate) struct ColaDevice {
     model: Model,
     encoding: Encoding,
-    /// How it scans when it is switched on.
+    /// Scan configuration after power-on.
     full: ScanConfig,
     scan: ScanConfig,
     range: OutputRange,
     data: ScanDataConfig,
-    /// Millimetres in a unit of distance: 2 where the recording reaches far.
+    /// Millimetres per unit of distance: 2 if the recording has longer ranges than 16 bits hold.
     scale: f32,
-    /// Whether the recording says how long a scan takes.
+    /// True if the recording contains the scan time.
     says_frequency: bool,
-    /// Is filled and sent, again and again.
+    /// Buffer of distances, reused.
     distances: Vec<u16>,
 }
 
@@ -115,7 +115,7 @@ impl ColaDevice {
         }
     }
 
-    /// The answer to a telegram; `None` to one that is no command.
+    /// Returns the answer to a telegram; `None` if it is not a command.
     pub(crate) fn receive(
         &mut self,
         session: &mut Session,
@@ -142,7 +142,7 @@ impl ColaDevice {
     ) -> Result<Answer<'static>, Fault> {
         match command {
             Command::Read(variable) => Ok(Answer::Value(self.value(*variable))),
-            // A recording has no scan of this very moment.
+            // A recording has no current scan.
             Command::ReadScan => Err(Fault::UNKNOWN_COMMAND),
             Command::Write(_) if !session.logged_in => Err(Fault::WRITE_DENIED),
             Command::Write(value) => self.write(value),
@@ -174,7 +174,7 @@ impl ColaDevice {
                 self.data = *data;
             }
             Value::OutputRange(range) if self.can_send(range) => self.range = *range,
-            // It would not understand its client any more.
+            // With another encoding it would no longer understand its client.
             Value::HostEncoding(binary) if *binary == (self.encoding == Encoding::Binary) => {}
             Value::DeviceIdent { .. } | Value::DeviceState(_) | Value::ScanConfig(_) => {
                 return Err(Fault::WRITE_DENIED);
@@ -221,7 +221,7 @@ impl ColaDevice {
         })
     }
 
-    /// 0 where it was done, else what is wrong.
+    /// Applies a scan configuration; returns 0, or the status code of what is wrong.
     fn set_scan_config(&mut self, config: &ScanConfig) -> u8 {
         let resolution = config.resolution_raw_1e4_deg;
         let can_resolve = resolution <= u32::from(u16::MAX)
@@ -248,8 +248,8 @@ impl ColaDevice {
         }
     }
 
-    /// Appends the telegram of a scan of the recording, unless it is one that is
-    /// left out; `counter` are the scans before it, `now_us` is the device's clock.
+    /// Appends the telegram of a scan, unless the configured interval omits it. `counter` is the
+    /// number of scans before it, `now_us` the device's clock.
     pub(crate) fn write_scan(
         &mut self,
         sweep: &Sweep,
@@ -282,7 +282,7 @@ impl ColaDevice {
             digital_inputs: [0, 0],
             digital_outputs: [0, 0],
             layer_angle_raw: 0,
-            // 0 says nothing: from it, the time of each beam would be computed.
+            // 0 means unknown; otherwise the reader would derive the time of each beam from it.
             scan_frequency_raw_1e2_hz: match self.says_frequency {
                 true => self.scan.frequency_raw_1e2_hz,
                 false => 0,
@@ -300,8 +300,8 @@ impl ColaDevice {
         self.encoding.frame(&Telegram::ScanData(data), out);
     }
 
-    /// The device's clock stands at the recording's time, which is that of the
-    /// rightmost beam: a device that turns clockwise comes to it last.
+    /// Returns the device's clock: the recording's time, which is that of the rightmost beam, so a
+    /// clockwise device measures it last.
     fn time(&self, sweep: &Sweep, scan: usize, channel: &Channel<'_>) -> Option<DeviceTime> {
         let stamp_us = sweep.stamps_us.get(scan).filter(|_| self.data.time)?;
         let before_us = match self.model.convention.clockwise {

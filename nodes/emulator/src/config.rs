@@ -11,68 +11,68 @@ use crate::FaultPlan;
 
 /// Plays a recording as a SICK laser scanner.
 ///
-/// The recording begins when somebody wants scans; what else is in it goes to
-/// `odometry` and `ground_truth`. Without --loop the node ends with it, once its
-/// clients have taken everything: with 0, or 3 where a scan got no answer at --rate
-/// max or a message could not be used.
+/// Playback starts when a client requests scans; the other messages of the recording go to
+/// `odometry` and `ground_truth`. Without --loop the node exits at the end, once its clients have
+/// read everything: with code 0, or 3 if a scan got no answer at --rate max or a message could not
+/// be used.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "emulator", version)]
 #[command(group(ArgGroup::new("device").required(true).args(["listen", "pty"])))]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its
-    /// folder, or .db3).
+    /// Recording to play: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its folder, or
+    /// .db3).
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 
-    /// The topic of the scans [default: the only one, or /scan]
+    /// Topic of the scans [default: the only one, or /scan]
     #[arg(long, value_name = "TOPIC")]
     pub scan_topic: Option<String>,
 
-    /// The topic of the odometry [default: the only one, or /odom]
+    /// Topic of the odometry [default: the only one, or /odom]
     #[arg(long, value_name = "TOPIC")]
     pub odom_topic: Option<String>,
 
-    /// Is an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT. The host
-    /// `graph` is an address on this machine that no other graph has.
+    /// Emulate an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT. The host `graph` is an
+    /// address on this machine that no other graph has.
     #[arg(long, value_name = "ADDRESS", value_parser = listen)]
     pub listen: Option<String>,
 
-    /// The encoding of --listen.
+    /// Encoding of --listen.
     #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "pty")]
     pub protocol: Encoding,
 
-    /// The device that --listen is, such as TiM240 or NAV310: it counts its angles as
-    /// that one does [default: LMS111].
+    /// Device type for --listen, such as TiM240 or NAV310, which defines how angles are counted
+    /// [default: LMS111].
     #[arg(long = "device", value_name = "NAME", value_parser = model, conflicts_with = "pty")]
     pub model: Option<&'static KnownDevice>,
 
-    /// Is an LMS2xx on a pseudo-terminal; this link leads to it.
+    /// Emulate an LMS2xx on a pseudo-terminal with this symbolic link to it.
     #[arg(long, value_name = "LINK")]
     pub pty: Option<PathBuf>,
 
-    /// The baud rate of the LMS2xx when it is switched on: 9600, 19200, 38400 or
-    /// 500000. At any other rate it receives and sends garbage.
+    /// Baud rate of the LMS2xx after power-on: 9600, 19200, 38400 or 500000. At any other rate it
+    /// receives and sends garbage.
     #[arg(long, value_name = "RATE", default_value = "9600", value_parser = baud)]
     pub baud: Baud,
 
-    /// Times the original speed, 0.001 to 1000; or max: the next scan follows
-    /// the answer to the one before on `hypotheses`.
+    /// Playback speed as a multiple of the original, 0.001 to 1000; or max: each scan is sent after
+    /// the answer to the previous one on `hypotheses`.
     #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
     pub rate: Rate,
 
-    /// Repeats the recording.
+    /// Repeat the recording without end.
     #[arg(long = "loop")]
     pub looped: bool,
 
-    /// Faults, separated by commas: crc=P, drop=P and garbage=P damage, omit and
-    /// precede telegrams with this probability; stall=DURATION is silent for this time
-    /// after one telegram in a hundred; reset=DURATION restarts the device at this
-    /// interval; split and merge cut telegrams into pieces and send several at once.
-    /// CoLa A has no checksum: there crc goes unnoticed.
+    /// Faults, separated by commas: crc=P, drop=P and garbage=P damage, omit and precede telegrams
+    /// with this probability; stall=DURATION is silent for this time after one telegram in a
+    /// hundred; reset=DURATION restarts the device at this interval; split and merge cut telegrams
+    /// into pieces and send several at once. CoLa A has no checksum, so its readers do not notice
+    /// crc.
     #[arg(long, value_name = "FAULTS", default_value = "")]
     pub fault: FaultPlan,
 
-    /// Nodes that must be ready before playing starts, separated by commas.
+    /// Nodes that must be ready before playback starts, separated by commas.
     #[arg(long, value_name = "NODES", value_delimiter = ',')]
     pub wait_for: Vec<String>,
 

@@ -1,7 +1,7 @@
-//! A recorded drive: what the device saw, and what else was recorded on the way.
+//! Recorded drive: the scans of the device and the other recorded messages.
 //!
-//! Moments of measurement are whole microseconds, as the device's clock counts;
-//! what belongs together in the recording still does.
+//! Times of measurement are rounded down to microseconds, the unit of the device's clock, so that
+//! messages with equal times still match.
 
 use std::path::Path;
 
@@ -12,25 +12,25 @@ use replay::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed
 use crate::EmulatorError;
 use crate::sweep::Sweep;
 
-/// What happens at a moment of the drive.
+/// Event of the drive.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Happening {
-    /// The scan of this index is made.
+    /// Scan with this index.
     Scan(usize),
     Odometry(Box<Odometry>),
     GroundTruth(Box<GroundTruth>),
 }
 
-/// Everything that is played, by log time in nanoseconds.
+/// Scans and other events of the recording, by log time in nanoseconds.
 #[derive(Debug)]
 pub(crate) struct Drive {
     pub(crate) sweep: Sweep,
     pub(crate) happenings: Vec<(i64, Happening)>,
-    /// Messages that could not be used.
+    /// Errors of messages that could not be used.
     pub(crate) refused: Vec<PlaybackError>,
 }
 
-/// Which topics are meant, where that is not clear.
+/// Topics to use if the recording has several.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Topics<'a> {
     pub(crate) scan: Option<&'a str>,
@@ -41,7 +41,7 @@ impl Drive {
     /// Reads a recording.
     ///
     /// # Errors
-    /// If it cannot be read, holds no scans, or scans that differ in their beams.
+    /// If it cannot be read, has no scans, or its scans have different beams.
     pub(crate) fn open(path: &Path, topics: Topics<'_>) -> Result<Self, EmulatorError> {
         let mut recording = Recording::open(path)?;
         if let Some(topic) = topics.scan {
@@ -71,7 +71,7 @@ impl Drive {
     }
 }
 
-/// Puts a scan to the others.
+/// Converts a message to an event and adds its scan to `sweep`.
 fn take(timed: Timed, sweep: &mut Option<Sweep>) -> Result<Happening, EmulatorError> {
     Ok(match timed.content {
         Content::Scan(header, ranges) => match sweep {
@@ -95,7 +95,7 @@ fn take(timed: Timed, sweep: &mut Option<Sweep>) -> Result<Happening, EmulatorEr
     })
 }
 
-/// Down to a whole microsecond.
+/// Rounds a stamp down to a whole microsecond.
 fn round(stamp: &mut Stamp) {
     stamp.measured_ns = stamp.measured_ns.div_euclid(1000) * 1000;
 }

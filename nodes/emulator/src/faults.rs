@@ -1,7 +1,6 @@
-//! What a bad line or a bad device does to telegrams.
+//! Simulates the faults of a bad line or a bad device.
 //!
-//! Pure: a telegram in, what becomes of it out; seeded, so that a run can be
-//! had again.
+//! Pure: changes telegrams with a seeded random generator, so that a run can be repeated.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -9,12 +8,11 @@ use std::time::Duration;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
-/// One telegram in this number is followed by a stall, if stalls are wanted.
+/// Average number of telegrams per stall, if stalls are enabled.
 const STALL_EVERY: f64 = 100.0;
-/// The longest garbage before a telegram, bytes.
+/// Longest garbage before a telegram, bytes.
 const GARBAGE: usize = 64;
 
-/// Which faults are wanted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FaultPlan {
     /// Share of telegrams in which one bit is flipped, 0 to 1.
@@ -23,13 +21,13 @@ pub struct FaultPlan {
     pub drop: f64,
     /// Share of telegrams with garbage before them, 0 to 1.
     pub garbage: f64,
-    /// How long a stall lasts.
+    /// Duration of a stall.
     pub stall: Option<Duration>,
-    /// How often the device is started again.
+    /// Interval between restarts of the device.
     pub reset: Option<Duration>,
-    /// Whether telegrams come in pieces.
+    /// True if telegrams are sent in pieces.
     pub split: bool,
-    /// Whether several telegrams come at once.
+    /// True if several telegrams are sent at once.
     pub merge: bool,
 }
 
@@ -79,7 +77,7 @@ fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Makes the faults of a plan.
+/// Generator of the faults of a plan.
 #[derive(Debug)]
 pub(crate) struct Faults {
     plan: FaultPlan,
@@ -99,8 +97,8 @@ impl Faults {
         }
     }
 
-    /// Changes the telegram that begins at `start`, the last in `out`, or takes
-    /// it away. Returns whether it is as it was.
+    /// Damages or removes the telegram from `start` to the end of `out`. Returns true if the
+    /// telegram is intact, possibly after garbage.
     pub(crate) fn damage(&mut self, out: &mut Vec<u8>, start: usize, now_ns: i64) -> bool {
         let stalls = self.plan.stall.is_some() && self.happens(1.0 / STALL_EVERY);
         if now_ns < self.silent_until_ns || self.happens(self.plan.drop) {
@@ -126,12 +124,12 @@ impl Faults {
         !is_damaged
     }
 
-    /// Whether what there is to send waits for more.
+    /// Returns true if the pending data should wait for more.
     pub(crate) fn holds_back(&mut self) -> bool {
         self.plan.merge && self.happens(0.5)
     }
 
-    /// How many of this many bytes are written at once.
+    /// Returns the number of bytes to write at once, of this many pending.
     pub(crate) fn piece(&mut self, bytes: usize) -> usize {
         match self.plan.split && bytes > 1 {
             true => self.rng.random_range(1..=bytes),
@@ -139,7 +137,7 @@ impl Faults {
         }
     }
 
-    /// Whether the device is started again now.
+    /// Returns true if the device restarts now.
     pub(crate) fn resets(&mut self, now_ns: i64) -> bool {
         let (Some(at_ns), Some(every)) = (self.next_reset_ns, self.plan.reset) else {
             return false;
@@ -151,7 +149,7 @@ impl Faults {
         true
     }
 
-    /// What a device sounds like at a wrong baud rate.
+    /// Returns random bytes, as received at a wrong baud rate.
     pub(crate) fn noise(&mut self, bytes: usize) -> Vec<u8> {
         (0..bytes).map(|_| self.rng.random()).collect()
     }
@@ -169,7 +167,7 @@ mod tests {
         Faults::new(plan.parse().unwrap(), 7, 0)
     }
 
-    /// What becomes of a thousand telegrams of fifty zeros.
+    /// Applies the faults to a thousand telegrams of fifty zeros.
     fn play(plan: &str) -> Vec<Vec<u8>> {
         let mut faults = faults(plan);
         let mut all = Vec::new();
@@ -217,7 +215,7 @@ mod tests {
                 .filter(|telegram| is_hit(telegram))
                 .count()
         };
-        // Four standard deviations of a thousand throws are 38 at a tenth.
+        // At a tenth, four standard deviations of a thousand draws are 38.
         let near = 62..=138;
         let one_bit = |t: &Vec<u8>| t.iter().map(|byte| byte.count_ones()).sum::<u32>() == 1;
         assert!(near.contains(&count("crc=0.1", one_bit)));
@@ -229,7 +227,7 @@ mod tests {
     fn a_stall_is_silence_for_its_time() {
         let sent: Vec<bool> = play("stall=20ms").iter().map(|t| !t.is_empty()).collect();
         let first = sent.iter().position(|sent| !sent).unwrap();
-        // The telegram before it began the stall; those of 20 ms are missing.
+        // The telegram before it started the stall; those of 20 ms are missing.
         assert!(sent[first..first + 19].iter().all(|sent| !sent));
         assert!(sent[first + 19]);
     }

@@ -1,11 +1,10 @@
-//! Node `emulator`: a SICK laser scanner that sees what a recording saw.
+//! Node `emulator`: emulates a SICK laser scanner from a recording.
 //!
-//! `drive` and `sweep` hold what was recorded, `player` says when each of it is due,
-//! `cola_device` and `lms2xx_device` answer as the devices do and write their
-//! telegrams, `faults` damages them on demand; all pure. `run` serves a socket or
-//! a pseudo-terminal, and publishes odometry and true poses, which no laser sends.
-//! Remissions, polling over CoLa and partial scans are not played: the devices
-//! that are emulated refuse or leave them out.
+//! `drive` and `sweep` hold the recording, `player` schedules it, `cola_device` and `lms2xx_device`
+//! answer commands and write telegrams like the real devices, `faults` damages telegrams on demand;
+//! all are pure. `run` serves a socket or a pseudo-terminal, and publishes odometry and ground
+//! truth, which no laser sends. Remissions, polling over CoLa and partial scans are not supported:
+//! the emulated devices reject or omit them.
 
 mod cola_device;
 mod config;

@@ -1,7 +1,7 @@
-//! An LMS2xx: answers, refusals and scan telegrams.
+//! Emulated LMS2xx: answers, refusals and scan telegrams.
 //!
-//! Pure: commands in, replies out. It sends scans of the field and resolution
-//! that it is set to, as far as the recording has their beams.
+//! Pure: commands in, replies out. It sends scans of the configured field and resolution if the
+//! recording has all their beams.
 
 use sick::lms2xx::{
     Answer, Baud, Command, Configuration, DEFAULT_PASSWORD, DeviceStatus, Mode, RangeMode, Reply,
@@ -11,31 +11,31 @@ use sick::lms2xx::{
 use crate::EmulatorError;
 use crate::sweep::{AHEAD_RAW, Sweep};
 
-/// Field in degrees and resolution in 1/100°.
+/// Supported widths in degrees and resolutions in 1/100°.
 const VARIANTS: [(u16, u16); 5] = [(180, 50), (180, 100), (100, 25), (100, 50), (100, 100)];
 const TYPE: &[u8] = b"LMS291;S05 emulated";
-/// In order, as real devices report it.
+/// Status "ok" of a real device.
 const STATUS: Status = Status(0x10);
 
-/// The device.
 #[derive(Debug)]
 pub(crate) struct Lms2xxDevice {
     power_on_baud: Baud,
     power_on_variant: (u16, u16),
-    /// Variants that the recording has all beams of.
+    /// Variants for which the recording has all beams.
     variants: Vec<(u16, u16)>,
-    /// The rate at which it speaks.
     pub(crate) baud: Baud,
     mode: Mode,
     variant: (u16, u16),
     configuration: Configuration,
-    /// A scan was asked for.
+    /// True if a scan was requested and not yet sent.
     is_asked: bool,
-    /// Is filled and sent, again and again.
+    /// Buffer of readings, reused.
     readings: Vec<u16>,
 }
 
 impl Lms2xxDevice {
+    /// Creates the device as it is after power-on.
+    ///
     /// # Errors
     /// If the recording has the beams of no variant.
     pub(crate) fn new(baud: Baud, sweep: &Sweep) -> Result<Self, EmulatorError> {
@@ -69,7 +69,7 @@ impl Lms2xxDevice {
         })
     }
 
-    /// Starts again, and says so; the configuration is kept.
+    /// Restarts the device and returns its start message; the configuration is kept.
     pub(crate) fn restart(&mut self) -> Reply<'static> {
         self.baud = self.power_on_baud;
         self.mode = Mode::OnRequest;
@@ -78,13 +78,13 @@ impl Lms2xxDevice {
         Reply::Answer(Answer::Started(TYPE), STATUS)
     }
 
-    /// Whether scans are wanted.
+    /// Returns true if the client wants scans.
     pub(crate) fn is_wanted(&self) -> bool {
         self.mode == Mode::Continuous || self.is_asked
     }
 
-    /// The acknowledgement and the answer to a command; then the device speaks
-    /// at the rate that is returned.
+    /// Appends the acknowledgement and the answer to a command; returns the baud rate after the
+    /// answer.
     pub(crate) fn receive(&mut self, command: &Command<'_>, out: &mut Vec<u8>) -> Baud {
         let mut next_baud = self.baud;
         let answer = match command {
@@ -118,7 +118,7 @@ impl Lms2xxDevice {
         next_baud
     }
 
-    /// 0 where it was done.
+    /// Changes the mode; returns 0 on success, else the error code.
     fn set_mode(&mut self, mode: Mode) -> u8 {
         match mode {
             Mode::Baud(_) => return 0,
@@ -169,7 +169,7 @@ impl Lms2xxDevice {
         }
     }
 
-    /// Appends the telegram of a scan of the recording, if one is wanted.
+    /// Appends the telegram of a scan, if the client wants one.
     pub(crate) fn write_scan(&mut self, sweep: &Sweep, scan: usize, out: &mut Vec<u8>) {
         if !self.is_wanted() {
             return;
@@ -196,7 +196,7 @@ impl Lms2xxDevice {
         let beams = angles.step_by(usize::from(resolution) * 100);
         self.readings.extend(beams.map(|angle| {
             let range = sweep.range(scan, angle).map(f64::from);
-            // A cast holds on to the largest value, which is a code.
+            // The cast saturates at the largest value, which is a code.
             mode.reading(range.map(|range| (range / metres).round() as u16))
         }));
     }
@@ -206,7 +206,7 @@ impl Lms2xxDevice {
 mod tests {
     use super::*;
 
-    /// 361 beams over 180° that see their own number in centimetres.
+    /// Returns 361 beams over 180° whose ranges are their own index in centimetres.
     fn sweep() -> Sweep {
         let ranges = (0..361).map(|beam| beam as f32 * 0.01).collect();
         crate::sweep::beams(-90.0, 0.5, 0.1, ranges).unwrap()
@@ -216,11 +216,11 @@ mod tests {
         Lms2xxDevice::new(Baud::B38400, &sweep()).unwrap()
     }
 
-    /// The replies to a command.
+    /// Returns the replies to a command.
     fn ask(device: &mut Lms2xxDevice, command: Command<'_>) -> Vec<Reply<'static>> {
         let mut bytes = Vec::new();
         device.receive(&command, &mut bytes);
-        // Tests are short, and a reply borrows its bytes.
+        // Leaking is fine in a short test, and a reply borrows its bytes.
         let bytes: &'static [u8] = bytes.leak();
         let mut rest = bytes;
         let mut replies = Vec::new();

@@ -1,11 +1,11 @@
-//! Starts the node; see the library.
+//! Entry point of the node; see the library.
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use emulator::Config;
 
-/// Finished, but lost data.
+/// Exit code if the recording was played but data was lost.
 const LOST_DATA: u8 = 3;
 
 fn main() -> ExitCode {

@@ -1,29 +1,28 @@
-//! What of the drive is due when.
+//! Schedules the messages of the drive.
 //!
-//! Pure: the caller passes the clock in. It begins when somebody wants scans, and
-//! keeps the recording's times, or waits for the answer to each scan. An answer
-//! carries no sign of the telegram that it goes back to: it is that to the last
-//! scan if its scan came in after that was sent.
+//! Pure: the caller passes the time. Playback starts on the first request for scans, and keeps the
+//! recording's times or waits for the answer to each scan. Answers do not identify telegrams: an
+//! answer belongs to the last scan if its scan entered the graph after that one was sent.
 
 use messages::Stamp;
 use replay::{Action, Rate, Schedule};
 
 use crate::drive::Happening;
 
-/// What is to be done now.
+/// Event that is due now.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Due<'a> {
-    /// The scan is sent, after this many others.
+    /// Scan to send; `counter` is the number of scans before it.
     Scan { index: usize, counter: u64 },
-    /// Odometry or a true pose is.
+    /// Odometry or ground truth to publish.
     Other(&'a Happening),
 }
 
-/// Plays happenings whose times ascend.
+/// Player of events in order of time.
 #[derive(Debug)]
 pub(crate) struct Player {
     happenings: Vec<(i64, Happening)>,
-    /// From the last of them to the first of the next round, nanoseconds.
+    /// Time from the last event to the first of the next round, nanoseconds.
     gap_ns: i64,
     rate: Rate,
     looped: bool,
@@ -31,11 +30,11 @@ pub(crate) struct Player {
     has_started: bool,
     is_over: bool,
     next: usize,
-    /// When something is due, where that is known.
+    /// Time of the next event, if known.
     wake_ns: Option<i64>,
-    /// Scans that were due so far, of all rounds.
+    /// Number of scans that were due so far, over all rounds.
     counter: u64,
-    /// Scans whose answer was waited for in vain.
+    /// Number of scans without an answer.
     pub(crate) unanswered: u64,
 }
 
@@ -65,23 +64,22 @@ impl Player {
         }
     }
 
-    /// Begins, unless it has begun.
+    /// Starts playback, unless it has started.
     pub(crate) fn start(&mut self) {
         self.has_started = true;
     }
 
-    /// When something is due at the latest look; `None` where only a client or an
-    /// answer leads on.
+    /// Returns the time of the next event; `None` if playback waits for a client or an answer.
     pub(crate) fn wake_ns(&self) -> Option<i64> {
         self.wake_ns
     }
 
-    /// Whether an answer is waited for.
+    /// Returns true if playback waits for an answer.
     pub(crate) fn awaits_answer(&self) -> bool {
         self.rate == Rate::Max && self.schedule.awaited().is_some()
     }
 
-    /// What is due at `now_ns`, the next of it.
+    /// Returns the next event that is due at `now_ns`.
     pub(crate) fn take(&mut self, now_ns: i64) -> Option<Due<'_>> {
         self.wake_ns = None;
         while self.has_started && !self.is_over {
@@ -121,7 +119,7 @@ impl Player {
         })
     }
 
-    /// The last scan went out as it should, at `now_ns`: it will be answered.
+    /// Records that the last scan was sent intact at `now_ns`, so that an answer is expected.
     pub(crate) fn sent(&mut self, now_ns: i64) {
         if self.rate == Rate::Max {
             self.schedule.scan_sent(Stamp {
@@ -132,7 +130,7 @@ impl Player {
         }
     }
 
-    /// A scan was answered that came in at `entered_ns`.
+    /// Records the answer to a scan that entered the graph at `entered_ns`.
     pub(crate) fn answered(&mut self, entered_ns: i64) {
         if let Some(awaited) = self.schedule.awaited()
             && entered_ns >= awaited.entered_ns
@@ -141,7 +139,7 @@ impl Player {
         }
     }
 
-    /// Whether nothing comes any more.
+    /// Returns true if no events are left.
     pub(crate) fn is_over(&self) -> bool {
         self.is_over
     }
@@ -172,7 +170,7 @@ mod tests {
         assert_eq!(player.take(204 * MS), None);
         assert_eq!(player.wake_ns(), Some(205 * MS));
         assert_eq!(player.take(205 * MS), scan(1, 1));
-        // A late look does not shift what comes after.
+        // Calling late does not delay the following events.
         assert_eq!(player.take(206 * MS), None);
         assert_eq!(player.wake_ns(), Some(505 * MS));
         assert_eq!(player.take(600 * MS), scan(2, 2));
@@ -206,7 +204,7 @@ mod tests {
         assert_eq!(player.take(11), None, "that scan came in before");
         player.answered(12);
         assert_eq!(player.take(13), scan(1, 1));
-        // One that was lost on the way is not waited for.
+        // The answer to a lost scan is not awaited.
         assert_eq!(player.take(14), scan(2, 2));
         player.sent(14);
         assert_eq!(player.take(15), None);

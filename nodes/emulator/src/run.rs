@@ -1,4 +1,4 @@
-//! Serves clients and looks at the clock.
+//! Serves clients and plays the recording.
 
 mod pty;
 mod tcp;
@@ -18,29 +18,29 @@ use crate::player::{Due, Player};
 use crate::sweep::Sweep;
 use crate::{Config, EmulatorError};
 
-/// How long the stop flag may go unseen.
+/// Longest time before the stop flag is noticed.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// How long an answer may go unseen that is waited for: it does not end the wait
-/// for clients.
+/// Longest time before an awaited answer is noticed, since an answer does not wake the wait for
+/// clients.
 const ANSWER_SLICE: Duration = Duration::from_millis(1);
 
-/// How long the end waits for clients to take the last scans, nanoseconds.
+/// Longest wait at the end for clients to read the last scans, nanoseconds.
 const TIMEOUT_NS: i64 = 10_000_000_000;
 
-/// What a run did.
+/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
-    /// Whether it came to its end; false where it was stopped.
+    /// True if the recording was played to its end; false if the node was stopped.
     pub finished: bool,
-    /// Scans whose answer was waited for in vain.
+    /// Number of scans without an answer.
     pub unanswered: u64,
-    /// Messages of the recording that could not be used.
+    /// Number of messages of the recording that could not be used.
     pub refused: u64,
 }
 
 impl Summary {
-    /// Whether it finished but lost data on the way.
+    /// Returns true if the recording was played to its end but data was lost.
     #[must_use]
     pub fn lost_data(&self) -> bool {
         self.finished && self.unanswered + self.refused > 0
@@ -50,8 +50,8 @@ impl Summary {
 /// Plays the recording until it ends or the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, the recording cannot be played as this device, or the
-/// socket or pseudo-terminal cannot be had.
+/// If the transport fails, the recording cannot be played as this device, or the socket or
+/// pseudo-terminal cannot be opened.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
     let common = Common::open(graph, config)?;
     match (&config.listen, &config.pty) {
@@ -61,12 +61,12 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
             tcp::run(&address, &model, config.protocol, common)
         }
         (None, Some(link)) => pty::run(link, config.baud, common),
-        // The command line allows nothing else.
+        // The command line excludes this case.
         (None, None) => Ok(Summary::default()),
     }
 }
 
-/// What both devices need.
+/// State that both kinds of devices need.
 struct Common {
     sweep: Sweep,
     player: Player,
@@ -79,13 +79,13 @@ struct Common {
     refused: u64,
 }
 
-/// A scan of the recording, and how many were sent before.
+/// Index of a scan, and the number of scans before it.
 type Scan = (usize, u64);
 
 impl Common {
     fn open(graph: &Graph, config: &Config) -> Result<Self, EmulatorError> {
         let mut health = graph.health()?;
-        // A long recording takes a while.
+        // Reading a long recording takes a while.
         health.state(NodeState::Busy)?;
         let Drive {
             sweep,
@@ -121,7 +121,7 @@ impl Common {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// How long there is nothing to do but to listen.
+    /// Returns the time for which the node may wait for clients.
     fn pause(&self) -> Duration {
         let most = match self.player.awaits_answer() {
             true => ANSWER_SLICE,
@@ -132,7 +132,7 @@ impl Common {
         most.min(Duration::from_nanos(left_ns.unsigned_abs()))
     }
 
-    /// Somebody wants scans: the recording begins, once the graph is ready.
+    /// Starts playback for a client that wants scans, once the graph is ready.
     fn start(&mut self) -> Result<(), EmulatorError> {
         if self.awaited.are_ready()? {
             self.player.start();
@@ -141,7 +141,7 @@ impl Common {
         Ok(())
     }
 
-    /// The next scan that is due at `now_ns`; what is due before it is published.
+    /// Returns the next scan due at `now_ns`; publishes the other messages due before it.
     fn next_scan(&mut self, now_ns: i64) -> Result<Option<Scan>, TransportError> {
         while let Some(answer) = self.answers.receive()? {
             self.player.answered(answer.header().stamp.entered_ns);
@@ -159,7 +159,7 @@ impl Common {
         Ok(None)
     }
 
-    /// How it went.
+    /// Logs and returns the result.
     fn conclude(&self, finished: bool) -> Summary {
         let unanswered = self.player.unanswered;
         let how = if finished {

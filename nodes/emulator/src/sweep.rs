@@ -1,45 +1,44 @@
-//! The recorded scans, as a device sees the world.
+//! Recorded scans, addressed like the beams of a device.
 //!
-//! All have the same beams. A beam is asked for by its angle, and there is none
-//! between those that were recorded.
+//! All scans have the same beams. A beam is selected by its angle; there is no interpolation
+//! between recorded beams.
 
 use messages::ScanHeader;
 
 use crate::EmulatorError;
 
-/// Straight ahead, in the device's convention.
+/// Straight ahead in the device's convention.
 pub(crate) const AHEAD_RAW: i32 = 900_000;
 
-/// A turn to either side, 1/10000°.
+/// One turn to either side, 1/10000°.
 const TURN: std::ops::RangeInclusive<i64> = -3_600_000..=3_600_000;
 
-/// The scans of a recording. Angles are in 1/10000°, in the device's convention:
-/// 0 is right, 90° ahead.
+/// Scans of a recording. Angles are in 1/10000°, in the device's convention: 0 is right, 90° ahead.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sweep {
-    /// Of the first beam.
+    /// Angle of the first beam.
     pub(crate) start_raw: i32,
-    /// From one beam to the next.
+    /// Angle between consecutive beams.
     pub(crate) step_raw: i32,
-    /// Beams of each scan.
+    /// Number of beams per scan.
     pub(crate) count: usize,
-    /// From one scan to the next, seconds.
+    /// Time of a scan, seconds.
     pub(crate) scan_time_s: f64,
-    /// Whether the recording says so, and it is no guess.
+    /// True if the recording states the scan time; false if it is estimated.
     pub(crate) says_time: bool,
     /// Log times, nanoseconds.
     times_ns: Vec<i64>,
-    /// When each was measured, microseconds since 1970.
+    /// Times of measurement, microseconds since 1970.
     pub(crate) stamps_us: Vec<i64>,
-    /// Metres; not finite where nothing came back.
+    /// Ranges in metres; not finite for no return.
     pub(crate) scans: Vec<Vec<f32>>,
 }
 
 impl Sweep {
-    /// The first scan, recorded at `time_ns`.
+    /// Creates the sweep from its first scan, recorded at `time_ns`.
     ///
     /// # Errors
-    /// If no device has such beams.
+    /// If no device can have these beams.
     pub(crate) fn first(
         time_ns: i64,
         scan: &ScanHeader,
@@ -77,10 +76,10 @@ impl Sweep {
         })
     }
 
-    /// The next scan.
+    /// Adds the next scan.
     ///
     /// # Errors
-    /// If its beams are not those of the first.
+    /// If its beams differ from those of the first scan.
     pub(crate) fn add(
         &mut self,
         time_ns: i64,
@@ -117,8 +116,8 @@ impl Sweep {
         Ok(())
     }
 
-    /// Where the recording does not say how long a scan takes, it is the usual
-    /// time between two.
+    /// Estimates the scan time as the median interval between scans if the recording does not state
+    /// it.
     pub(crate) fn measure_time(&mut self) {
         let mut gaps: Vec<i64> = self
             .times_ns
@@ -132,13 +131,12 @@ impl Sweep {
         }
     }
 
-    /// Of the last beam.
+    /// Returns the angle of the last beam.
     pub(crate) fn stop_raw(&self) -> i32 {
         self.start_raw + (self.count as i32 - 1) * self.step_raw
     }
 
-    /// What a scan has at an angle: metres, `None` where nothing came back or no
-    /// beam was recorded.
+    /// Returns the range of a scan at an angle, metres; `None` for no return or no such beam.
     pub(crate) fn range(&self, scan: usize, angle_raw: i32) -> Option<f32> {
         let from_start = angle_raw.checked_sub(self.start_raw)?;
         if from_start % self.step_raw != 0 {
@@ -150,7 +148,7 @@ impl Sweep {
     }
 }
 
-/// A small world for the tests of this crate: five beams from right to left.
+/// Returns a small test world: five beams from right to left.
 #[cfg(test)]
 pub(crate) fn five_beams(angle_increment_deg: f64) -> Sweep {
     let ranges = vec![1.0, f32::INFINITY, 2.004, 70.0, 0.001];
@@ -163,7 +161,7 @@ pub(crate) fn five_beams(angle_increment_deg: f64) -> Sweep {
     .unwrap()
 }
 
-/// A scan measured at 2006-01-20 15:59:53.5, for the tests of this crate.
+/// Returns a scan measured at 2006-01-20 15:59:53.5, for tests.
 #[cfg(test)]
 pub(crate) fn beams(
     first_deg: f64,

@@ -1,5 +1,5 @@
-//! Prints what many robots cost the fleet's monitor: processor time and memory, while
-//! all of them send poses, beams and health as bridges do and somebody looks at one:
+//! Prints the load of many robots on the fleet monitor: processor time and memory, while all of
+//! them send poses, beams and health like bridges, and one robot is watched:
 //!
 //!     cargo bench -p fleet_monitor --bench load -- --robots 100 --hz 20 --seconds 600
 #![allow(clippy::unwrap_used, reason = "it fails where a test would")]
@@ -22,27 +22,27 @@ use zenoh::bytes::Encoding;
 use zenoh::pubsub::Publisher;
 use zenoh::{Session, Wait};
 
-/// How often processor time and memory are printed.
+/// Interval at which processor time and memory are printed.
 const PERIOD: Duration = Duration::from_secs(10);
-/// Beams of each scan.
+/// Number of beams per scan.
 const BEAMS: usize = 180;
 
-/// Many robots, and one who looks on.
+/// Options of the benchmark.
 #[derive(Parser)]
 struct Config {
-    /// Robots
+    /// Number of robots
     #[arg(long, default_value_t = 100)]
     robots: usize,
 
-    /// Scans a second of each
+    /// Scans per second and robot
     #[arg(long, default_value_t = 20.0)]
     hz: f64,
 
-    /// For how long
+    /// Duration in seconds
     #[arg(long, default_value_t = 60)]
     seconds: u64,
 
-    /// What cargo says to every benchmark
+    /// Flag that cargo passes to every benchmark
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -67,7 +67,7 @@ fn main() {
     node.stop();
 }
 
-/// Prints what the node takes, by its own reports of how many messages came.
+/// Prints the node's resource use, and message rates from its own reports.
 fn watch(graph: &Graph, config: &Config, messages: &AtomicU64) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let start = Instant::now();
@@ -105,9 +105,9 @@ fn watch(graph: &Graph, config: &Config, messages: &AtomicU64) {
     outcome.unwrap();
 }
 
-/// Processor time of a process until now, seconds.
+/// Returns the processor time that a process has used so far, seconds.
 fn processor_s(pid: u32) -> f64 {
-    // Each thread has its own; those that ended meanwhile are left out.
+    // Summed over the threads; those that have ended are not included.
     let tasks = std::fs::read_dir(format!("/proc/{pid}/task")).unwrap();
     let nanoseconds = tasks.filter_map(|task| {
         let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
@@ -116,7 +116,7 @@ fn processor_s(pid: u32) -> f64 {
     nanoseconds.sum::<u64>() as f64 / 1e9
 }
 
-/// Memory that a process has now, megabytes.
+/// Returns the resident memory of a process, megabytes.
 fn memory_mb(pid: u32) -> f64 {
     let text = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
     let line = text
@@ -127,12 +127,12 @@ fn memory_mb(pid: u32) -> f64 {
     kilobytes / 1024.0
 }
 
-/// Somebody who looks at one robot.
+/// Watches one robot on the page.
 fn look(Site(address): Site, stop: &AtomicBool, messages: &AtomicU64) {
     let url = format!("ws://{address}/api/v1/robots/r0/stream");
     while !stop.load(Ordering::Relaxed) {
         let stream = TcpStream::connect(address).unwrap();
-        // Until the robot is known, there is nothing to look at.
+        // There is no stream until the robot is known.
         let Ok((mut socket, _)) = tungstenite::client(&url, stream) else {
             std::thread::sleep(Duration::from_millis(100));
             continue;
@@ -143,7 +143,7 @@ fn look(Site(address): Site, stop: &AtomicBool, messages: &AtomicU64) {
     }
 }
 
-/// One robot's bridge, as far as it is messages.
+/// Publishers of one robot's bridge.
 struct FarRobot {
     name: String,
     hypotheses: Publisher<'static>,
@@ -162,7 +162,7 @@ impl FarRobot {
         }
     }
 
-    /// Sends what comes of a scan, and the report of that number if there is one.
+    /// Sends the messages of one scan, and a health report with this number if given.
     fn send(&self, counter: u64, report: Option<u64>) {
         let mut header = HypothesesHeader {
             verdict: Verdict::Unique as u32,
@@ -214,7 +214,7 @@ fn put<T: Wire>(to: &Publisher<'_>, sequence: u64, header: &T::Header, items: &[
     to.put(payload).wait().unwrap();
 }
 
-/// Sends for all robots, one after the other and evenly spread over time.
+/// Sends for all robots in turn, evenly spread over time.
 fn send(endpoint: &str, config: &Config, stop: &AtomicBool) {
     let mut settings = zenoh::Config::default();
     for (key, value) in [
@@ -237,7 +237,7 @@ fn send(endpoint: &str, config: &Config, stop: &AtomicBool) {
         }
         let due = period.mul_f64(turn as f64);
         std::thread::sleep(due.saturating_sub(start.elapsed()));
-        // A report a second.
+        // One report per second.
         let each = config.hz.ceil().max(1.0) as u64;
         let report = counter.is_multiple_of(each).then(|| counter / each);
         robot.send(counter, report);

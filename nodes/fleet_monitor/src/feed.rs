@@ -1,4 +1,4 @@
-//! A topic of one robot, or of all.
+//! Subscription to a topic of one robot or of all robots.
 
 use std::marker::PhantomData;
 
@@ -11,32 +11,31 @@ use zenoh_session::{Past, Queue, QueueLimits};
 
 use crate::FleetError;
 
-/// All robots, in place of a robot's name in a key.
+/// Wildcard for all robots in a key.
 pub(crate) const ALL: &str = "*";
 
-/// Messages that wait of each topic: of a hundred robots for half a second.
+/// Largest number of waiting messages per topic: half a second of a hundred robots.
 const WAITING: usize = 1024;
 
-/// Bytes that wait of each topic. Maps that are not made up take a thousandth of it.
+/// Largest number of waiting bytes per topic; a real map takes about a thousandth of it.
 const WAITING_BYTES: usize = 128 << 20;
 
-/// Receives a topic as long as it lives.
+/// Subscription to a topic, until dropped.
 pub(crate) struct Feed<T: Wire> {
     queue: Queue,
     topic: PhantomData<T>,
 }
 
-/// What came, and from which robot.
+/// Received message and the robot that sent it.
 pub(crate) struct FleetMessage<T: Wire> {
     pub(crate) robot: String,
     pub(crate) message: Received<T>,
 }
 
 impl<T: Wire> Feed<T> {
-    /// What it is called.
     pub(crate) const NAME: &'static str = <T as Topic>::NAME;
 
-    /// Subscribes to the topic of a robot, or of [`ALL`].
+    /// Subscribes to the topic of one robot, or of [`ALL`].
     pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
         let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
@@ -51,14 +50,14 @@ impl<T: Wire> Feed<T> {
         })
     }
 
-    /// How many were lost since the last call because the queue was full.
+    /// Returns the number of messages lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         self.queue.dropped()
     }
 
-    /// What waits now, checked, and what is too long to be looked at: who takes it all
-    /// keeps nobody else waiting, however fast more comes. Times are those of this
-    /// machine's clock.
+    /// Returns the waiting messages after validation, with an error for each that was too long.
+    /// Their number is limited, so that a flood does not block other topics. Times are converted to
+    /// this machine's clock.
     pub(crate) fn waiting(&self) -> impl Iterator<Item = Result<FleetMessage<T>, WireError>> {
         let (topic, most) = (Self::NAME, T::MAX_BYTES);
         let too_long = std::iter::from_fn(move || {

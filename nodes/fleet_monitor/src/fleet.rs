@@ -1,4 +1,4 @@
-//! The robots from which something was received.
+//! Robots that were discovered.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,38 +14,36 @@ use crate::FleetError;
 use crate::feed::{Feed, FleetMessage};
 use crate::requests::Requests;
 
-/// All robots, as their bridges report them.
+/// All robots, with the data reported by their bridges.
 pub(crate) struct Fleet {
     robots: Robots,
     members: BTreeMap<String, Member>,
 }
 
-/// One robot.
 struct Member {
     robot: Arc<Robot>,
     requested: Receiver<Request>,
     requests: Requests,
-    /// What came of each topic, by its name.
+    /// Sequence numbers received, by topic name.
     arrivals: BTreeMap<&'static str, Arrivals>,
-    /// There while somebody looks at it, for it is computed only then.
+    /// Subscription to the image, which is computed only while it is viewed.
     field: Option<Feed<topic::Field>>,
 }
 
-/// What a message came to.
+/// Result of processing a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Taken {
-    /// It is shown; this many before it were lost on the way.
     Shown {
-        /// Messages of its sender.
+        /// Number of messages of this sender lost before it.
         lost: u64,
     },
-    /// It is shown already.
+    /// The message has already been shown.
     Repeated,
 }
 
-/// A message that can be shown.
+/// Message that can be shown.
 pub(crate) trait Shown: Wire + Sized {
-    /// Passes it to the robot that it came from; else returns what is wrong with it.
+    /// Passes the message to its robot, or returns what is wrong with it.
     fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str>;
 }
 
@@ -108,7 +106,7 @@ impl Shown for topic::Field {
 }
 
 impl Fleet {
-    /// No robot yet; those that come are added to `robots`.
+    /// Creates a fleet without robots; new ones are added to `robots`.
     pub(crate) fn new(robots: Robots) -> Self {
         Fleet {
             robots,
@@ -116,7 +114,7 @@ impl Fleet {
         }
     }
 
-    /// Shows a message; its robot is known from then on.
+    /// Shows a message, and adds its robot if it is new.
     pub(crate) fn take<T: Shown>(
         &mut self,
         received: &FleetMessage<T>,
@@ -154,8 +152,8 @@ impl Fleet {
         Ok(())
     }
 
-    /// Looks for silent nodes, opens and closes images, and passes requests on: what
-    /// each request came to.
+    /// Detects silent nodes, opens and closes images, and forwards requests; returns the result of
+    /// each request.
     pub(crate) fn tick(
         &mut self,
         graph: &Graph,
@@ -177,14 +175,14 @@ impl Fleet {
         Ok(granted)
     }
 
-    /// Shows the images that are looked at, of any robot: what each came to.
+    /// Shows the images that are viewed, of any robot; returns the result of each.
     pub(crate) fn take_fields(&mut self) -> Vec<Result<Taken, FleetError>> {
         let mut outcomes = Vec::new();
         for member in self.members.values_mut() {
             let Some(field) = member.field.take() else {
                 continue;
             };
-            // A slow reader wants the newest, so what was pushed out is no loss.
+            // A slow reader wants the newest image, so skipped ones are no loss.
             for received in field.waiting() {
                 let received = received.map_err(FleetError::from);
                 outcomes.push(received.and_then(|received| member.take(&received)));
@@ -203,7 +201,7 @@ impl Member {
         let arrivals = self.arrivals.entry(Feed::<T>::NAME).or_default();
         let lost = match arrivals.note(sender, sequence) {
             Arrival::Repeated => return Ok(Taken::Repeated),
-            // What is kept says all by itself; the ones before it are no loss.
+            // A kept message is complete in itself; missing earlier ones are no loss.
             Arrival::New { .. } if T::KEPT => 0,
             Arrival::New { lost } => lost,
         };
@@ -233,7 +231,7 @@ impl Member {
 }
 
 impl Requests {
-    /// Who subscribes to them.
+    /// Returns which requests have a subscriber.
     fn abilities(&self) -> Abilities {
         let (region, save) = self.subscribed();
         Abilities { region, save }

@@ -1,16 +1,15 @@
-//! Node `fleet_monitor`: one web page to watch all robots of a network, and the API
-//! behind it.
+//! Node `fleet_monitor`: one web page to watch all robots of a network, and its API.
 //!
-//! | file | what it is about |
+//! | file | content |
 //! |---|---|
-//! | `feed` | a topic of one robot or of all, from the network to our thread |
-//! | `fleet` | the robots that were discovered, and what each is sent |
-//! | `requests` | what those with the token want, on its way to a robot |
+//! | `feed` | a topic of one robot or of all robots, from the network to this thread |
+//! | `fleet` | the robots that were discovered, and their data |
+//! | `requests` | requests of users with the token, sent to a robot |
 //! | `run` | the event loop |
 //!
-//! The page and the API are `dashboard`'s, the messages those that bridges send. A
-//! robot is listed once something valid was received from it. Strangers may send what they
-//! like: it is checked, bounded and counted before anything is shown.
+//! Crate `dashboard` implements the page and the API; the messages are those of bridges. A robot is
+//! listed once a valid message of it was received. Messages from unknown senders are validated,
+//! limited and counted before anything is shown.
 
 mod config;
 mod error;

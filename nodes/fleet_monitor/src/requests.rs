@@ -1,5 +1,5 @@
-//! What those with the token want, on its way to a robot. Its bridge takes it where
-//! `region` and `save` are among its outputs.
+//! Requests of users with the token, sent to a robot. Its bridge accepts them if `region` and
+//! `save` are among its outputs.
 
 use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
 use network_payload::{Preamble, Wire};
@@ -12,7 +12,7 @@ use zenoh_session::KeyError;
 
 use crate::FleetError;
 
-/// What a robot may be asked.
+/// Publishers of the requests to one robot.
 pub(crate) struct Requests {
     regions: AdvancedPublisher<'static>,
     saves: AdvancedPublisher<'static>,
@@ -20,7 +20,7 @@ pub(crate) struct Requests {
 }
 
 impl Requests {
-    /// To a robot, from the process with the session id `sender`.
+    /// Opens the publishers to a robot, for the process with the session id `sender`.
     pub(crate) fn open(session: &Session, robot: &str, sender: u64) -> Result<Self, FleetError> {
         Ok(Requests {
             regions: declare::<topic::Region>(session, robot)?,
@@ -33,7 +33,7 @@ impl Requests {
         })
     }
 
-    /// Whether somebody subscribes to regions, and to saving.
+    /// Returns, for regions and for saving, true if there is a subscriber.
     pub(crate) fn subscribed(&self) -> (bool, bool) {
         let has_subscribers = |publisher: &AdvancedPublisher<'_>| {
             let status = publisher.matching_status().wait();
@@ -42,7 +42,7 @@ impl Requests {
         (has_subscribers(&self.regions), has_subscribers(&self.saves))
     }
 
-    /// Corners, metres in the map; none for everywhere.
+    /// Requests a search region with these corners, metres in the map; none for everywhere.
     pub(crate) fn region(&mut self, corners: &[[f64; 2]]) -> Result<(), FleetError> {
         let corners: Vec<_> = corners.iter().map(|&[x, y]| Corner { x, y }).collect();
         let (preamble, stamp) = self.stamp();
@@ -58,7 +58,7 @@ impl Requests {
         put(&self.saves, payload)
     }
 
-    /// Nothing was measured: it is a request of this moment.
+    /// Returns a stamp of the current time, without a time of measurement.
     fn stamp(&mut self) -> (Preamble, Stamp) {
         self.next.clock_ns = monotonic_ns();
         let stamp = Stamp {
@@ -80,14 +80,14 @@ fn declare<T: Wire>(
     let publisher = session
         .declare_publisher(key.clone())
         .encoding(Encoding::from(network_payload::encoding::<T>()))
-        // The page is not to wait for a robot that is cut off.
+        // The page must not wait for a robot that is disconnected.
         .congestion_control(CongestionControl::Drop)
         .advanced();
     let publisher = if T::KEPT {
         let cache = CacheConfig::default().max_samples(1);
         publisher
             .cache(cache)
-            // Else each message would need a time by Zenoh's clock, which clients lack.
+            // Otherwise each message would need a time of Zenoh's clock, which clients lack.
             .sample_miss_detection(MissDetectionConfig::default())
             .publisher_detection()
     } else {

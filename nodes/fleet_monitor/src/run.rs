@@ -1,4 +1,4 @@
-//! Subscribes on the network, and feeds the server.
+//! Subscribes on the network and feeds the server.
 
 use std::time::Duration;
 
@@ -13,14 +13,14 @@ use crate::fleet::{Fleet, Shown, Taken};
 use crate::requests::Requests;
 use crate::{Config, FleetError};
 
-/// How long a request, an image and a silent node may wait.
+/// Longest delay for a request, an image and the detection of a silent node.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
 ///
 /// # Errors
-/// If it cannot serve, the token or Zenoh's configuration cannot be used, or the graph
-/// of this machine fails. A network that is not there is no error: it is waited for.
+/// If the page cannot be served, the token or Zenoh's configuration cannot be used, or the
+/// transport of this machine fails. An unreachable network is not an error: the node waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     let robots = Robots::default();
     let server = Server::start(config.page, &config.dashboard, robots.clone())?;
@@ -44,7 +44,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     })
 }
 
-/// The topics that are always subscribed to.
+/// Topics with a permanent subscription.
 struct Inputs {
     maps: Feed<topic::Map>,
     hypotheses: Feed<topic::Hypotheses>,
@@ -58,7 +58,7 @@ struct Node {
     session: Session,
     inputs: Inputs,
     fleet: Fleet,
-    /// By which robots know this process.
+    /// Session id by which robots recognize this process.
     sender: u64,
     report: Report,
 }
@@ -77,7 +77,7 @@ impl Inputs {
 }
 
 impl Node {
-    /// Takes all that has come, maps before what was found in them.
+    /// Processes everything that has arrived, maps before the results that refer to them.
     fn step(&mut self, graph: &Graph, tick: bool) -> Result<(), FleetError> {
         let Node {
             session,
@@ -111,7 +111,6 @@ impl Node {
     }
 }
 
-/// What taking a message needs.
 struct Intake<'a> {
     session: &'a Session,
     fleet: &'a mut Fleet,

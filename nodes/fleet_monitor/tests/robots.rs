@@ -1,5 +1,5 @@
-//! Several robots on one page, as they are received over a network, and unknown senders that
-//! send what they should not.
+//! Tests with several robots on one page, received over a network, and unknown senders of invalid
+//! data.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -31,7 +31,7 @@ use zenoh_ext::{CacheConfig, HistoryConfig, MissDetectionConfig};
 
 const TOKEN: &str = "0123456789abcdef";
 
-/// The node, its page, and where robots find it.
+/// The node, its page, and the address for robots.
 struct World {
     node: Option<NodeProcess>,
     site: Site,
@@ -63,7 +63,7 @@ impl World {
         }
     }
 
-    /// Asks until the answer is as it should be.
+    /// Repeats the request until the answer satisfies `is_awaited`.
     fn wait_for(&self, path: &str, is_awaited: impl Fn(&Value) -> bool) -> Value {
         let mut found = None;
         let tick = Duration::from_millis(20);
@@ -113,7 +113,7 @@ fn start(graph: &Graph, Site(page): Site, endpoint: &str, token: &Path) -> NodeP
     NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), graph, arguments)
 }
 
-/// What a bridge sends, without one.
+/// Simulated bridge of a robot.
 struct FarRobot {
     name: String,
     session: Session,
@@ -145,7 +145,7 @@ impl FarRobot {
         self.answer_at(None, sequence, x);
     }
 
-    /// A place, in a message that has got this time on its way.
+    /// Sends a place in a message with this Zenoh timestamp.
     fn answer_at(&self, time: Option<Timestamp>, sequence: u64, x: f64) {
         let mut header = HypothesesHeader {
             verdict: Verdict::Unique as u32,
@@ -172,7 +172,7 @@ impl FarRobot {
         );
     }
 
-    /// Where its tracker has it.
+    /// Sends a pose of the tracker.
     fn track(&self, sequence: u64, x: f64) {
         let mut header = PoseHeader {
             state: TrackState::Doubtful as u32,
@@ -192,14 +192,14 @@ impl FarRobot {
         );
     }
 
-    /// A map that stays for those who come later.
+    /// Publishes a map that is kept for late joiners.
     fn serve_map(&self) -> AdvancedPublisher<'static> {
         let publisher = self
             .session
             .declare_publisher(network_payload::key::<topic::Map>(&self.name))
             .encoding(Encoding::from(network_payload::encoding::<topic::Map>()))
             .cache(CacheConfig::default().max_samples(1))
-            // As bridges do: else each message would need a time by Zenoh's clock.
+            // As in bridges: otherwise each message would need a time of Zenoh's clock.
             .sample_miss_detection(MissDetectionConfig::default())
             .publisher_detection()
             .wait()
@@ -250,8 +250,8 @@ fn the_pose_of_a_robots_tracker_is_shown() {
     assert_eq!(known["pose"]["says"], "the scans do not fit");
 }
 
-/// Times are given by the router through which robots send, one after the other, but
-/// their messages may overtake each other there.
+/// The router that robots send through assigns increasing times, but messages may overtake each
+/// other there.
 #[test]
 fn a_robot_is_received_whose_message_was_overtaken_by_anothers() {
     let world = World::new("fleet-times");
@@ -302,7 +302,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
         [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 1.0 }]
     );
     assert!(others.try_recv().unwrap().is_none(), "it is not b's");
-    // Nobody keeps the last minutes there.
+    // No recorder keeps the last minutes there.
     let save = "/api/v1/robots/a/save";
     assert_eq!(world.site.ask("POST", save, &headers[1..], "").0, 409);
 }
@@ -319,7 +319,7 @@ fn what_strangers_send_is_refused_and_counted() {
     stranger.put(&key, "text/plain", b"hello".to_vec());
     stranger.put(&key, &sound, vec![0; 2 << 20]);
     stranger.put("backcast/a b/hypotheses", &sound, vec![0]);
-    // More robots than are shown, each sound by itself.
+    // More robots than can be shown, each valid by itself.
     for i in 0..300 {
         let robot = FarRobot {
             name: format!("r{i}"),

@@ -1,4 +1,4 @@
-//! Topics of ROS as viewers see them.
+//! Channels of the viewers, one for each ROS topic.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,12 +13,12 @@ use ros_export::topics;
 use crate::ServerError;
 use crate::serving::Serving;
 
-/// How messages and their definitions are written.
+/// Encodings of messages and of their definitions.
 const ENCODING: &str = "cdr";
 const DEFINITIONS: &str = "ros2msg";
 
-/// All channels. A topic is offered from its first message on; the intensity image
-/// always, for it is computed only where somebody looks.
+/// All channels. A topic is advertised from its first message on; the intensity image always,
+/// because it is computed only while it is viewed.
 #[derive(Debug)]
 pub(crate) struct Channels {
     context: Arc<Context>,
@@ -29,12 +29,12 @@ pub(crate) struct Channels {
 #[derive(Debug)]
 struct Open {
     channel: Arc<RawChannel>,
-    /// What late joiners get, of a latched topic.
+    /// Newest message of a latched topic, for late joiners.
     newest: Option<Encoded>,
 }
 
 impl Channels {
-    /// None but that of the image.
+    /// Opens the image channel; others open on their first message.
     pub(crate) fn new(context: &Arc<Context>) -> Result<Self, ServerError> {
         let image = (OccupancyGridMsg::SCHEMA, OccupancyGridMsg::DEFINITION);
         // There are no viewers yet.
@@ -50,12 +50,12 @@ impl Channels {
         })
     }
 
-    /// Whether somebody looks at the intensity image.
+    /// Returns true if the intensity image is viewed.
     pub(crate) fn is_field_viewed(&self) -> bool {
         self.field.has_sinks()
     }
 
-    /// Shows a message to all who look at its topic.
+    /// Sends a message to all viewers of its topic.
     pub(crate) fn show(&self, serving: &Serving, message: Encoded) -> Result<(), ServerError> {
         if !self.open().contains_key(&message.topic) {
             let channel = self.offer(serving, &message)?;
@@ -72,8 +72,8 @@ impl Channels {
         Ok(())
     }
 
-    /// Opens the channel of a message. Whoever is served before that may want `open`, so
-    /// that it must not be locked here.
+    /// Opens the channel of a message. `open` must not be locked here, because a viewer that is
+    /// served meanwhile may need it.
     fn offer(&self, serving: &Serving, message: &Encoded) -> Result<Arc<RawChannel>, ServerError> {
         let (context, topic) = (Arc::clone(&self.context), message.topic.clone());
         let schema = (message.schema, message.definition);

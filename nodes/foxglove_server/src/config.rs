@@ -4,30 +4,28 @@ use std::net::SocketAddr;
 
 use clap::Parser;
 
-/// Shows a graph live to Foxglove and Lichtblick: there, open a connection of the
-/// kind "Foxglove WebSocket" to the address that the log says.
+/// Shows a graph live in Foxglove and Lichtblick: open a connection of the kind "Foxglove
+/// WebSocket" there, to the address in the log.
 ///
-/// Listens on this machine alone unless --listen says otherwise. Viewers can read,
-/// and nothing else.
+/// Listens on this machine only, unless --listen says otherwise. Viewers can only read.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "foxglove_server", version)]
 pub struct Config {
-    /// Address to listen on; port 0 is any free port. Beyond this machine whoever
-    /// reaches the port can read, and nothing is encrypted
+    /// Address to listen on; port 0 is any free port. On an address reachable from other machines,
+    /// anyone who can reach the port can read, and nothing is encrypted
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8765")]
     pub listen: SocketAddr,
 
-    /// The robot's name [default: the name of the machine]
+    /// Name of the robot [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
-    /// How frames are called.
     #[command(flatten)]
     pub transcript: ros_export::Options,
 }
 
 impl Config {
-    /// The robot's name.
+    /// Returns the name of the robot.
     #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();

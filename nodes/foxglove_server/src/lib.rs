@@ -1,8 +1,8 @@
-//! Node `foxglove_server`: shows a graph live to whoever speaks Foxglove's WebSocket
-//! protocol, as messages of ROS 2.
+//! Node `foxglove_server`: shows a graph live to any viewer with Foxglove's WebSocket protocol, as
+//! messages of ROS 2.
 //!
-//! What is shown is made by `ros_export`, as in recordings; the protocol is the `foxglove`
-//! crate's. The graph never waits for viewers: who is too slow loses messages.
+//! `ros_export` converts the messages, as for recordings; the `foxglove` crate implements the
+//! protocol. The graph never waits for viewers: a slow one loses messages.
 
 mod channels;
 mod config;

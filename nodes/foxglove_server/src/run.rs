@@ -1,4 +1,4 @@
-//! Subscribes to the graph, and shows its messages.
+//! Subscribes to the graph and shows its messages.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,16 +13,16 @@ use crate::channels::Channels;
 use crate::serving::Serving;
 use crate::{Config, ServerError};
 
-/// How long an image and a report of health may wait.
+/// Longest delay of an image and of a health report.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Messages that wait for a viewer, each for itself; then the oldest are dropped.
+/// Number of messages queued for each viewer; beyond it the oldest ones are dropped.
 const BACKLOG: usize = 256;
 
 /// Serves viewers until the stop flag is set.
 ///
 /// # Errors
-/// If it cannot listen, or the graph fails.
+/// If it cannot listen, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
     let context = Context::new();
     let serving = Serving::start().map_err(ServerError::Start)?;
@@ -72,7 +72,7 @@ struct Node {
     transcript: Transcript,
     channels: Arc<Channels>,
     serving: Serving,
-    /// There while somebody looks at it, for it is computed only then.
+    /// Subscription to the image, which is computed only while it is viewed.
     field: Option<Subscriber<topic::Field>>,
 }
 

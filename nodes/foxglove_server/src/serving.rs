@@ -1,34 +1,35 @@
-//! The thread on which viewers are served.
+//! Thread that serves the viewers.
 //!
-//! The library announces a channel to viewers before it records that they know it
-//! (foxglove 0.30.3, `ConnectedClient::advertise_channels`), so that a viewer who asks for
-//! the channel in between is refused: "Unknown channel ID". Viewers are therefore served
-//! by one thread, and channels are opened on that thread, too: what a viewer says is read
-//! before or after, and never meanwhile.
+//! The library advertises a channel to viewers before it records that they know it (foxglove
+//! 0.30.3, `ConnectedClient::advertise_channels`), so that a viewer who subscribes in between gets
+//! the error "Unknown channel ID". Therefore a single thread serves the viewers, and channels are
+//! opened on the same thread: requests of viewers are read before or after that, never meanwhile.
 
 use std::sync::mpsc;
 
 use tokio::runtime::{Builder, Handle, Runtime};
 
-/// The thread, which ends when this is dropped.
+/// Runtime with the thread, which ends when this is dropped.
 #[derive(Debug)]
 pub(crate) struct Serving(Runtime);
 
 impl Serving {
+    /// Starts the thread.
+    ///
     /// # Errors
-    /// There can be no thread.
+    /// If the thread cannot be started.
     pub(crate) fn start() -> std::io::Result<Self> {
         let mut one_thread = Builder::new_multi_thread();
         one_thread.worker_threads(1).thread_name("viewers");
         one_thread.enable_all().build().map(Serving)
     }
 
-    /// For the server.
+    /// Returns the handle for the server.
     pub(crate) fn handle(&self) -> &Handle {
         self.0.handle()
     }
 
-    /// Does this on the thread, while it does nothing else; none if it panics.
+    /// Runs `work` on the thread, between other tasks; returns `None` if it panics.
     pub(crate) fn between<R: Send + 'static>(
         &self,
         work: impl FnOnce() -> R + Send + 'static,

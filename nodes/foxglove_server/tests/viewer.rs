@@ -1,4 +1,4 @@
-//! A viewer of Foxglove's protocol, over TCP, with a graph behind the server.
+//! Tests with a viewer of Foxglove's protocol, over TCP, and a graph behind the server.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -23,10 +23,10 @@ use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
 
 const SECOND: i64 = 1_000_000_000;
-/// When the first scan was measured.
+/// Time of the first scan.
 const START: i64 = 1_137_772_793 * SECOND;
 
-/// The node in a graph of its own, which the test feeds.
+/// The node in a graph of its own, fed by the test.
 struct World {
     node: Option<NodeProcess>,
     site: Site,
@@ -119,7 +119,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Lets the graph go on, so that latched messages are served, until this holds.
+    /// Runs the graph, so that latched messages are delivered, until the condition holds.
     fn wait_until(&self, is_awaited: impl Fn() -> bool) {
         let tick = std::time::Duration::from_millis(20);
         let outcome = self.graph.run(&[], tick, |_| {
@@ -145,17 +145,17 @@ impl Drop for World {
     }
 }
 
-/// What speaks `foxglove.sdk.v1`.
+/// Client of the protocol `foxglove.sdk.v1`.
 struct Viewer {
     socket: WebSocket<TcpStream>,
     server: Value,
-    /// Channels as they were offered, by topic.
+    /// Advertised channels, by topic.
     channels: BTreeMap<String, Value>,
-    /// Topics by the number of their subscription.
+    /// Topics, by subscription id.
     subscribed: BTreeMap<u32, String>,
 }
 
-/// A message as a viewer gets it.
+/// Message received by a viewer.
 struct Shown {
     topic: String,
     log_time_ns: u64,
@@ -176,7 +176,7 @@ impl Viewer {
         viewer
     }
 
-    /// Opens a WebSocket for a protocol, or gets the reason why there is none.
+    /// Opens a WebSocket for a protocol, or returns why it was refused.
     fn speak(site: Site, protocol: &'static str) -> Result<WebSocket<TcpStream>, String> {
         let mut request = format!("ws://{}/", site.0).into_client_request().unwrap();
         let protocol = HeaderValue::from_static(protocol);
@@ -189,7 +189,7 @@ impl Viewer {
         Ok(socket)
     }
 
-    /// Takes one message of the server: one of a channel, or a note that is kept.
+    /// Reads one message of the server: data of a channel, or a notice, which is stored.
     fn receive(&mut self) -> Option<Shown> {
         match self.socket.read().unwrap() {
             Message::Text(text) => {
@@ -206,7 +206,7 @@ impl Viewer {
                 }
                 None
             }
-            // Message data: 1, the subscription, the time, the message.
+            // Message data: 1, the subscription id, the time, the message.
             Message::Binary(bytes) if bytes[0] == 1 => {
                 let subscription = u32::from_le_bytes(bytes[1..5].try_into().unwrap());
                 Some(Shown {
@@ -219,7 +219,7 @@ impl Viewer {
         }
     }
 
-    /// Subscribes to a topic, once it is offered.
+    /// Subscribes to a topic once it is advertised.
     fn subscribe(&mut self, topic: &str) {
         while !self.channels.contains_key(topic) {
             assert!(self.receive().is_none_or(|shown| shown.topic != topic));
@@ -235,7 +235,7 @@ impl Viewer {
             .unwrap();
     }
 
-    /// The next message of a topic.
+    /// Waits for the next message of a topic.
     fn next(&mut self, topic: &str) -> Shown {
         loop {
             if let Some(shown) = self.receive().filter(|shown| shown.topic == topic) {
@@ -271,7 +271,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
     assert!(definition.contains("float32[] ranges"), "{definition}");
     world.answer(0, 1.5);
     viewer.subscribe("/pose");
-    // Requests are granted one after the other, and what is latched comes at once.
+    // Requests are processed in order, and a latched message is sent at once.
     viewer.subscribe("/tf_static");
     viewer.next("/tf_static");
     for counter in 1..=3 {
@@ -321,8 +321,7 @@ fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
     assert_eq!(image.data, [0, 50]);
     drop(viewer);
     world.wait_until(|| !world.fields.has_subscribers());
-    // Who does not speak the protocol gets no further; nor does who says what it has
-    // no word for.
+    // A client with another protocol is refused, and invalid messages do no harm.
     let refused = Viewer::speak(world.site, "mqtt").unwrap_err();
     assert!(refused.contains("400"), "{refused}");
     let mut stranger = Viewer::connect(world.site);
@@ -334,7 +333,7 @@ fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
         .send(Message::binary(vec![255; 70]))
         .unwrap();
     drop(stranger);
-    // A scan whose time ROS cannot say is refused, and counted.
+    // A scan whose time does not fit into ROS is refused and counted.
     let mut loan = world.scans.loan(0).unwrap();
     *loan.header_mut() = ScanHeader::zeroed();
     loan.header_mut().stamp.measured_ns = -1;

@@ -1,17 +1,16 @@
-//! Which way the device looks: as it is stated, or by the name that it says, or by the
-//! middle of its field.
+//! Decides which way the device looks: as stated in the configuration, by the name that the device
+//! reports, or by the middle of its field.
 //!
-//! Pure but for the log, which says once what the answer is based on.
+//! Pure except for the log, which reports once what the decision is based on.
 
 use sick::cola::{AngleConvention, ConventionError, DeviceAngles, Field};
 
-/// What is known of the device that sends now.
+/// Angle convention of the connected device.
 #[derive(Debug, Default)]
 pub(crate) struct Angles {
-    /// By the configuration; what the device says does not count beside it.
+    /// Statement of the configuration, which takes precedence over the reported name.
     stated: Option<DeviceAngles>,
     read: DeviceAngles,
-    /// What has been logged.
     logged: Option<AngleConvention>,
 }
 
@@ -23,7 +22,7 @@ impl Angles {
         }
     }
 
-    /// The device says its name.
+    /// Records the name that the device reports.
     pub(crate) fn on_name(&mut self, name: &[u8]) {
         let read = DeviceAngles::of_name(name);
         if read != self.read {
@@ -32,17 +31,17 @@ impl Angles {
         }
     }
 
-    /// Another device may come.
+    /// Forgets the name, because the next connection may reach another device.
     pub(crate) fn forget_name(&mut self) {
         self.read = DeviceAngles::Unnamed;
         self.logged = None;
     }
 
-    /// How the angles of a scan over `field` are to be read, and how far the device
-    /// measures, metres.
+    /// Returns the angle convention for a scan over `field`, and the longest range of the device,
+    /// metres.
     ///
     /// # Errors
-    /// [`ConventionError`] where that is not known.
+    /// [`ConventionError`] if the convention is unknown.
     pub(crate) fn of(&mut self, field: Field) -> Result<(AngleConvention, f32), ConventionError> {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
         let convention = angles.convention(field)?;

@@ -1,30 +1,26 @@
-//! When to repeat an unanswered command.
-//!
-//! Pure: the caller says when.
+//! Decides when to repeat an unanswered command. Pure: the caller passes the time.
 
-/// How often a command is sent before it counts as unanswered.
+/// Number of times that a command is sent before it counts as unanswered.
 pub(crate) const TRIES: u32 = 3;
 
-/// The attempts at one command.
 #[derive(Debug, Default)]
 pub(crate) struct Attempts {
     sent_ns: Option<i64>,
     count: u32,
 }
 
-/// What to do about a command.
+/// Next step with a command.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Attempt {
-    /// Send it.
     Send,
-    /// The answer may still come.
+    /// Wait: the answer may still arrive.
     Wait,
-    /// It was sent often enough.
+    /// Give up: the command has been sent often enough.
     GiveUp,
 }
 
 impl Attempts {
-    /// What to do at `now_ns` about a command whose answer takes up to `patience_ns`.
+    /// Returns the next step at `now_ns` for a command whose answer takes up to `patience_ns`.
     pub(crate) fn next(&mut self, now_ns: i64, patience_ns: i64) -> Attempt {
         match self.sent_ns {
             Some(sent_ns) if now_ns - sent_ns < patience_ns => Attempt::Wait,

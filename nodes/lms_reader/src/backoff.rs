@@ -1,25 +1,25 @@
-//! How long to wait before the next attempt to reach a device.
+//! Waiting time before the next attempt to reach a device.
 
 use std::time::Duration;
 
 const FIRST: Duration = Duration::from_millis(250);
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// Doubles from a quarter of a second to five, until a scan came.
+/// Wait that doubles from 0.25 s to 5 s and is reset by a scan.
 #[derive(Debug, Default)]
 pub(crate) struct Backoff {
     attempts: u32,
 }
 
 impl Backoff {
-    /// The wait after one more failure.
+    /// Returns the wait after one more failure.
     pub(crate) fn next_wait(&mut self) -> Duration {
         let wait = FIRST.saturating_mul(1 << self.attempts.min(16));
         self.attempts += 1;
         wait.min(LONGEST)
     }
 
-    /// It works: the next failure is a first one.
+    /// Resets to the first wait.
     pub(crate) fn reset(&mut self) {
         self.attempts = 0;
     }

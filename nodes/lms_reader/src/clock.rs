@@ -1,40 +1,37 @@
-//! What a device's clock means on the host.
+//! Converts a device's clock to host time.
 //!
-//! Pure: what the device counted and when it came in, the host's time out. The
-//! device counts microseconds in 32 bits, at a rate of its own, from when it was
-//! switched on. What comes in is late by an unknown delay, never early: the line
-//! under all arrivals of the last half minute is the device's clock, and the
-//! arrivals that touch it had the least delay. A constant part of the delay
-//! cannot be distinguished from the clock's offset; it stays in.
+//! Pure: takes device counts and times of reception, returns host times. The device counts
+//! microseconds in 32 bits, at its own rate, since it was switched on. Telegrams are late by an
+//! unknown delay, never early: the line below all arrivals of the last half minute is the device's
+//! clock, and the arrivals on it had the least delay. A constant part of the delay cannot be
+//! distinguished from the clock's offset and remains.
 
 use std::collections::VecDeque;
 
-/// Arrivals are gathered over this much time of the device, of which the one with
-/// the least delay counts, µs.
+/// Length of a slot of device time, µs; of each slot only the arrival with the least delay is kept.
 const SLOT_US: i64 = 1_000_000;
-/// Slots that are looked back on.
 const SLOTS: usize = 32;
-/// The rates of clocks differ by at most this share: quartz by 1e-4, twice.
+/// Largest relative difference between the rates of two clocks: twice 1e-4, for quartz.
 const MAX_SKEW: f64 = 2e-4;
-/// By this much the two clocks may disagree from one telegram to the next before
-/// the device is taken to have started again, µs: longer than any delay.
+/// Largest disagreement of the two clocks from one telegram to the next, µs, longer than any delay;
+/// above it the device is assumed to have restarted.
 const LONGEST_DELAY_US: i64 = 1_000_000;
 
-/// An arrival: what the device counted, and how much later the host did.
+/// Arrival of a telegram: the device's count, and the host's time minus that count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Arrival {
     device_us: i64,
     offset_us: f64,
 }
 
-/// Follows the clock of one device.
+/// Estimator of one device's clock.
 #[derive(Debug)]
 pub(crate) struct DeviceClock {
-    /// The newest reading as it came, unrolled, and when it came in.
+    /// Newest device count, the same without wraps, and its time of reception.
     newest: Option<(u32, i64, i64)>,
-    /// Of each slot the arrival with the least delay.
+    /// Arrival with the least delay of each slot.
     least: VecDeque<Arrival>,
-    /// The lower hull of those, filled again and again.
+    /// Lower convex hull of `least`; the buffer is reused.
     hull: Vec<Arrival>,
 }
 
@@ -49,8 +46,8 @@ impl Default for DeviceClock {
 }
 
 impl DeviceClock {
-    /// When the device's clock stood at `device_us`, on the host's clock on which
-    /// this came in at `received_ns`: never later than that, nanoseconds.
+    /// Returns the host time, in nanoseconds, at which the device's clock stood at `device_us`;
+    /// never later than the reception at `received_ns`.
     pub(crate) fn host_ns(&mut self, device_us: u32, received_ns: i64) -> i64 {
         let unrolled_us = self.unroll(device_us, received_ns);
         let arrival = Arrival {
@@ -59,12 +56,12 @@ impl DeviceClock {
         };
         self.keep(arrival);
         let offset_us = self.line_at(unrolled_us).min(arrival.offset_us);
-        // What was subtracted is added again: the sum is as exact as the clock.
+        // Computed from `received_ns`, so that the result does not lose precision in `f64`.
         let delay_us = (arrival.offset_us - offset_us).max(0.0);
         received_ns - (delay_us * 1e3) as i64
     }
 
-    /// Counts on beyond 32 bits; begins again where the device did.
+    /// Extends the count beyond 32 bits; starts over if the device has restarted.
     fn unroll(&mut self, device_us: u32, received_ns: i64) -> i64 {
         let unrolled_us = match self.newest {
             Some((last, last_us, last_ns)) => {
@@ -96,10 +93,9 @@ impl DeviceClock {
         self.least.retain(|arrival| slot(arrival) > oldest);
     }
 
-    /// The offset at a moment, on the line under all arrivals that lies closest
-    /// to them: the edge of their lower hull that spans their middle (Moon, Skelly
-    /// and Towsley, "Estimation and removal of clock skew from network delay
-    /// measurements", 1999; the hull solves their linear program).
+    /// Returns the offset at `device_us` on the closest line below all arrivals: the edge of their
+    /// lower hull that spans their middle (Moon, Skelly and Towsley, "Estimation and removal of
+    /// clock skew from network delay measurements", 1999; the hull solves their linear program).
     fn line_at(&mut self, device_us: i64) -> f64 {
         self.build_hull();
         let count = self.least.len().max(1) as f64;
@@ -143,9 +139,8 @@ mod tests {
 
     const US: i64 = 1000;
 
-    /// A device that was switched on at host time `on_ns`, whose clock is fast by
-    /// `ppm`, and whose telegrams come every 20 ms with a delay of 300 µs and up
-    /// to `jitter_us` more.
+    /// Device switched on at host time `on_ns` whose clock is fast by `ppm`. It sends a telegram
+    /// every 20 ms, with a delay of 300 µs and up to `jitter_us` more.
     struct World {
         on_ns: i64,
         first_us: u32,
@@ -165,8 +160,7 @@ mod tests {
             }
         }
 
-        /// The device's reading at telegram `index`, when that was, and when it
-        /// came in.
+        /// Returns the device count of telegram `index`, its true time and its time of reception.
         fn telegram(&mut self, index: i64) -> (u32, i64, i64) {
             let true_ns = self.on_ns + index * 20_000 * US;
             let counted = (index * 20_000) as f64 * (1.0 + self.ppm * 1e-6);
@@ -178,8 +172,8 @@ mod tests {
             (device_us, true_ns, true_ns + delay_us * US)
         }
 
-        /// The largest error of telegrams `from..to`, µs, beyond the 300 µs that
-        /// nobody can know of.
+        /// Returns the largest error of telegrams `from..to`, µs, not counting the constant delay
+        /// of 300 µs, which cannot be known.
         fn error_us(&mut self, clock: &mut DeviceClock, from: i64, to: i64) -> i64 {
             let telegrams = (from..to).map(|index| {
                 let (device_us, true_ns, received_ns) = self.telegram(index);
@@ -201,7 +195,7 @@ mod tests {
     fn jitter_is_taken_out() {
         let (mut world, mut clock) = (World::new(0.0, 5000), DeviceClock::default());
         world.error_us(&mut clock, 0, 500);
-        // A cube of an even number in a thousand draws: a few µs above the least.
+        // The smallest cube of a thousand uniform draws is a few µs above the least delay.
         let error_us = world.error_us(&mut clock, 500, 3000);
         assert!(error_us < 50, "{error_us} µs of 5000 are left");
     }
@@ -211,7 +205,7 @@ mod tests {
         for ppm in [-100.0, 100.0] {
             let (mut world, mut clock) = (World::new(ppm, 5000), DeviceClock::default());
             world.error_us(&mut clock, 0, 1000);
-            // In the ten minutes that follow the clocks drift apart by 60 ms.
+            // In these ten minutes the clocks drift apart by 60 ms.
             let error_us = world.error_us(&mut clock, 1000, 31_000);
             assert!(error_us < 100, "{ppm} ppm: {error_us} µs");
         }
@@ -233,7 +227,7 @@ mod tests {
         assert!(world.error_us(&mut clock, 0, 500) < 2);
         world.on_ns += 60_000_000 * US;
         assert!(world.error_us(&mut clock, 0, 500) < 2);
-        // Nor is a host that was asleep.
+        // The same for a host that was suspended.
         world.on_ns += 7_000_000 * US;
         assert!(world.error_us(&mut clock, 500, 1000) < 2);
     }

@@ -1,8 +1,8 @@
-//! Setting up a CoLa device before it sends scans.
+//! Dialogue that sets up a CoLa device before it sends scans.
 //!
-//! Pure: answers and the time in, the next command out. It asks what the device
-//! is, changes what the configuration asks for and nothing else, reads it back,
-//! and subscribes to the scans. A login is needed for changes alone.
+//! Pure: answers and the time in, the next command out. It asks for the device's identity, changes
+//! only what the configuration asks for, reads it back, and subscribes to the scans. Only changes
+//! need a login.
 
 use std::collections::VecDeque;
 
@@ -14,18 +14,18 @@ use sick::cola::{
 use crate::LmsError;
 use crate::attempts::{Attempt, Attempts, TRIES};
 
-/// How long most answers may take.
+/// Timeout of most answers.
 const TIMEOUT_NS: i64 = 1_000_000_000;
-/// The mirror may have to change its speed.
+/// Timeout while the mirror may have to change its speed.
 const SLOW_NS: i64 = 10_000_000_000;
 
-/// The settings that the device must have; the others stay.
+/// Settings that the device must have; the others are left alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Wanted {
-    /// The whole field, half of it to each side of ahead.
+    /// Width of the field, centred on ahead.
     pub(crate) field_raw_1e4_deg: Option<i32>,
     pub(crate) resolution_raw_1e4_deg: Option<u32>,
-    /// Whether each scan says when it was measured.
+    /// True if each scan must contain the time of its measurement.
     pub(crate) time: bool,
 }
 
@@ -47,31 +47,30 @@ enum Step {
     ReadScanConfig,
     SetResolution,
     CheckResolution,
-    /// Before the field is changed, for afterwards it no longer says so.
+    /// Runs before the field is changed, since the field shows which way is ahead.
     CheckAhead,
     ReadRange,
     SetRange,
     CheckRange,
     ReadContents,
-    /// Left out where the contents are as wanted.
+    /// Skipped if the contents are already as wanted.
     AddTime,
     CheckContents,
     Run,
     Subscribe,
 }
 
-/// The dialogue with one device.
 #[derive(Debug)]
 pub(crate) struct Setup {
     wanted: Wanted,
-    /// Which way the device looks, by the configuration or by its name.
+    /// Convention of the device, from the configuration or its name.
     angles: DeviceAngles,
     is_stated: bool,
-    /// The device's angle that is ahead, 1/10000°, once that is known.
+    /// Device angle that points ahead, 1/10000°, once it is known.
     ahead_raw: Option<i32>,
     steps: VecDeque<Step>,
     attempts: Attempts,
-    /// As the device had it.
+    /// Scan configuration that the device reported.
     scan: Option<ScanConfig>,
     range: Option<OutputRange>,
     contents: Option<ScanDataConfig>,
@@ -113,7 +112,7 @@ impl Setup {
         }
     }
 
-    /// What to send now, if anything.
+    /// Returns the command to send now, if any.
     ///
     /// # Errors
     /// [`LmsError::NoAnswer`].
@@ -141,10 +140,10 @@ impl Setup {
         Ok(None)
     }
 
-    /// Takes an answer; what does not belong to the last command is let pass.
+    /// Processes an answer; ignores answers that do not belong to the last command.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than requested.
+    /// If the device rejects a command, or reports settings other than those requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
@@ -234,15 +233,15 @@ impl Setup {
         }
     }
 
-    /// If the name defines which way the device looks, nothing else is asked; where
-    /// not even that helps, the setting stays as it is.
+    /// Skips the query if the name or an earlier reading defines the convention. Fails if the
+    /// convention remains unknown, so that the field is not changed.
     fn skip_check(&mut self) -> Result<(), LmsError> {
         if self.steps.front() != Some(&Step::CheckAhead) {
             return Ok(());
         }
         let whole = match (self.angles.certain(), self.scan) {
             (Some(_), _) => Field::between(0, 0),
-            // It was read for the resolution.
+            // Already read while setting the resolution.
             (None, Some(scan)) => {
                 Field::between(scan.start_angle_raw_1e4_deg, scan.stop_angle_raw_1e4_deg)
             }
@@ -253,19 +252,19 @@ impl Setup {
         Ok(())
     }
 
-    /// The whole field that the device measures.
+    /// Determines what is ahead from the whole field that the device measures.
     fn on_field(&mut self, whole: Field) -> Result<(), LmsError> {
         let convention = self.angles.convention(whole)?;
         self.ahead_raw = Some((convention.ahead_deg * 1e4).round() as i32);
         Ok(())
     }
 
-    /// Whether it is not known yet what the device is.
+    /// Returns true while the device's identity is unknown.
     pub(crate) fn is_identifying(&self) -> bool {
         self.steps.front() == Some(&Step::Identify)
     }
 
-    /// The time is asked for where the device leaves it out.
+    /// Adds the steps that enable the time, if the device does not send it.
     fn on_contents(&mut self, contents: ScanDataConfig) {
         self.contents = Some(contents);
         if contents.time {
@@ -285,7 +284,7 @@ impl Setup {
         }
     }
 
-    /// Whether all has been said.
+    /// Returns true once the dialogue is complete.
     pub(crate) fn is_done(&self) -> bool {
         self.steps.is_empty()
     }
@@ -347,7 +346,7 @@ impl Setup {
 }
 
 impl Step {
-    /// Whether scans may come without it.
+    /// Returns true if scans can be received without this step.
     fn is_optional(self) -> bool {
         matches!(self, Step::Identify | Step::AskState)
     }

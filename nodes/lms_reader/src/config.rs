@@ -15,21 +15,21 @@ use crate::scan::{ScanSettings, Stamps};
 #[command(name = "lms_reader", version)]
 #[command(group(ArgGroup::new("source").required(true).args(["tcp", "serial", "capture"])))]
 pub struct Config {
-    /// The device: HOST:PORT; devices listen on port 2112 or 2111. The host
-    /// `graph` is where the emulator of this graph listens.
+    /// Address of the device, HOST:PORT; devices listen on port 2112 or 2111. The host `graph` is
+    /// the emulator of this graph.
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     pub tcp: Option<String>,
 
-    /// An LMS200, 211, 220, 221 or 291 on a serial line, such as /dev/ttyUSB0.
+    /// Serial port of an LMS200, 211, 220, 221 or 291, such as /dev/ttyUSB0.
     #[arg(long, value_name = "DEVICE")]
     pub serial: Option<PathBuf>,
 
-    /// The encoding of --tcp and --capture: devices are set to one of them.
+    /// Encoding of --tcp and --capture, as set on the device.
     #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "serial")]
     pub protocol: Encoding,
 
-    /// The baud rate to switch the serial device to: 9600, 19200, 38400 or 500000
-    /// [default: the rate at which it answers].
+    /// Baud rate to switch the serial device to: 9600, 19200, 38400 or 500000 [default: the rate at
+    /// which it answers].
     #[arg(long, value_name = "RATE", value_parser = baud, conflicts_with_all = ["tcp", "capture"])]
     pub baud: Option<Baud>,
 
@@ -38,84 +38,84 @@ pub struct Config {
     #[arg(long, value_name = "DEGREES", value_parser = field, conflicts_with = "capture")]
     pub field: Option<f64>,
 
-    /// Angle between beams, degrees: 0.25, 0.5 or 1 with --serial, else whatever the
-    /// device supports [default: the device's setting].
+    /// Angle between beams, degrees: 0.25, 0.5 or 1 with --serial, else any value that the device
+    /// supports [default: the device's setting].
     #[arg(long, value_name = "DEGREES", value_parser = resolution, conflicts_with = "capture")]
     pub resolution: Option<f64>,
 
-    /// Range of the serial device, metres: 8, 16 or 32 in millimetres, 80 in
-    /// centimetres [default: the device's setting]. It is written to the device's
-    /// memory, which lasts for some 10,000 writes.
+    /// Range of the serial device, metres: 8, 16 or 32 in millimetres, 80 in centimetres [default:
+    /// the device's setting]. It is written to the device's memory, which lasts for some 10,000
+    /// writes.
     #[arg(long, value_name = "METRES", value_parser = range, conflicts_with_all = ["tcp", "capture"])]
     pub range: Option<Reach>,
 
-    /// A file of CoLa telegrams back to back, instead of a device. At its end the node
-    /// waits for subscribers to read the last scans, up to 30 seconds.
+    /// Capture file to read instead of a device: CoLa telegrams back to back. At its end the node
+    /// waits up to 30 seconds for subscribers to read the last scans.
     #[arg(long, value_name = "FILE")]
     pub capture: Option<PathBuf>,
 
-    /// Repeats the capture.
+    /// Repeat the capture without end.
     #[arg(long = "loop", conflicts_with_all = ["tcp", "serial"])]
     pub looped: bool,
 
-    /// How fast the capture plays.
+    /// Playback speed of the capture.
     #[arg(long, value_enum, default_value_t = Rate::Device, conflicts_with_all = ["tcp", "serial"])]
     pub rate: Rate,
 
-    /// Whether to send commands to a device on the network: identify it, configure it
-    /// and start the scans (`sEN LMDscandata 1`). Else the node only receives.
+    /// Send commands to a device on the network: identify it, configure it and start the scans
+    /// (`sEN LMDscandata 1`). If false, the node only receives.
     #[arg(long, value_name = "BOOL", default_value_t = true, action = ArgAction::Set)]
     pub start_stream: bool,
 
-    /// Whose clock stamps a scan of --tcp or --capture.
+    /// Clock that stamps the scans of --tcp or --capture.
     #[arg(long, value_enum, default_value_t = Stamps::Host, conflicts_with = "serial")]
     pub stamps: Stamps,
 
-    /// Ends when the device closes the connection after it has sent scans, instead of
-    /// reconnecting: for devices that play a recording.
+    /// Exit when the device closes the connection after it has sent scans, instead of reconnecting:
+    /// for devices that play a recording.
     #[arg(long, conflicts_with_all = ["serial", "capture"])]
     pub until_closed: bool,
 
-    /// Timeout after which the connection is closed if no byte (--tcp) or telegram
-    /// (--serial) is received, seconds, 0.2 to 3600.
+    /// Timeout in seconds, 0.2 to 3600: the connection is closed if no byte (--tcp) or telegram
+    /// (--serial) is received for this long.
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
     pub silence: f64,
 
-    /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
-    /// counter-clockwise, and 180 if it hangs upside down [default: unknown].
+    /// Pose of the laser on the robot: metres ahead, metres to the left, degrees counter-clockwise,
+    /// and 180 if it hangs upside down [default: unknown].
     #[arg(long, value_name = "X,Y,YAW_DEG[,180]", allow_hyphen_values = true)]
     pub mount: Option<Mount>,
 
-    /// The laser hangs upside down: rolled by half a turn about its x axis.
+    /// The laser hangs upside down: rolled by 180° about its x axis.
     #[arg(long)]
     pub upside_down: bool,
 
-    /// The laser's frame, 1 to 256 bytes.
+    /// Frame of the laser, 1 to 256 bytes.
     #[arg(long, value_name = "NAME", default_value = "laser", value_parser = frame)]
     pub frame: FrameName,
 
-    /// Which of several lasers of the graph it is, at most 32 bytes; the accumulator's
-    /// --scans names it.
+    /// Name of this laser among several in the graph, at most 32 bytes; the accumulator's --scans
+    /// refers to it.
     #[arg(long, value_name = "NAME", default_value = "", value_parser = laser)]
     pub laser: Name,
 
-    /// Readings below are no returns, metres, from 0.
+    /// Shortest valid range, metres, from 0; shorter readings are no returns.
     #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = metres)]
     pub range_min_m: f32,
 
-    /// Readings from here on are no returns, metres, above --range-min-m [default:
-    /// 80, or what the device is known to measure where that is farther].
+    /// Longest valid range, metres, above --range-min-m; readings from here on are no returns
+    /// [default: 80, or the range of the known device if that is longer].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     pub range_max_m: Option<f32>,
 
-    /// The device of --tcp or --capture by its name, such as TiM240 or NAV310, which
-    /// defines the angle that points ahead and the direction of the angles [default:
-    /// the name that the device reports].
+    /// Name of the device of --tcp or --capture, such as TiM240 or NAV310, which defines the angle
+    /// that points ahead and the direction of the angles [default: the name that the device
+    /// reports].
     #[arg(long, value_name = "NAME", value_parser = device, conflicts_with = "serial")]
     pub device: Option<&'static KnownDevice>,
 
-    /// Which of the device's own angles points ahead, degrees: 90 on most. With
-    /// --tcp or --capture, instead of --device.
+    /// Device angle that points ahead, degrees: 90 on most devices. With --tcp or --capture,
+    /// instead of --device.
     #[arg(long, value_name = "DEGREES", value_parser = zero, allow_hyphen_values = true, conflicts_with_all = ["serial", "device"])]
     pub zero_deg: Option<f64>,
 
@@ -124,27 +124,25 @@ pub struct Config {
     pub clockwise: bool,
 }
 
-/// How far an LMS2xx measures, and in which unit.
+/// Longest range of an LMS2xx and the unit of its distances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reach {
-    /// The bits of a distance.
+    /// Measuring mode, which defines the bits of a distance.
     pub mode: RangeMode,
-    /// The unit of a distance.
     pub unit: Unit,
 }
 
-/// How fast a capture plays.
+/// Playback speed of a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Rate {
-    /// As fast as the device sent it, by its time stamps.
+    /// At the device's own pace, by its time stamps.
     Device,
-    /// As fast as it can be read: a subscriber that is slower gets the newest
-    /// scans alone.
+    /// As fast as it can be read: a slower subscriber receives only the newest scans.
     Max,
 }
 
 impl Config {
-    /// Reads the command line; ends the process with code 2 where it is wrong.
+    /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
         let config = Config::parse();
@@ -156,7 +154,7 @@ impl Config {
         }
     }
 
-    /// Checks what no option can check alone.
+    /// Checks rules that concern more than one option.
     fn check(&self) -> Result<(), String> {
         self.check_serial()?;
         let range_max_m = self.range_max_m.unwrap_or(USUAL_REACH_M);
@@ -169,7 +167,7 @@ impl Config {
         ))
     }
 
-    /// The variants of the LMS2xx are few.
+    /// Checks that an LMS2xx supports this field and resolution.
     fn check_serial(&self) -> Result<(), String> {
         if self.serial.is_none() {
             return Ok(());
@@ -189,7 +187,7 @@ impl Config {
         }
     }
 
-    /// What the messages carry beside the telegrams.
+    /// Returns the message fields that are not in the telegrams.
     #[must_use]
     pub fn scan_settings(&self) -> ScanSettings {
         ScanSettings {
@@ -205,7 +203,7 @@ impl Config {
 }
 
 impl Config {
-    /// How the device counts its angles, where that is stated.
+    /// Returns the angle convention stated by the options, if any.
     #[must_use]
     pub fn stated_angles(&self) -> Option<DeviceAngles> {
         let stated = self.zero_deg.map(|ahead_deg| {

@@ -1,98 +1,83 @@
 //! Errors between a device and topic `scan`.
 //!
-//! An error names the place: bytes of the stream count from its start, bytes of
-//! a telegram from the first one of its content.
+//! Each error gives its place: bytes of the stream count from its start, bytes of a telegram from
+//! the first byte of its content.
 
 use std::path::PathBuf;
 
 use sick::cola::Fault;
 
-/// What was tried, what was found and what is allowed.
+/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum LmsError {
-    /// Bytes of the device are no telegram, or one that is damaged.
+    /// The device sent bytes that are no telegram, or a damaged one.
     #[error(transparent)]
     Telegram(#[from] sick::SickError),
-    /// The telegram has no channel of distances.
     #[error("the telegram has the 16-bit channels [{found}], a scan needs DIST1")]
     NoDistances {
-        /// Names of its channels.
+        /// Names of the channels found.
         found: String,
     },
-    /// The distances cannot be laid out as a scan.
+    /// The distances cannot be converted to a scan.
     #[error("`{field}` of channel DIST1 is {found}, allowed is {allowed}")]
     Scan {
-        /// The field.
         field: &'static str,
-        /// Its value.
         found: f64,
-        /// What a scan needs.
         allowed: &'static str,
     },
-    /// Nobody says which way the device looks.
+    /// The angle convention of the device is unknown.
     #[error(transparent)]
     Convention(#[from] sick::cola::ConventionError),
-    /// The readings of an LMS2xx cannot be laid out as a scan.
+    /// The readings of an LMS2xx cannot be converted to a scan.
     #[error("the device sent {found} readings, {expected} are {field}")]
     Readings {
-        /// How many came.
         found: usize,
-        /// How many a scan has.
         expected: usize,
-        /// Of which field and resolution.
+        /// Description of the field and resolution.
         field: String,
     },
-    /// The device does not say when it measured, though it is to be asked.
     #[error("the telegram does not say the date and time of the scan (--stamps device): {found}")]
     NoTime {
-        /// What it has instead.
+        /// Time found instead.
         found: String,
     },
-    /// The device refused a command.
     #[error("the device rejects {command} with CoLa error {fault}")]
     Fault {
-        /// What was sent.
+        /// Command sent.
         command: String,
-        /// Its answer.
+        /// Error code in the answer.
         fault: Fault,
     },
-    /// The device answered that it did not execute the command.
     #[error("the device did not {what}: it answers {found}, expected is {expected}")]
     Refused {
-        /// What was asked for.
         what: &'static str,
-        /// What it answered.
         found: String,
-        /// What it answers where it is done.
         expected: String,
     },
-    /// The device did not answer a command.
     #[error("the device did not answer {command}, sent {tries} times")]
     NoAnswer {
-        /// What was sent.
         command: String,
-        /// How often.
+        /// Number of times that it was sent.
         tries: u32,
     },
-    /// No baud rate brought an answer.
     #[error("no answer at any baud rate ({}); check power, wiring and that no other program uses the port", rates.iter().map(u32::to_string).collect::<Vec<_>>().join(", "))]
     NoBaud {
-        /// Those that were tried.
+        /// Rates tried.
         rates: Vec<u32>,
     },
-    /// The device was started again and has to be set up again.
+    /// The device restarted and has to be set up again.
     #[error("the device was restarted")]
     Restarted,
-    /// The device is not in order; its scans are sent all the same.
+    /// The device reports a problem; its scans are still published.
     #[error(
         "the device reports status {} {} (0 0 is in order, 0 1 an error, 0 2 a dirty window, \
          0 4 and 0 5 one that is too dirty)", found[0], found[1]
     )]
     DeviceStatus {
-        /// Both bytes of the status.
+        /// Both status bytes.
         found: [u8; 2],
     },
-    /// An LMS2xx is not in order; its scans are sent all the same.
+    /// An LMS2xx reports a problem; its scans are still published.
     #[error(
         "the device reports status {:#04x}: level {} (3 is an error, 4 a fatal one){}{}",
         found.0, found.level(),
@@ -100,45 +85,33 @@ pub enum LmsError {
         if found.is_polluted() { ", a dirty window" } else { "" }
     )]
     LmsStatus {
-        /// The status byte.
+        /// Status byte.
         found: sick::lms2xx::Status,
     },
-    /// The configuration names neither a device nor a capture.
     #[error("neither a device (--tcp, --serial) nor a capture (--capture) is given")]
     NoSource,
-    /// The device cannot be reached, or the connection ended.
     #[error("{address}: cannot {what}")]
     Device {
-        /// As configured.
         address: String,
-        /// What was tried.
         what: &'static str,
-        /// Why it failed.
         source: std::io::Error,
     },
-    /// The device closed the connection.
     #[error("{address}: the device closed the connection")]
     Closed {
-        /// As configured.
+        /// Address from the configuration.
         address: String,
     },
-    /// The device is connected but says nothing.
     #[error("{address}: no data for {seconds} s; closing the connection")]
     Silent {
-        /// As configured.
         address: String,
-        /// How long was waited.
+        /// Time waited, seconds.
         seconds: f64,
     },
-    /// The capture cannot be read.
     #[error("{}: cannot read the capture", path.display())]
     Capture {
-        /// As configured.
         path: PathBuf,
-        /// Why it failed.
         source: std::io::Error,
     },
-    /// The capture was played and there was no scan in it.
     #[error(
         "{}: no scan could be used, of {telegrams} telegrams; {}", path.display(),
         reason.as_deref().unwrap_or(
@@ -146,14 +119,12 @@ pub enum LmsError {
         )
     )]
     NoScans {
-        /// As configured.
         path: PathBuf,
-        /// Sound telegrams of any kind.
+        /// Number of valid telegrams of any kind.
         telegrams: u64,
-        /// Why the last scan was refused, if there was one.
+        /// Reason for rejecting the last scan, if there was one.
         reason: Option<String>,
     },
-    /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
 }

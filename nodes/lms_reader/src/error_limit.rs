@@ -1,12 +1,12 @@
-//! Keeps a flood of errors from flooding the log.
+//! Limits the rate of logged errors.
 //!
-//! Pure: the caller says when. The first error is logged at once, further ones
-//! at most once a second with the number of those in between.
+//! Pure: the caller passes the time. The first error is logged at once, further ones at most once
+//! per second with the number of those suppressed.
 
-/// Between two lines, nanoseconds.
+/// Least time between two logged errors, nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
 
-/// Decides which errors are logged.
+/// Rate limiter for the error log.
 #[derive(Debug, Default)]
 pub(crate) struct ErrorLimit {
     last_ns: Option<i64>,
@@ -14,8 +14,8 @@ pub(crate) struct ErrorLimit {
 }
 
 impl ErrorLimit {
-    /// Counts an error at `now_ns`; `Some` with the number held back before it
-    /// if it is to be logged.
+    /// Counts an error at `now_ns`; returns the number of errors suppressed before it if it should
+    /// be logged, else `None`.
     pub(crate) fn note(&mut self, now_ns: i64) -> Option<u64> {
         if self.last_ns.is_some_and(|last| now_ns - last < PERIOD_NS) {
             self.held_back += 1;

@@ -1,11 +1,10 @@
 //! Node `lms_reader`: scans from a SICK laser scanner, published as `scan`.
 //!
-//! `sick` turns bytes into telegrams; `scan` and `lms2xx_scan` turn telegrams into
-//! messages; `cola_setup` and `lms2xx_setup` say what is asked of a device before
-//! scans come; `angles` say which way it looks; `clock` brings the device's time to the
-//! host's; all pure. `run` reads from the device or a capture and sends. A device is
-//! started to send scans; its settings stay as they are unless the configuration asks for
-//! others.
+//! `sick` turns bytes into telegrams; `scan` and `lms2xx_scan` turn telegrams into messages;
+//! `cola_setup` and `lms2xx_setup` run the dialogue before scans are sent; `angles` decides which
+//! way the device looks; `clock` converts device time to host time. All of these are pure. `run`
+//! reads from the device or a capture and publishes. The node starts the scans of a device but
+//! leaves its settings alone unless the configuration asks for others.
 
 mod angles;
 mod attempts;

@@ -1,7 +1,6 @@
-//! From the readings of an LMS2xx to the message of topic `scan`.
+//! Converts the readings of an LMS2xx to the message of topic `scan`.
 //!
-//! Pure: the caller says when the telegram came. It distinguishes distances from codes
-//! and decides nothing else.
+//! Pure: the caller passes the time of reception. It only distinguishes distances from codes.
 
 use messages::{Pose2, ScanHeader, Stamp};
 use sick::cola::USUAL_REACH_M;
@@ -11,23 +10,22 @@ use crate::LmsError;
 use crate::lms2xx_setup::Format;
 use crate::scan::{Received, ScanSettings, recordable};
 
-/// The mirror turns 75 times a second, seconds a turn.
+/// Time of one turn of the mirror, seconds: it turns 75 times per second.
 const TURN_S: f64 = 1.0 / 75.0;
 
-/// A scan with nothing missing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WholeScan<'a> {
     pub(crate) format: Format,
     pub(crate) unit: Unit,
-    /// First and last reading that were asked for, from 1.
+    /// First and last reading requested, from 1.
     pub(crate) sub_range: Option<(u16, u16)>,
     pub(crate) readings: Readings<'a>,
-    /// How long the telegram took on the line, nanoseconds.
+    /// Time of the telegram on the serial line, nanoseconds.
     pub(crate) line_ns: i64,
 }
 
 impl<'a> WholeScan<'a> {
-    /// Of a telegram that holds a whole scan.
+    /// Takes the scan of a telegram that holds a whole scan.
     pub(crate) fn of(scan: &Scan<'a>, format: Format, line_ns: i64) -> Self {
         WholeScan {
             format,
@@ -42,14 +40,14 @@ impl<'a> WholeScan<'a> {
         self.readings.len()
     }
 
-    /// The header of the scan, with counter 0.
+    /// Returns the header of the scan, with counter 0.
     ///
-    /// The stamp is the time of reception less that on the line and that of the
-    /// scan: below one degree the mirror turns several times for it, so the
-    /// beams are not in the order of time.
+    /// The stamp is the time of reception minus the time on the line and the time of the scan.
+    /// Below one degree the mirror turns several times per scan, so the beams are not in order of
+    /// time.
     ///
     /// # Errors
-    /// [`LmsError::Readings`] where these are not those of the format.
+    /// [`LmsError::Readings`] if the readings do not fit the format.
     pub(crate) fn header(
         &self,
         settings: &ScanSettings,
@@ -85,7 +83,7 @@ impl<'a> WholeScan<'a> {
         })
     }
 
-    /// The number of the first reading, after a look at how many there are.
+    /// Returns the number of the first reading after checking how many there are.
     fn first(&self) -> Result<u16, LmsError> {
         let Format {
             width_deg,
@@ -108,8 +106,8 @@ impl<'a> WholeScan<'a> {
         })
     }
 
-    /// Writes the distances in metres, infinity where nothing came back;
-    /// `ranges` has as many places as there are readings.
+    /// Writes the distances in metres, infinity for no return; `ranges` has one element per
+    /// reading.
     pub(crate) fn fill_ranges(&self, ranges: &mut [f32]) {
         let metres = self.unit.metres();
         for (range, reading) in ranges.iter_mut().zip(self.readings) {
@@ -185,7 +183,7 @@ mod tests {
         let header = scan(&readings, 180, 50)
             .header(&settings(), RECEIVED)
             .unwrap();
-        // A millisecond on the line and two turns.
+        // One millisecond on the line and two turns of the mirror.
         let before = RECEIVED.realtime_ns - header.stamp.measured_ns;
         assert_eq!((before, header.stamp.entered_ns), (27_666_666, 77));
         assert_eq!(header.time_increment_s, 0.0);

@@ -1,9 +1,9 @@
-//! Setting up an LMS2xx before it sends scans.
+//! Dialogue that sets up an LMS2xx before it sends scans.
 //!
-//! Pure: answers and the time in, the next action out. The device keeps its baud
-//! rate while it has power, so each is tried until it answers. Then it is asked
-//! what it is and how it measures, changed where the configuration asks for it,
-//! read back, and set to send every scan.
+//! Pure: answers and the time in, the next action out. The device keeps its baud rate while it is
+//! powered, so the rates are tried until it answers. Then it is asked for its type and settings,
+//! the settings are changed if the configuration asks for it and read back, and the device is set
+//! to send every scan.
 
 use std::collections::VecDeque;
 
@@ -14,12 +14,12 @@ use sick::lms2xx::{
 use crate::attempts::{Attempt, Attempts, TRIES};
 use crate::{LmsError, Reach};
 
-/// How long most answers may take: two scans may be under way at 38400 baud.
+/// Timeout of most answers: two scans may be in transit at 38400 baud.
 const TIMEOUT_NS: i64 = 700_000_000;
-/// The device writes its memory.
+/// Timeout while the device writes its memory.
 const SLOW_NS: i64 = 15_000_000_000;
 
-/// The settings that the device must have; the others stay.
+/// Settings that the device must have; the others are left alone.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Wanted {
     pub(crate) baud: Option<Baud>,
@@ -28,7 +28,7 @@ pub(crate) struct Wanted {
     pub(crate) reach: Option<Reach>,
 }
 
-/// How the device measures.
+/// Measuring mode, width and resolution of the device's scans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Format {
     pub(crate) range_mode: RangeMode,
@@ -36,20 +36,18 @@ pub(crate) struct Format {
     pub(crate) resolution_raw_1e2_deg: u16,
 }
 
-/// What to do next.
+/// Next action of the caller.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Action {
-    /// Send this.
     Send(Command<'static>),
-    /// Change the port's baud rate.
+    /// Set the port to this baud rate.
     Baud(Baud),
-    /// Nothing, for now.
     Wait,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
-    /// Try this baud rate.
+    /// Set the port to this baud rate.
     Try(Baud),
     Hail,
     SwitchBaud(Baud),
@@ -62,13 +60,12 @@ enum Step {
     Start,
 }
 
-/// The dialogue with one device.
 #[derive(Debug)]
 pub(crate) struct Setup {
     wanted: Wanted,
     steps: VecDeque<Step>,
     attempts: Attempts,
-    /// Rates that have not been tried.
+    /// Rates not tried yet.
     rates: VecDeque<Baud>,
     tried: Vec<u32>,
     baud: Option<Baud>,
@@ -77,7 +74,7 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    /// `last` is the rate at which the device answered before.
+    /// Creates the dialogue; `last` is the rate at which the device answered before.
     pub(crate) fn new(wanted: Wanted, last: Option<Baud>) -> Self {
         let likely = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
         let mut rates = VecDeque::new();
@@ -98,7 +95,7 @@ impl Setup {
         }
     }
 
-    /// What to do now.
+    /// Returns the next action.
     ///
     /// # Errors
     /// [`LmsError::NoBaud`] or [`LmsError::NoAnswer`].
@@ -145,10 +142,10 @@ impl Setup {
         Ok(())
     }
 
-    /// Takes an answer; what does not belong to the last command is let pass.
+    /// Processes an answer; ignores answers that do not belong to the last command.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than requested.
+    /// If the device rejects a command, or reports settings other than those requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
@@ -256,7 +253,7 @@ impl Setup {
         }
     }
 
-    /// How the device measures, once it sends every scan.
+    /// Returns the format of the scans once the device sends them.
     pub(crate) fn format(&self) -> Option<Format> {
         if self.baud.is_none() || !self.steps.is_empty() {
             return None;
@@ -269,7 +266,7 @@ impl Setup {
         })
     }
 
-    /// The rate at which the device answered.
+    /// Returns the rate at which the device answered.
     pub(crate) fn baud(&self) -> Option<Baud> {
         self.baud
     }
@@ -281,7 +278,7 @@ impl Setup {
 
     fn command(&self, step: Step) -> Command<'static> {
         match step {
-            // It answers, and no scans come between the next answers.
+            // The device answers this, and then no scans arrive between the following answers.
             Step::Try(_) | Step::Hail => Command::SetMode(Mode::OnRequest),
             Step::SwitchBaud(baud) => Command::SetMode(Mode::Baud(baud)),
             Step::AskType => Command::RequestType,

@@ -1,15 +1,15 @@
-//! When the telegrams of a capture are due, by the device's own clock.
+//! Playback times of the telegrams of a capture, by the device's own clock.
 //!
-//! Pure: device times in, a time since the first telegram out. The sum of
-//! differences does not drift, and the wrap of the clock does not matter.
+//! Pure: takes device times, returns times since the first telegram. The sum of differences does
+//! not drift, and the wrap of the clock does not matter.
 
 use std::time::Duration;
 
-/// A gap that is believed; beyond it the device was restarted or the
-/// capture was, and the usual step stands in.
+/// Longest gap accepted, µs. After a longer one the device or the capture was restarted, and the
+/// previous step is used.
 const LONGEST_GAP_US: u32 = 10_000_000;
 
-/// Follows the times of transmission.
+/// Follows the transmission times of telegrams.
 #[derive(Debug, Default)]
 pub(crate) struct Pace {
     last_us: Option<u32>,
@@ -18,7 +18,7 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// How long after the first telegram this one is due.
+    /// Returns the time after the first telegram at which this one is due.
     pub(crate) fn due(&mut self, time_of_transmission_us: u32) -> Duration {
         if let Some(last_us) = self.last_us.replace(time_of_transmission_us) {
             let gap_us = time_of_transmission_us.wrapping_sub(last_us);
@@ -40,7 +40,7 @@ mod tests {
         let mut pace = Pace::default();
         let times = [u32::MAX - 999, 65_000, 131_000, 500, 66_500];
         let due = times.map(|time| pace.due(time).as_micros());
-        // The restart to 500 is bridged by the step before it, 66 ms.
+        // The restart at 500 µs is bridged by the step before it, 66 ms.
         assert_eq!(due, [0, 66_000, 132_000, 198_000, 264_000]);
     }
 }

@@ -1,4 +1,4 @@
-//! Reads from a device or a capture and publishes.
+//! Reads from a device or a capture and publishes the scans.
 
 mod capture;
 mod outlet;
@@ -16,12 +16,12 @@ use outlet::Outlet;
 
 /// Publishes scans until the capture ends or the stop flag is set.
 ///
-/// A device that cannot be reached is tried again; a telegram that makes no
-/// scan is counted as refused.
+/// A device that cannot be reached is tried again; a telegram that gives no scan is counted as
+/// refused.
 ///
 /// # Errors
-/// If the graph fails, the capture cannot be read or holds no usable scan, or
-/// the configuration names no source.
+/// If the transport fails, the capture cannot be read or has no usable scan, or the configuration
+/// names no source.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     let mut outlet = Outlet::open(graph, config)?;
     match (&config.tcp, &config.serial, &config.capture) {
@@ -32,8 +32,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     }
 }
 
-/// Opens and reads a device again, later each time that no scan came of it, until
-/// reading ends with success.
+/// Runs `listen` until it succeeds or the stop flag is set. Waits between attempts, and longer
+/// after each attempt without a scan.
 fn keep(
     outlet: &mut Outlet,
     mut listen: impl FnMut(&mut Outlet) -> Result<(), LmsError>,
@@ -57,7 +57,7 @@ fn keep(
 fn now() -> Received {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     Received {
-        // A clock before 1970 is as wrong as one in 1970.
+        // A clock before 1970 is just as wrong as one at 1970.
         realtime_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
         monotonic_ns: transport::monotonic_ns(),
     }

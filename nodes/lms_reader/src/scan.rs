@@ -1,7 +1,7 @@
-//! From a scan telegram to the message of topic `scan`.
+//! Converts a scan telegram to the message of topic `scan`.
 //!
-//! Pure: the caller says when the telegram came. It decides nothing about what
-//! a range is good for; it only distinguishes readings from codes.
+//! Pure: the caller passes the time of reception. It does not interpret ranges; it only
+//! distinguishes readings from codes.
 
 use clap::ValueEnum;
 use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
@@ -10,47 +10,44 @@ use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};
 use crate::LmsError;
 use crate::clock::DeviceClock;
 
-/// Raw distances below this are codes, not distances: 0 nothing came back, 1
-/// dazzled, 2 implausible, the others reserved (SICK's operating instructions,
-/// "LMDscandata – reserved values").
+/// Smallest raw distance; lower values are codes: 0 no return, 1 dazzled, 2 implausible, the others
+/// reserved (SICK's operating instructions, "LMDscandata – reserved values").
 const FIRST_DISTANCE: u16 = 16;
 
-/// The longest time from scan to transmission that is believed, µs. A mirror
-/// turns at 5 Hz or faster.
+/// Longest accepted time from scan to transmission, µs. A mirror turns at 5 Hz or faster.
 const LONGEST_DELAY_US: u32 = 1_000_000;
 
-/// Whose time a scan gets.
+/// Clock that stamps the scans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Stamps {
-    /// The host's, when the first beam was shot: the device's counter of
-    /// microseconds is followed.
+    /// Host time at which the first beam was measured, derived from the device's microsecond
+    /// counter.
     Host,
-    /// The device's date and time, which must be set, by NTP say; telegrams are
-    /// made to carry it.
+    /// Date and time of the device, which must be set, for example by NTP; the node configures the
+    /// telegrams to contain it.
     Device,
 }
 
-/// What the telegram does not say.
+/// Settings of a scan that are not in the telegram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanSettings {
-    /// Readings below are no returns, metres.
+    /// Shortest valid range, metres; shorter readings are no returns.
     pub range_min_m: f32,
-    /// Readings from here on are no returns, metres; `None` is what the device is
-    /// known to measure.
+    /// Longest valid range, metres; readings from here on are no returns. `None`: the longest range
+    /// of the device.
     pub range_max_m: Option<f32>,
-    /// Where the laser sits on the robot, if that is known.
+    /// Pose of the laser on the robot, if known.
     pub base_from_laser: Option<Pose2>,
-    /// Whether it hangs upside down.
+    /// True if the laser hangs upside down.
     pub upside_down: bool,
-    /// Which of several lasers it is; empty where the graph has one.
+    /// Name of the laser among several; empty if the graph has one.
     pub laser: Name,
-    /// The laser's frame.
     pub frame: FrameName,
-    /// Whose time the scan gets.
+    /// Clock that stamps the scan.
     pub stamps: Stamps,
 }
 
-/// When the last byte of a telegram was here.
+/// Time at which the last byte of a telegram was received.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Received {
     /// Nanoseconds since 1970.
@@ -59,10 +56,10 @@ pub struct Received {
     pub monotonic_ns: i64,
 }
 
-/// The channel that makes the scan: the first echo.
+/// Returns the channel of the scan: distances of the first echo.
 ///
 /// # Errors
-/// [`LmsError::NoDistances`], which names the channels that there are.
+/// [`LmsError::NoDistances`] with the names of the channels found.
 pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
     data.channels_16_bit.named(b"DIST1").ok_or_else(|| {
         let names = data.channels_16_bit.clone();
@@ -73,17 +70,16 @@ pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
     })
 }
 
-/// When the first beam was shot, nanoseconds since 1970.
+/// Returns the time at which the first beam was measured, nanoseconds since 1970.
 ///
-/// By the host's clock it is when `clock` says that the telegram was transmitted,
-/// less what the device counted from "time since start-up" to "time of
-/// transmission". SICK documents the former as the moment before the measurement
-/// starts. A TiM781 is seen to put 6 to 7 ms between the two although its scan
-/// takes 50 ms, so there the stamp is late by most of a scan.
+/// With host stamps it is the time of transmission according to `clock`, minus the device's
+/// difference between "time of transmission" and "time since start-up". SICK documents the latter
+/// as the moment before the measurement starts. On a TiM781 the two are only 6 to 7 ms apart
+/// although its scan takes 50 ms, so its stamps are late by most of a scan.
 ///
 /// # Errors
-/// [`LmsError::Scan`] where the device's times make no sense, [`LmsError::NoTime`]
-/// where its date and time are wanted and it does not say them.
+/// [`LmsError::Scan`] if the device's times are implausible; [`LmsError::NoTime`] if the device's
+/// date and time are wanted but missing.
 pub(crate) fn measured_ns(
     data: &LmdScanData<'_>,
     settings: &ScanSettings,
@@ -106,12 +102,11 @@ pub(crate) fn measured_ns(
     Ok(received.realtime_ns - on_the_way_ns - delay_ns)
 }
 
-/// The header of the scan whose first shot was at `measured_ns`, with counter 0.
-/// `angles` are those of the device, which has passed [`check`].
+/// Returns the header of a scan whose first beam was measured at `measured_ns`, with counter 0.
+/// `angles` are convention and longest range of the device; `data` has passed [`check`].
 ///
-/// Beams go counter-clockwise whichever way the device turns. Where it turns
-/// clockwise, the first beam is the one that was measured last: the stamp is its
-/// time, and time runs backwards from beam to beam.
+/// Beams are ordered counter-clockwise whichever way the device turns. If it turns clockwise, the
+/// first beam is the one measured last: the stamp is its time, and the time increment is negative.
 #[must_use]
 pub fn header(
     data: &LmdScanData<'_>,
@@ -140,8 +135,8 @@ pub fn header(
         },
         angle_min: recordable(angle_deg.to_radians()),
         angle_increment: recordable(step_deg.to_radians()),
-        // From the turn of the mirror: firmware disagrees about the unit of the
-        // measurement frequency, and a step takes its share of a turn anyway.
+        // Derived from the mirror frequency: firmware versions disagree about the unit of the
+        // measurement frequency.
         time_increment_s: sign * scan_time_s * step_deg / 360.0,
         scan_time_s,
         range_min_m: settings.range_min_m,
@@ -158,15 +153,14 @@ pub fn header(
     }
 }
 
-/// An angle as recordings hold it (`sensor_msgs/LaserScan` has single precision), so
-/// that a recording of the graph gives the same answers to the last bit.
+/// Rounds an angle to single precision, as in recordings (`sensor_msgs/LaserScan`), so that
+/// replaying a recording gives bit-identical results.
 pub(crate) fn recordable(radians: f64) -> f64 {
     f64::from(radians as f32)
 }
 
-/// Writes the distances in metres, infinity where nothing came back, those of a
-/// device that turns `clockwise` from the last to the first; `ranges` has as many
-/// places as there are distances.
+/// Writes the distances in metres, infinity for no return, in reverse order for a `clockwise`
+/// device; `ranges` has one element per distance.
 pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32]) {
     let scale = f64::from(distances.scale_factor);
     let offset = f64::from(distances.scale_offset);
@@ -182,10 +176,10 @@ pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32])
     }
 }
 
-/// Whether the telegram makes a scan.
+/// Checks that the telegram can be converted to a scan.
 ///
 /// # Errors
-/// [`LmsError::Scan`] with the field that does not fit.
+/// [`LmsError::Scan`] with the invalid field.
 pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsError> {
     let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
     let sweep_deg = step_deg * distances.len().saturating_sub(1) as f64;
@@ -209,7 +203,7 @@ pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsE
 }
 
 fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
-    // The device's clock wraps, the difference does not mind.
+    // The difference is right even if the device's clock wraps in between.
     let delay_us = data
         .time_of_transmission_us
         .wrapping_sub(data.time_since_start_up_us);

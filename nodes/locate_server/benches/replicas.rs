@@ -1,10 +1,10 @@
-//! Prints how many scans a second are located by one server and by two, each in a
-//! network namespace and on a core of its own:
+//! Prints how many scans per second one server and two servers locate, each in a network namespace
+//! and on a core of its own:
 //!
 //!     cargo bench -p locate_server --bench replicas
 //!
-//! for which it needs the right to make network namespaces, as tests of the bridge
-//! do; or by the servers that are there already:
+//! This needs the right to create network namespaces, as the bridge's tests do. To measure servers
+//! that are already running:
 //!
 //!     cargo bench -p locate_server --bench replicas -- \
 //!         --connect tcp/192.168.0.7:7447 --name office --recording drive.mcap
@@ -24,34 +24,33 @@ use zenoh::Wait;
 
 const WORLD: &str = "malaga_corridor";
 
-/// The first server stands where it can be called; the second one calls it, and so
-/// does whoever asks.
+/// The first server listens; the second one and the client connect to it.
 const LISTEN: [&str; 2] = ["--listen", "tcp/0.0.0.0:7447"];
 const CONNECT: [&str; 2] = ["--connect", "tcp/10.77.1.1:7447"];
 
-/// Asks servers as fast as they answer.
+/// Sends requests as fast as they are answered.
 #[derive(Parser)]
 struct Config {
-    /// What the map is called
+    /// Name of the map
     #[arg(long, default_value = WORLD)]
     name: String,
 
-    /// Whose scans are asked about [default: the one in the repository]
+    /// Recording whose scans are sent [default: the one in the repository]
     #[arg(long)]
     recording: Option<PathBuf>,
 
-    /// Requests that are open at the same time
+    /// Number of requests open at the same time
     #[arg(long, default_value_t = 8)]
     callers: usize,
 
-    /// How many are asked
+    /// Number of requests
     #[arg(long, default_value_t = 1000)]
     requests: usize,
 
     #[command(flatten)]
     network: zenoh_session::Options,
 
-    /// What cargo says to every benchmark
+    /// Flag that cargo passes to every benchmark
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -84,7 +83,7 @@ fn compare() {
 struct Server {
     process: NodeProcess,
     graph: Graph,
-    // Behind the graph, so that it is dropped after it.
+    // Declared after the graph, so that it is dropped after it.
     _isolated: Isolated,
 }
 
@@ -111,7 +110,6 @@ impl Server {
         }
     }
 
-    /// What it has counted.
     fn print(&self) {
         let health = self.graph.subscriber::<topic::Health>().unwrap();
         let (report, _) = wait_for_health(&self.graph, &health, |_| true);
@@ -120,7 +118,7 @@ impl Server {
     }
 }
 
-/// Runs this program in a namespace, to ask from there.
+/// Runs this program in a namespace, as the client.
 fn load_from(place: &Namespace) {
     let program = std::env::current_exe().unwrap();
     let mut command = place.command(program.to_str().unwrap());
@@ -144,7 +142,7 @@ fn load(config: &Config) {
         locate_server::ask(&session, &config.name, (header, ranges), patience).unwrap();
         start.elapsed().as_secs_f64() * 1e3
     };
-    // The first one waits for a server.
+    // The first request waits for a server.
     ask(0);
     let times = Mutex::new(Vec::new());
     let start = Instant::now();

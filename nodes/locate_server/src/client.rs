@@ -1,4 +1,4 @@
-//! Asking, for programs in Rust.
+//! Client of the service, for Rust programs.
 
 use std::time::{Duration, Instant};
 
@@ -15,23 +15,22 @@ use zenoh_session::KeyError;
 use crate::LocateError;
 use crate::error::REFUSED;
 
-/// Between two attempts, where nobody answers or all are busy.
+/// Pause between two attempts, if no server answers or all are busy.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// How long an attempt may say nothing before another one is made beside it; each that
-/// is under way doubles it, so that slow servers are not asked again and again.
+/// Time without a reply after which a further attempt is made in parallel; it doubles with each
+/// open attempt, so that slow servers are not asked again and again.
 ///
-/// Zenoh ends what a server has been asked when that server goes, all but what is sent
-/// while it is being forgotten: nobody ends that. So it must not take the whole deadline.
+/// When a server disappears, Zenoh ends the requests sent to it, except those sent while the server
+/// is being forgotten, which are never ended. Therefore one attempt must not take the whole
+/// deadline.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Asks whoever answers for the map of this name where a scan was taken, again and
-/// again until the deadline: a server that dies meanwhile costs no answer.
-///
+/// Asks the servers of this map where a scan was taken. Repeats the request until the deadline, so
+/// that a server that dies meanwhile costs no answer.
 /// # Errors
-/// [`LocateError::Late`] if there was no answer in time, [`LocateError::Refused`]
-/// if a server says that there never will be one, or if the scan or an answer is
-/// not sound.
+/// [`LocateError::Late`] if there was no answer in time, [`LocateError::Refused`] if a server
+/// rejects the request for good, or another error if the scan or an answer is invalid.
 pub fn ask(
     session: &Session,
     map: &str,
@@ -46,7 +45,7 @@ pub fn ask(
     Ok(answer)
 }
 
-/// A scan as bytes, and what they say of themselves.
+/// Encoded scan and the name of its encoding.
 struct Question {
     encoding: String,
     payload: Vec<u8>,
@@ -70,7 +69,7 @@ impl Question {
     }
 }
 
-/// The answer to a question as bytes, and what they say of themselves.
+/// Returns encoding and payload of the answer to a question.
 fn ask_bytes(
     session: &Session,
     map: &str,
@@ -79,7 +78,7 @@ fn ask_bytes(
 ) -> Result<(String, Vec<u8>), LocateError> {
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
-    // How many attempts are under way, and when to make the next one.
+    // Number of open attempts, and time of the next one.
     let (mut open, mut next) = (0, Instant::now());
     loop {
         let now = Instant::now();
@@ -89,7 +88,7 @@ fn ask_bytes(
         }
         if now >= next {
             attempt(session, map, question, due - now, events.clone())?;
-            // No deadline is so far that this overflows.
+            // Deadlines are too short for this to overflow.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
         let Ok(event) = received.recv_deadline(next.min(due)) else {
@@ -109,15 +108,15 @@ fn ask_bytes(
     }
 }
 
-/// What an attempt receives; None, at last, when nobody will answer any more.
+/// Result of an attempt; `None` at the end, when no further reply can arrive.
 type Event = Option<Result<Sample, ReplyError>>;
 
-/// An attempt under way, until Zenoh drops it.
+/// Open attempt, until Zenoh drops it.
 struct Attempt(Sender<Event>);
 
 impl Attempt {
     fn deliver(&self, event: Event) {
-        // Where nobody listens, the request has its answer.
+        // Without a receiver, the request has already been answered.
         let _ = self.0.send(event);
     }
 }
@@ -128,7 +127,7 @@ impl Drop for Attempt {
     }
 }
 
-/// Asks once; what comes of it goes to `events`.
+/// Sends the request once; results go to `events`.
 fn attempt(
     session: &Session,
     map: &str,
@@ -150,7 +149,7 @@ fn attempt(
     Ok(())
 }
 
-/// Why asking again does not help, if it does not.
+/// Returns the error if repeating the request does not help.
 fn refusal(error: &ReplyError) -> Option<LocateError> {
     (error.encoding().to_string() == REFUSED).then(|| LocateError::Refused {
         says: String::from_utf8_lossy(&error.payload().to_bytes()).into_owned(),

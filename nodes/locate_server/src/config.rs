@@ -13,48 +13,47 @@ use map::{MapError, MapFile, MapSet};
 
 /// Locates scans on a map, for clients on Zenoh.
 ///
-/// Listens on this machine only by default. Any number of servers may answer for one
-/// map: each passes on the requests that it has no time for.
+/// Listens on this machine only by default. Any number of servers may answer for one map; each
+/// passes on the requests for which it has no free worker.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "locate_server", version)]
 pub struct Config {
-    /// The map, a YAML file as map_server reads it; several are searched together
+    /// Map, a YAML file in the format of map_server; several maps are searched together
     #[arg(long, value_name = "FILE", required_unless_present = "maps")]
     pub map: Vec<PathBuf>,
 
-    /// The maps of a building, searched together: a folder of maps, or a file that
-    /// lists them with names and floors
+    /// Maps of a building, searched together: a folder of maps, or a file that lists them with
+    /// names and floors
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     pub maps: Option<PathBuf>,
 
-    /// Hold only these maps of several, by the names of maps or of floors
+    /// Load only these maps of several, by the names of maps or floors
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
     pub on: Vec<String>,
 
-    /// The name of the map or the maps, the last part of backcast/locate/NAME: 1 to 64 of
-    /// a-z A-Z 0-9 - _ . [default: that of the folder in which they lie]
+    /// Name of the map or the set of maps, the last part of backcast/locate/NAME: 1 to 64 of a-z
+    /// A-Z 0-9 - _ . [default: the name of the map's folder]
     #[arg(long, value_name = "NAME", value_parser = network_payload::name)]
     pub name: Option<String>,
 
-    /// Number of scans that are searched at the same time, 1 to 256 [default: one per
-    /// core]
+    /// Number of scans that are searched in parallel, 1 to 256 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub workers: Option<u16>,
 
-    /// Number of scans that may wait for each of them, 0 to 1000; further ones are
-    /// answered with "busy"
+    /// Number of scans that may wait for each worker, 0 to 1000; further ones are answered with
+    /// "busy"
     #[arg(long, value_name = "COUNT", default_value_t = 4, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub waiting: u16,
 
-    /// Timeout of an answer if the request names none, 0.01 to 60 seconds; a scan that
-    /// cannot be answered in time is not searched
+    /// Timeout of a request that names none, 0.01 to 60 seconds; a scan that cannot be answered in
+    /// time is not searched
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = deadline)]
     pub deadline: Duration,
 
     #[command(flatten)]
     pub(crate) network: zenoh_session::Options,
 
-    /// How the map's cells are read
+    /// Rules for reading the map's cells
     #[command(flatten)]
     pub(crate) cells: CellRules,
 
@@ -66,7 +65,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Reads the command line; ends the process with code 2 where it is wrong.
+    /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
         let config = Config::parse();
@@ -78,14 +77,14 @@ impl Config {
         }
     }
 
-    /// The maps, by name.
+    /// Returns the map files with their names.
     ///
     /// # Errors
-    /// If the set cannot be read, two maps have one name, or `--on` names what is not there.
+    /// If the set cannot be read, two maps have the same name, or `--on` names an unknown map.
     pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
         let all = match (&self.maps, &*self.map) {
             (Some(set), _) => map::set_of_noting(set, |line| tracing::info!("{line}")),
-            // One map needs no name.
+            // A single map needs no name of its own.
             (None, [yaml]) => Ok(MapSet {
                 maps: vec![MapFile {
                     name: self.name(),
@@ -99,7 +98,7 @@ impl Config {
         Ok(all?.select(&self.on)?.maps)
     }
 
-    /// What the map or the set of maps is called.
+    /// Returns the name of the map or the set of maps.
     #[must_use]
     pub fn name(&self) -> String {
         let folder = || {
@@ -113,7 +112,7 @@ impl Config {
         given.unwrap_or_else(|| "map".to_owned())
     }
 
-    /// How many scans are searched at the same time.
+    /// Returns the number of scans that are searched in parallel.
     #[must_use]
     pub fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);

@@ -1,4 +1,4 @@
-//! What is counted on many threads and reported by one.
+//! Counters that many threads update and one reports.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -9,14 +9,14 @@ use zenoh::{Result as ZenohResult, Wait};
 
 use crate::LocateError;
 
-/// Counters since the last report.
+/// Counts since the last report.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
     received: AtomicU64,
     sent: AtomicU64,
     busy: AtomicU64,
     refused: AtomicU64,
-    /// Why the last one was refused.
+    /// Reason for the last refusal.
     problem: Mutex<Option<String>>,
 }
 
@@ -25,7 +25,7 @@ impl Counts {
         self.received.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// An answer went; or could not, because nobody waits any more.
+    /// Counts an answer as sent, or as dropped if the client no longer waits.
     pub(crate) fn sent(&self, outcome: &ZenohResult<()>) {
         let counter = if outcome.is_ok() {
             &self.sent
@@ -35,15 +35,15 @@ impl Counts {
         counter.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Says why there is no answer.
+    /// Replies with the error and counts it.
     pub(crate) fn refuse(&self, query: &Query, error: &LocateError) {
         self.refuse_as(query, error, error.encoding());
     }
 
-    /// The same in a reply with this encoding.
+    /// Does the same with this encoding of the reply.
     pub(crate) fn refuse_as(&self, query: &Query, error: &LocateError, encoding: &str) {
         let says = with_causes(error);
-        // Who does not wait any more needs no reply.
+        // The reply may fail: a client that no longer waits does not need it.
         let _ = query.reply_err(says.as_str()).encoding(encoding).wait();
         if matches!(error, LocateError::Busy { .. } | LocateError::Late { .. }) {
             self.busy.fetch_add(1, Ordering::Relaxed);
@@ -58,7 +58,7 @@ impl Counts {
         *problem.unwrap_or_else(PoisonError::into_inner) = Some(says);
     }
 
-    /// Puts all into a report: what found no worker in time counts as dropped.
+    /// Adds the counts to a health report; requests that found no worker in time count as dropped.
     pub(crate) fn report(&self, health: &mut Health) -> Result<(), TransportError> {
         let take = |counter: &AtomicU64| counter.swap(0, Ordering::Relaxed);
         health.count_received(take(&self.received));

@@ -1,8 +1,7 @@
-//! Where requests arrive: accepts them, passes them on, or rejects them.
+//! Receives requests: accepts, forwards or rejects them.
 //!
-//! Zenoh calls on threads of its own, which wait for nothing here: a request that
-//! is taken on lies in a queue with an end, for the workers. What each of them
-//! costs is bounded before it is looked at.
+//! Zenoh calls it on its own threads, which never block here: accepted requests go into a bounded
+//! queue for the workers. The cost of each request is bounded before it is parsed.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -18,22 +17,22 @@ use crate::counts::Counts;
 use crate::error::REFUSED;
 use crate::team::Team;
 
-/// The name of the request's own deadline.
+/// Name of the parameter with the request's deadline.
 const DEADLINE: &str = "deadline_ms";
-/// Longest deadline that a request may name, milliseconds.
+/// Longest deadline of a request, milliseconds.
 const LONGEST_MS: u64 = 60_000;
 
-/// A request that is taken on.
+/// Accepted request.
 pub(crate) struct Job {
     pub(crate) query: Query,
-    /// Under which the answer goes.
+    /// Key of the answer.
     pub(crate) key: Arc<str>,
-    /// Whether another server handed it on.
+    /// True if another server forwarded the request.
     pub(crate) is_handed_on: bool,
     pub(crate) deadline: Deadline,
 }
 
-/// Until when an answer is of use.
+/// Time until which an answer is useful.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Deadline {
     due: Instant,
@@ -60,7 +59,7 @@ impl Deadline {
     }
 }
 
-/// Takes requests, from whichever thread.
+/// Receiver of requests on any thread.
 pub(crate) struct Dispatcher {
     session: Session,
     /// `backcast/locate/<map>`.
@@ -68,26 +67,26 @@ pub(crate) struct Dispatcher {
     jobs: Sender<Job>,
     returned: Sender<Job>,
     workers: usize,
-    /// Requests that wait or are being searched.
+    /// Number of requests that wait or are being searched.
     busy: Arc<AtomicUsize>,
     team: Mutex<Team>,
-    /// What others have.
+    /// Requests that were forwarded to other servers.
     handed_on: Mutex<Vec<Weak<Handed>>>,
     default_deadline: Duration,
     counts: Arc<Counts>,
 }
 
-/// What workers need of it.
+/// Consumer end of the dispatcher, shared by the workers.
 pub(crate) struct WorkQueue {
     jobs: Receiver<Job>,
-    /// What was handed on and came back: as much as was handed on, and no more.
+    /// Forwarded requests that came back; bounded by the number forwarded.
     returned: Receiver<Job>,
     pub(crate) busy: Arc<AtomicUsize>,
 }
 
 impl WorkQueue {
-    /// The next request, once there is one: first those that have waited elsewhere.
-    /// None when the dispatcher is closed.
+    /// Waits for the next request, preferring those that came back from other servers. Returns
+    /// `None` when the dispatcher is closed.
     pub(crate) fn next(&self) -> Option<Job> {
         let job = crossbeam::channel::select_biased! {
             recv(self.returned) -> job => job,
@@ -98,7 +97,7 @@ impl WorkQueue {
 }
 
 impl Dispatcher {
-    /// A dispatcher with `workers`, for each of which `waiting` requests may wait.
+    /// Creates a dispatcher for `workers`, each with room for `waiting` requests.
     pub(crate) fn new(
         session: &Session,
         key: &str,
@@ -106,7 +105,7 @@ impl Dispatcher {
         default_deadline: Duration,
         counts: &Arc<Counts>,
     ) -> (Arc<Self>, WorkQueue) {
-        // Each worker holds one more, which it has taken out.
+        // Each worker also holds one request that it has taken from the queue.
         let (jobs, taken) = bounded(workers * (waiting + 1));
         let (returned, again) = unbounded();
         let busy = Arc::new(AtomicUsize::new(0));
@@ -130,20 +129,20 @@ impl Dispatcher {
         (Arc::new(dispatcher), work_queue)
     }
 
-    /// The others, and what they were given.
+    /// Returns the other servers and the number of requests forwarded to each.
     pub(crate) fn team(&self) -> MutexGuard<'_, Team> {
-        // Whoever held it changes one number at a time, so it is sound.
+        // A panic cannot leave it inconsistent: each change is a single number.
         self.team.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn handed_on(&self) -> MutexGuard<'_, Vec<Weak<Handed>>> {
-        // It is changed by one call at a time, so it is sound.
+        // A panic cannot leave it inconsistent: each change is a single call.
         let handed_on = self.handed_on.lock();
         handed_on.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Another server is gone, and what it has comes back: a request that is sent while
-    /// Zenoh forgets that server would be answered, or ended, by nobody.
+    /// Removes a server that is gone and takes its requests back. A request sent while Zenoh is
+    /// forgetting that server would otherwise never be answered or ended.
     pub(crate) fn leave(&self, other: &str) {
         self.team().leave(other);
         let handed_on: Vec<_> = self.handed_on().iter().filter_map(Weak::upgrade).collect();
@@ -154,7 +153,7 @@ impl Dispatcher {
         }
     }
 
-    /// A request to all servers: it may be handed on.
+    /// Processes a request to all servers, which may be forwarded.
     pub(crate) fn ask(self: &Arc<Self>, query: Query) {
         let key = Arc::clone(&self.key);
         if let Some(job) = self.open(query, key, false) {
@@ -167,14 +166,14 @@ impl Dispatcher {
         }
     }
 
-    /// A request that another server hands on, under this one's own `key`.
+    /// Processes a request that another server forwarded to this server's own `key`.
     pub(crate) fn ask_me(&self, query: Query, key: &Arc<str>) {
         if let Some(job) = self.open(query, Arc::clone(key), true) {
             self.take_on(job);
         }
     }
 
-    /// Reads what the request says of its time; refuses it if that is nothing.
+    /// Reads the deadline of a request; refuses the request if it is invalid.
     fn open(&self, query: Query, key: Arc<str>, is_handed_on: bool) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
@@ -193,7 +192,7 @@ impl Dispatcher {
     }
 
     fn take_on(&self, job: Job) {
-        // Counted before a worker can count it off.
+        // Counted first, so that a worker cannot count it down before.
         let busy = self.busy.fetch_add(1, Ordering::Relaxed);
         let (Err(TrySendError::Full(job)) | Err(TrySendError::Disconnected(job))) =
             self.jobs.try_send(job)
@@ -205,11 +204,11 @@ impl Dispatcher {
         self.counts.refuse(&job.query, &error);
     }
 
-    /// Takes back what another server had and did not answer. Sends nothing: where a
-    /// server goes, Zenoh drops what waits for it with a lock held that sending takes.
+    /// Queues a request again that another server did not answer. Must not send: when a server
+    /// disappears, Zenoh drops its pending requests while holding a lock that sending needs.
     fn take_back(&self, job: Job) {
         self.busy.fetch_add(1, Ordering::Relaxed);
-        // It has room, and workers are there as long as the dispatcher is.
+        // The channel is unbounded, and the workers live as long as the dispatcher.
         let _ = self.returned.send(job);
     }
 
@@ -232,17 +231,18 @@ impl Dispatcher {
             job: Mutex::new(Some(job)),
         });
         self.handed_on().push(Arc::downgrade(&handed));
-        // It may have left before that, and who leaves does so once.
+        // The server may have left before this entry was added, and its leaving is reported only
+        // once.
         if !self.team().has(&handed.other) {
             return;
         }
-        // Where asking fails, what was handed on is dropped here, and so comes back.
+        // If sending fails, `handed` is dropped here and the request comes back.
         let _ = asking.callback(move |reply| handed.on_reply(&reply)).wait();
     }
 }
 
-/// A request that another server has. Zenoh drops it when no answer can come any
-/// more: it was answered, the other is gone, or the time is over.
+/// Request forwarded to another server. Zenoh drops it when no answer can come any more: it was
+/// answered, the other server is gone, or the time is over.
 struct Handed {
     dispatcher: Arc<Dispatcher>,
     other: String,
@@ -258,7 +258,7 @@ impl Handed {
                 let reply = job.query.reply(&*job.key, answer.1).encoding(answer.0);
                 self.dispatcher.counts.sent(&reply.wait());
             }
-            // What is wrong with a scan is wrong everywhere.
+            // An invalid scan is invalid for every server.
             Err(error) if is_about_the_request(error.encoding()) => {
                 let Some(job) = self.take() else { return };
                 let answer = (error.encoding().clone(), error.payload().clone());
@@ -278,7 +278,7 @@ impl Handed {
 impl Drop for Handed {
     fn drop(&mut self) {
         self.dispatcher.team().done(&self.other);
-        // Among them this one: nobody can reach it any more.
+        // Removes this entry, too: its strong count is zero.
         let is_open = |handed: &Weak<Handed>| handed.strong_count() > 0;
         self.dispatcher.handed_on().retain(is_open);
         if let Some(job) = self.take() {
@@ -287,7 +287,7 @@ impl Drop for Handed {
     }
 }
 
-/// Unlike that the server is busy, or what Zenoh itself says.
+/// Returns true if the error concerns the request itself, not a busy server or Zenoh.
 fn is_about_the_request(encoding: &Encoding) -> bool {
     encoding.to_string() == REFUSED
 }

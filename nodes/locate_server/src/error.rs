@@ -1,4 +1,4 @@
-//! Errors that reject a request, and those that end the server.
+//! Errors that reject a request, and errors that end the server.
 
 use std::path::PathBuf;
 
@@ -10,92 +10,80 @@ use zenoh_session::{KeyError, NetworkError};
 
 use crate::request::ENCODINGS;
 
-/// What was tried, what was found and what is allowed.
+/// Error of the service, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum LocateError {
     /// The map cannot be read.
     #[error("map {}", path.display())]
     Map {
-        /// As configured.
         path: PathBuf,
-        /// What is wrong, where, and what is allowed.
         source: Box<MapError>,
     },
-    /// The map cannot be searched.
     #[error("map {} cannot be searched", path.display())]
     UnusableMap {
-        /// As configured.
+        /// Path from the configuration.
         path: PathBuf,
-        /// What the engine says.
+        /// Error of the engine.
         source: EngineError,
     },
-    /// The session cannot be opened.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// A key cannot be used.
     #[error(transparent)]
     Key(#[from] KeyError),
-    /// The graph fails.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The request is in no form that is known.
+    /// The encoding of the request is unknown.
     #[error("the request is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
     Encoding {
-        /// What it says of itself, cut to a few words.
+        /// Encoding of the request, shortened.
         found: String,
     },
-    /// The request is longer than a scan can be.
     #[error("a request of {found} bytes: allowed are at most {most}")]
     TooLong {
-        /// Bytes.
+        /// Size of the request, bytes.
         found: usize,
-        /// Most bytes.
+        /// Largest size allowed, bytes.
         most: usize,
     },
-    /// A request in postcard, or an answer, that is not sound.
+    /// A postcard request or an answer is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
-    /// A request in JSON that is not sound.
     #[error("the request is not a scan in JSON")]
     Json(#[from] serde_json::Error),
-    /// `deadline_ms` of the request is not a time.
     #[error("deadline_ms={found:?}: allowed are 1 to 60000")]
     Deadline {
-        /// What was found.
+        /// Value found.
         found: String,
     },
-    /// The scan is none that the engine can use.
     #[error("the scan is rejected")]
     Scan(#[from] EngineError),
-    /// All servers have as much to do as they take on.
+    /// All servers have as many requests as they accept.
     #[error("busy: {waiting} scans are being searched or waiting, which is the limit")]
     Busy {
-        /// At the server that was asked.
+        /// Number of requests at the server that was asked.
         waiting: usize,
     },
-    /// The answer would have come after the deadline.
     #[error("late: no answer within {deadline_ms} ms")]
     Late {
-        /// As asked, milliseconds.
+        /// Deadline of the request, milliseconds.
         deadline_ms: u128,
     },
-    /// A server says so.
     #[error("the server rejects the request: {says}")]
     Refused {
-        /// In its words.
+        /// Message of the server.
         says: String,
     },
 }
 
-/// What a server says that does not answer: the encodings of its replies.
+/// Encoding of the error reply of a busy server.
 pub const BUSY: &str = "text/plain;backcast.Busy/v1";
-/// As [`BUSY`], where the time is over.
+/// Encoding of the error reply after the deadline.
 pub const LATE: &str = "text/plain;backcast.Late/v1";
-/// As [`BUSY`], where asking again does not help.
+/// Encoding of the error reply if repeating the request does not help.
 pub const REFUSED: &str = "text/plain;backcast.Refused/v1";
 
 impl LocateError {
-    /// How a reply says which of them it is.
+    /// Returns the encoding of the error reply for this error.
     #[must_use]
     pub fn encoding(&self) -> &'static str {
         match self {

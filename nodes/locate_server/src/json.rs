@@ -1,29 +1,29 @@
-//! A scan and its places as JSON, for programs that have no other way.
+//! JSON form of requests and answers, for programs without the message types.
 
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// A scan; what is not given is as little as a scan needs.
+/// Scan with defaults for optional fields.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Scan {
-    /// When it was measured, nanoseconds since 1970; the answer repeats it.
+    /// Time of measurement, nanoseconds since 1970; repeated in the answer.
     #[serde(default)]
     stamp_ns: i64,
     /// Bearing of the first beam, radians counter-clockwise from ahead.
     angle_min: f64,
-    /// From one beam to the next, radians, above zero.
+    /// Angle between consecutive beams, radians, above zero.
     angle_increment: f64,
-    /// Readings below are no returns, metres.
+    /// Shortest valid range, metres; shorter readings are no returns.
     #[serde(default)]
     range_min: f32,
-    /// Readings above are no returns, metres.
+    /// Longest valid range, metres; longer readings are no returns.
     range_max: f32,
-    /// Metres; null where nothing came back.
+    /// Ranges in metres; null for no return.
     ranges: Vec<Option<f32>>,
-    /// Where the laser sits on the robot, metres and radians.
+    /// Pose of the laser on the robot, metres and radians.
     #[serde(default)]
     base_from_laser: Option<Placed>,
 }
@@ -36,46 +36,46 @@ struct Placed {
     yaw: f64,
 }
 
-/// What is known of the place.
+/// Result of a search.
 #[derive(Debug, Serialize)]
 struct Answer {
     stamp_ns: i64,
-    /// In hexadecimal: a number of 64 bits is not safe in JSON.
+    /// Map id in hexadecimal, because JSON numbers do not hold 64 bits safely.
     map_id: String,
-    /// Its name, where several maps are searched; else null.
+    /// Name of the map if several are searched, else null.
     map: Option<String>,
     verdict: String,
-    /// Other places that fit about as well.
+    /// Number of other places that fit about as well.
     alternatives: u32,
-    /// The best place's probability, 0..=1.
+    /// Probability of the best place, 0..=1.
     confidence: f32,
-    /// Share of the beams that agree with it.
+    /// Share of the beams that agree with the best place.
     inlier_share: f32,
-    /// Milliseconds of computing.
+    /// Time of the search, milliseconds.
     search_ms: f64,
-    /// Best first.
+    /// Places, best first.
     hypotheses: Vec<Place>,
 }
 
 #[derive(Debug, Serialize)]
 struct Place {
-    /// The name of its map, where several are searched; else null.
+    /// Name of the map if several are searched, else null.
     map: Option<String>,
-    /// `map_from_laser`, metres and radians.
+    /// Pose `map_from_laser`, metres and radians.
     #[serde(flatten)]
     laser: Placed,
-    /// Row by row over x, y and yaw.
+    /// Covariance of x, y and yaw, row by row.
     covariance: [f64; 9],
     score: f32,
     probability: f32,
-    /// Where the laser's mount was given.
+    /// Pose of the base, if the request gave the laser's mount.
     map_from_base: Option<Placed>,
 }
 
-/// The scan in `payload`.
+/// Parses the scan in `payload`.
 ///
 /// # Errors
-/// If it is no JSON, lacks a key or has one too many.
+/// If it is not JSON, lacks a key or has an unknown one.
 pub(crate) fn read(
     payload: &[u8],
     now_ns: i64,
@@ -101,10 +101,10 @@ pub(crate) fn read(
     Ok((header, ranges.map(|r| r.unwrap_or(f32::INFINITY)).collect()))
 }
 
-/// The answer as one object.
+/// Returns the answer as a JSON object.
 ///
 /// # Errors
-/// None that plain numbers could cause.
+/// Not expected for plain numbers.
 pub(crate) fn write(
     header: &HypothesesHeader,
     hypotheses: &[Hypothesis],

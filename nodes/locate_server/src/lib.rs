@@ -1,13 +1,13 @@
-//! Locating as a service: whoever speaks Zenoh asks `backcast/locate/<map>` with a
-//! scan, and gets its places on that map.
+//! Localization as a service: any Zenoh client sends a scan to `backcast/locate/<map>` and receives
+//! its places on that map.
 //!
-//! Any number of servers may answer for one map, on any machines. Zenoh brings a
-//! request to one of them, which hands on what it has no free worker for; the
-//! caller gets one answer. Each takes on as much as its queue holds and says "busy"
-//! beyond that; what cannot be answered before its deadline is not searched. Nothing
-//! is kept from one request to the next: who wants to be tracked runs the graph.
+//! Any number of servers may answer for one map, on any machines. Zenoh delivers a request to one
+//! of them, which forwards it if it has no free worker; the client gets one answer. Each server
+//! accepts as many requests as its queue holds and answers "busy" beyond that; a request that
+//! cannot be answered before its deadline is not searched. Servers keep no state between requests;
+//! for tracking, run the graph.
 //!
-//! A server of several maps searches them together.
+//! A server with several maps searches them together.
 
 mod client;
 mod config;

@@ -1,5 +1,5 @@
-//! The node's heart: from a scan to the message that the graph's peak extractor would
-//! send. Pure: no socket, no clock, no file.
+//! Core of the node: turns a scan into the message that the graph's peak extractor would send.
+//! Pure: no socket, no clock, no file.
 
 use bytemuck::Zeroable;
 use engine::EngineError;
@@ -13,15 +13,15 @@ use engine::scan::Scan;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, searched_id};
 
-/// A map, or several, ready to be searched by any number of threads.
+/// One or several maps that any number of threads can search.
 #[derive(Debug)]
 pub struct Locator {
-    /// Ids and names, in the order of the set.
+    /// Ids and names of the maps, in the order of the set.
     maps: Vec<(u64, String)>,
     set: MapSet,
 }
 
-/// A map of a set, ready to be searched.
+/// Map of a set, ready to be searched.
 #[derive(Debug)]
 pub struct SearchedMap {
     id: u64,
@@ -29,11 +29,11 @@ pub struct SearchedMap {
     locator: engine::locator::Locator,
 }
 
-/// Header and items of `hypotheses`, all but the times of computing.
+/// Header and items of `hypotheses`, without the times of computing.
 pub type Answer = (HypothesesHeader, Vec<Hypothesis>);
 
 impl SearchedMap {
-    /// Prepares the map of this name, which takes from milliseconds to seconds.
+    /// Prepares the map, which takes milliseconds to seconds.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
@@ -61,10 +61,10 @@ impl SearchedMap {
 }
 
 impl Locator {
-    /// Prepares one map.
+    /// Prepares a locator for one map.
     ///
     /// # Errors
-    /// As [`SearchedMap::new`].
+    /// See [`SearchedMap::new`].
     pub fn new(
         map: &OccupancyGrid,
         rules: CellRules,
@@ -74,10 +74,10 @@ impl Locator {
         Ok(Locator::of_set(vec![map]))
     }
 
-    /// Searches maps together.
+    /// Creates a locator that searches several maps together.
     ///
     /// # Panics
-    /// If there is none.
+    /// If `maps` is empty.
     #[must_use]
     pub fn of_set(maps: Vec<SearchedMap>) -> Self {
         let (ids, locators): (_, Vec<_>) = maps
@@ -90,14 +90,13 @@ impl Locator {
         }
     }
 
-    /// The id of the map; of several, a number that differs where one of them or their order
-    /// does.
+    /// Returns the id of the map; for several maps an id that depends on the maps and their order.
     #[must_use]
     pub fn map_id(&self) -> u64 {
         searched_id(self.maps.iter().map(|&(id, _)| id))
     }
 
-    /// The name of a map, where there are several.
+    /// Returns the name of a map if there are several maps.
     #[must_use]
     pub fn name_of(&self, map_id: u64) -> Option<&str> {
         let mut maps = self.maps.iter().filter(|_| self.maps.len() > 1);
@@ -105,10 +104,10 @@ impl Locator {
         found.map(|(_, name)| name.as_str())
     }
 
-    /// Finds the places of a scan; `None` if `stop` said so before it was done.
+    /// Finds the places of a scan; `None` if `stop` interrupted the search.
     ///
     /// # Errors
-    /// If the engine refuses the scan.
+    /// If the engine rejects the scan.
     pub fn locate(
         &self,
         workspace: &mut Workspace,

@@ -1,9 +1,8 @@
-//! Requests and answers as bytes.
+//! Binary form of requests and answers.
 //!
-//! A request is a scan as the bridge sends it, in postcard, or the same in JSON;
-//! the answer comes in the form of the request. Postcard is for programs that have
-//! these types; JSON is for everybody else: any language writes a scan with what it
-//! brings along, and new fields of a message do not break it.
+//! A request is a scan in postcard, in the format of the bridge, or in JSON; the answer has the
+//! form of the request. Postcard is for programs with the Rust types. JSON is for all others: any
+//! language can write it, and new message fields do not break it.
 
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
 use network_payload::{Preamble, Wire};
@@ -11,40 +10,37 @@ use network_payload::{Preamble, Wire};
 use crate::LocateError;
 use crate::json;
 
-/// The encoding of a request in JSON.
+/// Encoding of a request in JSON.
 pub const JSON: &str = "application/json;backcast.Scan/v1";
-/// That of its answer.
+/// Encoding of an answer in JSON.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
-/// What a request may say of itself.
+/// Encodings accepted for requests.
 pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
-/// Characters of a foreign encoding that an error shows.
+/// Number of characters of an unknown encoding that an error shows.
 const SHOWN: usize = 80;
 
-/// In which form the request came, and the answer goes.
+/// Form of a request and its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// As the bridge sends it; the preamble of the request is that of the answer.
+    /// Postcard in the format of the bridge; the answer repeats the request's preamble.
     Postcard(Preamble),
-    /// JSON.
     Json,
 }
 
-/// A scan that somebody wants to be located.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// That of the answer, too.
+    /// Form of the request, which is also that of the answer.
     pub form: Form,
-    /// As in topic `scan`.
+    /// Header as in topic `scan`.
     pub header: ScanHeader,
-    /// Metres.
+    /// Ranges, metres.
     pub ranges: Vec<f32>,
 }
 
-/// Reads a request that says of itself what it is, at `now_ns` of the monotonic
-/// clock.
+/// Parses a request with this encoding; `now_ns` is the monotonic clock.
 ///
 /// # Errors
-/// If it is in no form that is known, too long, or not sound.
+/// If the encoding is unknown, or the request is too long or invalid.
 pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, LocateError> {
     let most = topic::Scan::MAX_BYTES;
     if payload.len() > most {
@@ -73,11 +69,11 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     })
 }
 
-/// An answer in this form, which is sent at `now_ns` of the monotonic clock: its
-/// encoding and its bytes. Maps have names where several are searched.
+/// Returns encoding and bytes of an answer in this form; `now_ns` is the monotonic clock at
+/// sending. Map names are included if several maps are searched.
 ///
 /// # Errors
-/// If the engine gave what cannot be sent.
+/// If the result cannot be encoded.
 pub fn write(
     form: Form,
     header: &HypothesesHeader,
@@ -135,7 +131,7 @@ mod tests {
         assert_eq!(ENCODINGS[0], network_payload::encoding::<topic::Scan>());
         let answer = network_payload::encoding::<topic::Hypotheses>();
         assert!(answer.ends_with("backcast.Hypotheses/v4"), "{answer}");
-        // Its keys are those of version 2.
+        // The keys of the JSON form are still those of version 2.
         assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
     }
 

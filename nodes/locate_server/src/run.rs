@@ -1,4 +1,4 @@
-//! Prepares the map, opens the dispatcher, and reports its state.
+//! Prepares the map, opens the service, and reports its state.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -20,16 +20,16 @@ use crate::dispatcher::Dispatcher;
 use crate::locator::{Locator, SearchedMap};
 use crate::{Config, LocateError, worker};
 
-/// Between two looks at the counters, and at who else is there.
+/// Interval for reporting counters and checking for other servers.
 const TICK: Duration = Duration::from_millis(200);
 
-/// How long a server looks who else is there before it takes requests.
+/// Time to discover other servers before taking requests.
 const ACQUAINTANCE: Duration = Duration::from_millis(500);
 
-/// Answers until the stop flag is set.
+/// Answers requests until the stop flag is set.
 ///
 /// # Errors
-/// If the map cannot be used, the session cannot be opened, or the graph fails.
+/// If the map cannot be used, the session cannot be opened, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;
@@ -75,14 +75,14 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
     Ok(Locator::of_set(maps))
 }
 
-/// What stands on the network, as long as this lives.
+/// Declarations on the network; dropping it withdraws them.
 struct Service {
     session: Session,
     /// `backcast/locate/<map>`.
     key: String,
     since: u64,
     dispatcher: Arc<Dispatcher>,
-    /// Requests to all servers, while they are this one's to take.
+    /// Queryable for requests to all servers, while this server is the one that takes them.
     to_all: Option<Queryable<()>>,
     _handed_on: Queryable<()>,
     _team: Subscriber<()>,
@@ -108,7 +108,7 @@ impl Service {
         for _ in 0..workers {
             let (work_queue, locator, counts) =
                 (work_queue.clone(), locator.clone(), counts.clone());
-            // They end when the dispatcher is closed, or with the process.
+            // The threads end when the dispatcher is closed, or with the process.
             std::thread::spawn(move || worker::work(&work_queue, &locator, &counts));
         }
         let map_id = locator.map_id();
@@ -135,10 +135,10 @@ impl Service {
         Ok(service)
     }
 
-    /// Takes the requests to all servers where that is its turn. Were several to take
-    /// them, Zenoh would bring each request to the server that routes it and to another
-    /// one as well. Where one gives them up, a request on its way is lost until its
-    /// deadline, so that happens only where two did not know each other.
+    /// Takes the requests to all servers if this server is the leader. If several took them, Zenoh
+    /// would deliver each request to the server that routes it and to another one as well. When a
+    /// server gives them up, a request in transit is lost until its deadline; this happens only if
+    /// two servers did not know each other.
     fn follow_team(&mut self) -> Result<(), LocateError> {
         let me = self.session.zid().to_string();
         let is_first = self.dispatcher.team().is_led_by(self.since, &me);
@@ -168,7 +168,7 @@ fn answer(
     })
 }
 
-/// Keeps the dispatcher's list of servers that have the same map.
+/// Maintains the dispatcher's list of servers with the same map.
 fn meet(
     session: &Session,
     key: &str,
@@ -200,7 +200,7 @@ fn meet(
                 match (comes, fits) {
                     (true, true) => dispatcher.team().join(session, since, workers),
                     (false, _) => dispatcher.leave(session),
-                    // It answers those who ask it, of the map that it has.
+                    // It has another map of the same name and answers its own clients.
                     (true, false) => {}
                 }
                 tracing::info!(
@@ -224,7 +224,7 @@ fn tried<T>(
     Ok(attempt(key.to_owned()).map_err(KeyError::when(action, key))?)
 }
 
-/// What the token of a server says.
+/// Contents of a server's liveliness token.
 #[derive(Debug, PartialEq, Eq)]
 struct Other<'a> {
     session: &'a str,
@@ -234,7 +234,7 @@ struct Other<'a> {
 }
 
 impl<'a> Other<'a> {
-    /// None if anybody else wrote it.
+    /// Parses a token; `None` if it has another format.
     fn of(key: &'a str) -> Option<Self> {
         let mut parts = key.rsplit('/');
         let workers = parts.next()?.parse().ok()?;

@@ -1,12 +1,11 @@
-//! The servers of one map, and whose turn it is. Pure.
+//! Servers of one map and the choice of the one that takes a request. Pure.
 //!
-//! Each server knows how much it has handed on to each other one, and nothing of
-//! what they have to do besides: one that has too much says so, and the request
-//! comes back.
+//! Each server knows how many requests it has forwarded to each other one, but not their total
+//! load: an overloaded server says so, and the request comes back.
 
 use std::collections::BTreeMap;
 
-/// The others that answer for the same map, by their session.
+/// Other servers of the same map, by session.
 #[derive(Debug, Default)]
 pub(crate) struct Team {
     others: BTreeMap<String, Other>,
@@ -14,15 +13,14 @@ pub(crate) struct Team {
 
 #[derive(Debug)]
 struct Other {
-    /// By its own clock, nanoseconds since 1970.
+    /// Start time by its own clock, nanoseconds since 1970.
     since: u64,
     workers: usize,
-    /// Handed on to it, and not answered yet.
+    /// Number of requests forwarded to it and not yet answered.
     pending: usize,
 }
 
 impl Team {
-    /// Another server that is there.
     pub(crate) fn join(&mut self, session: &str, since: u64, workers: usize) {
         let other = Other {
             since,
@@ -32,33 +30,31 @@ impl Team {
         self.others.entry(session.to_owned()).or_insert(other);
     }
 
-    /// A server that is gone.
     pub(crate) fn leave(&mut self, session: &str) {
         self.others.remove(session);
     }
 
-    /// Whether that server is there.
+    /// Returns true if this server is present.
     pub(crate) fn has(&self, session: &str) -> bool {
         self.others.contains_key(session)
     }
 
-    /// Whether a server that is there `since` that time is the one that takes the
-    /// requests to all of them: the one that is there longest, so that who comes takes
-    /// them from nobody.
+    /// Returns true if a server started at `since` leads, that is, takes the requests to all
+    /// servers. The oldest server leads, so that a new one never takes over from another.
     pub(crate) fn is_led_by(&self, since: u64, session: &str) -> bool {
         let mut others = self.others.iter();
         others.all(|(name, other)| (since, session) < (other.since, name.as_str()))
     }
 
-    /// Who should take the next request instead of a server with `workers` of
-    /// which `busy` or more have something to do: the one with the least to do for
-    /// each worker, if that is less than here. It has one more then.
+    /// Returns the server that should take the next request, and counts the request for it: the one
+    /// with the lowest load per worker, if that is below the load here, where `busy` requests share
+    /// `workers`.
     pub(crate) fn hand_on(&mut self, busy: usize, workers: usize) -> Option<String> {
-        // With a free worker here, nobody is faster.
+        // With a free worker here, no other server is faster.
         if busy < workers {
             return None;
         }
-        // Cross-multiplied, for two of three is not one of two.
+        // Cross-multiplied, because integer division would lose the fraction.
         let less = |a: &Other, b: &Other| (a.pending * b.workers).cmp(&(b.pending * a.workers));
         let (session, other) = self.others.iter_mut().min_by(|a, b| less(a.1, b.1))?;
         if other.pending * workers >= busy * other.workers {
@@ -68,7 +64,7 @@ impl Team {
         Some(session.clone())
     }
 
-    /// It answered, or will not.
+    /// Counts a forwarded request as finished or cancelled.
     pub(crate) fn done(&mut self, session: &str) {
         if let Some(other) = self.others.get_mut(session) {
             other.pending = other.pending.saturating_sub(1);
@@ -97,7 +93,7 @@ mod tests {
         let mut next = || team.hand_on(2, 2).unwrap();
         let turns: Vec<String> = (0..3).map(|_| next()).collect();
         assert_eq!(turns, ["b", "c", "c"]);
-        // All have as much as this one.
+        // All have the same load as this one.
         assert_eq!(team.hand_on(2, 2), None);
         team.done("c");
         assert_eq!(team.hand_on(2, 2).as_deref(), Some("c"));
@@ -109,7 +105,7 @@ mod tests {
         assert!(team.is_led_by(5, "b"), "nobody else is there");
         team.join("a", 6, 1);
         assert!(team.is_led_by(5, "b"));
-        // Of two that came at the same time, one.
+        // Of two that started at the same time, only one leads.
         team.join("c", 5, 1);
         assert!(team.is_led_by(5, "b"));
         assert!(!team.is_led_by(5, "d"));
@@ -124,7 +120,7 @@ mod tests {
         let mut team = Team::default();
         team.join("b", 0, 1);
         assert!(team.hand_on(1, 1).is_some());
-        // Said twice, it is still one.
+        // Joining twice still counts as one server.
         team.join("b", 0, 1);
         assert!(team.hand_on(1, 1).is_none());
         assert!(team.has("b"));

@@ -1,4 +1,4 @@
-//! Searches what is taken on, one request after the other.
+//! Searches accepted requests one after the other.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -13,7 +13,7 @@ use crate::error::BUSY;
 use crate::locator::{Locator, Workspace};
 use crate::{LocateError, request};
 
-/// Answers until nobody takes requests any more.
+/// Answers requests until the dispatcher is closed.
 pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
     while let Some(job) = work_queue.next() {
@@ -22,8 +22,8 @@ pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Count
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
                 counts.sent(&reply.wait());
             }
-            // The server that handed it on may be a newer one, which knows the encoding: it takes
-            // back what another one is too busy for.
+            // The forwarding server may be newer and know the encoding: it takes back requests that
+            // are answered with "busy".
             Err(error @ LocateError::Encoding { .. }) if job.is_handed_on => {
                 counts.refuse_as(&job.query, &error, BUSY);
             }

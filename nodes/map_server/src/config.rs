@@ -4,39 +4,38 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-/// Serves a map file as `map`, and the new map whenever the file changes.
+/// Serves a map file as `map`, and serves it again whenever the file changes.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "map_server", version)]
 pub struct Config {
-    /// The map: a YAML file as ROS's map_server reads it, beside a PGM, PNG or BMP
-    /// image.
+    /// Map to serve: a YAML file in the format of ROS's map_server, with a PGM, PNG or BMP image
+    /// next to it.
     #[arg(long, value_name = "FILE", required_unless_present = "maps")]
     pub map: Option<PathBuf>,
 
-    /// Several maps in its place, which are searched together: a folder, or a file that names
-    /// maps, floors and transitions between them. They are served as `maps`; `map` is the one
-    /// on which the robot is.
+    /// Several maps to serve instead, which are searched together: a folder, or a file that lists
+    /// maps, floors and transitions between them. They are served as `maps`; `map` is the one on
+    /// which the robot is.
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with_all = ["map", "recorded", "played"])]
     pub maps: Option<PathBuf>,
 
-    /// Of a set, only the maps and floors with these names
+    /// Serve only the maps and floors of the set with these names
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', requires = "maps")]
     pub on: Vec<String>,
 
-    /// A recording whose last map is served in place of `--map`, if it holds one: what is
-    /// played from it was recorded on that map.
+    /// Recording whose last map is served instead of `--map`, if it contains one: scans played from
+    /// it were recorded on that map.
     #[arg(long, value_name = "FILE")]
     pub recorded: Option<PathBuf>,
 
-    /// A recording that is played on `--map`: where it holds another map, that is logged.
+    /// Recording that is played on `--map`; a warning is logged if it contains another map.
     #[arg(long, value_name = "FILE", conflicts_with = "recorded")]
     pub played: Option<PathBuf>,
 
-    /// How cells of the map are read, by all nodes.
+    /// Rules for reading the map's cells, used by all nodes.
     #[command(flatten)]
     pub cells: messages::CellRules,
 
-    /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,
 }

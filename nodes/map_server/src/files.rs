@@ -1,8 +1,7 @@
-//! Looks at a map's two files without reading the image.
+//! Detects changes of a map's two files without reading the image.
 //!
-//! Looking at fixed intervals rather than listening for events works on every
-//! file system, network ones included, and does not care how an editor replaces
-//! a file. What is in the files is not judged here.
+//! Polling, unlike listening for events, works on every file system, including network ones, and
+//! with every way in which editors replace files. The contents are not checked here.
 
 use std::fs;
 use std::io::Read;
@@ -11,28 +10,28 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-/// What is read of a description; a sound one has a few hundred bytes.
+/// Number of bytes read of a description; a valid one has a few hundred.
 const MAX_YAML_BYTES: u64 = 64 << 10;
 
-/// Identifies the state of a file.
+/// Identity of a file's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Fingerprint {
     pub(crate) device: u64,
-    /// A file that takes another's place by renaming has another number.
+    /// Inode number; it changes if another file takes the place by renaming.
     pub(crate) inode: u64,
     pub(crate) size: u64,
     pub(crate) modified_s: i64,
     pub(crate) modified_ns: i64,
 }
 
-/// Both files at one moment; `None` for one that is not there.
+/// State of both files at one moment; `None` for a missing file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Seen {
     pub(crate) yaml: Option<Fingerprint>,
     pub(crate) image: Option<Fingerprint>,
 }
 
-/// The description and the image that it names.
+/// Map description and the image named in it.
 #[derive(Debug)]
 pub(crate) struct Files {
     yaml: PathBuf,
@@ -40,7 +39,7 @@ pub(crate) struct Files {
     image: Option<PathBuf>,
 }
 
-/// The one key that matters here.
+/// The only key needed here.
 #[derive(Deserialize)]
 struct Named {
     image: String,
@@ -55,8 +54,8 @@ impl Files {
         }
     }
 
-    /// The files as they are now. A description that cannot be read leaves the
-    /// image that was named before.
+    /// Returns the current state of the files. While the description cannot be read, the image
+    /// named before is watched.
     pub(crate) fn look(&mut self) -> Seen {
         let yaml = fingerprint(&self.yaml);
         if yaml != self.yaml_read {
@@ -70,7 +69,7 @@ impl Files {
     }
 }
 
-/// The state of a file or a folder, if it is there.
+/// Returns the state of a file or folder, if it exists.
 pub(crate) fn fingerprint(path: &Path) -> Option<Fingerprint> {
     let metadata = fs::metadata(path).ok()?;
     Some(Fingerprint {
@@ -113,7 +112,7 @@ mod tests {
         let grown = files.look();
         assert_eq!((grown.yaml, grown.image.unwrap().size), (one.yaml, 2));
 
-        // Another file of the same size under the same name.
+        // Another file of the same size with the same name.
         fs::write(at("new"), "33").unwrap();
         fs::rename(at("new"), at("one.pgm")).unwrap();
         assert_ne!(files.look(), grown);
@@ -121,7 +120,7 @@ mod tests {
         fs::write(at("two.pgm"), "4444").unwrap();
         fs::write(at("a.yaml"), "image: two.pgm\n").unwrap();
         assert_eq!(files.look().image.unwrap().size, 4);
-        // A broken description still watches the image that it named.
+        // With a broken description, the image named before is still watched.
         fs::write(at("a.yaml"), "image: [").unwrap();
         assert_eq!(files.look().image.unwrap().size, 4);
     }

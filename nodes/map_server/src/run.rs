@@ -1,4 +1,4 @@
-//! Looks at the files, loads and sends: one map, or the maps of a set.
+//! Checks the files, loads and publishes: one map, or the maps of a set.
 
 mod one;
 mod several;
@@ -12,15 +12,16 @@ use transport::{Graph, Health, TransportError};
 
 use crate::{Config, MapServerError};
 
-/// Between two looks at the files: also how long a change has to rest, and how
-/// long somebody who joins late waits for the map.
+/// Interval at which the files are checked, also the time for which a change must be stable, and
+/// the longest wait of a late joiner for the map.
 const TICK: Duration = Duration::from_millis(250);
 
-/// Serves the map, or the maps, until the stop flag is set.
+/// Serves the map or the maps until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or the recording of `--recorded` is broken. Maps that are not there yet, or
-/// broken, are waited for; later a broken map is reported in `health` and the one before stays.
+/// If the transport fails, or the recording of `--recorded` is broken. Maps that are missing or
+/// broken at the start are waited for; later, a broken map is reported in `health` and the previous
+/// one stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     match (&config.maps, &config.map) {
         (Some(set), _) => several::run(graph, config, set),
@@ -29,7 +30,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     }
 }
 
-/// Says that nothing can be served before a file changes, and why.
+/// Reports that no map can be served until a file changes, and why.
 fn wait_for(health: &mut Health, problem: &str, path: &Path) -> Result<(), TransportError> {
     let problem = format!("waiting for the map {}: {problem}", path.display());
     tracing::warn!("{problem}");
@@ -37,7 +38,7 @@ fn wait_for(health: &mut Health, problem: &str, path: &Path) -> Result<(), Trans
     health.state(NodeState::Waiting)
 }
 
-/// What goes before the cells of a map, which has a name where it is one of a set.
+/// Returns the header of a map; `name` is empty unless the map is part of a set.
 fn header(grid: &OccupancyGrid, rules: CellRules, name: &str) -> MapHeader {
     let mut header = rules.header(MapHeader {
         width: grid.width,
@@ -51,11 +52,11 @@ fn header(grid: &OccupancyGrid, rules: CellRules, name: &str) -> MapHeader {
     header
 }
 
-/// The stamp of what is read now and served as the next.
+/// Returns the stamp of a map that is read now; `served` is its counter.
 fn now(served: u64) -> Stamp {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     Stamp {
-        // A clock before 1970 is as wrong as one in 1970.
+        // A clock before 1970 is just as wrong as one at 1970.
         measured_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
         entered_ns: transport::monotonic_ns(),
         counter: served,

@@ -1,5 +1,5 @@
-//! Looks at the files of a set of maps: the list, where there is one, and each map that is
-//! named now.
+//! Detects changes of the files of a set: the list, if there is one, and each map that it currently
+//! names.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,16 +8,16 @@ use transport::with_causes;
 
 use crate::files::{Files, Fingerprint, Seen, fingerprint};
 
-/// All files of a set at one moment.
+/// State of all files of a set at one moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct SetSeen {
     list: Option<Fingerprint>,
     maps: Vec<(PathBuf, Seen)>,
-    /// Why there is no set now; the maps are those that were named before.
+    /// Error that makes the set invalid now; the maps are then those named before.
     problem: Option<String>,
 }
 
-/// The file or folder of a set, and the files of its maps.
+/// File or folder of a set, and the files of its maps.
 #[derive(Debug)]
 pub(crate) struct SetFiles {
     path: PathBuf,
@@ -26,7 +26,7 @@ pub(crate) struct SetFiles {
 }
 
 impl SetFiles {
-    /// Those of a set, of which only the maps and floors with these names count, if any.
+    /// Watches a set; if `on` is not empty, only the maps and floors with these names.
     pub(crate) fn new(path: &Path, on: &[String]) -> Self {
         SetFiles {
             path: path.to_owned(),
@@ -35,8 +35,8 @@ impl SetFiles {
         }
     }
 
-    /// The files as they are now. What is named is asked anew each time: of a folder that comes
-    /// into a folder, or fills later, no file that is known tells. Other files do not count.
+    /// Returns the current state of the files. The set is resolved again each time, because no
+    /// known file changes when a folder is added or filled later. Other files are ignored.
     pub(crate) fn look(&mut self) -> SetSeen {
         let set = map::set_of(&self.path).and_then(|set| set.select(&self.on));
         let problem = match set {

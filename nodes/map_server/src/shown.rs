@@ -1,21 +1,21 @@
-//! Which map of a set is shown: the one on which the robot is.
+//! Selection of the displayed map of a set: the one on which the robot is.
 
 use std::time::{Duration, Instant};
 
-/// While no pose is believed, the place that leads may be on one map and on another from scan
-/// to scan: one is shown when it has led for so long.
+/// Time for which a map must lead before it is displayed while no pose is believed, since the
+/// leading place may then change between maps from scan to scan.
 const LEADS_FOR: Duration = Duration::from_secs(2);
 
-/// The map that is shown, by its number.
+/// Displayed map, by its number.
 #[derive(Debug)]
 pub(crate) struct Shown {
     map: usize,
-    /// The last that a pose named, and since when it does.
+    /// Map named last by a pose, and the time since which it is named.
     named: (usize, Instant),
 }
 
 impl Shown {
-    /// The map with this number.
+    /// Starts with this map displayed.
     pub(crate) fn at(map: usize) -> Self {
         Shown {
             map,
@@ -27,8 +27,8 @@ impl Shown {
         self.map
     }
 
-    /// Takes the map of a pose, and whether that pose is believed; whether this map is to be
-    /// shown in place of the one that is.
+    /// Processes the map of a pose and whether the pose is believed; returns true if that map
+    /// should now be displayed instead of the current one.
     pub(crate) fn is_due(&mut self, (map, is_believed): (usize, bool), now: Instant) -> bool {
         if self.named.0 != map {
             self.named = (map, now);
@@ -37,7 +37,7 @@ impl Shown {
         map != self.map && is_due
     }
 
-    /// This map is shown now.
+    /// Records that this map is now displayed.
     pub(crate) fn change_to(&mut self, map: usize) {
         self.map = map;
     }

@@ -1,21 +1,21 @@
-//! Decides when a change of the map's files has come to rest.
+//! Decides when a change of the map's files is complete.
 //!
-//! Pure: it compares what the caller saw at each look. A file that is being
-//! written changes from look to look, so only what stands still for one whole
-//! look is worth loading; what was judged once is left alone until it changes.
+//! Pure: it compares the states passed by the caller. A file that is being written changes between
+//! checks, so only a state that is stable for one interval is loaded; after it was judged it is
+//! ignored until it changes.
 
-/// What a look showed.
+/// Result of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// Nothing has happened since the last judgement.
+    /// Nothing has changed since the last judgement.
     Same,
-    /// Something changed and may be changing still.
+    /// Something changed and may still be changing.
     Changing,
-    /// A change has stood still: load it, then say so by [`Watch::judged`].
+    /// A change is stable: load it, then call [`Watch::judged`].
     Settled,
 }
 
-/// Remembers what was judged last and what was seen last.
+/// States of the files: last judged and last seen.
 #[derive(Debug)]
 pub(crate) struct Watch<S> {
     judged: S,
@@ -23,7 +23,7 @@ pub(crate) struct Watch<S> {
 }
 
 impl<S: PartialEq + Clone> Watch<S> {
-    /// Starts with files that were loaded as `seen`.
+    /// Starts with files that were loaded in state `seen`.
     pub(crate) fn new(seen: S) -> Self {
         Watch {
             judged: seen.clone(),
@@ -31,7 +31,7 @@ impl<S: PartialEq + Clone> Watch<S> {
         }
     }
 
-    /// Compares a look with the ones before.
+    /// Compares the current state with the previous ones.
     pub(crate) fn look(&mut self, seen: S) -> Look {
         let settled = self.last == seen;
         self.last = seen;
@@ -42,9 +42,8 @@ impl<S: PartialEq + Clone> Watch<S> {
         }
     }
 
-    /// The files as last seen were loaded or refused; `after` is what they look
-    /// like now. If they changed meanwhile the outcome is worth nothing, and
-    /// false is returned.
+    /// Records that the last seen state was loaded or rejected; `after` is the current state.
+    /// Returns false if the files changed meanwhile, so that the outcome must be discarded.
     pub(crate) fn judged(&mut self, after: S) -> bool {
         let stood_still = after == self.last;
         if stood_still {
@@ -60,7 +59,7 @@ mod tests {
     use super::*;
     use crate::files::{Fingerprint, Seen};
 
-    /// A pair of files of these sizes; 0 is not there.
+    /// Returns two files with these sizes; 0 means missing.
     fn seen(yaml: u64, image: u64) -> Seen {
         let file = |size| {
             (size > 0).then_some(Fingerprint {

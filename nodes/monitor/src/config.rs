@@ -6,27 +6,26 @@ use clap::Parser;
 
 /// Serves a web page to watch the graph, and an API with the same content.
 ///
-/// Listens on this machine alone unless --listen says otherwise. Where the port
-/// is taken, it takes the next free one and says which.
+/// Listens on this machine only, unless --listen says otherwise. If the port is taken, it uses the
+/// next free one and logs which.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "monitor", version)]
 pub struct Config {
-    /// Address to listen on; port 0 is any free port. Beyond this machine whoever
-    /// reaches the port can read, and nothing is encrypted
+    /// Address to listen on; port 0 is any free port. On an address reachable from other machines,
+    /// anyone who can reach the port can read, and nothing is encrypted
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:7440")]
     pub listen: SocketAddr,
 
-    /// The robot's name [default: the name of the machine]
+    /// Name of the robot [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
-    /// Who may reach the page.
     #[command(flatten)]
     pub page: dashboard::Options,
 }
 
 impl Config {
-    /// The robot's name.
+    /// Returns the name of the robot.
     #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();

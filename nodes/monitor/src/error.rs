@@ -1,12 +1,10 @@
 //! Errors that end the monitor.
 
-/// What was tried, what was found and what is allowed.
+/// Error of the node, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum MonitorError {
-    /// The page cannot be served.
     #[error(transparent)]
     Dashboard(#[from] dashboard::DashboardError),
-    /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
 }

@@ -1,8 +1,8 @@
-//! Node `monitor`: a web page to watch a graph, and the API behind it.
+//! Node `monitor`: a web page to watch a graph, and its API.
 //!
-//! The page and the API are `dashboard`'s; here the messages of a graph are passed to
-//! it, and what those with the token want to the graph. The graph never waits for
-//! that: a sample is taken, and who is too slow loses messages.
+//! Crate `dashboard` implements the page and the API; this crate passes the messages of a graph to
+//! it, and the requests of users with the token to the graph. The graph never waits for the
+//! monitor: it takes samples, and a slow viewer loses messages.
 
 mod config;
 mod error;

@@ -1,4 +1,4 @@
-//! Subscribes to the graph, and feeds the server.
+//! Subscribes to the graph and feeds the server.
 
 mod inputs;
 mod outputs;
@@ -15,13 +15,13 @@ use crate::{Config, MonitorError};
 use inputs::Inputs;
 use outputs::Outputs;
 
-/// How long a request, an image and a silent node may wait.
+/// Longest delay for a request, an image and the detection of a silent node.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
 ///
 /// # Errors
-/// If it cannot listen, the token cannot be read, or the graph fails.
+/// If it cannot listen, the token cannot be read, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
     let (robot, requests) = Robot::in_graph(config.robot(), Some(graph.name().to_string()));
     let inputs = Inputs::open(graph)?;
@@ -34,7 +34,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
     };
     let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
     server.announce("watch it", config.listen);
-    // What a monitor before this one requested for is not known here, so it ends.
+    // A request of a previous monitor is not known here, so it is withdrawn.
     node.outputs.region(&[])?;
     node.health.state(NodeState::Ready)?;
     graph.run(&inputs.all(), TICK, |wake| {
@@ -47,7 +47,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
 struct Node {
     robot: Arc<Robot>,
     requests: Receiver<Request>,
-    /// There while somebody looks at it, for it is computed only then.
+    /// Subscription to the image, which is computed only while it is viewed.
     field: Option<Subscriber<topic::Field>>,
     outputs: Outputs,
     health: Health,

@@ -1,4 +1,4 @@
-//! The node's one function: from a message of `votes` to one of `hypotheses`.
+//! Core of the node: turns a message of `votes` into one of `hypotheses`.
 
 mod beams;
 mod together;
@@ -20,52 +20,50 @@ use crate::maps::Maps;
 use crate::scans::Scans;
 use beams::judged;
 
-/// What answering takes, kept from scan to scan. It may serve any maps.
+/// Buffers for answering, reused from scan to scan. It may serve any maps.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    /// One for each map.
+    /// Buffers for each map.
     maps: Vec<OnMap>,
     map_ids: Vec<u64>,
     merged: Merged,
     beams: Vec<Beam>,
 }
 
-/// What answering on one map takes.
+/// Buffers for one map.
 #[derive(Debug, Default)]
 struct OnMap {
     peaks: peaks::Workspace,
     space: Option<(Extent, Space)>,
 }
 
-/// What a space is made for: headings a turn, a cell's side and the reach in metres, and
-/// cells along x and y.
+/// Parameters of a space: headings per turn, side of a cell and reach in metres, number of cells
+/// along x and y.
 type Extent = (u32, (f64, f64), usize, usize);
 
-/// What there is to say about a scan.
+/// Result for a scan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer<'a> {
-    /// All but the times of extracting and sending.
+    /// Header of `hypotheses`, without the times of extracting and sending.
     pub header: HypothesesHeader,
-    /// Best first.
+    /// Places, best first.
     pub places: &'a [Place],
-    /// Of the maps, by the numbers that places have.
+    /// Ids of the maps, indexed by the map numbers of places.
     pub map_ids: &'a [u64],
-    /// Header of `beams`.
     pub beams_header: BeamsHeader,
-    /// Items of `beams`; none where the votes alone decide.
+    /// Items of `beams`; empty if only votes are used.
     pub beams: &'a [Beam],
-    /// Whose poses the places are.
+    /// Frame whose poses the places are.
     pub target: Target,
-    /// Where the cells of the best place's map lie; none where there is no answer.
+    /// Grid frame of the best place's map; `None` if there is no result.
     pub frame: Option<GridFrame>,
 }
 
-/// Reads the places from the votes of a scan and, unless the votes alone are to
-/// decide, from the scan.
+/// Finds the places of a scan from its votes and, unless only votes are used, from the scan.
 ///
 /// # Errors
-/// If the votes are refused, see [`check`] and [`mount`], or their scan is not
-/// known; [`nothing`] is then what to say.
+/// If the votes are rejected, see [`check`] and [`mount`], or their scan is not known; [`nothing`]
+/// is then the message to send.
 pub fn answer<'w>(
     header: &VotesHeader,
     votes: &[Vote],
@@ -132,7 +130,7 @@ fn said<'w>(
 }
 
 impl OnMap {
-    /// Reads the places on one map.
+    /// Finds the places on one map.
     fn judge(
         &mut self,
         header: &VotesHeader,
@@ -156,7 +154,7 @@ impl OnMap {
     }
 }
 
-/// The space of the scan before, where it is that of this scan, too.
+/// Returns the space of the previous scan if it fits, else creates a new one.
 fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&Space, EngineError> {
     if kept.as_ref().is_none_or(|(of, _)| *of != extent) {
         let (headings, (resolution_m, reach_m), width, height) = extent;
@@ -167,7 +165,7 @@ fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&S
     Ok(space)
 }
 
-/// The answer to votes that say nothing, or that cannot be read: it counts as no search.
+/// Returns the answer to votes that are empty or rejected: it counts as no search.
 #[must_use]
 pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
     let header = HypothesesHeader {
@@ -193,7 +191,7 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
 }
 
 impl Answer<'_> {
-    /// The message's items, to be filled in place.
+    /// Returns the items of the message.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
         let (map_ids, target) = (self.map_ids, self.target);
         let places = self.places.iter();
@@ -224,7 +222,7 @@ mod tests {
 
     use super::*;
 
-    /// Cells of a metre, turned by a quarter: grid x is map y, grid y is -x.
+    /// Returns a map with cells of one metre, rotated by 90°: grid x is map y, grid y is -x.
     fn maps() -> Maps {
         let mut maps = Maps::default();
         let map = MapHeader {
@@ -271,7 +269,7 @@ mod tests {
         }
     }
 
-    /// Two places: one ahead of the other by a third.
+    /// Two places, one ahead of the other by a third.
     const VOTES: [Vote; 2] = [
         Vote {
             x: 10,
@@ -325,13 +323,13 @@ mod tests {
         assert_eq!(hypotheses.len(), 2);
         let laser = Pose::from(hypotheses[0].map_from_laser);
         let base = Pose::from(hypotheses[0].map_from_base);
-        // The middle of cell (10, 5), and the base 0.75 m behind the laser,
-        // which looks along map y. A few roundings of numbers around ten.
+        // The middle of cell (10, 5), and the base 0.75 m behind the laser, which looks along map
+        // y; up to a few rounding errors of numbers around ten.
         assert!(laser.is_within(Pose::new(-5.5, 10.5, FRAC_PI_2), 1e-12, 1e-12));
         assert!(base.is_within(Pose::new(-5.5, 9.75, FRAC_PI_2), 1e-12, 1e-12));
         assert_eq!((hypotheses[0].score, hypotheses[0].intensity), (0.8, 100));
         assert_eq!(hypotheses[0].support, 1);
-        // A cell's rounding: its side squared over twelve.
+        // Rounding to a cell: its side squared over twelve.
         let spread = hypotheses[1].covariance;
         assert!((spread[0] - 1.0 / 12.0).abs() < 1e-12, "{spread:?}");
     }
@@ -369,7 +367,7 @@ mod tests {
         scans.receive(&scan, &[1.0, 2.0]);
         let known = (&maps(), &scans);
         let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
-        // The map is empty, so that nothing fits.
+        // The map is empty, so nothing fits.
         assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
         let hypotheses: Vec<Hypothesis> = said.hypotheses().collect();
         assert_eq!((hypotheses.len(), hypotheses[0].score), (2, 0.0));

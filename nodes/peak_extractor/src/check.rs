@@ -1,8 +1,7 @@
-//! What votes have to be before places are read from them.
+//! Validation of votes.
 //!
-//! They come from another process: a heading beyond the turn, a cell off the
-//! map or an order that the engine does not expect would make it compute
-//! nonsense.
+//! They come from another process: a heading out of range, a cell off the map or an unexpected
+//! order would make the engine compute nonsense.
 
 use std::cmp::Reverse;
 
@@ -15,26 +14,23 @@ use messages::{SearchOutcome, Vote, VotesHeader};
 use crate::PeakError;
 use crate::maps::{Map, Maps};
 
-/// Cells of a millimetre along a metre: none are finer, none searched larger.
+/// Largest pooling factor: cells of one millimetre in a searched cell of one metre.
 const MAX_POOLED: u32 = 1_000;
 
-/// The votes of a scan as the engine takes them, and what they refer to.
+/// Validated votes of a scan in the engine's form, and the data they refer to.
 #[derive(Debug)]
 pub struct Checked<'a> {
-    /// The votes.
     pub input: PeakInput<'a>,
-    /// The map that was searched.
     pub map: &'a Map,
-    /// How the scan was thinned.
+    /// Selection of the scan's beams.
     pub beams: BeamConfig,
 }
 
-/// The votes of a scan as the engine takes them; `None` where the scan was
-/// refused or has no votes.
+/// Validates the votes of a scan; returns `None` if the scan was refused or has no votes.
 ///
 /// # Errors
-/// If the header contradicts itself or the votes, the map is not known, or a
-/// vote is for no pose of the search or out of order.
+/// If the header contradicts itself or the votes, the map is not known, or a vote is outside the
+/// search space or out of order.
 pub fn check<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
@@ -50,11 +46,11 @@ pub fn check<'a>(
     check_on_map(header, votes, maps, lead).map(Some)
 }
 
-/// The votes on one map, which may be one of several that were searched together: the best
-/// pose of all has a share like this.
+/// Validates the votes on one map, which may be one of several that were searched together; `lead`
+/// is the vote share of the best pose on all of them.
 ///
 /// # Errors
-/// As [`check`].
+/// See [`check`].
 pub fn check_on_map<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
@@ -86,16 +82,16 @@ pub fn check_on_map<'a>(
     Ok(Checked { input, map, beams })
 }
 
-/// How the search ended.
+/// Returns the outcome of the search.
 fn outcome(header: &VotesHeader) -> Result<SearchOutcome, PeakError> {
     let found = header.outcome;
     SearchOutcome::from_code(found).ok_or(PeakError::Outcome { found })
 }
 
-/// Where the laser sits on the robot, if the header knows.
+/// Returns the pose of the laser on the robot, if the header has it.
 ///
 /// # Errors
-/// If it is no number.
+/// If the pose is not finite.
 pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
     if header.mount_known != 1 {
         return Ok(None);
@@ -108,7 +104,7 @@ pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
     Ok(Some(mount))
 }
 
-/// How the scan was thinned.
+/// Returns the selection of the scan's beams.
 fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
     let found = header.beam_arc_m;
     if !(0.0..=2.0).contains(&found) {
@@ -129,7 +125,7 @@ fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
     })
 }
 
-/// Cells of the map along the side of a cell that was searched.
+/// Returns the pooling factor: map cells per searched cell and axis.
 fn pooling(header: &VotesHeader) -> Result<u32, PeakError> {
     let found = header.pooling;
     let pooling = Some(found).filter(|pooling| (1..=MAX_POOLED).contains(pooling));
@@ -151,7 +147,7 @@ fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
     }
     let (best, highest_possible) = (header.best, header.highest_possible);
     let is_first = votes.first().map(|vote| vote.intensity.into()) == Some(best);
-    // Where another map leads, votes can all lie below the floor that counts.
+    // If another map leads, all votes on this one may be below the floor.
     let is_sound = (is_first || best == 0) && best <= highest_possible;
     match is_sound && highest_possible <= u16::MAX.into() {
         true => Ok(()),

@@ -5,15 +5,14 @@ use engine::peaks::PeakConfig;
 
 use crate::ParticlesConfig;
 
-/// Turns the votes of each scan into distinct poses with a verdict and
-/// publishes them as `hypotheses`.
+/// Combines the votes of each scan into distinct poses with a verdict and publishes them as
+/// `hypotheses`.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "peak_extractor", version)]
 pub struct Config {
-    /// When votes make up one place, and when a place stands alone.
+    /// Rules for combining votes into places, and for the verdict.
     #[command(flatten)]
     pub peaks: PeakConfig,
-    /// Whether particle filters are handed a start.
     #[command(flatten)]
     pub particles: ParticlesConfig,
 }

@@ -1,11 +1,9 @@
-//! Node `peak_extractor`: from the votes of a scan to the places where the
-//! robot may be, from `votes`, `scan` and `map` to
-//! `hypotheses` and, where asked for, `particles`.
+//! Node `peak_extractor`: finds the places where the robot may be from the votes of a scan; from
+//! `votes`, `scan` and `map` to `hypotheses` and, if requested, `particles`.
 //!
-//! Each message of `votes` is answered by exactly one of `hypotheses`, also
-//! where it holds nothing or is refused. How votes become places is the
-//! engine's; `maps` and `scans` keep what votes refer to, `check` knows what
-//! they have to be, `answer` what a message says. Only `run` touches the graph and
+//! Each message of `votes` is answered by exactly one of `hypotheses`, even if it is empty or
+//! refused. The engine combines votes into places; `maps` and `scans` store the data that votes
+//! refer to, `check` validates votes, `answer` builds the messages. Only `run` uses the graph and
 //! the clock.
 
 pub mod answer;

@@ -1,7 +1,7 @@
-//! The last two maps, or sets of maps, ready for the fit of scans.
+//! Last two maps, or sets of maps, ready for the fit of scans.
 //!
-//! Votes are cells of the map that was searched, and those on their way when
-//! the map changes are of the one before.
+//! Votes refer to cells of the map that was searched, and votes in transit during a map change
+//! belong to the previous map.
 
 use engine::EngineError;
 use engine::fit::DistanceField;
@@ -11,27 +11,27 @@ use messages::{MapHeader, MapSet};
 
 use crate::PeakError;
 
-/// A map, ready for the fit of scans.
+/// Map that scans can be compared with.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// Its id in messages.
+    /// Id of the map in messages.
     pub map_id: u64,
-    /// Cells along x.
+    /// Number of cells along x.
     pub width: u32,
-    /// Cells along y.
+    /// Number of cells along y.
     pub height: u32,
-    /// Its grid in the map frame.
+    /// Grid of the map in the map frame.
     pub frame: GridFrame,
-    /// Distances to obstacles, by the rules for its cells.
+    /// Distances to obstacles, according to the map's cell rules.
     pub distance_field: DistanceField,
-    /// Up to which length beams count, where that is more than the map's own, metres.
+    /// Length up to which beams count, metres, if it exceeds the map's own.
     pub reach_m: f64,
 }
 
-/// What is searched, and what was before: a map each, or a set of maps.
+/// Current and previous map or set of maps.
 #[derive(Debug, Clone, Default)]
 pub struct Maps {
-    /// The newest first.
+    /// Known maps, newest first.
     known: Vec<Vec<Map>>,
 }
 
@@ -51,20 +51,20 @@ impl Map {
 }
 
 impl Maps {
-    /// Takes a map that is searched alone; one that is refused changes nothing.
+    /// Stores a map that is searched alone; a rejected one changes nothing.
     ///
     /// # Errors
-    /// If the grid's sides, resolution, origin or rules are out of range, or the
-    /// number of cells is not what the sides say.
+    /// If the grid's sides, resolution, origin or rules are out of range, or the number of cells
+    /// does not match the sides.
     pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
         self.replace(vec![Map::new(header, occupancy, 0.0)?]);
         Ok(())
     }
 
-    /// Takes maps that are searched together; if one is refused, nothing changes.
+    /// Stores maps that are searched together; if one is rejected, nothing changes.
     ///
     /// # Errors
-    /// As of one map.
+    /// See [`Maps::receive`].
     pub fn receive_set(&mut self, set: &MapSet<'_>) -> Result<(), EngineError> {
         let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter();
@@ -80,10 +80,10 @@ impl Maps {
         self.known.insert(0, maps);
     }
 
-    /// One of them.
+    /// Returns the map with this id.
     ///
     /// # Errors
-    /// If it is not known.
+    /// If the map is not known.
     pub fn get(&self, map_id: u64) -> Result<&Map, PeakError> {
         let found = self.known.iter().flatten().find(|map| map.map_id == map_id);
         found.ok_or_else(|| PeakError::UnknownMap {

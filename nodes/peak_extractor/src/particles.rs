@@ -1,4 +1,4 @@
-//! From the places of a scan to the poses with which a particle filter may start.
+//! Draws start poses for a particle filter from the places of a scan.
 
 use engine::EngineError;
 use engine::particles::{self, Candidate};
@@ -6,20 +6,20 @@ use messages::{Particle, ParticlesHeader};
 
 use crate::answer::Answer;
 
-/// How many are sent for each scan, and from which random numbers.
+/// Number and seed of the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Args)]
 pub struct ParticlesConfig {
-    /// Send this many poses around the places of each scan on topic `particles`, as a
-    /// start for a particle filter, 1..=1000000 [default: the topic is not sent]
+    /// Send this many poses around the places of each scan on topic `particles`, as a start for a
+    /// particle filter, 1..=1000000 [default: the topic is not sent]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub particles: Option<u32>,
 
-    /// Seed of their random numbers, the same for each scan.
+    /// Seed of the particles' random numbers, the same for each scan.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub particles_seed: u64,
 }
 
-/// The message: its header and its items; none where the scan has no place.
+/// Returns header and items of the message; there are no items if the scan has no place.
 ///
 /// # Errors
 /// If the places are not finite.
@@ -36,7 +36,7 @@ pub fn draw(
     let Some(frame) = answer.frame.filter(|_| !answer.places.is_empty()) else {
         return Ok((header, Vec::new()));
     };
-    // On the map of the best place.
+    // Only on the map of the best place.
     let map = answer.places[0].map;
     let on_map = answer.places.iter().filter(|place| place.map == map);
     let candidates = on_map.map(Candidate::from);

@@ -1,4 +1,4 @@
-//! Receives votes and sends hypotheses.
+//! Receives votes and publishes hypotheses.
 
 use std::time::{Duration, Instant};
 
@@ -14,15 +14,13 @@ use crate::maps::Maps;
 use crate::scans::Scans;
 use crate::{Config, PeakError, particles};
 
-/// How long a report of health may be overdue.
+/// Longest delay of a health report.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Answers each message of votes with its hypotheses until the stop flag is
-/// set.
+/// Answers each message of votes with its hypotheses until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails; votes or a map that are refused are reported in
-/// `health`.
+/// If the transport fails; rejected votes or maps are reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
     let scans = graph.subscriber::<topic::Scan>()?;
@@ -39,7 +37,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         newest_kept: None,
         last_refusal: String::new(),
         hypotheses: graph.publisher_for(config.peaks.max_hypotheses as usize)?,
-        // As many as vote by default; whoever lets more vote has it grow.
+        // Enough for the default number of beams; the publisher grows for more.
         beams: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
         particles: match config.particles.particles {
             Some(count) => Some((graph.publisher_for(count as usize)?, count)),
@@ -63,12 +61,12 @@ struct Node {
     scans: Scans,
     workspace: Workspace,
     gaps: GapCounter,
-    /// The counter of the newest scan that is searched only when asked for.
+    /// Counter of the newest scan that is searched only on request.
     newest_kept: Option<u64>,
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
     beams: Publisher<topic::Beams>,
-    /// Where particles are asked for, with how many.
+    /// Publisher and number of particles, if requested.
     particles: Option<(Publisher<topic::Particles>, u32)>,
     health: Health,
 }
@@ -86,8 +84,7 @@ impl Node {
     ) -> Result<(), TransportError> {
         loop {
             let sample = votes.receive()?;
-            // The scan, what was made of it and the map that was searched were sent
-            // before the votes.
+            // The scan, the data derived from it and the map were sent before the votes.
             while let Some(scan) = scans.receive()? {
                 self.health.count_received(1);
                 self.scans.receive(scan.header(), scan.items());
@@ -103,7 +100,7 @@ impl Node {
             if let Some(set) = sets.newest()? {
                 self.on_set(&set)?;
             }
-            // Of a set it is the map that is shown.
+            // While sets are published, this is the map of the set that is displayed.
             if let Some(map) = maps.newest()?
                 && !sets.has_publishers()
             {
@@ -158,7 +155,7 @@ impl Node {
             return Ok(());
         }
         let known = (&self.maps, &self.scans);
-        // What is sent lies in the workspace.
+        // The messages borrow from the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
         let answered = answer(
             header,
@@ -168,8 +165,8 @@ impl Node {
             &mut workspace,
         );
         let extract_ns = start.elapsed().as_nanos() as u64;
-        // Votes have the counter of their scan: one that is missing here was
-        // lost on one of its two ways. A scan that was kept has been counted.
+        // Votes have the counter of their scan: a missing one was lost either as scan or as votes.
+        // A scan that was kept has already been counted.
         if self.newest_kept.is_none_or(|newest| newest < counter) {
             self.health.count_dropped(self.gaps.lost_before(counter));
         }
@@ -199,7 +196,7 @@ impl Node {
         loan.send()?;
         self.health.count_sent(1);
         self.send_particles(answer)?;
-        // Only pictures are made of them.
+        // The beams are only for display.
         if self.beams.has_subscribers() {
             self.send_beams(answer)?;
         }
@@ -235,7 +232,7 @@ impl Node {
         let reason = with_causes(error);
         let problem = format!("votes of scan {counter} rejected: {reason}");
         self.health.error(&problem)?;
-        // A sender that is always wrong would fill the log.
+        // A persistent fault would otherwise fill the log.
         if reason != self.last_refusal {
             tracing::warn!("{problem}");
             self.last_refusal = reason;

@@ -1,4 +1,4 @@
-//! The last scans, and what was made of them, until their votes come.
+//! Recent scans and the data derived from them, kept until their votes arrive.
 
 use std::collections::VecDeque;
 
@@ -7,22 +7,21 @@ use messages::{Reading, ScanHeader, Stamp, VotesHeader};
 
 use crate::PeakError;
 
-/// Scans that are kept: far more than wait before the search at any time.
+/// Number of scans kept, far more than ever wait for the search.
 const KEPT: usize = 64;
 
-/// The last scans.
 #[derive(Debug, Default)]
 pub struct Scans {
-    /// The newest last.
+    /// Scans, newest last.
     kept: VecDeque<(ScanHeader, Vec<f32>)>,
-    /// Beams of scans that were joined or moved; the newest last.
+    /// Beams of scans that were joined or deskewed, newest last.
     readings: VecDeque<(Stamp, Vec<Reading>)>,
-    /// Which of their votes are on which map; the newest last.
+    /// Vote headers by map, newest last.
     by_map: VecDeque<(Stamp, Vec<VotesHeader>)>,
 }
 
 impl Scans {
-    /// Takes a scan. Room is taken from the oldest one, once there are enough.
+    /// Stores a scan, reusing the buffer of the oldest one.
     pub fn receive(&mut self, header: &ScanHeader, ranges: &[f32]) {
         let mut room = match self.kept.len() {
             KEPT => self
@@ -36,7 +35,7 @@ impl Scans {
         self.kept.push_back((*header, room));
     }
 
-    /// Takes the beams of a scan that was joined or moved.
+    /// Stores the beams of a scan that was joined or deskewed.
     pub fn take_readings(&mut self, stamp: Stamp, readings: &[Reading]) {
         if self.readings.len() == KEPT {
             self.readings.pop_front();
@@ -44,10 +43,10 @@ impl Scans {
         self.readings.push_back((stamp, readings.to_vec()));
     }
 
-    /// The beams of the scan with a stamp.
+    /// Returns the beams of the scan with this stamp.
     ///
     /// # Errors
-    /// If they did not come, or too long ago.
+    /// If they were not received, or too long ago.
     pub fn readings(&self, stamp: Stamp) -> Result<&[Reading], PeakError> {
         let mut newest_first = self.readings.iter().rev();
         let found = newest_first.find(|(of, _)| of.is_of(stamp));
@@ -56,7 +55,7 @@ impl Scans {
             .ok_or(PeakError::UnknownScan)
     }
 
-    /// Takes what there is to say of the votes on each map.
+    /// Stores the headers of the votes on each map.
     pub fn take_by_map(&mut self, stamp: Stamp, maps: &[VotesHeader]) {
         if self.by_map.len() == KEPT {
             self.by_map.pop_front();
@@ -64,10 +63,10 @@ impl Scans {
         self.by_map.push_back((stamp, maps.to_vec()));
     }
 
-    /// What there is to say of the votes on each map of the scan with a stamp.
+    /// Returns the headers of the votes on each map of the scan with this stamp.
     ///
     /// # Errors
-    /// If it did not come, or too long ago.
+    /// If they were not received, or too long ago.
     pub fn by_map(&self, stamp: Stamp) -> Result<&[VotesHeader], PeakError> {
         let mut newest_first = self.by_map.iter().rev();
         let found = newest_first.find(|(of, _)| of.is_of(stamp));
@@ -76,10 +75,10 @@ impl Scans {
             .ok_or(PeakError::UnknownParts)
     }
 
-    /// The scan with a stamp.
+    /// Returns the scan with this stamp.
     ///
     /// # Errors
-    /// If it did not come, or too long ago.
+    /// If it was not received, or too long ago.
     pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
         let mut newest_first = self.kept.iter().rev();
         let found = newest_first.find(|(header, _)| header.stamp.is_of(stamp));

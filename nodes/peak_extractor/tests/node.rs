@@ -1,4 +1,4 @@
-//! The node as a process: votes go in, hypotheses come out.
+//! Tests of the node as a process: votes go in, hypotheses come out.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -24,7 +24,7 @@ use messages::{
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-/// A room with a pillar: no pose in it looks like another.
+/// A room with a pillar, in which no two poses look alike.
 const ROOM: [&str; 9] = [
     "################",
     "#..............#",
@@ -51,13 +51,13 @@ fn cells() -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-/// A scan of the room and what the engine says about it.
+/// Scan of the room and the engine's result for it.
 struct Searched {
     ranges: Vec<f32>,
     outcome: Outcome,
 }
 
-/// The scan with one beam a degree.
+/// Returns a scan with one beam per degree.
 fn scan(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -PI,
@@ -88,7 +88,7 @@ fn searched(x: i64, y: i64, heading: usize) -> Searched {
     }
 }
 
-/// What the engine makes of it on a map in a frame.
+/// Returns the engine's places on a map with this frame.
 fn expected(searched: &Searched, frame: GridFrame) -> Places {
     let distance_field =
         DistanceField::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
@@ -98,7 +98,7 @@ fn expected(searched: &Searched, frame: GridFrame) -> Places {
     by_fit(&input, (&distance_field, &ends), &PeakConfig::default())
 }
 
-/// The node's neighbours.
+/// Neighbours of the node.
 struct World {
     graph: Graph,
     maps: Publisher<topic::Map>,
@@ -136,8 +136,8 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Sends a scan and its votes and waits for the hypotheses; fails if those of
-    /// other votes come.
+    /// Publishes a scan and its votes and waits for the hypotheses; fails if those of other votes
+    /// arrive.
     fn ask(
         &self,
         header: VotesHeader,
@@ -192,7 +192,7 @@ fn map_header(resolution_m: f64) -> MapHeader {
     header
 }
 
-/// Of the map with the cells of the frame.
+/// Returns the id of the map with the frame's resolution.
 fn id() -> u64 {
     map_header(FRAME.resolution_m).map_id
 }
@@ -233,8 +233,8 @@ fn particles_lie_around_the_places_of_the_base() {
     assert_eq!((start.stamp, start.map_id), (said.stamp, id()));
     assert_eq!((start.mount_known, drawn.len()), (1, 30));
     for particle in drawn {
-        // Half a cell and a degree or a little more around the one place: five of those,
-        // the base turning about the laser.
+        // About half a cell and a degree of deviation around the single place, times five, with the
+        // base rotating about the laser.
         let pose = Pose::from(particle.map_from_base);
         assert!(pose.is_within(best, 1.0, 0.2), "{pose:?} {best:?}");
     }
@@ -250,7 +250,7 @@ fn hypotheses_are_those_of_the_engine() {
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211)] {
         let mut searched = searched(x, y, heading);
-        // Nothing returned of the last three beams.
+        // The last three beams have no return.
         searched.ranges[357..].fill(f32::INFINITY);
         let Searched { ranges, outcome } = &searched;
         let (said, hypotheses) = world.ask(header(id(), outcome), ranges, &outcome.found.votes);
@@ -270,7 +270,7 @@ fn hypotheses_are_those_of_the_engine() {
             assert_eq!(hypothesis.covariance, place.covariance.to_rows());
             assert_eq!(hypothesis.support, place.support);
             let base = Pose::from(hypothesis.map_from_base);
-            // The mount there and back: a few roundings of numbers below ten.
+            // Equal up to a few rounding errors of numbers below ten.
             let laser = base.then(MOUNT.into());
             assert!(laser.is_within(place.map_from_laser, 1e-12, 1e-12));
         }
@@ -281,7 +281,7 @@ fn hypotheses_are_those_of_the_engine() {
         assert_eq!((header.stamp, header.map_id), (said.stamp, id()));
         assert_eq!(header.map_from_laser, hypotheses[0].map_from_laser);
         let count = |fate: BeamFate| beams.iter().filter(|beam| beam.fate == fate as u32).count();
-        // A sector of two beams is one that votes.
+        // A sector of two beams has one vote.
         assert_eq!((beams.len(), count(BeamFate::NoReturn)), (180, 1));
         let hits = expected
             .classes
@@ -334,7 +334,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let error = refused(world.ask(sound, ranges, &off_the_map), 3);
     assert!(error.contains("vote 0 is for cell 16"), "{error}");
 
-    // Neither is wrong with these: the scan alone said nothing.
+    // These are valid: there was just no search result.
     for outcome in [SearchOutcome::Refused, SearchOutcome::NoVotes] {
         let empty = VotesHeader {
             outcome: outcome as u32,
@@ -364,7 +364,7 @@ fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
     let node = world.start(&[]);
     world.publish_map(FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
-    // A map that is refused takes no place.
+    // A rejected map does not replace another one.
     world.publish_map(-1.0);
     world.wait_until(NodeState::Degraded);
     world.publish_map(2.0 * FRAME.resolution_m);

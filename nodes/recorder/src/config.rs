@@ -9,13 +9,13 @@ use crate::{Event, duration};
 
 /// Records the graph to an MCAP file with ROS 2 messages.
 ///
-/// Ends with 0, 1 on an error, 2 on wrong usage, and 3 when it recorded but lost data.
-/// Everything written is on its way to the disk within a second. An existing file is
-/// kept; the recording goes to one with a number behind its name.
+/// Exits with code 0, 1 on an error, 2 on wrong usage, or 3 if data was lost. Everything recorded
+/// is on its way to the disk within a second. An existing file is never overwritten; the recording
+/// then goes to a file with a number after its name.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "recorder", version)]
 pub struct Config {
-    /// The recording; with --keep, the base of the names of saved ones
+    /// File of the recording; with --keep, the base of the names of saved files
     #[arg(long, value_name = "FILE")]
     pub output: PathBuf,
 
@@ -27,8 +27,7 @@ pub struct Config {
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub split_time: Option<Duration>,
 
-    /// Keep only this much time in memory, as 10m, and write it on SIGUSR1 and on
-    /// events
+    /// Keep only this much time in memory, as 10m, and write it on SIGUSR1 and on events
     #[arg(long, value_name = "TIME", value_parser = duration::parse,
           conflicts_with_all = ["split_size", "split_time"])]
     pub keep: Option<Duration>,
@@ -39,19 +38,19 @@ pub struct Config {
           value_parser = clap::value_parser!(u64).range(1..))]
     pub keep_size: u64,
 
-    /// Number of files that --keep leaves on the disk; the oldest are removed
+    /// Number of files that --keep leaves on the disk; the oldest ones are removed
     #[arg(long, value_name = "COUNT", default_value_t = 20, requires = "keep",
           value_parser = clap::value_parser!(u32).range(1..))]
     pub keep_files: u32,
 
-    /// Size of all files that --keep leaves on the disk, megabytes (10^6 bytes); the oldest are
-    /// removed, and the newest one stays
+    /// Size of all files that --keep leaves on the disk, megabytes (10^6 bytes); the oldest ones
+    /// are removed, but never the newest
     #[arg(long, value_name = "MB", default_value_t = 4000, requires = "keep",
           value_parser = clap::value_parser!(u64).range(1..))]
     pub keep_disk: u64,
 
-    /// The events on which --keep saves, separated by commas; those that come while what the last
-    /// file holds is still kept go into one next file
+    /// Events on which --keep saves, separated by commas; events whose file would overlap the last
+    /// one are saved together in the next file
     #[arg(
         long,
         value_name = "EVENTS",
@@ -61,12 +60,12 @@ pub struct Config {
     )]
     pub save_on: Vec<Event>,
 
-    /// How often the file is synced to the disk, which limits what a power failure can
-    /// take, as 1s; or never, which leaves it to the system (some 30 s)
+    /// Interval at which the file is synced to the disk, as 1s, which limits the loss in a power
+    /// failure; or never, which leaves it to the system (some 30 s)
     #[arg(long, value_name = "TIME|never", default_value = "5s", value_parser = SyncPeriod::parse)]
     pub sync: SyncPeriod,
 
-    /// A file to attach to the recording; may be repeated
+    /// File to attach to the recording; may be repeated
     #[arg(long, value_name = "FILE")]
     pub attach: Vec<PathBuf>,
 
@@ -74,7 +73,6 @@ pub struct Config {
     #[arg(long)]
     pub field: bool,
 
-    /// How frames are called.
     #[command(flatten)]
     pub transcript: ros_export::Options,
 
@@ -85,7 +83,7 @@ pub struct Config {
     pub queue_size: u64,
 }
 
-/// How often a recording is synced to the disk.
+/// Interval at which a recording is synced to the disk; `None` for never.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SyncPeriod(pub Option<Duration>);
 

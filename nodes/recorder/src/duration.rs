@@ -1,14 +1,14 @@
-//! Durations as people type them.
+//! Durations in the form that users type.
 
 use std::time::Duration;
 
-/// The longest that is allowed: a year.
+/// Longest duration allowed: a year.
 const LONGEST_S: f64 = 365.0 * 86_400.0;
 
-/// Reads `90`, `90s`, `10m` or `1.5h`; a bare number is seconds.
+/// Parses `90`, `90s`, `10m` or `1.5h`; a bare number is in seconds.
 ///
 /// # Errors
-/// Says what is allowed.
+/// A message with the values allowed.
 pub(crate) fn parse(text: &str) -> Result<Duration, String> {
     let unit = |suffix, seconds| text.strip_suffix(suffix).map(|number| (number, seconds));
     let (number, seconds) = unit('s', 1.0)

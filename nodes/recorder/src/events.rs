@@ -1,17 +1,17 @@
-//! Events on which the last minutes are saved.
+//! Detection of the events on which the last minutes are saved.
 
 use messages::{HealthHeader, NodeState, TrackState, Verdict};
 
-/// Scans in a row that must be without a place after it was known.
+/// Number of consecutive scans without a place after which the pose counts as lost.
 const LOST_AFTER: u32 = 5;
 
-/// Something on which a black box is saved.
+/// Event on which a black box is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Event {
-    /// The tracker lost the pose; without a tracker, five scans in a row without a
-    /// place after one was known
+    /// The tracker lost the pose; without a tracker, five consecutive scans without a place after
+    /// one was known
     LostPose,
-    /// A node is degraded
+    /// A node became degraded
     Degraded,
 }
 
@@ -24,20 +24,19 @@ impl std::fmt::Display for Event {
     }
 }
 
-/// Looks out for events.
 #[derive(Debug, Default)]
 pub(crate) struct EventDetector {
-    /// Scans since the last known place, if there was one; none once the loss
-    /// was noticed.
+    /// Number of scans since the last known place; `None` before a place is known and after its
+    /// loss was reported.
     unknown_for: Option<u32>,
-    /// What the tracker said last, if there is one.
+    /// Last state of the tracker, if there is one.
     tracked: Option<TrackState>,
-    /// The nodes that are degraded.
+    /// Names of the degraded nodes.
     degraded: Vec<String>,
 }
 
 impl EventDetector {
-    /// Takes the verdict on a scan, by its number.
+    /// Processes the verdict code of a scan.
     pub(crate) fn verdict(&mut self, code: u32) -> Option<Event> {
         if self.tracked.is_some() {
             return None;
@@ -55,7 +54,7 @@ impl EventDetector {
         Some(Event::LostPose)
     }
 
-    /// Takes the tracker's state, by its number.
+    /// Processes the state code of the tracker.
     pub(crate) fn state(&mut self, code: u32) -> Option<Event> {
         let state = TrackState::from_code(code)?;
         let before = self.tracked.replace(state);
@@ -63,7 +62,7 @@ impl EventDetector {
         is_lost.then_some(Event::LostPose)
     }
 
-    /// Takes a node's report.
+    /// Processes the health report of a node.
     pub(crate) fn health(&mut self, report: &HealthHeader) -> Option<Event> {
         let node = report.node.as_str();
         let known = self.degraded.iter().position(|other| other == node);

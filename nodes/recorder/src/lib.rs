@@ -1,16 +1,16 @@
-//! Node `recorder`: writes what flows in the graph to an MCAP recording that the
-//! tools of ROS 2 open.
+//! Node `recorder`: writes the messages of the graph to an MCAP recording that the tools of ROS 2
+//! can open.
 //!
-//! What it writes is made by `ros_export`.
+//! `ros_export` converts the messages.
 //!
-//! | file | what it is about |
+//! | file | content |
 //! |---|---|
-//! | `events` | when a black box is to be saved; pure |
-//! | `writing` | files: flushed, split, resumed when the disk was full; the black box |
-//! | `run` | the graph, the signals, the thread that writes |
+//! | `events` | events on which a black box is saved; pure |
+//! | `writing` | files: flushed, split, resumed after the disk was full; the black box |
+//! | `run` | the graph, the signals, the writer thread |
 //!
-//! Nothing waits for the recorder: what comes faster than it can be written is
-//! dropped and counted.
+//! No node waits for the recorder: messages that arrive faster than they can be written are dropped
+//! and counted.
 
 mod config;
 mod duration;

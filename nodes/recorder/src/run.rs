@@ -1,4 +1,4 @@
-//! Receives what flows in the graph and hands it to the thread that writes.
+//! Receives the messages of the graph and passes them to the writer thread.
 
 mod writer;
 
@@ -17,26 +17,26 @@ use writer::{Status, Writer};
 use crate::events::EventDetector;
 use crate::{Config, Event, RecorderError};
 
-/// How long a signal to save and a report of health may be overdue.
+/// Longest delay of a save signal or a health report.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What a run did.
+/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
-    /// Messages recorded, or looked at by a black box.
+    /// Number of messages recorded, or kept by a black box for some time.
     pub recorded: u64,
-    /// Samples and messages that were lost on the way.
+    /// Number of samples and messages lost.
     pub dropped: u64,
-    /// Samples that could not be used.
+    /// Number of samples that could not be used.
     pub refused: u64,
-    /// Files written.
+    /// Number of files written.
     pub files: u64,
-    /// Whether something could not be written in the end.
+    /// True if the writer had a problem at the end.
     pub failed: bool,
 }
 
 impl Summary {
-    /// Whether something is missing in the recording.
+    /// Returns true if data is missing in the recording.
     #[must_use]
     pub fn lost_data(&self) -> bool {
         self.failed || self.dropped + self.refused > 0
@@ -46,8 +46,8 @@ impl Summary {
 /// Records until the stop flag is set.
 ///
 /// # Errors
-/// If the file cannot be created, or the graph fails. A disk that is full later
-/// is reported in `health`.
+/// If the file cannot be created, or the transport fails. A disk that fills up later is reported in
+/// `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
     let inputs = Inputs::open(graph, config.field)?;
     let mut recorder = Recorder::new(graph, config)?;
@@ -59,7 +59,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
         recorder.step(&inputs)?;
         Ok::<_, RecorderError>(Flow::Continue)
     })?;
-    // What was sent before the node was asked to end.
+    // Takes the messages sent before the node was asked to stop.
     recorder.step(&inputs)?;
     recorder.conclude()
 }
@@ -68,12 +68,12 @@ struct Recorder {
     transcript: Transcript,
     detector: EventDetector,
     save_on: Vec<Event>,
-    /// Asked by a signal.
+    /// Set by the signal SIGUSR1.
     save: Arc<AtomicBool>,
-    /// Asked by the graph, where the last minutes are kept.
+    /// Requests to save from the graph, with `--keep`.
     saves: Option<Rc<Subscriber<topic::Save>>>,
     writer: Writer,
-    /// What the writer said last.
+    /// Last status of the writer.
     status: Status,
 }
 
@@ -100,7 +100,7 @@ impl Recorder {
 
     fn step(&mut self, inputs: &Inputs) -> Result<(), RecorderError> {
         inputs.take(self)?;
-        // What it is about has come before.
+        // The messages that the request is about have arrived before it.
         self.hand_over()?;
         if let Some(saves) = &self.saves
             && saves.newest()?.is_some()
@@ -151,7 +151,7 @@ impl Recorder {
         }
     }
 
-    /// Hands all that came to the writer.
+    /// Passes all converted messages to the writer.
     fn hand_over(&mut self) -> Result<(), RecorderError> {
         for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;
@@ -213,9 +213,9 @@ impl Listener for Recorder {
     }
 }
 
-/// Processor time of all threads until now, seconds.
+/// Returns the processor time of all threads so far, seconds.
 fn cpu_s() -> f64 {
-    // The clock exists on every Linux; where it did not, nothing would be said.
+    // The clock exists on every Linux; without it the time would be NaN.
     let spent = clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID);
     spent.map_or(f64::NAN, |spent| Duration::from(spent).as_secs_f64())
 }

@@ -1,4 +1,4 @@
-//! The node as a process: what it is sent is in its file, also if it is killed.
+//! Tests of the node as a process: messages sent to it are in its file, even if it is killed.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -22,7 +22,7 @@ use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 const SECOND: i64 = 1_000_000_000;
 const START: i64 = 1_137_772_793 * SECOND;
 
-/// The node in a graph of the test's own, fed by the test.
+/// Node in a graph of its own, fed by the test.
 struct World {
     node: Option<NodeProcess>,
     health: Subscriber<topic::Health>,
@@ -41,7 +41,7 @@ impl World {
         World::start_by(tag, env!("CARGO_BIN_EXE_recorder"), &[], arguments)
     }
 
-    /// Starts it by another program, which is given `first` before the rest.
+    /// Starts the node through another program, with `first` as its first arguments.
     fn start_by(tag: &str, program: &str, first: &[&str], arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
@@ -89,7 +89,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Sends a scan and waits until it was taken, for a topic is only so deep.
+    /// Sends a scan and waits until it is taken, because the topic's queue is short.
     fn send_scan(&mut self) {
         let mut loan = self.scans.loan(3).unwrap();
         *loan.header_mut() = ScanHeader {
@@ -108,7 +108,7 @@ impl World {
         }
     }
 
-    /// Sends a scan that takes much room, and waits until it was taken.
+    /// Sends a large scan and waits until it is taken.
     fn send_noise(&mut self, state: &mut u64) {
         let mut loan = self.scans.loan(LARGE).unwrap();
         *loan.header_mut() = ScanHeader {
@@ -117,7 +117,7 @@ impl World {
             ..ScanHeader::zeroed()
         };
         for range in loan.items_mut() {
-            // A linear congruential generator by Knuth; its upper bits are good.
+            // Knuth's linear congruential generator; its upper bits are good.
             *state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
@@ -153,7 +153,7 @@ impl World {
         }
     }
 
-    /// Waits until the node says that it has written this many messages.
+    /// Waits until the node reports this many messages as written.
     fn wait_for_written(&self, messages: u64) {
         let awaited = |report: &messages::HealthHeader| {
             report.node.as_str() == "recorder" && report.sent >= messages
@@ -257,7 +257,7 @@ fn a_black_box_is_saved_when_asked_and_when_the_pose_is_lost() {
     world.take_node().stop();
     let asked = counts(&world.path("r.mcap"));
     assert_eq!(asked["/map"], 1, "from before");
-    // A second of scans every tenth of one, both ends included.
+    // One second of scans at 10 Hz, both ends included.
     assert_eq!(asked["/scan"], 11);
     let lost = Recording::open(world.path("r_1.mcap")).unwrap();
     assert_eq!(lost.damage(), None);
@@ -287,15 +287,15 @@ fn wait_for_file(world: &World, name: &str) {
     }
 }
 
-/// The file may grow to this many bytes, as on a disk that fills up; more than the
-/// segments of shared memory that the node makes.
+/// Size limit of the file, like a disk that fills up; larger than the shared memory segments of the
+/// node.
 const ROOM: usize = 8 << 20;
-/// Beams of a scan, most of it noise that does not pack.
+/// Number of beams of a large scan, mostly incompressible noise.
 const LARGE: usize = 100_000;
 
 #[test]
 fn a_full_disk_is_reported_and_nothing_is_lost_once_there_is_room() {
-    // The limit is asked for in blocks, of 512 bytes or of 1024.
+    // The limit is in blocks of 512 or 1024 bytes.
     let script = format!(
         "trap '' XFSZ; ulimit -S -f {}; exec \"$0\" \"$@\"",
         ROOM / 1024
@@ -305,7 +305,7 @@ fn a_full_disk_is_reported_and_nothing_is_lost_once_there_is_room() {
     world.send_scan();
     world.wait_for_written(1);
     let mut noise = 1u64;
-    // More than there is room for, and less than may wait in memory.
+    // More than the limit, and less than the queue in memory holds.
     for _ in 0..3 * ROOM / (4 * LARGE) {
         world.send_noise(&mut noise);
     }

@@ -6,68 +6,69 @@ use clap::Parser;
 use messages::Name;
 use replay::{Rate, Remap};
 
-/// Plays a recording into the graph: scans, odometry and true poses.
+/// Plays a recording into the graph: scans, odometry and ground truth.
 ///
-/// Ends with 0 when everything was played, 1 on an error, 2 on wrong usage, and
-/// 3 when it finished but lost data: a scan without an answer, a message that
-/// could not be used, or all that follows where the recording is damaged.
+/// Exits with code 0 if everything was played, 1 on an error, 2 on wrong usage, or 3 if it finished
+/// but lost data: a scan got no answer, a message could not be used, or the recording is damaged
+/// from some point on.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "replayer", version)]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its
-    /// folder, or .db3); several are played as one.
+    /// Recording to play: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its folder, or
+    /// .db3); several are played as one.
     #[arg(long, value_name = "FILE", required = true)]
     pub recording: Vec<PathBuf>,
 
-    /// The topic of the scans [default: the only one, or /scan]; several lasers are
-    /// named one by one, the first one's scans are those that are answered
+    /// Topic of the scans [default: the only one, or /scan]; may be repeated for several lasers,
+    /// and answers are expected for the scans of the first one
     #[arg(long, value_name = "TOPIC")]
     pub scan_topic: Vec<String>,
 
-    /// The topic of the odometry [default: the only one, or /odom]
+    /// Topic of the odometry [default: the only one, or /odom]
     #[arg(long, value_name = "TOPIC")]
     pub odom_topic: Option<String>,
 
-    /// Times the original speed, 0.001 to 1000; or max: the next scan follows
-    /// the answer to the one before, and none is dropped.
+    /// Playback speed as a multiple of the original, 0.001 to 1000; or max: each scan is sent after
+    /// the answer to the previous one, and none is dropped.
     #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
     pub rate: Rate,
 
-    /// Repeats the recording.
+    /// Repeat the recording without end.
     #[arg(long = "loop")]
     pub looped: bool,
 
-    /// Starts this many seconds after the recording's first message
+    /// Start this many seconds after the recording's first message
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub start: Option<f64>,
 
-    /// Ends this many seconds after the recording's first message
+    /// End this many seconds after the recording's first message
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub end: Option<f64>,
 
-    /// The channels to play, separated by commas; all others are ignored
+    /// Channels to play, separated by commas; all others are ignored
     #[arg(long, value_name = "TOPICS", value_delimiter = ',')]
     pub topics: Vec<String>,
 
-    /// Renames a channel, as /front/scan:=/scan; separated by commas
+    /// Rename a channel, as /front/scan:=/scan; separated by commas
     #[arg(long, value_name = "FROM:=TO", value_delimiter = ',')]
     pub remap: Vec<Remap>,
 
-    /// Starts paused: Enter plays to the next scan, `p` plays and pauses, `q` quits
+    /// Start paused: Enter plays to the next scan, `p` plays and pauses, `q` quits
     #[arg(long)]
     pub pause: bool,
 
-    /// Nodes that must be ready before playing starts, separated by commas.
+    /// Nodes that must be ready before playback starts, separated by commas.
     #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
     pub wait_for: Vec<String>,
 
-    /// Nodes that the next scan waits for at --rate max once the last one is answered, separated by
-    /// commas: each counts in its reports in topic `health` how many answers it has taken
+    /// Nodes that must also have received the last answer before the next scan is sent at --rate
+    /// max, separated by commas: each counts the answers that it received in its reports on topic
+    /// `health`
     #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
     pub in_step: Vec<String>,
 
-    /// Timeout for an answer, seconds, 0.1 to 3600: of every scan at --rate max, else
-    /// of the last one, if anybody listens.
+    /// Timeout for an answer, seconds, 0.1 to 3600: to each scan at --rate max, otherwise to the
+    /// last one if the scans have a subscriber.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
     pub patience: f64,
 }

@@ -1,8 +1,7 @@
 //! Node `replayer`: plays a recording as `scan`, `odometry` and `ground_truth`.
 //!
-//! `replay` says which message is due when; `pause`, which is pure, what is held
-//! up. `run` reads the clock, waits and sends. Readings are passed on as they were
-//! recorded, however odd.
+//! `replay` schedules the messages; `pause`, which is pure, handles pauses. `run` reads the clock,
+//! waits and sends. Readings are passed on as recorded, even if they are invalid.
 
 mod config;
 mod error;

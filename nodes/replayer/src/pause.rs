@@ -1,18 +1,17 @@
-//! Pausing and single steps, by lines that somebody types. Pure.
+//! Pausing and single steps, controlled by typed lines. Pure.
 
-/// What a line asks for.
+/// Command of a typed line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Command {
-    /// Play on to the next scan.
+    /// Play to the next scan.
     Step,
-    /// Play, or pause.
+    /// Play or pause.
     Toggle,
-    /// End.
     Quit,
 }
 
 impl Command {
-    /// `p`, `q`, or anything else for a step.
+    /// Parses a line: `p`, `q`, or anything else for a step.
     pub(crate) fn of(line: &str) -> Self {
         match line.trim() {
             "p" => Command::Toggle,
@@ -22,11 +21,10 @@ impl Command {
     }
 }
 
-/// Whether playing is held up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Pause {
     paused: bool,
-    /// Scans that may be sent all the same.
+    /// Number of scans that may be sent while paused.
     steps: u32,
 }
 
@@ -39,17 +37,17 @@ impl Pause {
         self.paused
     }
 
-    /// Whether something may be sent while paused.
+    /// Returns true if something may be sent while paused.
     pub(crate) fn may_step(self) -> bool {
         self.steps > 0
     }
 
-    /// A scan was sent while paused.
+    /// Counts a scan that was sent while paused.
     pub(crate) fn stepped(&mut self) {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// A step while playing pauses before the scan after the next.
+    /// Pauses after one more scan.
     pub(crate) fn step(&mut self) {
         self.paused = true;
         self.steps = self.steps.saturating_add(1);

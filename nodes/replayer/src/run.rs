@@ -1,4 +1,4 @@
-//! Reads the clock, waits and sends.
+//! Schedules the messages, waits and sends.
 
 mod in_step;
 mod keyboard;
@@ -22,28 +22,28 @@ use transport::{Flow, Graph, Input, Subscriber, monotonic_ns, with_causes};
 use crate::pause::Pause;
 use crate::{Config, ReplayerError};
 
-/// The longest time without a look at answers, signals and health.
+/// Longest time between checks of answers, signals and health.
 const TICK: Duration = Duration::from_millis(50);
 
-/// What a run did.
+/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
-    /// Whether it came to its end; false where it was stopped.
+    /// True if the recording was played to its end; false if the node was stopped.
     pub finished: bool,
-    /// Scans sent.
+    /// Number of scans sent.
     pub scans: u64,
-    /// Answers that came.
+    /// Number of answers received.
     pub answers: u64,
-    /// Scans whose answer was waited for in vain.
+    /// Number of scans without an answer.
     pub unanswered: u64,
-    /// Messages that could not be used.
+    /// Number of messages that could not be used.
     pub refused: u64,
-    /// Whether the recording is damaged and could be played to there only.
+    /// True if the recording is damaged and was played only up to the damage.
     pub damaged: bool,
 }
 
 impl Summary {
-    /// Whether it finished but lost data on the way.
+    /// Returns true if the recording was played to its end but data was lost.
     #[must_use]
     pub fn lost_data(&self) -> bool {
         self.finished && (self.damaged || self.unanswered + self.refused > 0)
@@ -53,12 +53,12 @@ impl Summary {
 /// Plays the recording until it ends or the stop flag is set.
 ///
 /// # Errors
-/// If there is no recording with scans, or if the graph fails. Of one that is
-/// damaged, what lies before the damage is played.
+/// If the recording cannot be read or has no scans, or if the transport fails. A damaged recording
+/// is played up to the damage.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
-    // A long recording takes a while.
+    // Reading a long recording takes a while.
     outlet.health.state(NodeState::Busy)?;
     let recording = open(config)?;
     let selection = select(config, &recording)?;
@@ -100,10 +100,10 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     player.conclude()
 }
 
-/// The recording, with the topics that are meant.
+/// Opens the recording and sets the topics from the options.
 fn open(config: &Config) -> Result<Recording, ReplayerError> {
     let mut recording = Recording::open_all(&config.recording)?;
-    // The first is the one that is meant where only one can be.
+    // In reverse order, so that the first topic is preferred if only one is allowed.
     for topic in config.scan_topic.iter().rev() {
         recording.prefer(Kind::Scan, topic)?;
     }
@@ -113,7 +113,7 @@ fn open(config: &Config) -> Result<Recording, ReplayerError> {
     Ok(recording)
 }
 
-/// What is to be played.
+/// Selects the messages to play.
 fn select(config: &Config, recording: &Recording) -> Result<Selection, ReplayerError> {
     let selection =
         Selection::of(&config.topics, &config.remap).within(recording, config.start, config.end);
@@ -142,7 +142,7 @@ fn listen(pause: bool) -> Result<Option<Keyboard>, ReplayerError> {
         .map_err(ReplayerError::Keyboard)
 }
 
-/// Says what will be played; returns the usual time between two scans.
+/// Logs what will be played; returns the mean time between two scans.
 fn announce(recording: &Recording, channels: &Channels, config: &Config) -> i64 {
     let scans = channels.scans(recording);
     if let Some(damage) = recording.damage_error() {
@@ -167,13 +167,13 @@ struct Player<'r> {
     pause: Pause,
     keyboard: Option<Keyboard>,
     config: &'r Config,
-    /// The usual time between two scans of the recording.
+    /// Mean time between two scans of the recording.
     gap_ns: i64,
     items: InOrder<Source<'r>, PlaybackError>,
-    /// Scans sent before this round.
+    /// Number of scans sent before this round.
     scans_before: u64,
     pending: Option<Timed>,
-    /// What ended the recording before its end.
+    /// Error that ended the recording early.
     failure: Option<PlaybackError>,
     schedule: Schedule,
     in_step: InStep,
@@ -182,7 +182,7 @@ struct Player<'r> {
 }
 
 impl Player<'_> {
-    /// Does what is due, until there is nothing to do for longer than a tick.
+    /// Does everything that is due, until the next event is more than a tick away.
     fn step(&mut self, answers: &Subscriber<topic::Hypotheses>) -> Result<Flow, ReplayerError> {
         while !self.stop.load(Ordering::Relaxed) {
             while let Some(answer) = answers.receive()? {
@@ -231,7 +231,7 @@ impl Player<'_> {
         Ok(Flow::Continue)
     }
 
-    /// Sends what is next, however early.
+    /// Sends the next message before its time.
     fn step_on(&mut self) -> Result<(), ReplayerError> {
         if let Some(scan) = self.pending.as_ref().filter(|item| item.is_scan()) {
             tracing::info!("scan of {:.3} s", scan.stamp_ns() as f64 * 1e-9);
@@ -243,7 +243,7 @@ impl Player<'_> {
     fn send(&mut self) -> Result<(), ReplayerError> {
         if let Some(timed) = self.pending.take()
             && let Some(stamp) = self.outlet.send(timed)?
-            // At a factor the graph need not be there; at max it must answer.
+            // At a speed factor the graph may be missing; at max it must answer.
             && (self.config.rate == Rate::Max || self.outlet.has_subscribers())
         {
             self.schedule.scan_sent(stamp);
@@ -251,7 +251,7 @@ impl Player<'_> {
         self.advance()
     }
 
-    /// Makes the next message pending, if there is one.
+    /// Takes the next message of the recording, if there is one.
     fn advance(&mut self) -> Result<(), ReplayerError> {
         while self.pending.is_none() && self.failure.is_none() {
             match self.items.next() {
@@ -265,8 +265,8 @@ impl Player<'_> {
         Ok(())
     }
 
-    /// Begins another round; not where the last one had no scan, for it would
-    /// never end.
+    /// Starts another round, unless the last one had no scan, in which case it would loop without
+    /// end.
     fn starts_over(&mut self) -> bool {
         let scans = self.outlet.summary.scans;
         if !self.config.looped || scans == self.scans_before {
@@ -279,7 +279,7 @@ impl Player<'_> {
         true
     }
 
-    /// Says how it went.
+    /// Logs and returns the result.
     fn conclude(mut self) -> Result<Summary, ReplayerError> {
         let mut summary = self.outlet.summary;
         let Summary {

@@ -1,4 +1,4 @@
-//! The node as a process; this test plays the rest of the graph.
+//! Tests of the node as a process; the test takes the part of all other nodes.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -17,11 +17,11 @@ use transport::{Graph, Publisher, Subscriber};
 
 const SECOND: i64 = 1_000_000_000;
 
-/// The ends of the topics that the rest of a graph would hold.
+/// The topic ends of the other nodes.
 struct World {
     node: Option<NodeProcess>,
     folder: tempfile::TempDir,
-    /// None where nobody listens.
+    /// Subscriber to the scans; `None` to test without one.
     scans: Option<Subscriber<topic::Scan>>,
     odometry: Subscriber<topic::OdometryTopic>,
     truths: Subscriber<topic::GroundTruthTopic>,
@@ -128,7 +128,8 @@ fn record(messages: &[(&str, i64, Message)]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// Three scans, a second apart, with truth and odometry recorded just after.
+/// Returns a recording of three scans, one second apart, each followed by ground truth and
+/// odometry.
 fn three_scans() -> Vec<u8> {
     let messages: Vec<_> = (0..3)
         .map(|index| (index + 1) * SECOND)
@@ -155,7 +156,7 @@ fn at_max_each_scan_follows_the_answer_and_what_belongs_to_it() {
             (counter as u64, measured_ns)
         );
         assert!(ranges[0] == measured_ns as f32 && ranges[1].is_nan());
-        // What belongs to the scan was sent before it, and nothing after it.
+        // Messages that belong to the scan were sent before it, and nothing after it.
         let truth = world.truths.receive().unwrap().unwrap();
         assert_eq!(truth.header().stamp.measured_ns, measured_ns);
         assert_eq!(truth.header().map_from_laser.x, 1.0);
@@ -189,8 +190,8 @@ fn a_scan_without_an_answer_is_counted_and_the_run_finishes_with_three() {
         log.contains("scan 0, measured at 1000000000 ns, got no answer"),
         "{log}"
     );
-    // The answer to scan 1 may be a tenth of a second late on a busy machine;
-    // then it is given up as well.
+    // The answer to scan 1 may be more than 0.1 s late on a busy machine; it is then given up as
+    // well.
     assert!(log.contains("played scans=3"), "{log}");
 }
 
@@ -199,8 +200,7 @@ fn at_a_factor_the_distances_are_kept_and_the_last_answer_is_waited_for() {
     let mut world = World::new("paced");
     world.start(&three_scans(), &["--rate", "10"]);
     let stamps = [0; 3].map(|_| world.next_scan().0);
-    // A tenth of a second each; the first one may have been late itself, but
-    // not by so much as the whole distance.
+    // A tenth of a second each; the first scan may have been late, but by less than that.
     let span_ns = stamps[2].entered_ns - stamps[0].entered_ns;
     assert!(span_ns > SECOND / 10, "{span_ns}");
     world.answer(stamps[2]);
@@ -344,7 +344,7 @@ fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
     let readable = Recording::from_bytes("cut", bytes.clone())
         .unwrap()
         .messages();
-    // Each message is a chunk of its own, and the summary takes some bytes too.
+    // Each message is a chunk of its own, and the summary takes some bytes, too.
     assert!((1..3).contains(&readable), "{readable}");
     world.start(&bytes, &["--rate", "max"]);
     for _ in 0..readable {

@@ -1,4 +1,4 @@
-//! The transform from the map to the odometry, and others who publish it too.
+//! The transform from map to odometry, and detection of other nodes that publish it.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -11,17 +11,18 @@ use crate::GatewayError;
 use crate::rmw::{Member, Publisher};
 use crate::stamps::{Forward, stamp};
 
-/// Sent transforms that are known again when they come back: as many as slow subscribers keep.
+/// Number of sent transforms that are recognised when they come back: as many as slow subscribers
+/// keep.
 const MAX_KNOWN: usize = 100;
 
-/// Publishes the transform.
+/// Publisher of the transform.
 pub(crate) struct Broadcaster {
     transforms: Publisher<TfMessage>,
     forward: Forward,
     sent: Sent,
 }
 
-/// Stamps of the transforms that were sent last; its clones share them.
+/// Stamps of the last transforms that were sent; clones share them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Sent(Rc<RefCell<VecDeque<Time>>>);
 
@@ -34,8 +35,8 @@ impl Broadcaster {
         })
     }
 
-    /// Sends where the odometry's frame lies in the map, dated `at_ns`; whether it was sent:
-    /// a date before the last one is left out.
+    /// Sends the pose of the odometry's frame in the map, stamped `at_ns`. Returns false if it is
+    /// left out because the stamp is not later than the last one.
     pub(crate) fn send(
         &mut self,
         at_ns: i64,
@@ -61,8 +62,8 @@ impl Sent {
         stamps.push_back(stamp);
     }
 
-    /// Whether another node sent a transform to the odometry's frame while the gateway sends
-    /// its own, which it receives as well.
+    /// True if another node sent a transform to the odometry's frame while the gateway sends its
+    /// own, which it receives as well.
     pub(crate) fn is_from_another(&self, received: &TransformStamped, odom_frame: &str) -> bool {
         let stamps = self.0.borrow();
         let is_its = received.child_frame_id.trim_start_matches('/') == odom_frame;
@@ -70,7 +71,6 @@ impl Sent {
     }
 }
 
-/// The transform from the map to the odometry, `at_ns`.
 fn transform(
     at_ns: i64,
     map_frame: &str,
@@ -98,7 +98,7 @@ mod tests {
             let message = transform(at_ns, "map", "odom", Pose::IDENTITY).unwrap();
             message.transforms[0].clone()
         };
-        // We send nothing yet: it is a particle filter's.
+        // Nothing was sent yet: the transform is that of a particle filter.
         assert!(!sent.is_from_another(&of(1), "odom"));
         for at_ns in 0..200 {
             sent.note(of(at_ns).header.stamp);

@@ -5,7 +5,7 @@ use ros::{LaserScan, Odometry, Time, TransformStamped};
 
 use crate::GatewayError;
 
-/// Refuses a scan with numbers or times that are none.
+/// Rejects a scan with a number that is not finite or an invalid stamp.
 pub(crate) fn check_scan(message: &LaserScan) -> Result<(), GatewayError> {
     measured_ns("the scan", message.header.stamp)?;
     let numbers = [
@@ -20,7 +20,8 @@ pub(crate) fn check_scan(message: &LaserScan) -> Result<(), GatewayError> {
     Ok(())
 }
 
-/// Odometry as the graph has it, if its numbers and times are such.
+/// Converts odometry to the graph's message; rejects numbers that are not finite and invalid
+/// stamps.
 pub(crate) fn sound_odometry(message: &Odometry) -> Result<GraphOdometry, GatewayError> {
     measured_ns("the odometry", message.header.stamp)?;
     let odometry = ros::measurements::odometry(message)?;
@@ -34,7 +35,7 @@ pub(crate) fn sound_odometry(message: &Odometry) -> Result<GraphOdometry, Gatewa
     Ok(odometry)
 }
 
-/// What /tf says of the odometry: a pose, and nothing of how it moves.
+/// Makes odometry from a transform of /tf: a pose without a twist.
 pub(crate) fn odometry_of(transform: TransformStamped) -> Result<GraphOdometry, GatewayError> {
     let mut message = Odometry {
         header: transform.header,
@@ -48,7 +49,7 @@ pub(crate) fn odometry_of(transform: TransformStamped) -> Result<GraphOdometry, 
     sound_odometry(&message)
 }
 
-/// Nanoseconds of a time of `topic`, if it is one.
+/// Converts a stamp to nanoseconds; rejects times before 1970 and a second or more of nanoseconds.
 pub(crate) fn measured_ns(topic: &str, stamp: Time) -> Result<i64, GatewayError> {
     let Time { sec, nanosec } = stamp;
     if sec >= 0 && nanosec < 1_000_000_000 {

@@ -17,37 +17,36 @@ use crate::role::{Options, Role};
 #[derive(Debug, Clone, Parser)]
 #[command(name = "ros2_gateway", version)]
 pub struct Config {
-    /// The robot's middleware [default: as RMW_IMPLEMENTATION says, else zenoh]
+    /// Middleware of the robot [default: from RMW_IMPLEMENTATION, else zenoh]
     #[arg(long, value_name = "MIDDLEWARE")]
     pub rmw: Option<Rmw>,
 
-    /// Prints the scans, maps, odometry and transforms that nodes publish, found within so many
-    /// seconds on each middleware or on that of --rmw: objects of JSON, a line each; 0.1 to 60
+    /// Searches for this many seconds (0.1 to 60) on each middleware, or on that of --rmw, and
+    /// prints the scan, map, odometry and transform topics that it finds, one JSON object per line
     #[arg(long, value_name = "SECONDS", value_parser = looking)]
     pub look: Option<f64>,
 
-    /// The robot's domain, 0 to 232 [default: ROS_DOMAIN_ID, else 0]
+    /// Domain ID of the robot, 0 to 232 [default: ROS_DOMAIN_ID, else 0]
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(..=MAX_DOMAIN))]
     pub domain: Option<u32>,
 
-    /// Namespace of the names below that begin with no slash
+    /// Namespace of the names below that do not begin with a slash
     #[arg(long, value_name = "NAMESPACE", default_value = "/")]
     pub namespace: String,
 
-    /// The gateway's name among the robot's nodes [default: backcast, with --as amcl amcl]
+    /// Name of the gateway among the robot's nodes [default: backcast, or amcl with --as amcl]
     #[arg(long, value_name = "NAME")]
     pub node: Option<String>,
 
-    /// What is logged: debug, info, warn, error or fatal, or LOGGER:=LEVEL, of which the level
-    /// counts [default: as RUST_LOG says, else info]
+    /// Log level: debug, info, warn, error or fatal; of LOGGER:=LEVEL, only the level counts
+    /// [default: from RUST_LOG, else info]
     #[arg(long, value_name = "LEVEL", value_parser = level)]
     pub log_level: Option<String>,
 
-    /// In AMCL's place.
     #[command(flatten)]
     pub amcl: Options,
 
-    /// Which of the robot's topics enter the graph
+    /// Topics of the robot that enter the graph
     #[arg(long, value_name = "TOPIC,…", value_delimiter = ',', default_values = ["scan", "odometry", "map"])]
     pub bring: Vec<Brought>,
 
@@ -55,20 +54,19 @@ pub struct Config {
     #[arg(long, value_name = "WHEN", default_value = "lost")]
     pub seed: Seed,
 
-    /// How far the particle filter's pose may be from all hypotheses before it counts
-    /// as lost: metres and degrees
+    /// Largest distance between the particle filter's pose and the nearest hypothesis before the
+    /// filter counts as lost: metres and degrees
     #[arg(long, value_name = "M,DEG", default_value = "1,30", value_parser = reach)]
     pub lost_beyond: Reach,
 
-    /// Minimum standard deviation of an initial pose, for the particles that are drawn
-    /// from it: metres and degrees
+    /// Minimum standard deviations of an initial pose, from which the filter draws its particles:
+    /// metres and degrees
     #[arg(long, value_name = "M,DEG", default_value = "0.1,3", value_parser = reach)]
     pub spread: Reach,
 
-    /// Where the laser sits on the robot, metres and degrees, if the robot's /tf_static
-    /// does not say it; a fourth number of 180 is a laser that hangs upside down, rolled
-    /// by half a turn about its x axis. For several lasers once each, in the order of
-    /// their --scan
+    /// Pose of the laser on the robot, metres and degrees, for robots whose /tf_static does not
+    /// have it; a fourth number of 180 is a laser that hangs upside down, rolled by half a turn
+    /// about its x axis. For several lasers, repeat it for each, in the order of their --scan
     #[arg(
         long = "mount",
         value_name = "X,Y,YAW_DEG[,180]",
@@ -76,50 +74,48 @@ pub struct Config {
     )]
     pub mounts: Vec<Mount>,
 
-    /// The only laser, that of --mount, hangs upside down
+    /// The laser of --mount, which must be the only one, hangs upside down
     #[arg(long, requires = "mounts")]
     pub upside_down: bool,
 
-    /// The map's frame [default: that of the robot's map, else map]
+    /// Frame of the map [default: the frame of the robot's map, else map]
     #[arg(long, value_name = "FRAME", value_parser = frame)]
     pub map_frame: Option<String>,
 
-    /// The odometry's frame, by which it is found in /tf where nobody publishes odometry
+    /// Odometry frame, whose transforms in /tf are used if no odometry topic is published
     #[arg(long, value_name = "FRAME", default_value = "odom", value_parser = frame)]
     pub odom_frame: String,
 
-    /// Publishes the transform from the map to the odometry. Not beside a particle filter,
-    /// which does so itself
+    /// Publishes the transform from map to odometry. Not for use along with a particle filter,
+    /// which publishes it itself
     #[arg(long)]
     pub broadcast_tf: bool,
 
-    /// How far that transform is stamped ahead of its scan, seconds, 0 to 10
+    /// Seconds by which that transform is stamped ahead of its scan, 0 to 10
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = ahead)]
     pub tf_ahead: f64,
 
-    /// How cells of the robot's map are read, by all nodes.
+    /// Rules for reading the cells of the robot's map, shared by all nodes.
     #[command(flatten)]
     pub cells: messages::CellRules,
 
-    /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,
 
-    /// Names of the robot's topics and services.
     #[command(flatten)]
     pub names: Names,
 
-    /// How it joins the network.
     #[command(flatten)]
     pub network: zenoh_session::Options,
 }
 
-/// Names of topics and services.
+/// Names of the robot's topics and services.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Names")]
 pub struct Names {
-    /// sensor_msgs/LaserScan, in; of several lasers once each, the first one first: the
-    /// graph calls them by their topics, front for front/scan, scan_front and front_scan
+    /// sensor_msgs/LaserScan, in; for several lasers, repeat it for each. Hypotheses refer to the
+    /// first one. The graph names lasers after their topics: front for front/scan, scan_front and
+    /// front_scan
     #[arg(long = "scan", value_name = "NAME", default_value = "scan")]
     pub scans: Vec<String>,
     /// nav_msgs/Odometry, in
@@ -134,8 +130,8 @@ pub struct Names {
     /// tf2_msgs/TFMessage, transient local, in
     #[arg(long, value_name = "NAME", default_value = "tf_static")]
     pub tf_static: String,
-    /// geometry_msgs/PoseWithCovarianceStamped: the particle filter's pose, in; with
-    /// --as amcl ours, out
+    /// geometry_msgs/PoseWithCovarianceStamped: the particle filter's pose, in; with --as amcl the
+    /// gateway's own pose, out
     #[arg(long, value_name = "NAME", default_value = "amcl_pose")]
     pub amcl_pose: String,
     /// geometry_msgs/PoseWithCovarianceStamped: the initial pose, out; with --as amcl in
@@ -150,8 +146,8 @@ pub struct Names {
     /// diagnostic_msgs/DiagnosticArray, out
     #[arg(long, value_name = "NAME", default_value = "/diagnostics")]
     pub diagnostics: String,
-    /// std_srvs/Empty: seeds again as soon as the verdict is Unique; with --as amcl the
-    /// request to localize from anywhere
+    /// std_srvs/Empty: seeds again as soon as the verdict is Unique; with --as amcl it localizes
+    /// from anywhere on the map
     #[arg(
         long,
         value_name = "NAME",
@@ -163,48 +159,46 @@ pub struct Names {
 /// A topic of the robot that can enter the graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Brought {
-    /// The laser's scans.
+    /// Scans of the lasers
     Scan,
-    /// What the wheels report.
+    /// Wheel odometry
     Odometry,
-    /// The map.
+    /// The map
     Map,
 }
 
 /// When the particle filter gets an initial pose
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Seed {
-    /// Once when it starts, and when the service is called
+    /// Once when the filter starts, and when the service is called
     Once,
-    /// Also whenever its pose is far from all hypotheses
+    /// Also whenever the filter's pose is far from all hypotheses
     Lost,
-    /// When the service is called
+    /// Only when the service is called
     Never,
 }
 
 /// A distance and an angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Metres.
     pub metres: f64,
-    /// Radians.
     pub radians: f64,
 }
 
 /// The node's name in the graph.
 pub const NODE: &str = "ros2_gateway";
 
-/// The map's frame where neither the user nor the robot names it.
+/// Default frame of the map, if neither the user nor the robot names one.
 pub(crate) const MAP_FRAME: &str = "map";
 
-/// The highest domain of ROS 2.
+/// Highest domain ID of ROS 2.
 const MAX_DOMAIN: i64 = 232;
 
 impl Config {
-    /// The robot's domain.
+    /// Returns the robot's domain ID: the option, else ROS_DOMAIN_ID, else 0.
     ///
     /// # Errors
-    /// If ROS_DOMAIN_ID counts and is none.
+    /// If ROS_DOMAIN_ID is used and is not a number from 0 to 232.
     pub fn domain(&self) -> Result<u32, GatewayError> {
         match (self.domain, std::env::var_os("ROS_DOMAIN_ID")) {
             (Some(domain), _) => Ok(domain),
@@ -221,7 +215,7 @@ impl Config {
         }
     }
 
-    /// The gateway's name among the robot's nodes.
+    /// Returns the gateway's name among the robot's nodes.
     #[must_use]
     pub fn node(&self) -> &str {
         match (&self.node, self.amcl.role) {
@@ -231,10 +225,10 @@ impl Config {
         }
     }
 
-    /// Where the lasers sit, in the order of their scans, if the user says so.
+    /// Returns the mounts that the user gave, in the order of the scans; empty if there are none.
     ///
     /// # Errors
-    /// If it is not clear which mount is of which laser.
+    /// If the number of mounts differs from that of lasers, or --upside-down meets several lasers.
     pub fn mounts(&self) -> Result<Vec<Mount>, GatewayError> {
         let (mounts, lasers) = (self.mounts.len(), self.names.scans.len());
         let refuse = |option, reason| Err(GatewayError::Option { option, reason });
@@ -253,14 +247,14 @@ impl Config {
         Ok(self.mounts.iter().map(turned).collect())
     }
 
-    /// Whether a topic of the robot enters the graph.
+    /// True if the topic enters the graph.
     #[must_use]
     pub fn brings(&self, topic: Brought) -> bool {
         self.bring.contains(&topic)
     }
 }
 
-/// A level of ROS, as the log knows it.
+/// Parses a log level of ROS; `fatal` becomes `error`.
 fn level(text: &str) -> Result<String, String> {
     let level = text.rsplit(":=").next().unwrap_or(text).to_lowercase();
     match &*level {
@@ -270,7 +264,7 @@ fn level(text: &str) -> Result<String, String> {
     }
 }
 
-/// This many finite numbers, as `1,2,3`.
+/// Parses `N` finite numbers, such as `1,2,3`.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Option<Vec<f64>> = text
         .split(',')
@@ -334,7 +328,7 @@ mod tests {
         let config = parse(&[]).unwrap();
         assert!(config.brings(Brought::Map) && config.brings(Brought::Scan));
         assert_eq!(config.lost_beyond.metres, 1.0);
-        // 30 degrees, by one multiplication.
+        // 30 degrees; the conversion rounds once.
         assert!((config.lost_beyond.radians - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
         assert_eq!(config.seed, Seed::Lost);
         assert_eq!(parse(&["--domain", "7"]).unwrap().domain().unwrap(), 7);

@@ -1,4 +1,4 @@
-//! The state of the graph's nodes, for the robot.
+//! Diagnostics of the graph's nodes, for the robot.
 
 use messages::{HealthHeader, Stamp};
 use ros::DiagnosticArray;
@@ -9,12 +9,12 @@ use crate::GatewayError;
 use crate::rmw::{Member, Publisher};
 use crate::stamps::stamp;
 
-/// Sends it, dated by the robot's clock.
+/// Publisher of the diagnostics, stamped by the robot's clock.
 pub(crate) struct Diagnostics {
     publisher: Publisher<DiagnosticArray>,
-    /// The newest scan: where the robot's clock meets the host's.
+    /// Stamp of the newest scan, which relates the robot's clock to the host's.
     newest: Option<Stamp>,
-    /// The time of a simulation, where that counts.
+    /// Simulation time, nanoseconds, if it is in use.
     sim_ns: Option<i64>,
 }
 
@@ -27,12 +27,12 @@ impl Diagnostics {
         })
     }
 
-    /// Something is known of this scan.
+    /// Takes the stamp of the newest scan.
     pub(crate) fn on_scan(&mut self, stamp: Stamp) {
         self.newest = Some(stamp);
     }
 
-    /// The time of a simulation counts.
+    /// Takes the simulation time, which is in use from then on.
     pub(crate) fn on_sim_time(&mut self, now_ns: i64) {
         self.sim_ns = Some(now_ns);
     }
@@ -56,7 +56,8 @@ impl Diagnostics {
         Ok(())
     }
 
-    /// The robot's clock: as its scans are dated, else the host's.
+    /// Returns the time of the robot's clock: simulation time, else extrapolated from the newest
+    /// scan, else the host's.
     fn clock_ns(&self) -> i64 {
         if let Some(sim_ns) = self.sim_ns {
             return sim_ns;

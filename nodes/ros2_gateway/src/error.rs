@@ -4,80 +4,72 @@ use ros::ConversionError;
 use transport::TransportError;
 use zenoh_session::{KeyError, NetworkError};
 
-/// What was tried, what was found and what is allowed.
+/// Error of the gateway: says what was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum GatewayError {
     /// An option cannot be used.
     #[error("--{option}: {reason}")]
     Option {
-        /// The option's name.
         option: &'static str,
-        /// What is wrong, and what is allowed.
         reason: String,
     },
-    /// A file of parameters cannot be used.
+    /// A parameter file cannot be used.
     #[error("{file}: {reason}")]
     ParameterFile {
-        /// Its path.
+        /// Path of the file.
         file: String,
-        /// What is wrong, and what is allowed.
         reason: String,
     },
     /// A parameter's value cannot be used.
     #[error("parameter {name} is {found}: allowed are {allowed}")]
     Parameter {
-        /// The parameter.
         name: String,
-        /// What it was to hold.
+        /// Value found.
         found: String,
-        /// What it may hold.
+        /// Values allowed.
         allowed: String,
     },
     /// The file of the last pose cannot be used.
     #[error("the saved pose in {file} cannot be used: {reason}")]
     SavedPose {
-        /// Its path.
+        /// Path of the file.
         file: String,
-        /// What is wrong, and what is allowed.
         reason: String,
     },
-    /// An initial pose is in a frame that is not the map's.
+    /// An initial pose is in another frame than the map's.
     #[error("the initial pose is in frame {found:?}: allowed is {allowed:?}")]
     InitialPoseFrame {
-        /// The frame of the pose.
         found: String,
-        /// The map's.
+        /// Frame of the map.
         allowed: String,
     },
-    /// An initial pose has a covariance that is none.
+    /// The covariance of an initial pose is invalid.
     #[error(
         "the covariance of the initial pose is none: allowed are finite, symmetric and positive \
          ones, and zeros where nobody knows"
     )]
     InitialPoseCovariance,
-    /// A definition has a line that is no field.
+    /// A line of a message definition is not a field.
     #[error("the definition of {name}: {line:?} is not a field")]
     Definition {
-        /// The type.
+        /// Name of the type.
         name: String,
-        /// The line.
         line: String,
     },
-    /// A map that the graph could not hold.
+    /// The graph cannot hold a map.
     #[error(transparent)]
     Map(#[from] map::MapError),
     /// The session cannot be opened.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// A key cannot be used.
+    /// A key of Zenoh cannot be used.
     #[error(transparent)]
     Key(#[from] KeyError),
     /// DDS cannot be used.
     #[error("cannot {action} the domain of DDS: {reason}")]
     Dds {
-        /// What was tried.
+        /// Action that failed.
         action: &'static str,
-        /// Why not.
         reason: String,
     },
     /// A message cannot be sent.
@@ -85,20 +77,18 @@ pub enum GatewayError {
     Send {
         /// The robot's topic or service.
         topic: String,
-        /// Why not.
         reason: String,
     },
-    /// A message is longer than any sound one.
+    /// A message is longer than allowed.
     #[error("the message of {topic} has {found} bytes: allowed are at most {most}")]
     TooLong {
-        /// The robot's topic.
         topic: String,
-        /// Its bytes.
+        /// Size of the message, bytes.
         found: usize,
-        /// Most bytes.
+        /// Largest size allowed, bytes.
         most: usize,
     },
-    /// What goes along with a message is not what `rmw_zenoh` sends.
+    /// The attachment of a message is not that of `rmw_zenoh`.
     #[error(
         "the attachment of {topic} has {found} bytes: allowed are the 33 of rmw_zenoh (sequence \
          number, time, sender)"
@@ -106,7 +96,7 @@ pub enum GatewayError {
     Attachment {
         /// The robot's topic or service.
         topic: String,
-        /// Its bytes.
+        /// Size of the attachment, bytes.
         found: usize,
     },
     /// A message is not in CDR, or not of its type.
@@ -114,7 +104,6 @@ pub enum GatewayError {
     Message {
         /// The robot's topic.
         topic: String,
-        /// Why not.
         reason: String,
     },
     /// A message cannot be written in CDR.
@@ -122,7 +111,6 @@ pub enum GatewayError {
     Encode {
         /// The robot's topic.
         topic: String,
-        /// Why not.
         reason: String,
     },
     /// Another node has this one's name.
@@ -131,7 +119,7 @@ pub enum GatewayError {
          other one out of the launch file, or give this one another --node"
     )]
     SecondNode(String),
-    /// Standard output takes no more.
+    /// Standard output cannot be written.
     #[error(transparent)]
     Output(#[from] command_line::OutputError),
     /// Another node publishes the transform that the gateway publishes.
@@ -140,95 +128,85 @@ pub enum GatewayError {
          and poses jump between the two: stop the other one, as AMCL or a SLAM"
     )]
     SecondBroadcaster {
-        /// The frames of the other's transform.
+        /// Parent frame of the other node's transform.
         parent: String,
-        /// The odometry's frame.
+        /// Frame of the odometry.
         child: String,
-        /// The robot's topic.
         topic: String,
     },
-    /// A number is none.
+    /// A number is not finite.
     #[error("{field} of {topic} is {found}: allowed is a finite number")]
     Number {
-        /// The robot's topic.
         topic: String,
-        /// The field.
         field: &'static str,
-        /// What it holds.
         found: f64,
     },
-    /// A time before 1970, or with a second in its nanoseconds.
+    /// A stamp is before 1970, or has a second or more in its nanoseconds.
     #[error(
         "the stamp of {topic} is {sec} s and {nanosec} ns: allowed are times from 1970 on, with \
          less than 1000000000 ns"
     )]
     Stamp {
-        /// The robot's topic.
         topic: String,
         /// Seconds since 1970.
         sec: i32,
-        /// Nanoseconds on top of them.
+        /// Nanoseconds within the second.
         nanosec: u32,
     },
-    /// A time that no message of ROS can say.
+    /// A time is outside the range of ROS stamps.
     #[error("a stamp of {stamp_ns} ns: allowed are 0 to 2147483647999999999, the times of ROS")]
     Unstampable {
         /// Nanoseconds since 1970.
         stamp_ns: i64,
     },
-    /// A pose, a transform or a map is invalid, or the graph cannot say it.
+    /// A pose, a transform or a map is invalid, or the graph cannot represent it.
     #[error(transparent)]
     Conversion(#[from] ConversionError),
-    /// A topic that is taken is published as something else.
+    /// A topic that the gateway takes is published as another type.
     #[error("{node} publishes {topic} as {found}, which is not supported: expected is {expected}")]
     Stranger {
-        /// The robot's node.
         node: String,
-        /// The robot's topic.
         topic: String,
-        /// Its type and hash.
+        /// Type and hash found.
         found: String,
-        /// Those of the messages that are taken.
+        /// Type and hash expected.
         expected: String,
     },
-    /// A transform of `/tf_static` is none; the others of its message are taken.
+    /// A transform of `/tf_static` is invalid; the others of its message are used.
     #[error("the transform from {parent} to {child} is ignored")]
     Transform {
-        /// The parent frame.
         parent: String,
-        /// The child frame.
         child: String,
-        /// Why it is none.
         source: ConversionError,
     },
-    /// A laser that does not look level.
+    /// A laser is neither level nor upside down.
     #[error(
         "the laser {laser} is tilted by {tilt_degrees:.1} degrees against {base}: allowed are at \
          most {}, also upside down",
         recording::MAX_TILT_DEGREES
     )]
     Tilted {
-        /// The laser's frame.
+        /// Frame of the laser.
         laser: String,
-        /// The base's.
+        /// Frame of the base.
         base: String,
-        /// Angle between their z axes.
+        /// Angle between their z axes, degrees.
         tilt_degrees: f64,
     },
-    /// A frame's name that is invalid.
+    /// The name of a frame is too long.
     #[error("a frame's name has {found} bytes: allowed are at most {most}")]
     FrameName {
-        /// Its bytes.
+        /// Length of the name, bytes.
         found: usize,
-        /// Most bytes.
+        /// Largest length allowed, bytes.
         most: usize,
     },
-    /// More frames than a robot has.
+    /// There are more frames than allowed.
     #[error("too many frames, {frame:?} is ignored: allowed are {most}")]
     Frames {
-        /// The frame that was to come.
+        /// Frame that is ignored.
         frame: String,
-        /// Most frames.
+        /// Largest number of frames.
         most: usize,
     },
     /// The graph fails.

@@ -1,8 +1,7 @@
-//! The transforms between the robot's frames: the laser on the base, and the base in the
-//! odometry's frame. Pure.
+//! Transforms between the robot's frames: the laser on the base, and the base in the odometry's
+//! frame. Pure.
 //!
-//! Refuses lasers that look neither level nor upside down, and more frames than a robot
-//! has.
+//! Rejects lasers that are neither level nor upside down, and more frames than a robot has.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -13,31 +12,31 @@ use ros::{TfMessage, TransformStamped};
 
 use crate::GatewayError;
 
-/// Odometry that is kept until the hypotheses of its scan come.
+/// Number of odometry messages kept until the hypotheses of their scan come.
 const KEPT: usize = 256;
 
-/// Most frames: a robot has some dozens.
+/// Largest number of frames: a robot has some dozens.
 const MAX_FRAMES: usize = 1000;
 
-/// Most bytes of a frame's name.
+/// Longest name of a frame, bytes.
 const MAX_NAME: usize = 256;
 
-/// Most mounts that are kept: a robot has some lasers, each with one frame.
+/// Largest number of mounts kept: a robot has some lasers, each with one frame.
 const MAX_MOUNTS: usize = 64;
 
-/// What is known of the frames.
+/// Transforms, mounts and recent odometry of the robot.
 #[derive(Debug)]
 pub(crate) struct Frames {
     fixed: TransformTree,
-    /// Children whose transform was mended, which is said once.
+    /// Child frames whose rotation was repaired; each is logged once.
     mended: BTreeSet<String>,
-    /// The base's frame, where the user says it.
+    /// Frame of the base, if the user names it.
     base: Option<String>,
-    /// What the user says of each laser; empty where the transforms say it.
+    /// Mounts that the user gave, one per laser; empty if the transforms provide them.
     given: Vec<Mount>,
-    /// By laser and its frame, those that were asked for since the last change.
+    /// Mounts by laser and its frame, found since the transforms last changed.
     mounts: BTreeMap<(usize, String), Option<Mount>>,
-    /// The frame of the first laser, the one that hypotheses are about.
+    /// Frame of the first laser, to which hypotheses refer.
     first: Option<String>,
     odometry: VecDeque<Odometry>,
 }
@@ -55,7 +54,7 @@ impl Frames {
         }
     }
 
-    /// With this frame for the base, where the transforms connect it to the laser.
+    /// Uses this frame as the base if the transforms connect it to the laser.
     pub(crate) fn with_base(self, base: String) -> Self {
         Frames {
             base: Some(base),
@@ -63,11 +62,10 @@ impl Frames {
         }
     }
 
-    /// Takes transforms that never change. One that cannot be used does not keep the
-    /// others from being taken.
+    /// Takes transforms that never change. An invalid one does not keep the others from being used.
     ///
     /// # Errors
-    /// What is wrong with the first that cannot be used.
+    /// Returns the error of the first transform that cannot be used.
     pub(crate) fn on_static_transforms(&mut self, message: &TfMessage) -> Result<(), GatewayError> {
         let outcomes: Vec<_> = message.transforms.iter().map(|t| self.add(t)).collect();
         outcomes.into_iter().collect()
@@ -113,7 +111,7 @@ impl Frames {
         self.odometry.push_back(*odometry);
     }
 
-    /// Where a laser with this frame sits on the base, if that is known.
+    /// Returns the mount of a laser with this frame on the base, if it is known.
     pub(crate) fn base_from_laser(
         &mut self,
         index: usize,
@@ -160,9 +158,8 @@ impl Frames {
         Ok(mount)
     }
 
-    /// Where the odometry's frame lies in the map, and its name, by the best
-    /// hypothesis of a scan; none where the odometry is of a frame that is not
-    /// known to belong to the laser.
+    /// Returns the pose of the odometry's frame in the map, and its name, by the best hypothesis of
+    /// a scan; `None` without odometry, or if its child frame is not known to belong to the laser.
     pub(crate) fn map_from_odom(
         &self,
         header: &HypothesesHeader,
@@ -178,7 +175,7 @@ impl Frames {
         };
         let map_from_child = match laser_from_child {
             Some(laser_from_child) => map_from_laser.then(laser_from_child),
-            // What moves in the odometry's frame is the base, by whatever name.
+            // The child frame of the odometry is the base, by any name.
             None if header.mount_known != 0 => best.map_from_base.into(),
             None => return None,
         };
@@ -187,7 +184,7 @@ impl Frames {
         Some((map_from_odom, odometry.frame.as_str().to_owned()))
     }
 
-    /// What the robot has moved since, by odometry, where that is still known.
+    /// Returns the motion of the robot since then by odometry, if that goes back so far.
     pub(crate) fn moved_since(&self, measured_ns: i64) -> Option<Pose> {
         let (first, newest) = (self.odometry.front()?, self.odometry.back()?);
         if first.stamp.measured_ns > measured_ns {
@@ -197,7 +194,7 @@ impl Frames {
         Some(then.inverse().then(newest.odom_from_child.into()))
     }
 
-    /// The newest odometry up to this time, else the first.
+    /// Returns the newest odometry up to this time, else the oldest.
     fn odometry_at(&self, measured_ns: i64) -> Option<&Odometry> {
         let by_then = |odometry: &&Odometry| odometry.stamp.measured_ns <= measured_ns;
         let newest = self.odometry.iter().rev().find(by_then);

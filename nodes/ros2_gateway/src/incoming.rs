@@ -1,4 +1,4 @@
-//! From the robot into the graph.
+//! Messages from the robot into the graph.
 
 use std::collections::BTreeSet;
 
@@ -21,34 +21,33 @@ use crate::seeding::{Belief, Seeding};
 use crate::topics::Topics;
 use crate::{GatewayError, Seed};
 
-/// Most bytes of a scan, odometry, a pose or transforms.
+/// Largest size of a scan, odometry, a pose or transforms, bytes.
 pub(crate) const MAX_BYTES: usize = 1 << 20;
 
-/// Most bytes of a map: 64 million cells, and what stands before them.
+/// Largest size of a map, bytes: 64 million cells, and the fields before them.
 const MAX_MAP_BYTES: usize = (64 << 20) + 4096;
 
-/// For so long after odometry came by its own topic, /tf is not looked at for it,
-/// nanoseconds.
+/// Time after a message on the odometry topic for which odometry in /tf is ignored, nanoseconds.
 const ODOMETRY_NS: i64 = 1_000_000_000;
 
-/// What comes from the robot.
+/// Subscriptions to the robot's topics, and the outlet to the graph.
 pub(crate) struct Incoming {
     fixed: Subscription<TfMessage>,
     moving: Option<Subscription<TfMessage>>,
     odometry: Option<Subscription<Odometry>>,
-    /// Of each laser, the first one first; none where they are not wanted.
+    /// One per laser, in the order of `--scan`; empty if scans are not wanted.
     scans: Vec<Subscription<LaserScan>>,
     maps: Option<Subscription<OccupancyGridMsg>>,
     beliefs: Option<Subscription<PoseWithCovarianceStamped>>,
     outlet: Outlet,
     odom_frame: String,
-    /// When odometry came by its own topic.
+    /// Time of the last message on the odometry topic, nanoseconds.
     odometry_ns: Option<i64>,
-    /// The frame of the robot's map.
+    /// Frame of the robot's map.
     map_frame: Option<String>,
-    /// Whose rotations were mended, which is said once.
+    /// Sources whose rotation was repaired; each is logged once.
     mended: BTreeSet<&'static str>,
-    /// The transforms to the odometry that we sent.
+    /// Stamps of the transforms to the odometry that the gateway sent.
     sent: Sent,
     tf: String,
 }
@@ -69,8 +68,8 @@ impl Incoming {
         let brings = |topic| config.brings(topic);
         let (odometry, by_topic) = match config.amcl.role {
             Role::Seed => (brings(Brought::Odometry), brings(Brought::Odometry)),
-            // As AMCL does: what wheels report may differ from what the robot's own filter
-            // makes of it, and the transform from the map is to the latter.
+            // From /tf, like AMCL: wheel odometry may differ from the output of the robot's own
+            // filter, and the transform from the map refers to that output.
             Role::Amcl => (brings(Brought::Odometry), false),
         };
         let reliable = Keeping::Reliable;
@@ -83,7 +82,7 @@ impl Incoming {
             scans,
             fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
             moving: open.wanted(odometry, &topics.tf, reliable, 100, sizes.0)?,
-            // Also of robots whose odometry is best effort.
+            // `Fresh` also accepts robots whose odometry is best effort.
             odometry: open.wanted(by_topic, &topics.odom, Keeping::Fresh, 16, sizes.0)?,
             maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
             beliefs: open.wanted(
@@ -103,27 +102,27 @@ impl Incoming {
         })
     }
 
-    /// What is done to scans and maps from now on.
+    /// Sets the rules for scans and maps from now on.
     pub(crate) fn set_rules(&mut self, rules: Rules) {
         self.outlet.rules = rules;
     }
 
-    /// How many maps came, and how many scans of each laser.
+    /// Returns the number of maps sent, and that of scans of each laser.
     pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
         self.outlet.sent()
     }
 
-    /// How often odometry came.
+    /// Number of odometry messages sent.
     pub(crate) fn odometry_sent(&self) -> u64 {
         self.outlet.odometry_sent()
     }
 
-    /// The frame of the robot's map, if one came.
+    /// Returns the frame of the robot's map, if one came.
     pub(crate) fn map_frame(&self) -> Option<&str> {
         self.map_frame.as_deref()
     }
 
-    /// Takes what has come since the last call: first what is needed to read the rest.
+    /// Handles the messages since the last call: those that others need come first.
     pub(crate) fn step(
         &mut self,
         frames: &mut Frames,
@@ -157,7 +156,7 @@ impl Incoming {
         })?;
         let alone = odometry_ns.is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
         take_if(moving, report, |message, report| {
-            // What is sound beside it is taken.
+            // The other transforms of the message are used.
             let mut second = None;
             for transform in message.transforms {
                 if sent.is_from_another(&transform, odom_frame) {
@@ -201,7 +200,7 @@ impl Incoming {
     }
 }
 
-/// Says once that a rotation had to be mended.
+/// Warns, once for each source, that a rotation had to be repaired.
 fn note(whose: &'static str, turn: Quaternion, mended: &mut BTreeSet<&'static str>) {
     if let Ok((_, Some(mend))) = turn.mended()
         && mended.insert(whose)
@@ -210,7 +209,7 @@ fn note(whose: &'static str, turn: Quaternion, mended: &mut BTreeSet<&'static st
     }
 }
 
-/// What subscriptions are opened with.
+/// Context for opening subscriptions.
 struct Opening<'a> {
     graph: &'a Graph,
     member: &'a Member,
@@ -256,7 +255,7 @@ fn take_if<M: RosMessage + DeserializeOwned>(
     }
 }
 
-/// Hands on what waits, and counts what is refused; only a graph that fails ends it.
+/// Passes queued messages to `each` and counts rejected ones; fails only if the graph fails.
 pub(crate) fn take<M: RosMessage + DeserializeOwned>(
     subscription: &mut Subscription<M>,
     report: &mut Report,
@@ -275,7 +274,7 @@ pub(crate) fn take<M: RosMessage + DeserializeOwned>(
         report.dropped(received.lost);
         match received.message.and_then(|message| each(message, report)) {
             Ok(()) => {}
-            // A map may be larger than shared memory has room for.
+            // A map that does not fit into shared memory is rejected.
             Err(GatewayError::Transport(error))
                 if !matches!(error, TransportError::SharedMemoryFull { .. }) =>
             {

@@ -1,5 +1,5 @@
-//! Whether all that the robot brings comes: said in the log when that changes, and in the
-//! node's health for as long as it holds.
+//! Supervision of the robot's inputs: a change is logged, and the current state is in the node's
+//! health.
 
 use transport::{TransportError, monotonic_ns};
 use zenoh_session::Report;
@@ -11,30 +11,30 @@ use crate::role::Role;
 use crate::topics::Topics;
 use crate::waiting::{Input, Status, Waiting};
 
-/// From one look to the next, nanoseconds.
+/// Time between two looks, nanoseconds.
 const PERIOD_NS: i64 = 200_000_000;
 
-/// Looks at the robot's side now and then.
+/// Checks the robot's inputs periodically.
 #[derive(Default)]
 pub(crate) struct Inputs {
     waiting: Waiting,
-    /// None before the first look.
+    /// Time of the last look; `None` before the first.
     looked_ns: Option<i64>,
-    /// What was said last in the log.
+    /// Text of the last log line.
     said: Option<String>,
 }
 
-/// What the robot brings while the gateway takes it.
+/// Inputs of the robot, while the gateway takes them.
 pub(crate) struct Taken<'a> {
     pub(crate) incoming: &'a Incoming,
     pub(crate) watch: &'a Watch,
-    /// How many messages of the clock came, where one is needed.
+    /// Number of clock messages received; `None` if no clock is needed.
     pub(crate) clock: Option<u64>,
 }
 
 impl Inputs {
-    /// Says what is waited for: the router, else an input, else what the gateway itself waits
-    /// for, in words; nothing is taken yet where `taken` is none.
+    /// Reports what is missing: the router, else an input, else `itself`, the reason for which the
+    /// gateway itself waits. `taken` is `None` while no input is open.
     pub(crate) fn look(
         &mut self,
         (config, topics): (&Config, &Topics),
@@ -79,7 +79,7 @@ impl Inputs {
 }
 
 impl Taken<'_> {
-    /// What the robot does not bring is not waited for.
+    /// Lists the inputs to wait for, without topics that `--bring` leaves out.
     fn inputs<'t>(&self, config: &'t Config, topics: &'t Topics) -> Vec<Input<'t>> {
         let (maps, scans) = self.incoming.sent();
         let input = |topic: &'t str, received, comes_once| Input {
@@ -89,7 +89,7 @@ impl Taken<'_> {
             comes_once,
             from_frame: None,
         };
-        // Elsewhere a robot may be without.
+        // In the seed role, a robot may be without odometry.
         let needs_odometry = config.amcl.role == Role::Amcl && config.brings(Brought::Odometry);
         let odometry = needs_odometry.then(|| Input {
             from_frame: Some(&config.odom_frame),

@@ -1,14 +1,13 @@
 //! Joins a graph to a ROS 2 robot, with no ROS installed.
 //!
-//! It speaks what `rmw_zenoh` speaks, or DDS: the robot's scan, odometry and map enter the
-//! graph, and the graph's answers go to the robot, with an initial pose for its
-//! particle filter as soon as the verdict is Unique. Module `ros` knows the format and
-//! nothing of localization; `frames`, `seeding`, `waiting` and `vda5050` are pure. What comes from the
-//! network is checked before it enters the graph, refused if it is wrong, and counted
-//! in `health`.
+//! It speaks the protocol of `rmw_zenoh`, or DDS. The robot's scan, odometry and map enter the
+//! graph; the graph's results go to the robot, along with an initial pose for its particle filter
+//! as soon as the verdict is Unique. The crate `ros` knows the message formats and nothing of
+//! localization; `frames`, `seeding`, `waiting` and `vda5050` are pure. Messages from the network
+//! are checked before they enter the graph; invalid ones are rejected and counted in `health`.
 //!
-//! It moves no robot and sets no parameter. Module `amcl` is the node in AMCL's place: the
-//! tracker's pose in all its forms, with AMCL's services and parameters.
+//! It moves no robot and sets no parameter. Module `amcl` is the node in AMCL's place: it publishes
+//! the tracker's pose in all of AMCL's forms, with AMCL's services and parameters.
 
 mod amcl;
 mod broadcast;

@@ -1,4 +1,4 @@
-//! The topics that nodes publish for the gateway to take, for who sets it up.
+//! Lists the topics that the gateway could take, to help with its setup (`--look`).
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -12,13 +12,13 @@ use crate::middleware::Rmw;
 use crate::rmw::{Member, Seen, Watch};
 use crate::{Config, GatewayError};
 
-/// From one look at what is discovered to the next.
+/// Longest time between two looks at the discovered entities.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Endpoint of a router that runs on this machine.
 const ROUTER: &str = "tcp/127.0.0.1:7447";
 
-/// Types of the messages that the gateway takes, as middleware names them.
+/// Message types that the gateway takes: name in the middleware, and kind.
 const TYPES: [(&str, &str); 4] = [
     ("sensor_msgs::msg::dds_::LaserScan_", "scan"),
     ("nav_msgs::msg::dds_::OccupancyGrid_", "map"),
@@ -37,11 +37,11 @@ pub(crate) struct Published {
     node: String,
 }
 
-/// Prints what is published within so many seconds on each middleware, or on the one that
-/// is chosen: objects of JSON, a line each.
+/// Searches for `seconds` on each middleware, or on the chosen one, and prints the published topics
+/// that the gateway could take, one JSON object per line.
 ///
 /// # Errors
-/// A name or Zenoh's configuration cannot be used, or standard output takes no more.
+/// If a name or Zenoh's configuration cannot be used, or standard output cannot be written.
 pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), GatewayError> {
     let mut report = Report::new(graph.health()?);
     let mut found = BTreeSet::new();
@@ -55,7 +55,7 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
             ..config.clone()
         };
         let joined = match Member::join(graph, &of_rmw, &mut report) {
-            // Somebody is the router of this machine.
+            // Another process is the router of this machine: connect to it.
             Err(_) if rmw == Rmw::Zenoh && is_alone(config) => {
                 let mut called = of_rmw.clone();
                 called.network.connect.push(ROUTER.to_owned());
@@ -66,7 +66,7 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
         match joined {
             Ok(Some(member)) => look_at(graph, (&member, rmw), seconds, &mut found)?,
             Ok(None) => return Ok(()),
-            // The other may be there.
+            // The robot may use the other middleware.
             Err(error) => tracing::warn!("{}", transport::with_causes(&error)),
         }
     }
@@ -74,7 +74,7 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
     Ok(stdout::print(&lines.collect::<String>())?)
 }
 
-/// Whether no router is named, nor where to listen.
+/// True if no Zenoh configuration, listening endpoint or router is given.
 fn is_alone(config: &Config) -> bool {
     let network = &config.network;
     network.config.is_none() && network.listen.is_empty() && network.connect.is_empty()

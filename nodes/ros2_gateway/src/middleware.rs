@@ -1,8 +1,8 @@
-//! By which middleware the robot is reached.
+//! Choice of the middleware that reaches the robot.
 
 use clap::ValueEnum;
 
-/// The middleware.
+/// Middleware of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Rmw {
     /// Fast DDS or Cyclone DDS
@@ -12,7 +12,7 @@ pub enum Rmw {
 }
 
 impl Rmw {
-    /// As `--rmw` has it.
+    /// Returns the value of `--rmw` for this middleware.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Rmw::Dds => "dds",
@@ -21,7 +21,8 @@ impl Rmw {
     }
 }
 
-/// The middleware by the option `--rmw`, else by `RMW_IMPLEMENTATION`, and why it is that.
+/// Returns the middleware of the option `--rmw`, else that of `RMW_IMPLEMENTATION`, with the reason
+/// as text.
 pub(crate) fn chosen(option: Option<Rmw>, implementation: &str) -> (Rmw, String) {
     if let Some(rmw) = option {
         return (rmw, "by --rmw".to_owned());

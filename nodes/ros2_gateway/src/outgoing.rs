@@ -1,4 +1,4 @@
-//! From the graph to the robot.
+//! Messages from the graph to the robot.
 
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, Verdict};
@@ -16,22 +16,22 @@ use crate::seeding::{Answer, Reason, Seeding};
 use crate::stamps::in_map;
 use crate::topics::Topics;
 
-/// Hypotheses that are less likely are no place to be: there are up to 64, and one of
-/// them is near anywhere.
+/// Minimum probability of a hypothesis that the filter's pose is compared with: of up to 64
+/// hypotheses, one is near any pose.
 const LIKELY: f32 = 0.01;
 
-/// What goes to the robot.
+/// Publishers to the robot.
 pub(crate) struct Outgoing {
     initial_pose: Publisher<PoseWithCovarianceStamped>,
     hypotheses: Publisher<PoseArray>,
     pub(crate) diagnostics: Diagnostics,
-    /// None where the user does not want it.
+    /// `None` without `--broadcast-tf`.
     broadcaster: Option<Broadcaster>,
     ahead_ns: i64,
     spread: Reach,
-    /// Where the odometry's frame lies, by the last verdict that was Unique.
+    /// Pose of the odometry's frame in the map, and its name, by the last Unique verdict.
     map_from_odom: Option<(Pose, String)>,
-    /// Whether there is a tracker, which then provides the pose.
+    /// True if there is a tracker, which then provides the pose.
     is_tracked: bool,
 }
 
@@ -57,7 +57,7 @@ impl Outgoing {
         })
     }
 
-    /// Sends the robot the answer to a scan.
+    /// Sends the robot the hypotheses of a scan.
     pub(crate) fn answer(
         &mut self,
         header: &HypothesesHeader,
@@ -106,8 +106,8 @@ impl Outgoing {
         self.broadcast(header.stamp, map_frame, report)
     }
 
-    /// There is a tracker: answers to single scans are not sent as the robot's pose, before
-    /// the tracker's first one either.
+    /// Notes that there is a tracker: hypotheses of single scans are not sent as the robot's pose
+    /// any more, not even before the tracker's first pose.
     pub(crate) fn expect_tracker(&mut self) {
         self.is_tracked = true;
     }
@@ -163,8 +163,8 @@ impl Outgoing {
         Ok(())
     }
 
-    /// The odometry continues from where the map was last known to lie, so the
-    /// transform is dated again with each scan.
+    /// Sends the last known transform with the stamp of this scan: it stays valid while the
+    /// odometry goes on.
     fn broadcast(
         &mut self,
         of: Stamp,
@@ -193,14 +193,13 @@ fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
     let poses = likely.map(|(_, item)| ros::poses::robot(header, item));
     Answer {
         measured_ns: header.stamp.measured_ns,
-        // Where no mount is known, the pose is the laser's: the robot's could be a
-        // metre away.
+        // Without a known mount, the pose is that of the laser; the robot's could be a metre away.
         is_unique: is_unique(header) && header.mount_known != 0 && !items.is_empty(),
         map_from_base: poses.collect(),
     }
 }
 
-/// Where the tracker has the robot, as an answer to the scan.
+/// Converts the tracker's pose to an answer for its scan.
 fn tracked(header: &PoseHeader) -> Answer {
     let base = header.base();
     Answer {
@@ -210,8 +209,8 @@ fn tracked(header: &PoseHeader) -> Answer {
     }
 }
 
-/// As sure as `least` at most: particles that are drawn too close together follow no
-/// surprise.
+/// Raises the standard deviations to `least`: particles that are drawn too close together cannot
+/// adapt to unexpected motion.
 fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarianceStamped {
     let metres = least.metres * least.metres;
     let mut covariance = pose.pose.planar_covariance();

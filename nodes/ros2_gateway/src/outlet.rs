@@ -1,4 +1,4 @@
-//! The graph's side of what comes from the robot.
+//! Publishers of the robot's messages in the graph.
 
 use map::MemoryLimit;
 use messages::{CellRules, MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
@@ -12,28 +12,28 @@ use crate::config::{Brought, Config};
 use crate::frames::Frames;
 use crate::topics::Scans;
 
-/// What is done to scans and maps on the way.
+/// Rules that are applied to scans and maps on the way.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Rules {
-    /// Readings below are no returns, metres, where the laser itself takes nearer ones.
+    /// Readings below this are no returns, metres; the laser's own limit counts if it is higher.
     pub(crate) range_min_m: Option<f32>,
-    /// Readings beyond are no returns, metres, where the laser itself takes farther ones.
+    /// Readings beyond this are no returns, metres; the laser's own limit counts if it is lower.
     pub(crate) range_max_m: Option<f32>,
-    /// Whether maps after the first are left out.
+    /// True if maps after the first are left out.
     pub(crate) first_map_only: bool,
 }
 
-/// Stamps this much earlier than the last are of a clock that was set back, or of a
-/// recording that was begun again, nanoseconds.
+/// A stamp that is earlier than the last by more than this is from a clock that was set back or a
+/// recording that restarted, nanoseconds.
 const SET_BACK_NS: i64 = 1_000_000_000;
 
 /// A laser whose scans are sent.
 struct Laser {
     name: Name,
     sent: u64,
-    /// Of the last scan that was sent, nanoseconds.
+    /// Stamp of the last scan that was sent, nanoseconds.
     stamp_ns: Option<i64>,
-    /// Whether it was said that scans come twice.
+    /// True once the warning of repeated scans was logged.
     repeats: bool,
 }
 
@@ -47,20 +47,20 @@ impl Laser {
         }
     }
 
-    /// Whether a scan has come before, or a later one: bridges may send each twice.
+    /// True if this scan or a later one was sent before: bridges may send each scan twice.
     fn had(&self, stamp_ns: i64) -> bool {
-        // Who has no clock sends 0 always.
+        // Lasers without a clock always send 0.
         let before = |last: i64| (last.saturating_sub(SET_BACK_NS)..=last).contains(&stamp_ns);
         stamp_ns != 0 && self.stamp_ns.is_some_and(before)
     }
 }
 
-/// Where messages enter the graph; what nobody sends has no publisher.
+/// Publishers to the graph; `None` for topics that `--bring` leaves out.
 pub(crate) struct Outlet {
     scans: Option<Publisher<topic::Scan>>,
     odometry: Option<Publisher<topic::OdometryTopic>>,
     maps: Option<Publisher<topic::Map>>,
-    /// What the graph may take for a map.
+    /// Memory limit of the graph, which a map must fit into.
     memory_limit: MemoryLimit,
     cells: CellRules,
     lasers: Vec<Laser>,
@@ -97,7 +97,7 @@ impl Outlet {
         })
     }
 
-    /// How many maps came, and how many scans of each laser.
+    /// Returns the number of maps sent, and that of scans of each laser.
     pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
         (self.maps_sent, self.lasers.iter().map(|laser| laser.sent))
     }
@@ -106,7 +106,7 @@ impl Outlet {
         self.odometry_sent
     }
 
-    /// Sends a scan of a laser, by its place among them; one that was sent before is dropped.
+    /// Sends a scan of the laser with this index; a scan that was sent before is dropped.
     pub(crate) fn send_scan(
         &mut self,
         laser: usize,
@@ -169,7 +169,7 @@ impl Outlet {
         Ok(())
     }
 
-    /// A map that is in the graph already is not sent again.
+    /// Sends a map, unless the graph has the same one already.
     pub(crate) fn send_map(
         &mut self,
         message: &OccupancyGridMsg,

@@ -1,4 +1,4 @@
-//! What the gateway is to the robot, and the options that go with it.
+//! Role of the gateway on the robot, and the options of the AMCL role.
 
 use std::path::PathBuf;
 
@@ -10,16 +10,16 @@ use crate::GatewayError;
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "In AMCL's place")]
 pub struct Options {
-    /// What the gateway is to the robot
+    /// Role of the gateway on the robot
     #[arg(long = "as", value_name = "ROLE", default_value = "seed")]
     pub role: Role,
 
-    /// Parameters in the form of ROS, as nav2_amcl has them; of several files the last counts;
-    /// with --as amcl
+    /// Parameter file in the format of ROS, such as that of nav2_amcl; later files override earlier
+    /// ones; with --as amcl
     #[arg(long, value_name = "FILE")]
     pub params_file: Vec<PathBuf>,
 
-    /// A parameter, as `use_sim_time:=true`, which counts before those of files; with --as amcl
+    /// A parameter, such as `use_sim_time:=true`, which overrides those of files; with --as amcl
     #[arg(long, value_name = "NAME:=VALUE")]
     pub parameter: Vec<String>,
 
@@ -27,14 +27,14 @@ pub struct Options {
     #[arg(long)]
     pub autostart: bool,
 
-    /// Believe initial poses of initialpose, set_initial_pose and the parameters at once,
-    /// with no scan that confirms them; with --as amcl
+    /// Believe initial poses of initialpose, set_initial_pose and the parameters at once, without a
+    /// scan that confirms them; with --as amcl
     #[arg(long)]
     pub believe_initial_pose: bool,
 }
 
 impl Options {
-    /// Refuses what counts in AMCL's place alone.
+    /// Rejects options of the AMCL role in the other role.
     pub(crate) fn check(&self) -> Result<(), GatewayError> {
         let given = [
             (!self.params_file.is_empty(), "params-file"),
@@ -52,12 +52,12 @@ impl Options {
     }
 }
 
-/// What the gateway is to the robot.
+/// Role of the gateway on the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Role {
-    /// Beside a particle filter, which gets its initial pose
+    /// Next to a particle filter, which gets its initial pose
     Seed,
-    /// In the place of nav2_amcl
+    /// In place of nav2_amcl
     Amcl,
 }
 

@@ -1,16 +1,16 @@
-//! Arguments as ROS hands them to its nodes, as options of the gateway. Pure.
+//! Translation of ROS arguments to options of the gateway. Pure.
 //!
 //! ```text
 //! ros2_gateway --as amcl --ros-args -r __ns:=/r2 -r /tf:=tf -p use_sim_time:=true --params-file FILE
 //! ```
 //!
-//! The rules are those of <https://design.ros2.org/articles/ros_command_line_arguments.html>: what
-//! stands between `--ros-args` and `--` is for ROS.
+//! The rules are those of <https://design.ros2.org/articles/ros_command_line_arguments.html>:
+//! arguments between `--ros-args` and `--` are for ROS.
 
 use std::ffi::OsString;
 
-/// Flags of ROS that change nothing here: the gateway logs to standard error and, in AMCL's place,
-/// to `/rosout`.
+/// Flags of ROS without effect here: the gateway logs to standard error and, in AMCL's place, to
+/// `/rosout`.
 const IDLE: [&str; 6] = [
     "--enable-rosout-logs",
     "--disable-rosout-logs",
@@ -20,7 +20,7 @@ const IDLE: [&str; 6] = [
     "--disable-external-lib-logs",
 ];
 
-/// The names that can be remapped, and the options that do so.
+/// Names that can be remapped, and the options that do so.
 const NAMES: [(&str, &str); 11] = [
     ("scan", "--scan"),
     ("odom", "--odom"),
@@ -35,10 +35,10 @@ const NAMES: [(&str, &str); 11] = [
     ("reinitialize_global_localization", "--reinitialize"),
 ];
 
-/// Translates a command line. The first word is the program's.
+/// Translates a command line, whose first word is the name of the program.
 ///
 /// # Errors
-/// Words that say what is wrong and what is allowed.
+/// Returns a text that says what is wrong and what is allowed.
 pub fn translated(words: impl Iterator<Item = OsString>) -> Result<Vec<String>, String> {
     let text = |word: OsString| {
         let refused = |word: OsString| format!("{word:?}: allowed is text in UTF-8");
@@ -83,8 +83,8 @@ fn following(flag: &str, next: Option<String>) -> Result<String, String> {
     next.ok_or_else(|| format!("{flag} ends the arguments: a value must follow"))
 }
 
-/// A rule without the name of the node that it is for. The gateway is one node, so that a rule for
-/// a node is taken for it: launch files give each process its own.
+/// Removes the name of the node from a rule. The gateway is one node and takes rules for any node
+/// as its own: launch files give each process its own rules.
 fn of_this_node(rule: &str) -> Option<&str> {
     let name = rule.split(":=").next()?;
     match name.split_once(':') {

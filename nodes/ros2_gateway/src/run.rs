@@ -22,14 +22,14 @@ use crate::topics::Topics;
 use crate::verdict::Verdict;
 use crate::{Config, GatewayError, look};
 
-/// How long a late joiner of the graph may wait for the map.
+/// Longest time between two steps; a late joiner of the graph may wait this long for the map.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Carries messages until the stop flag is set.
 ///
 /// # Errors
-/// If a name or Zenoh's configuration cannot be used, the session cannot be opened,
-/// or the graph fails. A robot that is not there is no error: it is waited for.
+/// If a name or Zenoh's configuration cannot be used, the session cannot be opened, or the graph
+/// fails. A missing robot is no error: the gateway waits for it.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     if let Some(seconds) = config.look {
         return look::look(graph, config, seconds);
@@ -40,11 +40,11 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     }
 }
 
-/// Gives the robot's particle filter its initial pose.
+/// Runs next to the robot's particle filter and gives it its initial pose.
 fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     config.amcl.check()?;
     let topics = Topics::of(config)?;
-    // What is wrong with options is said before anything is opened.
+    // Wrong options are reported before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);
     let mut report = Report::new(graph.health()?);
     let mut inputs = Inputs::default();
@@ -70,7 +70,7 @@ struct Gateway {
     service: Service<Empty>,
     incoming: Incoming,
     outgoing: Outgoing,
-    /// Once there is a tracker.
+    /// Opened at the first pose of a tracker.
     verdict: Option<Verdict>,
     frames: Frames,
     seeding: Seeding,
@@ -85,7 +85,7 @@ impl Gateway {
         topics: &Topics,
         mounts: Vec<Mount>,
     ) -> Result<Self, GatewayError> {
-        // What is sent is there before anybody who waits for it is seen.
+        // Publishers are opened before the watch, so that they exist when a subscriber is seen.
         let sent = Sent::default();
         let outgoing = Outgoing::open(&member, config, topics, sent.clone())?;
         let mut watch = Watch::open(graph, &member, &topics.initial_pose)?;
@@ -111,8 +111,8 @@ impl Gateway {
     ) -> Result<(), TransportError> {
         self.incoming
             .step(&mut self.frames, &mut self.seeding, report)?;
-        // After the scans and before their answers: who came or asked before a scan gets
-        // the initial pose by that scan.
+        // Between the scans and their results: a subscriber or a request that came before a scan
+        // gets the initial pose from that scan.
         self.look(report)?;
         self.serve(report)?;
         let robots = self.incoming.map_frame();
@@ -163,7 +163,7 @@ impl Gateway {
         }
     }
 
-    /// Who came.
+    /// Handles newly discovered subscribers and publishers.
     fn look(&mut self, report: &mut Report) -> Result<(), TransportError> {
         report.dropped(self.watch.dropped());
         while let Some(seen) = self.watch.next(&self.member) {
@@ -179,7 +179,7 @@ impl Gateway {
         Ok(())
     }
 
-    /// Who asked.
+    /// Answers requests for an initial pose.
     fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
         let answered = self.service.serve(report, |_| Nothing::default())?;
         if answered > 0 {

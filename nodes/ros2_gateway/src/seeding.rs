@@ -1,8 +1,7 @@
-//! When the robot's particle filter gets an initial pose. Pure.
+//! Decides when the robot's particle filter gets an initial pose. Pure.
 //!
-//! It gets one once it starts, when somebody asks for it, and when its pose lies
-//! apart from every hypothesis of a scan that is Unique, twice in a row: always by a
-//! scan whose verdict is Unique, and never otherwise.
+//! It gets one when it starts, on request, and when its pose is far from every hypothesis of a
+//! Unique scan twice in a row; always from a scan whose verdict is Unique.
 
 use std::collections::VecDeque;
 
@@ -10,55 +9,54 @@ use geometry::Pose;
 
 use crate::config::{Reach, Seed};
 
-/// Answers that are kept to be compared with: some seconds.
+/// Number of answers kept for comparison: some seconds of scans.
 const KEPT: usize = 128;
 
-/// How far apart in time a pose and the hypotheses may be that are compared,
-/// nanoseconds: a robot at 2 m/s gets as far as half the distance that makes it lost.
+/// Largest time between a pose and the hypotheses it is compared with, nanoseconds: a robot at 2
+/// m/s moves half the default distance beyond which it counts as lost.
 const SAME_TIME_NS: i64 = 250_000_000;
 
-/// This many poses in a row have to lie apart.
+/// Number of poses in a row that must be far from all hypotheses.
 const ENOUGH: u32 = 2;
 
-/// Where the robot may be, by one scan.
+/// Possible poses of the robot according to one scan.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Answer {
     pub(crate) measured_ns: i64,
-    /// Whether the verdict is Unique, and the pose that of the robot.
+    /// True if the verdict is Unique, and the pose is that of the robot.
     pub(crate) is_unique: bool,
-    /// Best first.
+    /// Possible poses, best first.
     pub(crate) map_from_base: Vec<Pose>,
 }
 
-/// Where the particle filter takes the robot to be.
+/// Pose of the robot according to the particle filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Belief {
     pub(crate) measured_ns: i64,
     pub(crate) map_from_base: Pose,
 }
 
-/// Why it gets an initial pose.
+/// Reason for an initial pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reason {
-    /// It has just come.
+    /// The filter has just started.
     New,
-    /// Somebody asked.
+    /// It was requested.
     Asked,
-    /// It is elsewhere.
+    /// The filter's pose is far from all hypotheses.
     Lost,
 }
 
-/// Decides.
 #[derive(Debug)]
 pub(crate) struct Seeding {
     when: Seed,
     beyond: Reach,
     wanted: Option<Reason>,
     answers: VecDeque<Answer>,
-    /// A pose that no answer was there for yet.
+    /// Pose of the filter that is newer than every answer.
     waiting: Option<Belief>,
     apart: u32,
-    /// The scan of the last initial pose.
+    /// Time of the scan that gave the last initial pose, nanoseconds.
     seeded_ns: i64,
 }
 
@@ -75,19 +73,19 @@ impl Seeding {
         }
     }
 
-    /// A particle filter came.
+    /// Notes a new particle filter, which gets an initial pose unless that is turned off.
     pub(crate) fn greet(&mut self) {
         if self.when != Seed::Never {
             self.wanted = self.wanted.or(Some(Reason::New));
         }
     }
 
-    /// Somebody asks for an initial pose.
+    /// Notes a request for an initial pose.
     pub(crate) fn ask(&mut self) {
         self.wanted = Some(Reason::Asked);
     }
 
-    /// Whether an initial pose is due.
+    /// True if an initial pose is due.
     #[cfg(test)]
     fn is_wanted(&self) -> bool {
         self.wanted.is_some()
@@ -95,7 +93,7 @@ impl Seeding {
 
     /// Takes the pose of the particle filter.
     pub(crate) fn on_belief(&mut self, belief: Belief) {
-        // Its poses from before the initial pose do not count.
+        // Poses from before the initial pose do not count.
         if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
             return;
         }
@@ -107,8 +105,8 @@ impl Seeding {
         }
     }
 
-    /// Takes what a scan says; gives the reason if the particle filter is to be sent
-    /// the first pose of it.
+    /// Takes the answer of a scan; returns the reason if its first pose is to be sent to the
+    /// filter.
     pub(crate) fn on_answer(&mut self, answer: Answer) -> Option<Reason> {
         let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
         if self.answers.back().is_some_and(|a| a.measured_ns > now_ns) {
@@ -223,7 +221,7 @@ mod tests {
             seeding.on_answer(answer(200, true, &[1.0])),
             Some(Reason::Lost)
         );
-        // Poses from before say nothing of the initial pose.
+        // Poses from before the initial pose do not count.
         seeding.on_belief(belief(200, 9.0));
         seeding.on_belief(belief(150, 9.0));
         assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
@@ -248,7 +246,7 @@ mod tests {
             seeding.on_belief(turned);
         }
         assert!(seeding.is_wanted());
-        // It came back by itself, or somebody put it there.
+        // It recovered by itself, or a user moved it there.
         seeding.on_belief(belief(2000, 1.0));
         assert!(!seeding.is_wanted());
     }

@@ -1,4 +1,4 @@
-//! Times of the graph as ROS has them.
+//! Conversion of the graph's stamps to those of ROS.
 
 use messages::Stamp;
 use ros::{Header, Time};
@@ -13,7 +13,7 @@ pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError>
     Ok(Header::new(stamp(of.measured_ns)?, map_frame))
 }
 
-/// Nanoseconds since 1970 as ROS has them.
+/// Converts nanoseconds since 1970 to a time of ROS.
 ///
 /// # Errors
 /// [`GatewayError::Unstampable`] for times that are negative or too large for its 32 bits.
@@ -22,12 +22,12 @@ pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     stamp.ok_or(GatewayError::Unstampable { stamp_ns })
 }
 
-/// A time that is set back by more is that of a clock that was set, or of a simulation that
-/// began anew, nanoseconds.
+/// A step back by more than this is from a clock that was set or a simulation that restarted,
+/// nanoseconds.
 const SET_BACK_NS: i64 = 2_000_000_000;
 
-/// Refuses times that do not come after the last one: who buffers transforms takes an older
-/// one for an error.
+/// Rejects times that are not later than the last one: transform buffers treat an older one as an
+/// error.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Forward {
     last_ns: i64,
@@ -40,7 +40,8 @@ impl Default for Forward {
 }
 
 impl Forward {
-    /// Whether a time, nanoseconds, goes on from the last one, which it then is.
+    /// True if the time, nanoseconds, is later than the last one, or the clock was set back; keeps
+    /// it as the last one then.
     pub(crate) fn admits(&mut self, at_ns: i64) -> bool {
         let behind_ns = self.last_ns.saturating_sub(at_ns);
         let is_later = !(0..=SET_BACK_NS).contains(&behind_ns);

@@ -1,4 +1,4 @@
-//! The robot's topics and services by their whole names.
+//! Full names of the robot's topics and services.
 
 use messages::Name;
 use ros::lasers;
@@ -6,7 +6,7 @@ use ros::lasers;
 use crate::config::{Config, Names};
 use crate::{GatewayError, rmw};
 
-/// As in [`Names`], resolved.
+/// Full names: those of [`Names`], resolved, and those that are fixed.
 #[derive(Debug, Clone)]
 pub(crate) struct Topics {
     pub(crate) scans: Vec<Scans>,
@@ -20,12 +20,12 @@ pub(crate) struct Topics {
     pub(crate) localization: String,
     pub(crate) diagnostics: String,
     pub(crate) reinitialize: String,
-    /// In AMCL's place; these have the names that AMCL gives them.
+    /// For the AMCL role, like the next three; they have AMCL's names.
     pub(crate) particle_cloud: String,
     pub(crate) set_initial_pose: String,
     pub(crate) nomotion: String,
     pub(crate) bond: String,
-    /// Of all nodes together, whatever the namespace.
+    /// Independent of the namespace, like the next two.
     pub(crate) clock: String,
     pub(crate) parameter_events: String,
     pub(crate) rosout: String,
@@ -35,7 +35,7 @@ pub(crate) struct Topics {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scans {
     pub(crate) topic: String,
-    /// What the graph calls the laser; empty where it is the only one.
+    /// Name of the laser in the graph; empty if it is the only one.
     pub(crate) laser: Name,
 }
 
@@ -45,7 +45,7 @@ impl Topics {
             rmw::resolve(&config.namespace, name)
                 .map_err(|reason| GatewayError::Option { option, reason })
         };
-        // Refused here, before anything is opened: it becomes a part of every token.
+        // Checked here, before anything is opened: the name becomes a part of every token.
         resolve("node", config.node())?;
         let Names {
             scans,
@@ -83,7 +83,7 @@ impl Topics {
     }
 }
 
-/// The scans by the names of their lasers: as they are written and not as they are
+/// Returns the scans with the names of their lasers. These come from the names as written, not as
 /// resolved, so that a graph fits robots in any namespace.
 fn named(
     names: &[String],

@@ -1,35 +1,35 @@
-//! Where the robot is in the words of VDA 5050, for a fleet's master control. Pure.
+//! Position of the robot in the format of VDA 5050, for a fleet's master control. Pure.
 
 use geometry::{Covariance, Pose};
 use messages::PoseHeader;
 use serde::Serialize;
 
-/// A plane's normal distribution holds 95 % within so many deviations.
+/// Radius, in standard deviations, that holds 95 % of a normal distribution in the plane.
 const WITHIN_95: f64 = 2.447_746_830_680_816;
 
-/// `mobileRobotPosition` of VDA 5050 3.0, `agvPosition` of 2.x: with the names that stand
-/// there.
+/// `mobileRobotPosition` of VDA 5050 3.0, `agvPosition` of 2.x, with the field names of the
+/// standard.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Position {
-    /// Of the robot's base in the map, metres; none where it is not localized.
+    /// Position of the robot's base in the map, metres; `None` if it is not localized.
     x: Option<f64>,
     y: Option<f64>,
-    /// Radians, counter-clockwise.
+    /// Heading, radians, counter-clockwise.
     theta: Option<f64>,
-    /// 16 hexadecimal digits.
+    /// Map id, 16 hexadecimal digits.
     #[serde(rename = "mapId")]
     map_id: String,
-    /// Whether a pose is believed.
+    /// True if the tracker believes a pose of the robot.
     localized: bool,
-    /// How likely the robot is there, 0..=1; 0 where it is not localized.
+    /// Probability of the pose, 0..=1; 0 if the robot is not localized.
     #[serde(rename = "localizationScore")]
     localization_score: f64,
-    /// Within so many metres of x and y the robot is, with 95 %.
+    /// Radius around x and y that holds the robot with 95 % probability, metres.
     #[serde(rename = "deviationRange")]
     deviation_range: Option<f64>,
 }
 
-/// The position that the tracker believes.
+/// Converts the tracker's pose.
 pub(crate) fn of(from: &PoseHeader) -> Position {
     // The pose of a laser is not the robot's.
     let localized = from.is_believed() && from.mount_known == 1;

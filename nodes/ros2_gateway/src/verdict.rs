@@ -14,10 +14,10 @@ use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::{GatewayError, vda5050};
 
-/// Sends it, once a scan.
+/// Publishers of the verdict, with one message per scan.
 pub(crate) struct Verdict {
     topic: Publisher<Localization>,
-    /// None where the robot is not on Zenoh.
+    /// `None` if the robot does not use Zenoh.
     fleet: Option<ZenohPublisher<'static>>,
 }
 
@@ -38,7 +38,7 @@ impl Verdict {
         })
     }
 
-    /// Sends what the tracker says of a scan, with its words.
+    /// Sends the tracker's result for a scan; `words` gives its reason as text.
     pub(crate) fn send(
         &mut self,
         from: &PoseHeader,

@@ -1,32 +1,32 @@
-//! What the gateway waits for, in words. Pure.
+//! Detection of silent inputs, and their description for the user. Pure.
 
-/// So long an input may be silent before that is said, nanoseconds.
+/// Silence of an input after which it is reported, nanoseconds.
 const PATIENCE_NS: i64 = 3_000_000_000;
 
-/// Who publishes a topic.
+/// Publisher of a topic, by how well it fits the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Publishing {
-    /// Nobody.
+    /// No publisher.
     Nobody,
-    /// Somebody whose messages are of another type.
+    /// Publisher of another message type.
     OtherType,
-    /// Somebody whose messages are of another version of the type.
+    /// Publisher of another version of the type.
     OtherVersion,
-    /// Somebody who is best effort or volatile, where messages must arrive or be kept.
+    /// Best-effort or volatile publisher, while the input needs a reliable or transient local one.
     OtherQuality,
-    /// Somebody whose messages are taken.
+    /// Publisher whose messages are taken.
     Expected,
 }
 
-/// An input: its topic, who publishes it, and how many messages have come.
+/// An input: its topic, its publisher, and the number of messages received.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Input<'a> {
     pub(crate) topic: &'a str,
     pub(crate) publishing: Publishing,
     pub(crate) received: u64,
-    /// Whether one message is enough.
+    /// True if one message is enough.
     pub(crate) comes_once: bool,
-    /// Of /tf, the frame whose transforms are counted.
+    /// Frame whose transforms are counted, for /tf.
     pub(crate) from_frame: Option<&'a str>,
 }
 
@@ -48,27 +48,27 @@ impl Input<'_> {
     }
 }
 
-/// How the inputs are.
+/// State of all inputs.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Status<'a> {
-    /// All come.
+    /// All inputs arrive.
     Flows,
-    /// Some have not come yet, and it is too early to say so.
+    /// Some have not arrived yet, and it is too early to report them.
     Begins,
-    /// What is waited for.
+    /// Some are missing; the text describes them.
     Waits(&'a str),
 }
 
-/// Notices inputs that are silent.
+/// Detects silent inputs.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
-    /// Of each input, how many messages there were, and since when.
+    /// Message count of each input, and the time of its last change in nanoseconds.
     seen: Vec<(u64, i64)>,
     words: String,
 }
 
 impl Waiting {
-    /// Looks at all inputs, which are the same at each call.
+    /// Checks all inputs, which must be the same ones at each call.
     pub(crate) fn look(&mut self, inputs: &[Input<'_>], now_ns: i64) -> Status<'_> {
         self.seen.resize(inputs.len(), (0, now_ns));
         let mut is_early = false;

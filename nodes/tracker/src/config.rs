@@ -9,39 +9,37 @@ use engine::joined::JoinConfig;
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
 
-/// Keeps the robot's pose over time, from scans, odometry and what searches find, and
-/// publishes it as `pose`.
+/// Tracks the robot's pose from scans, odometry and search results, and publishes it as `pose`.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "tracker", version)]
 pub struct Config {
-    /// How the robot is tracked.
     #[command(flatten)]
     pub tracking: TrackingConfig,
 
-    /// Maximum number of poses per second, 0..=1000: between scans, odometry
-    /// extrapolates the pose. 0 sends one per scan only.
+    /// Maximum number of poses per second, 0..=1000: between scans, the pose is extrapolated by
+    /// odometry. 0 sends one pose per scan only.
     #[arg(long, value_name = "HERTZ", default_value_t = 50.0, allow_negative_numbers = true, value_parser = rate)]
     pub rate: f64,
 
-    /// Save the last pose in this file, and try it first after a start. It is not used
-    /// before scans confirm it.
+    /// File in which the last pose is saved, and from which it is tried first after a start. It is
+    /// not used before scans confirm it.
     #[arg(long, value_name = "FILE")]
     pub remember: Option<PathBuf>,
 
-    /// Initial pose in the map: metres, metres and degrees. It is tried first, and not
-    /// used before a scan confirms it.
+    /// Initial pose in the map: metres, metres and degrees. It is tried first, and not used before
+    /// a scan confirms it.
     #[arg(long, value_name = "X,Y,DEGREES", allow_hyphen_values = true, value_parser = pose)]
     pub initial_pose: Option<Pose>,
 
-    /// Which lasers are joined, and how their motion is known.
+    /// Lasers to join, and the source of their motion.
     #[command(flatten)]
     pub join: JoinConfig,
 
-    /// Which beams are judged.
+    /// Selection of the beams that are compared with the map.
     #[command(flatten)]
     pub beams: BeamConfig,
 
-    /// How they are judged.
+    /// Settings of the fit between beams and map.
     #[command(flatten)]
     pub fit: FitConfig,
 }

@@ -1,13 +1,13 @@
-//! Node `tracker`: keeps the robot's pose over time, from `scan`, `odometry`, `map` and
-//! `hypotheses` to `pose`; asks for searches on `attention`.
+//! Node `tracker`: tracks the robot's pose over time, from `scan`, `odometry`, `map` and
+//! `hypotheses` to `pose`; requests searches on `attention`.
 //!
-//! Which place is believed is the engine's to decide (`engine::tracking`). Here, `world`
-//! knows the map, `queue` keeps what waits, `message` says what is sent, and `memory`
-//! keeps the last pose on disk. Only `run` touches the graph and the clock.
+//! The engine decides which place is believed (`engine::tracking`). Here, `world` holds the maps,
+//! `queue` the waiting scans and answers, `message` builds the output, and `memory` stores the last
+//! pose on disk. Only `run` uses the graph and the clock.
 //!
-//! Each scan is answered by exactly one pose, in the order of the scans. Where a scan
-//! needs a search, it waits for its hypotheses, and later scans wait behind it: so the
-//! same scans, odometry and hypotheses give the same poses, however fast they come.
+//! Each scan is answered by exactly one pose, in the order of the scans. If a scan needs a search,
+//! it waits for its hypotheses, and later scans wait behind it, so that the same scans, odometry
+//! and hypotheses give the same poses regardless of timing.
 
 mod config;
 mod error;

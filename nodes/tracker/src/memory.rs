@@ -1,4 +1,4 @@
-//! The last pose, kept on disk from one start to the next.
+//! Last pose, stored on disk between runs.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -9,39 +9,37 @@ use transport::with_causes;
 
 use crate::TrackerError;
 
-/// Most bytes of a file: a pose takes some hundred.
+/// Largest size of a file in bytes; a pose takes a few hundred.
 const MAX_BYTES: u64 = 64 * 1024;
 
-/// A pose that was believed.
+/// Pose that the tracker believed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Remembered {
-    /// The map that it is about, as messages name it, in hexadecimal.
+    /// Id of the map as in messages, in hexadecimal.
     pub(crate) map_id: String,
-    /// Of the scan, nanoseconds since 1970.
+    /// Time of the scan, nanoseconds since 1970.
     pub(crate) stamp_ns: i64,
-    /// Of the base, metres and radians.
+    /// Pose of the base, metres and radians.
     pub(crate) map_from_base: Pose,
-    /// Of that pose, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of x, y and yaw, row by row: m², m·rad, rad².
     pub(crate) covariance: [f64; 9],
 }
 
-/// The file of the last pose.
 #[derive(Debug)]
 pub(crate) struct Memory {
     file: PathBuf,
 }
 
 impl Memory {
-    /// In this file.
     #[must_use]
     pub(crate) fn new(file: &Path) -> Self {
         Memory { file: file.into() }
     }
 
-    /// What is remembered; `None` where there is no file yet.
+    /// Loads the saved pose; `None` if there is no file yet.
     ///
     /// # Errors
-    /// The file cannot be read, could have been changed by another user, or holds no pose.
+    /// If the file cannot be read, could have been changed by another user, or has no valid pose.
     pub(crate) fn load(&self) -> Result<Option<Remembered>, TrackerError> {
         let text = trusted_files::read(&self.file, MAX_BYTES);
         let Some(text) = text.map_err(|error| self.refuse(&with_causes(&error)))? else {
@@ -60,11 +58,10 @@ impl Memory {
         }
     }
 
-    /// Remembers a pose in place of the one before. The file is replaced at once, so
-    /// that it is whole whenever the power fails.
+    /// Saves a pose. The file is replaced atomically, so that it stays intact if the power fails.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// If the file cannot be written.
     pub(crate) fn save(&self, pose: &Remembered) -> Result<(), TrackerError> {
         let text = serde_json::to_string(pose).map_err(|error| self.refuse(&error))?;
         let folder = match self.file.parent() {

@@ -1,4 +1,4 @@
-//! What is sent of a pose.
+//! Messages about a pose.
 
 use bytemuck::Zeroable;
 use engine::joined::ByOdometry;
@@ -7,42 +7,38 @@ use engine::tracking::Report;
 use geometry::{Covariance, Pose};
 use messages::{FrameName, MapName, PoseHeader, Stamp, TrackReason, TrackState};
 
-/// All that there is to send of a scan.
+/// Tracking result of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tracked {
-    /// Of the scan.
     pub(crate) stamp: Stamp,
-    /// The map, and what it is called.
     pub(crate) map_id: u64,
     pub(crate) map_name: MapName,
-    /// What the tracker says of the scan.
     pub(crate) report: Report,
-    /// Whose pose that is.
+    /// Frame whose pose is reported.
     pub(crate) target: Target,
-    /// Whether it is known how the laser sits on the base.
+    /// True if the mount of the laser on the base is known.
     pub(crate) mount_known: bool,
-    /// Where the target frame was by the odometry, and the odometry's frame.
+    /// Odometry of the target frame, and the name of the odometry frame.
     pub(crate) by_odometry: Option<(ByOdometry, FrameName)>,
-    /// Nanoseconds of computing.
     pub(crate) tracking_ns: u64,
 }
 
 impl Tracked {
-    /// Where the odometry's frame lies in the map.
+    /// Returns the pose of the odometry frame in the map.
     #[must_use]
     pub(crate) fn map_from_odom(&self) -> Option<Pose> {
         let (at, _) = self.by_odometry?;
         Some(self.report.pose?.then(at.odom_from_target.inverse()))
     }
 
-    /// The message of the scan.
+    /// Returns the message of the scan.
     #[must_use]
     pub(crate) fn header(&self) -> PoseHeader {
         self.header_at(self.stamp, true)
     }
 
-    /// The same where odometry, of which this is the newest, has carried the pose on since the
-    /// scan; none where it has begun anew. The frame of odometry keeps its place in the map.
+    /// Extrapolates the result to the newest odometry; `None` if odometry was reset since the scan.
+    /// The odometry frame stays in place in the map.
     #[must_use]
     pub(crate) fn carried(&self, newest: ByOdometry, odometry_error: f64) -> Option<Self> {
         let (at, frame) = self.by_odometry?;
@@ -54,7 +50,7 @@ impl Tracked {
         })
     }
 
-    /// The message at a stamp, of a scan or between scans.
+    /// Returns the message with this stamp, of a scan or between scans.
     #[must_use]
     pub(crate) fn header_at(&self, stamp: Stamp, from_scan: bool) -> PoseHeader {
         let report = &self.report;
@@ -93,7 +89,7 @@ impl Tracked {
     }
 }
 
-/// What is sent of a scan of which nothing can be said.
+/// Returns the message of a scan about which nothing can be said.
 #[must_use]
 pub(crate) fn nothing(stamp: Stamp, map_id: u64, reason: TrackReason) -> PoseHeader {
     PoseHeader {

@@ -1,22 +1,22 @@
-//! What waits to be used: scans for their turn, and hypotheses for their scans.
+//! Queues of scans waiting for their turn and of hypotheses waiting for their scans.
 
 use std::collections::VecDeque;
 
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp, Verdict};
 
-/// Scans and answers that are kept: two seconds of a fast laser.
+/// Number of scans and answers kept: two seconds of a fast laser.
 const KEPT: usize = 128;
 
-/// Scans in the order in which they came.
+/// Waiting scans in order of arrival.
 #[derive(Debug, Default)]
 pub(crate) struct Scans {
     waiting: VecDeque<(ScanHeader, Vec<f32>)>,
-    /// Room of scans that are done with.
+    /// Buffers of processed scans, for reuse.
     spare: Vec<Vec<f32>>,
 }
 
 impl Scans {
-    /// Takes a scan; returns how many were dropped for it, the oldest first.
+    /// Adds a scan and drops the oldest one if the queue is full; returns the number dropped.
     pub(crate) fn push(&mut self, header: &ScanHeader, ranges: &[f32]) -> u64 {
         let mut room = self.spare.pop().unwrap_or_default();
         room.clear();
@@ -29,7 +29,7 @@ impl Scans {
         u64::from(is_full)
     }
 
-    /// The next one, given to `take`.
+    /// Removes the next scan and passes it to `take`.
     pub(crate) fn pop<R>(&mut self, take: impl FnOnce(&ScanHeader, &[f32]) -> R) -> Option<R> {
         let (header, room) = self.waiting.pop_front()?;
         let taken = take(&header, &room);
@@ -38,25 +38,24 @@ impl Scans {
     }
 }
 
-/// What came for a scan that was to be searched.
+/// Search result for a scan.
 #[derive(Debug)]
 pub(crate) struct Answer {
     of: Stamp,
-    /// What was searched, as the header says it.
+    /// Id of the searched maps, from the header.
     pub(crate) searched: u64,
     pub(crate) verdict: Option<Verdict>,
     pub(crate) found: Vec<Hypothesis>,
 }
 
-/// The newest answers of searches.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
     kept: VecDeque<Answer>,
 }
 
 impl Answers {
-    /// Takes an answer. The first search of a scan counts: asked again, a searcher may say that
-    /// it does not keep that scan any more.
+    /// Adds a search result. The first search of a scan counts: asked again, a searcher may answer
+    /// that it no longer keeps that scan.
     pub(crate) fn push(&mut self, header: &HypothesesHeader, hypotheses: &[Hypothesis]) {
         let (of, searched) = (header.stamp, header.searched);
         let is_late = |before: &Answer| searched == 0 || searched == before.searched;
@@ -78,13 +77,13 @@ impl Answers {
         });
     }
 
-    /// Whether there is one to a scan that entered the graph after this one.
+    /// Returns true if there is a result for a scan that entered the graph after this one.
     pub(crate) fn any_after(&self, stamp: Stamp) -> bool {
         let mut kept = self.kept.iter();
         kept.any(|answer| answer.of.entered_ns > stamp.entered_ns)
     }
 
-    /// That to a scan.
+    /// Returns the result for a scan.
     pub(crate) fn of(&self, stamp: Stamp) -> Option<&Answer> {
         let mut newest_first = self.kept.iter().rev();
         newest_first.find(|answer| answer.of.is_of(stamp))
@@ -155,10 +154,10 @@ mod tests {
         };
         assert_eq!(push(0, 0), (0, 0));
         assert_eq!(push(7, 2), (7, 2));
-        // It is not kept any more, or is searched again.
+        // The scan is no longer kept, or is searched again.
         assert_eq!(push(0, 0), (7, 2));
         assert_eq!(push(7, 1), (7, 2));
-        // On other maps.
+        // The same scan on other maps.
         assert_eq!(push(8, 1), (8, 1));
     }
 

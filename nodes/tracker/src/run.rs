@@ -1,4 +1,4 @@
-//! Receives scans, odometry and what searches find, and sends poses.
+//! Receives scans, odometry and search results, and publishes poses.
 
 mod initial;
 mod inputs;
@@ -28,17 +28,17 @@ use outputs::Outputs;
 use search::Searchers;
 use turn::{Since, Turn};
 
-/// A scan that waits for odometry is looked at as often, while nothing comes.
+/// Interval at which a scan waiting for odometry is checked while nothing arrives.
 const TICK: Duration = Duration::from_millis(50);
 
-/// The last pose is kept on disk as often.
+/// Interval for saving the last pose.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// Follows the robot until the stop flag is set.
+/// Tracks the robot until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails. A scan, a map or a file of the last pose that cannot be used is reported in
-/// `health`.
+/// If the transport fails, or the last pose cannot be saved at the end. A scan, map or saved pose
+/// that cannot be used is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     let inputs = Inputs::open(graph)?;
     let memory = config.remember.as_deref().map(Memory::new);
@@ -85,32 +85,32 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
 
 struct Node {
     config: Config,
-    /// The newest scans, and how the robot moved.
+    /// Newest scans, and the motion of the robot.
     joiner: Joiner,
-    /// The maps, and the scan whose turn it is on each of them.
+    /// Maps, with the current scan on each of them.
     worlds: Worlds,
     served: Option<Served>,
-    /// The id of the map of a set that is shown.
+    /// Id of the map of a set that is displayed.
     shown: Option<u64>,
     tracker: Tracker,
     scans: Scans,
     answers: Answers,
-    /// What the scan whose turn it is waits for.
+    /// State of the current scan.
     turn: Turn,
-    /// How often the node has looked for what came.
+    /// Number of times that the node has checked its inputs.
     looks: u32,
-    /// The scan whose search counts later.
+    /// Scan whose search result will be used later.
     asked: Option<Stamp>,
-    /// Who could answer when a search was asked for last.
+    /// Processes that could answer when a search was last requested.
     searchers: Searchers,
-    /// Whether a search was waited for in vain, and no answer to any has come since: further
-    /// ones are asked for and not waited for, so that poses go on.
+    /// True if a search timed out and no search has been answered since: further ones are requested
+    /// but not awaited, so that poses continue.
     is_silent: bool,
-    /// Where the target frame was by the odometry at the scan before.
+    /// Odometry of the target frame at the previous scan.
     before: Option<ByOdometry>,
-    /// Where the robot is said to be; counts at the next scan.
+    /// Initial pose received, to be used with the next scan.
     initial: Option<Initial>,
-    /// Of the last scan.
+    /// Result of the last scan.
     last: Option<Tracked>,
     candidates: Vec<Candidate>,
     gaps: GapCounter,
@@ -136,9 +136,9 @@ impl Node {
         self.remember(false)
     }
 
-    /// Takes all that has come.
+    /// Receives all messages that have arrived.
     fn take(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
-        // What was sent before a scan has arrived when the scan has.
+        // Messages sent before a scan have arrived when the scan has.
         while let Some(scan) = inputs.scans.receive()? {
             self.health.count_received(1);
             let dropped = self.scans.push(scan.header(), scan.items());
@@ -150,7 +150,7 @@ impl Node {
         }
         if let Some(map) = inputs.maps.newest()? {
             self.health.count_received(1);
-            // Of a set it is the map that is shown.
+            // While sets are published, this is the map of the set that is displayed.
             match inputs.sets.has_publishers() {
                 true => self.shown = Some(map.header().map_id),
                 false => self.take_map(map.header(), map.items())?,
@@ -173,8 +173,8 @@ impl Node {
         Ok(())
     }
 
-    /// Goes on with the scan whose turn it is, or with the next; whether there is more
-    /// to do at once.
+    /// Continues with the current scan or the next one; returns true if there is more to do at
+    /// once.
     fn go_on(&mut self, inputs: &Inputs) -> Result<bool, TrackerError> {
         match self.turn {
             Turn::Idle => self.next_scan(),
@@ -209,7 +209,7 @@ impl Node {
         Ok(true)
     }
 
-    /// Follows the robot to a scan, and asks for a search where one is needed.
+    /// Tracks the robot to a scan, and requests a search if one is needed.
     fn begin(&mut self, inputs: &Inputs, scan: &ScanHeader) -> Result<(), TrackerError> {
         let start = Instant::now();
         self.turn = Turn::Idle;
@@ -225,7 +225,7 @@ impl Node {
         let now = self.joiner.by_odometry();
         let moved = ByOdometry::between(self.before, now);
         self.before = now;
-        // A pose that is believed is that of this scan.
+        // A believed initial pose is the pose at this scan.
         let moved = if is_set { Some(Pose::IDENTITY) } else { moved };
         let seen = self.worlds.seen(&self.config.fit);
         let need = self.tracker.begin(&seen, scan.stamp.measured_ns, moved);
@@ -253,7 +253,7 @@ impl Node {
         }
     }
 
-    /// Brings the newest scans to one time, and finds where their beams end.
+    /// Joins the newest scans at a common time, and computes the end points of their beams.
     fn find_ends(&mut self) -> Result<(), EngineError> {
         self.joiner.bring()?;
         let seen = self.joiner.seen();
@@ -261,7 +261,7 @@ impl Node {
             .find_ends(seen.observation(), &self.config.beams)
     }
 
-    /// Is done with a scan, with what the search found for one.
+    /// Completes a scan, with the search result for scan `of` if there is one.
     fn finish(
         &mut self,
         inputs: &Inputs,
@@ -276,7 +276,7 @@ impl Node {
             return self.send_nothing(scan, TrackReason::NoMap);
         }
         let seen = worlds.seen(&self.config.fit);
-        // Where it was refused, or other maps were searched, nobody knows what a search finds.
+        // If the search was refused or covered other maps, its result is unknown.
         let answer = of.and_then(|of| self.answers.of(of));
         let answer = answer.filter(|answer| answer.searched == worlds.searched());
         let known = answer.into_iter().flat_map(|answer| &answer.found);
@@ -290,7 +290,7 @@ impl Node {
             self.ask(inputs, scan.stamp)?;
         }
         let report = self.tracker.report();
-        // Where there is no pose, the robot is taken to be on the map on which it was.
+        // Without a pose, the robot is assumed to be on its last map.
         let map = report
             .pose
             .map_or_else(|| self.current_map(), |_| report.map);
@@ -311,7 +311,7 @@ impl Node {
         Ok(self.send(last.header(), &words)?)
     }
 
-    /// Logs when the state changes.
+    /// Logs changes of the state.
     fn log(&mut self, state: TrackState, words: &str) {
         if self.last_state != Some(state) {
             tracing::info!("{state}: {words}");
@@ -319,12 +319,12 @@ impl Node {
         }
     }
 
-    /// Sends the pose that odometry has carried on, if one is due.
+    /// Publishes the pose extrapolated by odometry, if one is due.
     fn carry(&mut self, stamp: Stamp) -> Result<(), TransportError> {
         if !self.outputs.is_due() {
             return Ok(());
         }
-        // On a map that is not served any more there is no pose.
+        // There is no pose on a map that is no longer served.
         let may_go_on = |last: &Tracked| {
             last.report.state != TrackState::Searching && self.worlds.number(last.map_id).is_some()
         };
@@ -352,7 +352,7 @@ impl Node {
         Ok(())
     }
 
-    /// Keeps the last pose that was unique, now and then, and in the end.
+    /// Saves the last unique pose, periodically and at the end.
     fn remember(&mut self, is_end: bool) -> Result<(), TrackerError> {
         let Some(memory) = &self.memory else {
             return Ok(());
@@ -378,7 +378,7 @@ impl Node {
         }
     }
 
-    /// Says what is wrong, once for as long as it stays so.
+    /// Reports a problem; logs it once for as long as it stays the same.
     fn refuse(&mut self, problem: &str) -> Result<(), TransportError> {
         self.health.count_refused(1);
         self.health.error(problem)?;

@@ -1,4 +1,4 @@
-//! The maps as the tracker reads them.
+//! Maps in the form that the tracker uses.
 
 use engine::EngineError;
 use engine::beams::BeamConfig;
@@ -9,33 +9,31 @@ use engine::space::{self, Space};
 use engine::tracking::Seen;
 use messages::{MapHeader, MapName, MapSet, Transition, searched_id};
 
-/// Headings a turn that scans are thinned for, as the search does by default.
+/// Headings per turn for which beams are selected, as in the search by default.
 const HEADINGS: u32 = 360;
 
-/// A map, ready for the fit of scans.
+/// Map that scans can be compared with.
 struct World {
-    /// Its id in messages.
+    /// Id of the map in messages.
     map_id: u64,
-    /// What it is called in its set; empty of one that is served alone.
+    /// Name of the map in its set; empty for a map that is served alone.
     name: MapName,
-    /// Distances to obstacles.
     distance_field: DistanceField,
-    /// What scans are thinned for.
+    /// Space for which beams are selected.
     space: Space,
-    /// Where the beams of the last scan end, in cells.
+    /// End points of the last scan's beams, in cells.
     ends: Ends,
 }
 
-/// The maps on which the robot may be, by their numbers: one, or those of a set.
+/// Maps on which the robot may be, indexed by number: one map, or those of a set.
 #[derive(Default)]
 pub(crate) struct Worlds {
     maps: Vec<World>,
-    /// Between them.
     pub(crate) transitions: Vec<Transition>,
 }
 
 impl World {
-    /// Beams count up to this length, metres, where that is more than the map's own.
+    /// Prepares a map; beams count up to `reach_m` metres if that exceeds the map's own length.
     fn new(header: &MapHeader, occupancy: &[u8], reach_m: f64) -> Result<Self, EngineError> {
         let (frame, rules) = (GridFrame::of(header)?, CellRules::of(header)?);
         let (width, height) = (header.width as usize, header.height as usize);
@@ -53,8 +51,8 @@ impl Worlds {
     /// Prepares one map.
     ///
     /// # Errors
-    /// If the grid's sides, resolution, origin or rules are out of range, or the number of
-    /// cells is not what the sides say.
+    /// If the grid's sides, resolution, origin or rules are out of range, or the number of cells
+    /// does not match the sides.
     pub(crate) fn of_map(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
         Ok(Worlds {
             maps: vec![World::new(header, occupancy, 0.0)?],
@@ -65,7 +63,7 @@ impl Worlds {
     /// Prepares all maps of a set.
     ///
     /// # Errors
-    /// As of one map; with its id.
+    /// See [`Worlds::of_map`]; with the id of the map.
     pub(crate) fn of_set(set: &MapSet<'_>) -> Result<Self, (u64, EngineError)> {
         let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter().map(|(header, occupancy)| {
@@ -77,45 +75,45 @@ impl Worlds {
         })
     }
 
-    /// Whether there is no map yet.
+    /// Returns true if there is no map yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.maps.is_empty()
     }
 
-    /// The id of the map with a number; 0 where there is none.
+    /// Returns the id of the map with this number; 0 if there is none.
     pub(crate) fn map_id(&self, number: u32) -> u64 {
         let map = self.maps.get(number as usize);
         map.map_or(0, |map| map.map_id)
     }
 
-    /// What the map with a number is called.
+    /// Returns the name of the map with this number.
     pub(crate) fn name(&self, number: u32) -> MapName {
         let map = self.maps.get(number as usize);
         map.map_or(MapName::new(""), |map| map.name)
     }
 
-    /// What a search on all of them has for its id.
+    /// Returns the id of a search on all of the maps.
     pub(crate) fn searched(&self) -> u64 {
         searched_id(self.maps.iter().map(|map| map.map_id))
     }
 
-    /// The number of the map with an id.
+    /// Returns the number of the map with this id.
     pub(crate) fn number(&self, map_id: u64) -> Option<u32> {
         let number = self.maps.iter().position(|map| map.map_id == map_id);
         number.map(|number| number as u32)
     }
 
-    /// The number of the map that is called so: in a set each name is of one map, which keeps
-    /// it when it is edited.
+    /// Returns the number of the map with this name; names are unique in a set, and a map keeps its
+    /// name when it is edited.
     pub(crate) fn number_of_name(&self, name: MapName) -> Option<u32> {
         let number = self.maps.iter().position(|map| map.name == name);
         number.map(|number| number as u32)
     }
 
-    /// Finds where the beams of a scan end.
+    /// Computes the end points of a scan's beams.
     ///
     /// # Errors
-    /// If the scan is refused; the one before stays.
+    /// If the scan is rejected; the end points of the previous scan stay.
     pub(crate) fn find_ends(
         &mut self,
         scan: Observation<'_>,
@@ -127,7 +125,7 @@ impl Worlds {
         Ok(())
     }
 
-    /// The scan on each map; all have the same beams.
+    /// Returns the scan on each map; the beams are the same on all.
     pub(crate) fn seen<'a>(&'a self, fit: &'a FitConfig) -> Vec<Seen<'a>> {
         let seen = self.maps.iter().map(|map| Seen {
             distance_field: &map.distance_field,
@@ -145,7 +143,7 @@ mod tests {
 
     use super::*;
 
-    /// A bare room of so many cells a side, each 0.1 m.
+    /// Returns a bare square room with cells of 0.1 m.
     fn room(side: u32) -> (MapHeader, Vec<u8>) {
         let is_wall = |i: u32| i == 0 || i == side - 1;
         let cells =

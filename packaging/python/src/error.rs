@@ -1,5 +1,5 @@
-//! What is wrong, as the exceptions that Python expects: `ValueError` with what was found
-//! and what is allowed, `OSError` for files, and never a panic.
+//! Errors as the exceptions that Python expects: `ValueError` with the value found and those
+//! allowed, `OSError` for files, and never a panic.
 
 use std::error::Error;
 use std::io;
@@ -10,12 +10,12 @@ use map::MapError;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-/// A `ValueError`.
+/// Makes a `ValueError`.
 pub(crate) fn value(text: impl Into<String>) -> PyErr {
     PyValueError::new_err(text.into())
 }
 
-/// Why the engine refuses a map or a scan.
+/// Converts an error of the engine about a map or a scan.
 pub(crate) fn of_engine(error: &EngineError) -> PyErr {
     match error {
         // The command's options have other names here.
@@ -31,7 +31,7 @@ pub(crate) fn of_engine(error: &EngineError) -> PyErr {
     }
 }
 
-/// Why a map cannot be read or built.
+/// Converts an error in reading or building a map.
 pub(crate) fn of_map(error: &MapError) -> PyErr {
     match error.source().and_then(|cause| cause.downcast_ref()) {
         Some(cause) => of_file(error, cause),
@@ -39,7 +39,7 @@ pub(crate) fn of_map(error: &MapError) -> PyErr {
     }
 }
 
-/// The class of the exception, `FileNotFoundError` say, is that of the cause.
+/// Makes an `OSError` of the class that fits the cause, such as `FileNotFoundError`.
 fn of_file(error: &MapError, cause: &io::Error) -> PyErr {
     io::Error::new(cause.kind(), with_causes(error)).into()
 }
@@ -54,8 +54,8 @@ fn with_causes(error: &dyn Error) -> String {
     text
 }
 
-/// Runs what may take long without Python's lock. A panic, which would be a fault of the
-/// engine, becomes a `RuntimeError`.
+/// Runs a long computation without Python's lock. A panic, which would be a bug of the engine,
+/// becomes a `RuntimeError`.
 pub(crate) fn detached<T: Send>(
     py: Python<'_>,
     run: impl FnOnce() -> PyResult<T> + Send,

@@ -1,8 +1,7 @@
 //! Backcast's engine as a Python module: maps, the places of a scan, and the tracker.
 //!
-//! It converts and checks; everything that is computed lies in `common/engine`, which the
-//! command uses, too. Whatever takes long runs without Python's lock. Nothing here knows
-//! a recording or a graph.
+//! It converts and checks; all computation is in `common/engine`, which the command uses, too. Long
+//! computations run without Python's lock. The module knows neither recordings nor graphs.
 
 mod error;
 mod localizer;

@@ -1,4 +1,4 @@
-//! From a scan to places, with no memory.
+//! Localization of single scans, without memory.
 
 use engine::localizer::Prior;
 use pyo3::prelude::*;
@@ -11,14 +11,15 @@ use crate::scan::GivenScan;
 use crate::search::Search;
 use crate::settings::EngineSettings;
 
-/// A map that is ready to be asked where scans were taken, each by itself.
+/// A map that is prepared for locating scans, each by itself.
 ///
-/// Preparing takes from milliseconds to seconds. With heading_known=True only x and y are
-/// searched, and each scan comes with its heading. The other keywords are the engine's
-/// settings, those of `backcast locate`, with the same defaults: see backcast.Settings.
+/// Preparing takes from milliseconds to seconds. With heading_known=True only x and y
+/// are searched, and each scan comes with its heading. The other keywords are the
+/// engine's settings, those of `backcast locate`, with the same defaults: see
+/// backcast.Settings.
 ///
-/// Any number of threads may ask at once: Python's lock is released while the map is
-/// prepared and while it is searched. Ctrl-C ends a search.
+/// Any number of threads may call it at the same time: Python's lock is released while
+/// the map is prepared and while it is searched. Ctrl-C ends a search.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct Localizer {
     map: Py<Map>,
@@ -55,18 +56,18 @@ impl Localizer {
     /// ranges are metres, in the order in which they were measured; NaN, infinite, zero and
     /// negative ones are no returns, as are those below range_min and those at or above
     /// range_max (metres). Range i has the bearing angle_min + i · angle_increment, radians
-    /// counter-clockwise from the laser's x axis; the increment is below zero where the
-    /// laser turns clockwise.
+    /// counter-clockwise from the laser's x axis; the increment is negative if the laser
+    /// turns clockwise.
     ///
-    /// mount is where the laser sits on the robot, (x, y, yaw) of the laser in the base's
-    /// frame, metres and radians: then the poses that are found are the base's, else the
-    /// laser's. upside_down says that the laser hangs there rolled by half a turn about its
-    /// x axis.
+    /// mount is the pose of the laser on the robot, (x, y, yaw) in the base's frame, metres
+    /// and radians. With it the poses of the result are the base's, otherwise the laser's.
+    /// upside_down means that the laser is mounted rolled by half a turn about its x axis.
     ///
-    /// heading is that of the base or, without a mount, of the laser in the map, radians:
-    /// it is given if and only if the localizer was made with heading_known=True.
+    /// heading is the heading in the map of the base or, without a mount, of the laser,
+    /// radians: it is given if and only if the localizer was made with heading_known=True.
     ///
-    /// ValueError if the scan is not sound, with what was found and what is allowed.
+    /// Raises ValueError if the scan is invalid, with the value found and the values
+    /// allowed.
     #[pyo3(signature = (
         ranges, angle_min, angle_increment, *, range_min=0.0, range_max=f64::INFINITY,
         mount=None, upside_down=false, heading=None
@@ -104,13 +105,13 @@ impl Localizer {
         self.map.clone_ref(py)
     }
 
-    /// Whether each scan comes with its heading.
+    /// True if each scan comes with its heading.
     #[getter]
     fn heading_known(&self) -> bool {
         self.heading_known
     }
 
-    /// Bytes of what is kept of the map for searches, beside its cells.
+    /// Size of the search index in bytes, in addition to the map's cells.
     #[getter]
     fn index_bytes(&self) -> usize {
         self.search.locator().localizer().index_bytes()
@@ -122,7 +123,7 @@ impl Localizer {
 }
 
 impl Localizer {
-    /// The heading of the laser, where that of the base or the laser is given.
+    /// Returns the heading of the laser, from the given one of the base or the laser.
     fn of_laser(&self, heading: Option<f64>, scan: &GivenScan) -> PyResult<Option<f64>> {
         match (self.heading_known, heading) {
             (false, Some(heading)) => Err(value(format!(

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use crate::error::{detached, of_map, value};
 use crate::numbers::{self, PoseTuple};
 
-/// A map of square cells: where obstacles are.
+/// An occupancy grid: a map of square cells.
 ///
 /// Made by `Map.from_yaml` or `Map.from_array`; it does not change.
 #[pyclass(frozen, module = "backcast")]
@@ -28,11 +28,11 @@ pub(crate) struct Map {
 
 #[pymethods]
 impl Map {
-    /// Reads a map as ROS' map_server does: a YAML file, and the image that it names, a
-    /// PGM, PNG or BMP.
+    /// Reads a map in the format of ROS' map_server: a YAML file, and the image that it
+    /// names, a PGM, PNG or BMP.
     ///
-    /// A key of the YAML file that is not known is a warning. OSError if a file cannot be
-    /// read, ValueError if one is not sound.
+    /// An unknown key of the YAML file causes a warning. Raises OSError if a file cannot be
+    /// read, ValueError if one is invalid.
     #[staticmethod]
     fn from_yaml(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let (grid, notes) = detached(py, move || {
@@ -47,12 +47,13 @@ impl Map {
         Ok(Map::of(grid))
     }
 
-    /// A map from its cells, as in nav_msgs/OccupancyGrid: a 2-D array of int8 with 0 for
-    /// free to 100 for occupied, per cent, and -1 for unknown; in uint8, 255 is unknown.
+    /// Makes a map from cells in the form of nav_msgs/OccupancyGrid: a 2-D array of int8
+    /// with 0 for free to 100 for occupied, per cent, and -1 for unknown; in uint8, 255 is
+    /// unknown.
     ///
     /// Row 0 has the lowest y, column 0 the lowest x, so that cells[row, column] is the
     /// cell at x = (column + 0.5) · resolution and y = (row + 0.5) · resolution from the
-    /// origin. An image has its rows the other way round: numpy.flipud turns them.
+    /// origin. An image has its rows in the opposite order: numpy.flipud reverses them.
     ///
     /// resolution is the side of a cell in metres. origin is the pose of the outer corner
     /// of cell (0, 0) in the map, (x, y, yaw) in metres and radians.
@@ -73,33 +74,33 @@ impl Map {
         Ok(Map::of(grid))
     }
 
-    /// The side of a cell, metres.
+    /// Side of a cell, metres.
     #[getter]
     fn resolution(&self) -> f64 {
         self.grid.resolution_m
     }
 
-    /// Cells along x.
+    /// Number of cells along x.
     #[getter]
     fn width(&self) -> u32 {
         self.grid.width
     }
 
-    /// Cells along y.
+    /// Number of cells along y.
     #[getter]
     fn height(&self) -> u32 {
         self.grid.height
     }
 
-    /// The pose of the outer corner of cell (0, 0) in the map: (x, y, yaw) in metres and
+    /// Pose of the outer corner of cell (0, 0) in the map: (x, y, yaw) in metres and
     /// radians.
     #[getter]
     fn origin(&self) -> PoseTuple {
         numbers::tuple(self.grid.map_from_grid)
     }
 
-    /// A copy of the cells, height × width of int8: row 0 has the lowest y; 0 free to 100
-    /// occupied, per cent, -1 unknown.
+    /// A copy of the cells, height × width of int8. Row 0 has the lowest y; 0 is free, 100
+    /// occupied, per cent, and -1 unknown.
     #[getter]
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let cells = self.grid.cells.iter().map(|&cell| cell as i8);
@@ -107,7 +108,7 @@ impl Map {
         PyArray1::from_vec(py, cells.collect()).reshape(sides)
     }
 
-    /// What tells maps apart, by geometry and cells; the command prints it as map_id.
+    /// Identifier of the map by geometry and cells; the command prints it as map_id.
     #[getter]
     fn id(&self) -> String {
         format!("{:016x}", self.grid.id())
@@ -133,7 +134,7 @@ impl Map {
         }
     }
 
-    /// As the engine takes it.
+    /// Returns the map in the engine's form.
     pub(crate) fn view(&self, rules: CellRules) -> OccupancyView<'_> {
         let grid = &*self.grid;
         OccupancyView {
@@ -160,7 +161,7 @@ impl std::fmt::Display for Map {
     }
 }
 
-/// Rows and columns, and the cells row by row.
+/// Returns rows and columns, and the cells row by row.
 fn occupancies(given: &Bound<'_, PyAny>) -> PyResult<((u32, u32), Vec<u8>)> {
     let allowed = "allowed: a 2-D numpy array of int8 or uint8, rows from the lowest y";
     let Ok(array) = given.cast::<PyUntypedArray>() else {
@@ -176,7 +177,7 @@ fn occupancies(given: &Bound<'_, PyAny>) -> PyResult<((u32, u32), Vec<u8>)> {
             )));
         }
     };
-    // One cell that is repeated takes no memory before it is copied.
+    // A broadcast array repeats one cell, and takes no memory before it is copied.
     if array.len() as u64 > MAX_CELLS {
         let (height, width) = sides;
         return Err(value(format!(

@@ -1,5 +1,5 @@
-//! Poses and covariances from Python, which hands them over as any row of numbers, and to
-//! it, as tuples and arrays.
+//! Conversion of poses and covariances: from any sequence of numbers in Python, and to tuples and
+//! arrays.
 
 use geometry::{Covariance, Pose};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
@@ -7,10 +7,10 @@ use pyo3::prelude::*;
 
 use crate::error::value;
 
-/// x and y in metres and yaw in radians, as Python has them.
+/// Pose in Python: x and y in metres, and yaw in radians.
 pub(crate) type PoseTuple = (f64, f64, f64);
 
-/// A pose from three numbers.
+/// Reads a pose of three numbers.
 pub(crate) fn pose(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let numbers = row(name, given, "(x, y, yaw) in metres and radians")?;
     match numbers[..] {
@@ -26,7 +26,7 @@ pub(crate) fn pose(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Pose> {
     }
 }
 
-/// Numbers in a row: a tuple, a list or an array of one dimension.
+/// Reads the numbers of a tuple, a list or an array of one dimension.
 pub(crate) fn row(name: &str, given: &Bound<'_, PyAny>, allowed: &str) -> PyResult<Vec<f64>> {
     let numbers = given.try_iter().and_then(|items| {
         let numbers = items.map(|item| item?.extract::<f64>());
@@ -35,7 +35,7 @@ pub(crate) fn row(name: &str, given: &Bound<'_, PyAny>, allowed: &str) -> PyResu
     numbers.map_err(|_| value(format!("{name} is {given}; allowed: {allowed}")))
 }
 
-/// The covariance of a pose from three rows of three numbers.
+/// Reads the covariance of a pose, three rows of three numbers.
 pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covariance> {
     let wrong = || {
         value(format!(
@@ -55,7 +55,7 @@ pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covar
         _ => return Err(wrong()),
     };
     let covariance = Covariance::from_rows(numbers);
-    // It is symmetric up to what rounding leaves.
+    // Rounding may leave it slightly asymmetric.
     let is_symmetric = (covariance.0 - covariance.0.transpose()).amax() <= 1e-9;
     match is_symmetric && covariance.0.cholesky().is_some() {
         true => Ok(covariance),
@@ -67,21 +67,21 @@ pub(crate) fn tuple(pose: Pose) -> PoseTuple {
     (pose.x, pose.y, pose.yaw)
 }
 
-/// An array of N × 3.
+/// Makes an array of N × 3.
 pub(crate) fn poses(py: Python<'_>, poses: &[Pose]) -> PyResult<Py<PyArray2<f64>>> {
     let numbers = poses.iter().flat_map(|pose| [pose.x, pose.y, pose.yaw]);
     let flat = PyArray1::from_vec(py, numbers.collect());
     Ok(flat.reshape([poses.len(), 3])?.unbind())
 }
 
-/// An array of N × 3 × 3.
+/// Makes an array of N × 3 × 3.
 pub(crate) fn covariances(py: Python<'_>, all: &[Covariance]) -> PyResult<Py<PyArray3<f64>>> {
     let numbers = all.iter().flat_map(|covariance| covariance.to_rows());
     let flat = PyArray1::from_vec(py, numbers.collect());
     Ok(flat.reshape([all.len(), 3, 3])?.unbind())
 }
 
-/// An array of 3 × 3.
+/// Makes an array of 3 × 3.
 pub(crate) fn matrix(py: Python<'_>, covariance: Covariance) -> PyResult<Py<PyArray2<f64>>> {
     let flat = PyArray1::from_vec(py, covariance.to_rows().to_vec());
     Ok(flat.reshape([3, 3])?.unbind())

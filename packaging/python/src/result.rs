@@ -1,4 +1,4 @@
-//! What a scan says of the place, as Python reads it.
+//! Result of a scan for Python.
 
 use engine::locator::Located;
 use engine::peaks::{Place, Target};
@@ -8,48 +8,48 @@ use pyo3::prelude::*;
 
 use crate::numbers::{self, PoseTuple, covariances, matrix, poses};
 
-/// Where a scan may have been taken: places, best first, and whether one stands alone.
+/// Places at which a scan may have been taken, best first, with a verdict.
 #[pyclass(frozen, get_all, module = "backcast", name = "Result")]
 pub(crate) struct LocateResult {
-    /// What the places allow to say: "Unique", one place fits and no other comes near it;
+    /// Verdict on the places: "Unique", one place fits and no other comes near it;
     /// "Ambiguous", several fit about as well; "PoorFit", even the best fits badly, perhaps
-    /// it is another map; "NoScan", the scan says nothing.
+    /// because it is another map; "NoScan", the scan has no usable information.
     verdict: &'static str,
-    /// The verdict in words.
+    /// Explanation of the verdict.
     why: String,
-    /// The best place's probability, 0 to 1.
+    /// Probability of the best place, 0 to 1.
     confidence: f64,
-    /// How many other places fit about as well as the best.
+    /// Number of other places that fit about as well as the best.
     alternatives: u32,
-    /// Whose poses they are: "base" where a mount was given, else "laser".
+    /// Frame of the poses: "base" if a mount was given, otherwise "laser".
     frame: &'static str,
-    /// The best place: (x, y, yaw) in the map, metres and radians; None if there is none.
-    /// It is the base's pose where a mount was given, else the laser's.
+    /// Pose of the best place, (x, y, yaw) in the map, metres and radians; None if there is
+    /// no place. It is the base's pose if a mount was given, otherwise the laser's.
     pose: Option<PoseTuple>,
-    /// The covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; None if there
-    /// is no place.
+    /// Covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; None if there is
+    /// no place.
     covariance: Option<Py<PyArray2<f64>>>,
     /// N × 3: x, y and yaw of each place in the map, metres and radians, best first; of the
-    /// base where a mount was given, else of the laser.
+    /// base if a mount was given, otherwise of the laser.
     poses: Py<PyArray2<f64>>,
-    /// N × 3 × 3: of each of poses, over x, y and yaw in m², m·rad and rad².
+    /// N × 3 × 3: covariance of each pose, over x, y and yaw in m², m·rad and rad².
     covariances: Py<PyArray3<f64>>,
-    /// N: how likely the robot is at each place, 0 to 1. What they leave of 1 is that it is
-    /// at none.
+    /// N: probability of each place, 0 to 1. The remainder to 1 is the probability that the
+    /// robot is at none of them.
     probabilities: Py<PyArray1<f64>>,
-    /// N: how well the scan fits the map at each place, at most 1.
+    /// N: score of each place, at most 1: how well the scan fits the map there.
     scores: Py<PyArray1<f64>>,
     /// N: votes of the best pose that led to each place.
     votes: Py<PyArray1<u16>>,
-    /// N × 3: as poses, of the laser in any case.
+    /// N × 3: poses, always of the laser.
     laser_poses: Py<PyArray2<f64>>,
-    /// N × 3 × 3: as covariances, of the laser in any case.
+    /// N × 3 × 3: covariances, always of the laser.
     laser_covariances: Py<PyArray3<f64>>,
-    /// Beams that voted.
+    /// Number of beams that voted.
     beams_used: u32,
 }
 
-/// The same before Python's lock is taken.
+/// Data of a result, before Python's lock is taken.
 #[derive(Debug)]
 pub(crate) struct Found {
     verdict: &'static str,
@@ -76,7 +76,7 @@ impl Found {
         }
     }
 
-    /// As Python reads it, for a laser that sits there.
+    /// Makes the result for Python, for a laser with this mount.
     pub(crate) fn read(
         self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! A scan from Python: an array of ranges, and what they share.
+//! A scan from Python: an array of ranges, with their common angles and limits.
 
 use engine::EngineError;
 use engine::scan::{MAX_RANGES, Scan};
@@ -11,28 +11,28 @@ use pyo3::prelude::*;
 use crate::error::{of_engine, value};
 use crate::numbers;
 
-/// A scan that was checked, and where its laser sits.
+/// A checked scan, and the mount of its laser.
 #[derive(Debug)]
 pub(crate) struct GivenScan {
     ranges: Vec<f32>,
-    /// As the laser has them, seen in its own frame.
+    /// Bearing of the first range, in the laser's own frame, radians.
     pub(crate) angle_min: f64,
     pub(crate) angle_increment: f64,
     pub(crate) range_min_m: f32,
     pub(crate) range_max_m: f32,
-    /// Where the laser sits on the base, if that is given.
+    /// Pose of the laser on the base, if it is given.
     pub(crate) base_from_laser: Option<Pose>,
     pub(crate) upside_down: bool,
 }
 
-/// Radians of the first beam and from one to the next.
+/// Bearing of the first range and step to the next, radians.
 pub(crate) type Angles = (f64, f64);
 
-/// Metres.
+/// Smallest and largest range, metres.
 pub(crate) type Limits = (f64, f64);
 
 impl GivenScan {
-    /// Checks what Python hands over.
+    /// Checks the values from Python.
     pub(crate) fn new(
         ranges: &Bound<'_, PyAny>,
         (angle_min, angle_increment): Angles,
@@ -54,12 +54,12 @@ impl GivenScan {
         Ok(scan)
     }
 
-    /// Metres, in the order in which they were measured.
+    /// Returns the ranges, metres, in the order in which they were measured.
     pub(crate) fn ranges(&self) -> &[f32] {
         &self.ranges
     }
 
-    /// As the engine takes it: seen from above.
+    /// Returns the scan in the engine's form: seen from above.
     pub(crate) fn above(&self) -> Scan<'_> {
         let as_measured = Scan {
             angle_min: self.angle_min,
@@ -72,7 +72,7 @@ impl GivenScan {
     }
 }
 
-/// The ranges in 32 bits, as messages have them; NaN and infinite ones stay what they are.
+/// Converts ranges to 32 bits, like those of messages; NaN and infinite ones stay what they are.
 fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
     let allowed = "allowed: numbers in a row, metres, best a 1-D numpy array of float32";
     let array = get_array_module(given.py())?.call_method1("asarray", (given,));
@@ -88,7 +88,7 @@ fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
         let dtype = array.dtype();
         return Err(value(format!("ranges has dtype {dtype}; {allowed}")));
     }
-    // One number that is repeated takes no memory before it is copied.
+    // A broadcast array repeats one number, and takes no memory before it is copied.
     if array.len() > MAX_RANGES {
         return Err(of_engine(&EngineError::TooManyRanges(array.len())));
     }

@@ -1,5 +1,4 @@
-//! A prepared map that any number of Python's threads may ask at once, and Ctrl-C while it
-//! is asked.
+//! A prepared map that any number of Python's threads may search at once, until Ctrl-C.
 
 use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
@@ -14,19 +13,18 @@ use crate::error::of_engine;
 use crate::map::Map;
 use crate::settings::EngineSettings;
 
-/// Python is asked as often whether somebody wants to stop.
+/// Time between two checks for a signal to stop.
 const SIGNALS_EVERY: Duration = Duration::from_millis(100);
 
-/// A prepared map, and what searches of it keep from scan to scan.
+/// A prepared map, and the workspaces that its searches reuse.
 #[derive(Debug)]
 pub(crate) struct Search {
     locator: Locator,
-    /// Of searches that have ended; there are as many as have run at once.
+    /// Workspaces of searches that have ended: as many as have run at once.
     workspaces: Mutex<Vec<Workspace>>,
 }
 
 impl Search {
-    /// Prepares a map.
     pub(crate) fn prepare(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Self> {
         let EngineSettings {
             cells,
@@ -45,8 +43,8 @@ impl Search {
         &self.locator
     }
 
-    /// Searches, at a heading in the map where the map was prepared for that, and reads
-    /// what was found. Python's lock must not be held.
+    /// Searches the map, at `heading` if it was prepared for known headings, and passes the result
+    /// to `read`. Python's lock must not be held.
     pub(crate) fn locate<T>(
         &self,
         seen: Observation<'_>,
@@ -76,7 +74,7 @@ impl Search {
     }
 }
 
-/// Whether Python's handlers of signals want to stop: by default that of Ctrl-C does.
+/// Checks if Python's signal handlers want to stop: by default that of Ctrl-C does.
 struct Signals {
     asked: Cell<Instant>,
     said: RefCell<Option<PyErr>>,

@@ -19,7 +19,7 @@ use pyo3::types::{PyBool, PyDict, PyString};
 use crate::error::value;
 use crate::numbers::row;
 
-/// How scans are located.
+/// Settings for locating a scan.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
 pub(crate) struct EngineSettings {
@@ -31,7 +31,7 @@ pub(crate) struct EngineSettings {
     pub(crate) peaks: PeakConfig,
 }
 
-/// The same, and how the robot is followed.
+/// Settings for locating a scan, and for tracking the robot.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
 pub(crate) struct TrackerSettings {
@@ -43,7 +43,7 @@ pub(crate) struct TrackerSettings {
     pub(crate) motion: MotionConfig,
 }
 
-/// What has no form as one number or word in Python: it is set after the others.
+/// Settings that are not one number or word in Python; they are set after the others.
 #[derive(Debug, Default)]
 struct Bounds {
     region: Option<Region>,
@@ -51,7 +51,7 @@ struct Bounds {
 }
 
 impl EngineSettings {
-    /// From keywords.
+    /// Reads the settings from keywords.
     pub(crate) fn new(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let (mut settings, bounds) = parse::<EngineSettings>(keywords)?;
         settings.bound(bounds);
@@ -65,7 +65,7 @@ impl EngineSettings {
 }
 
 impl TrackerSettings {
-    /// From keywords.
+    /// Reads the settings from keywords.
     pub(crate) fn new(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let (mut settings, bounds) = parse::<TrackerSettings>(keywords)?;
         settings.engine.bound(bounds);
@@ -98,7 +98,7 @@ fn parse<T: CommandFactory + FromArgMatches>(
     Ok((settings.map_err(|error| refused(&error))?, bounds))
 }
 
-/// A keyword as the command has it; none where it says nothing.
+/// Converts a keyword to an option of the command; `None` for a flag that is not set.
 fn word(key: &str, option: &clap::Arg, given: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
     let name = format!("--{}", option.get_long().unwrap_or(key));
     let kind = given.get_type().name()?;
@@ -140,7 +140,7 @@ fn unknown(key: &str, command: &clap::Command) -> PyErr {
     ))
 }
 
-/// Names the keyword, the value and what is allowed, as the command does.
+/// Converts an error of the command's parser: keyword, value and what is allowed.
 fn refused(error: &clap::Error) -> PyErr {
     let rendered = error.to_string();
     let text = match (error.kind(), error.source()) {

@@ -1,4 +1,4 @@
-//! Where the robot is, as Python reads it.
+//! Pose of the robot for Python.
 
 use engine::peaks::Target;
 use engine::tracking::Report;
@@ -8,64 +8,64 @@ use pyo3::prelude::*;
 
 use crate::numbers::{self, PoseTuple, matrix};
 
-/// Where the robot is, how sure that is, and why.
+/// Pose of the robot, its certainty, and the reason.
 #[pyclass(frozen, get_all, module = "backcast")]
 pub(crate) struct TrackedPose {
-    /// Of the scan, nanoseconds.
+    /// Time of the scan, nanoseconds.
     stamp_ns: i64,
-    /// What is known: "Searching", the robot has not been found yet; "Unique", one place is
-    /// left, and the scans fit there; "Doubtful", the pose is kept, but something speaks
-    /// against it; "Lost", the robot is not there any more.
+    /// State of the tracker: "Searching", the robot has not been found yet; "Unique", one
+    /// place is left, and the scans fit there; "Doubtful", the pose is kept, but there is
+    /// evidence against it; "Lost", the robot is not there any more.
     state: &'static str,
-    /// Why, in a word: "NoScan", "OnePlace", "SeveralPlaces", "TooEarly", "PoorFit",
+    /// Reason for the state: "NoScan", "OnePlace", "SeveralPlaces", "TooEarly", "PoorFit",
     /// "OdometryJump", "AnotherPlace" or "NoPlace".
     reason: String,
-    /// Why, in words, and what to do.
+    /// Explanation of the reason, with what to do.
     why: String,
-    /// Whose pose it is: "base" where a mount was given, else "laser".
+    /// Frame of the pose: "base" if a mount was given, otherwise "laser".
     frame: &'static str,
-    /// (x, y, yaw) in the map, metres and radians: the place that is believed, else the one
-    /// that leads; None if there is none.
+    /// Pose in the map, (x, y, yaw) in metres and radians: the believed place, otherwise
+    /// the leading one; None if there is no place.
     pose: Option<PoseTuple>,
-    /// The covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; where no place
-    /// is believed, it spans all that are kept. None if there is no pose.
+    /// Covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; if no place is
+    /// believed, it spans all that are kept. None if there is no pose.
     covariance: Option<Py<PyArray2<f64>>>,
-    /// As pose, of the laser in any case.
+    /// Pose of the laser in any case, like pose.
     laser_pose: Option<PoseTuple>,
-    /// As covariance, of the laser in any case.
+    /// Covariance of the laser in any case, like covariance.
     laser_covariance: Option<Py<PyArray2<f64>>>,
-    /// Where the odometry's origin lies in the map, (x, y, yaw) in metres and radians; None
+    /// Pose of the odometry's origin in the map, (x, y, yaw) in metres and radians; None
     /// without a pose or without odometry.
     map_from_odom: Option<PoseTuple>,
-    /// How likely the robot is there, 0 to 1.
+    /// Probability that the robot is there, 0 to 1.
     probability: f64,
-    /// How well the scan fits there, at most 1.
+    /// Score of the scan there, at most 1: how well it fits the map.
     score: f64,
     /// Natural logarithm of the odds of that probability.
     lead: f64,
-    /// Places that come near the best, itself included.
+    /// Number of places close to the best in weight, including it.
     places: u32,
-    /// When the state began, nanoseconds.
+    /// Time at which the state began, nanoseconds.
     since_ns: i64,
-    /// Metres gone since.
+    /// Distance driven since then, metres.
     since_m: f64,
-    /// Whether the whole map was searched for this scan, which takes longer.
+    /// True if the whole map was searched for this scan, which takes longer.
     searched: bool,
 }
 
-/// The same before Python's lock is taken.
+/// Data of a pose, before Python's lock is taken.
 #[derive(Debug)]
 pub(crate) struct Followed {
     pub(crate) stamp_ns: i64,
     pub(crate) report: Report,
     pub(crate) base_from_laser: Option<Pose>,
-    /// Where the laser was by the odometry.
+    /// Pose of the laser by odometry.
     pub(crate) odom_from_laser: Option<Pose>,
     pub(crate) searched: bool,
 }
 
 impl Followed {
-    /// As Python reads it.
+    /// Makes the pose for Python.
     pub(crate) fn read(self, py: Python<'_>) -> PyResult<TrackedPose> {
         let report = self.report;
         let target = Target::of(self.base_from_laser, false);

@@ -1,5 +1,5 @@
-//! From scans and odometry to a pose that stays: what `nodes/tracker` does for the graph,
-//! with the same engine, and searches made in place of those that it asks for.
+//! Tracking of a robot by scans and odometry: the same as `nodes/tracker` in the graph, with the
+//! same engine, and searches made in place of those that it requests.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -22,17 +22,16 @@ use crate::search::Search;
 use crate::settings::TrackerSettings;
 use crate::tracked::{Followed, TrackedPose};
 
-/// What a pose that is expected may err by where nothing else is said, metres and radians,
-/// as in the graph.
+/// Default standard deviations of an expected pose, metres and radians, as in the graph.
 const EXPECTED_ERROR: (f64, f64) = (0.5, 0.26);
 
-/// Finds the robot, and keeps its pose from scan to scan: one scan alone may not tell where
-/// it was taken, or tell wrong.
+/// Finds the robot, and keeps its pose from scan to scan: a single scan may be
+/// ambiguous or misleading.
 ///
-/// The keywords are the engine's settings and the tracker's, with the same defaults as the
-/// command's: see backcast.TrackerSettings.
+/// The keywords are the engine's settings and the tracker's, with the same defaults as
+/// the command's: see backcast.TrackerSettings.
 ///
-/// Python's lock is released while the map is prepared and while a scan is followed. A
+/// Python's lock is released while the map is prepared and while a scan is processed. A
 /// tracker follows one robot: calls from several threads wait for each other.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct Tracker {
@@ -43,17 +42,17 @@ pub(crate) struct Tracker {
     state: Mutex<State>,
 }
 
-/// What is known from scan to scan.
+/// State that is kept from scan to scan.
 #[derive(Debug)]
 struct State {
     tracker: tracking::Tracker,
-    /// The newest scan, and how the robot moved.
+    /// Newest scan, and the motion of the robot.
     joiner: Joiner,
-    /// The scan whose search counts later.
+    /// Scan to be searched later, if the tracker needs it.
     asked: Option<Kept>,
-    /// Where the laser was by the odometry at the scan before.
+    /// Pose of the laser by odometry at the previous scan.
     before: Option<ByOdometry>,
-    /// Where the robot is said to be, of the base.
+    /// Expected pose of the base, and its covariance.
     expected: Option<(Pose, Covariance)>,
 }
 
@@ -94,11 +93,11 @@ impl Tracker {
         })
     }
 
-    /// Takes odometry: the base's pose, (x, y, yaw) since the odometry's start in metres and
-    /// radians, at a time in nanoseconds.
+    /// Takes odometry: the base's pose, (x, y, yaw) since the odometry's start in metres
+    /// and radians, at a time in nanoseconds.
     ///
-    /// It comes in the order of its time, and before the scans that it tells of: up to the
-    /// middle of a scan, or to its end where the motion within the scan is to be taken out.
+    /// Odometry must come in order of time, and before the scans that it covers: up to the
+    /// middle of a scan, or to its end if the motion within the scan is to be removed.
     fn add_odometry(&self, py: Python<'_>, stamp_ns: i64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let odom_from_base = numbers::pose("pose", pose)?;
         self.with_state(py, |state| {
@@ -111,15 +110,16 @@ impl Tracker {
 
     /// Follows the robot to a scan.
     ///
-    /// stamp_ns is when its first range was measured, nanoseconds, and time_increment the
-    /// seconds from one range to the next: where odometry tells it, the motion between them
-    /// is taken out. odometry is the base's pose at that time, as add_odometry takes it;
-    /// whoever calls that needs it not. Without any, scans are matched to each other.
+    /// stamp_ns is the time of the first range, nanoseconds, and time_increment the seconds
+    /// from one range to the next: if odometry covers the scan, the motion between them is
+    /// removed. odometry is the base's pose at that time, in the form of add_odometry; it
+    /// is not needed if that is called. Without any odometry, scans are matched to each
+    /// other.
     ///
-    /// The others are those of Localizer.locate: metres and radians, and the mount, with
-    /// which poses are the base's.
+    /// The other arguments are those of Localizer.locate: metres and radians, and the
+    /// mount, with which poses are the base's.
     ///
-    /// ValueError if the scan is not sound; the tracker then stays as it was.
+    /// Raises ValueError if the scan is invalid; the tracker then stays as it was.
     #[pyo3(signature = (
         ranges, angle_min, angle_increment, stamp_ns, *, odometry=None, range_min=0.0,
         range_max=f64::INFINITY, mount=None, upside_down=false, time_increment=0.0
@@ -165,12 +165,12 @@ impl Tracker {
         followed.read(py)
     }
 
-    /// Forgets all but where the robot should be at the next scan: the base's pose, or the
-    /// laser's without a mount, (x, y, yaw) in the map, metres and radians. It is tried
-    /// first, and not believed before scans confirm it.
+    /// Forgets everything, and expects the robot at this pose at the next scan: the base's
+    /// pose, or the laser's without a mount, (x, y, yaw) in the map, metres and radians. It
+    /// is tried first, and not believed before scans confirm it.
     ///
-    /// covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; by default it is that of
-    /// 0.5 m and 0.26 rad.
+    /// covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; the default is that of
+    /// standard deviations of 0.5 m and 0.26 rad.
     #[pyo3(signature = (pose, covariance=None))]
     fn expect(
         &self,
@@ -190,7 +190,7 @@ impl Tracker {
         })
     }
 
-    /// Forgets all: the next scan is the first.
+    /// Forgets everything: the next scan is the first.
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
         self.with_state(py, |state| {
             *state = State::new(self.config, self.join.clone());
@@ -210,7 +210,7 @@ impl Tracker {
 }
 
 impl Tracker {
-    /// Waits for other threads without Python's lock, so that they can end.
+    /// Runs with the state; waits for other threads without Python's lock, so that they can end.
     fn with_state<T: Send>(
         &self,
         py: Python<'_>,
@@ -269,7 +269,7 @@ impl Tracker {
             Ok(found) => (found, None),
             Err(interrupt) => (None, Some(interrupt)),
         };
-        // A scan that was begun is done with, also where its search was interrupted.
+        // A scan that was begun is finished, even if its search was interrupted.
         tracker.finish(&[seen], found.as_deref());
         if tracker.asks_ahead() {
             *asked = Some(Kept::of(&brought));
@@ -286,7 +286,7 @@ impl Tracker {
         }
     }
 
-    /// What a search finds, as messages of the graph say it: their scores have 32 bits.
+    /// Searches the map; the candidates pass through the graph's messages, with scores of 32 bits.
     fn candidates(&self, seen: Observation<'_>) -> PyResult<Vec<Candidate>> {
         let of_laser = Target::of(None, false);
         let (verdict, hypotheses) = self.search.locate(seen, None, |found| {

@@ -1,4 +1,4 @@
-//! The list of the book, and links.
+//! Table of contents of the book, and links.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
@@ -7,7 +7,7 @@ use tests::{markdown, root};
 
 use crate::read;
 
-/// Beside those in `docs`.
+/// Documents in addition to those in `docs`.
 const OTHERS: [&str; 5] = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -16,7 +16,7 @@ const OTHERS: [&str; 5] = [
     "packaging/python/README.md",
 ];
 
-/// All documents below `docs`, from the root.
+/// Returns all documents below `docs`, relative to the root.
 fn documents() -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     let mut folders = vec![PathBuf::from("docs")];
@@ -39,8 +39,8 @@ fn all() -> BTreeSet<PathBuf> {
     documents().into_iter().chain(others).collect()
 }
 
-/// The links of a document to files of the repository, from the root, each with its
-/// anchor, empty where it has none.
+/// Returns the links of a document to files of the repository, relative to the root, each with its
+/// anchor, which may be empty.
 fn links_of(document: &Path) -> Vec<(PathBuf, String)> {
     let text = read(&root().join(document));
     let outside = |link: &String| link.contains("://") || link.starts_with("mailto:");
@@ -59,7 +59,7 @@ fn links_of(document: &Path) -> Vec<(PathBuf, String)> {
         .collect()
 }
 
-/// Without `..`; one that leads out of the repository stays.
+/// Removes `..` from a path; one that leads out of the repository stays.
 fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {

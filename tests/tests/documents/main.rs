@@ -1,5 +1,5 @@
-//! What the documents say that a program can compare with the code: links, the list of
-//! the book, options, exit codes, messages and JSON.
+//! Comparison of the documents with the code: links, table of contents, options, exit codes,
+//! messages and JSON.
 //!
 //! Tables of options and exit codes are written from `--help`:
 //! `BACKCAST_ACCEPT=1 cargo test --release -p tests --test documents`.

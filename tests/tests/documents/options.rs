@@ -1,4 +1,4 @@
-//! Options and exit codes, made of `--help`.
+//! Options and exit codes, generated from `--help`.
 
 use std::process::Command;
 
@@ -7,11 +7,11 @@ use tests::{executables, root};
 
 use crate::read;
 
-/// Below this line, a document is made of `--help`.
+/// Line below which a document is generated from `--help`.
 const MADE: &str = "<!-- Made of --help by tests/tests/documents; what stands below is \
                     not to be changed by hand. -->\n";
 
-/// In the order in which a scan goes through them; the other nodes follow by name.
+/// Nodes in the order in which a scan passes them; the other nodes follow by name.
 const FIRST: [&str; 5] = [
     "lms_reader",
     "map_server",
@@ -20,7 +20,7 @@ const FIRST: [&str; 5] = [
     "peak_extractor",
 ];
 
-/// These are built by those who name them: they are looked at where they were.
+/// Nodes that are built only by name: their options are compared if they are there.
 const BUILT_BY_NAME: [&str; 5] = [
     "bridge",
     "fleet_monitor",
@@ -29,7 +29,7 @@ const BUILT_BY_NAME: [&str; 5] = [
     "ros2_gateway",
 ];
 
-/// What an executable says of itself, or one of its commands.
+/// Returns the help of an executable, or of one of its commands.
 fn help(name: &str, command: Option<&str>) -> Help {
     let mut process = Command::new(executables::path(name));
     let output = process.args(command).arg("--help").output().unwrap();
@@ -37,7 +37,7 @@ fn help(name: &str, command: Option<&str>) -> Help {
     Help::parse(&String::from_utf8(output.stdout).unwrap())
 }
 
-/// The commands of `backcast` but `help`, in the order of its help.
+/// Returns the commands of `backcast` except `help`, in the order of its help.
 fn commands() -> Vec<String> {
     let mut process = Command::new(executables::path("backcast"));
     let output = process.arg("--help").output().unwrap();
@@ -61,7 +61,7 @@ fn nodes() -> Vec<String> {
     nodes
 }
 
-/// Compares what is made of `--help` with what stands in a document, or writes it there.
+/// Compares the text generated from `--help` with a document, or writes it there.
 fn compare(document: &str, made: &str) {
     let path = root().join(document);
     let text = read(&path);
@@ -93,7 +93,7 @@ fn options_are_those_of_the_executables() {
     let by_name = |name: &&String| BUILT_BY_NAME.contains(&name.as_str());
     assert!(missing.iter().all(by_name), "{missing:?}");
     if !missing.is_empty() {
-        // Their sections stand between others, which name options of theirs.
+        // The sections of the other nodes refer to options of theirs.
         eprintln!("options are not compared: not built are {missing:?}");
         return;
     }

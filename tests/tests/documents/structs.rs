@@ -1,4 +1,4 @@
-//! Messages and JSON, by the structs that are sent.
+//! Messages and JSON, compared with the structs that are sent.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use tests::{markdown, root};
 
 use crate::read;
 
-/// The structs of a source, by name.
+/// Returns the structs of a source file.
 fn structs(file: &str) -> Vec<ItemStruct> {
     let source = syn::parse_file(&read(&root().join(file))).unwrap();
     let structs = source.items.into_iter().filter_map(|item| match item {
@@ -18,7 +18,7 @@ fn structs(file: &str) -> Vec<ItemStruct> {
     structs.collect()
 }
 
-/// The versioned name of a message, as `type_name("Scan/v1")` beside its derivation.
+/// Returns the versioned name of a message, from `type_name("Scan/v1")` at its derive attribute.
 fn type_name(item: &ItemStruct) -> Option<String> {
     let attribute = item.attrs.iter().find(|a| a.path().is_ident("cfg_attr"))?;
     let parts = attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated);
@@ -28,11 +28,11 @@ fn type_name(item: &ItemStruct) -> Option<String> {
     Some(named.parse_args::<LitStr>().ok()?.value())
 }
 
-/// The name that serde gives a field, as `#[serde(rename = "type")]`.
+/// Returns the name that serde gives a field, from `#[serde(rename = "type")]`.
 fn renamed(attributes: &[Attribute]) -> Option<String> {
     let attribute = attributes.iter().find(|a| a.path().is_ident("serde"))?;
     let mut found = None;
-    // What is not `rename = "text"` has no text to be found.
+    // Other attributes than `rename = "text"` have no text.
     let _ = attribute.parse_nested_meta(|meta| {
         if meta.path.is_ident("rename") {
             let text: LitStr = meta.value()?.parse()?;
@@ -43,11 +43,11 @@ fn renamed(attributes: &[Attribute]) -> Option<String> {
     found
 }
 
-/// Whether serde has this word for the field, as `flatten` or `skip`.
+/// True if the field has this word for serde, such as `flatten` or `skip`.
 fn has_word(attributes: &[Attribute], word: &str) -> bool {
     let mut found = false;
     for attribute in attributes.iter().filter(|a| a.path().is_ident("serde")) {
-        // What stands behind the word is of another one.
+        // Values after a word belong to other words.
         let _ = attribute.parse_nested_meta(|meta| {
             found |= meta.path.is_ident(word);
             Ok(())
@@ -56,8 +56,8 @@ fn has_word(attributes: &[Attribute], word: &str) -> bool {
     found
 }
 
-/// The names under which the fields of a struct are sent, those that are flattened or
-/// skipped left out.
+/// Returns the names under which the fields of a struct are sent, without flattened and skipped
+/// ones.
 fn fields(item: &ItemStruct) -> Vec<String> {
     let Fields::Named(fields) = &item.fields else {
         return Vec::new();
@@ -95,8 +95,8 @@ fn every_message_has_its_table() {
     assert!(count > 20, "{count}");
 }
 
-/// The structs that are sent as JSON, each with the section that has its fields: those of
-/// several structs where they are sent as one object.
+/// Structs that are sent as JSON, with the section that lists their fields; several structs if they
+/// are sent as one object.
 const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`pose/json`", &[("nodes/bridge/src/json.rs", "Pose")]),
     ("`health/json`", &[("nodes/bridge/src/json.rs", "Health")]),
@@ -248,7 +248,7 @@ fn every_object_in_json_has_its_table() {
             let item = item.unwrap_or_else(|| panic!("{file} has no struct {name}"));
             sent.extend(fields(item));
         }
-        // Every object has it, and the document says so once.
+        // Every object has it, and the document says so once for all.
         sent.remove("schema");
         let listed: BTreeSet<String> = markdown::first_cells(&text, section).into_iter().collect();
         assert_eq!(listed, sent, "section {section} of docs/json.md");

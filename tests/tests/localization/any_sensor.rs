@@ -1,5 +1,4 @@
-//! Maps with cells of any size, and lasers with any field of view and number of
-//! beams.
+//! Maps with cells of any size, and lasers with any field of view and number of beams.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -71,7 +70,7 @@ fn cells_of_any_size_find_the_robot() {
         for truth in POSES {
             let places = locate(&locator, truth, Laser::AROUND);
             let (metres, degrees) = error(&places, truth);
-            // Obstacles fill whole cells, so that a wall lies off by up to half of one.
+            // Obstacles fill whole cells, so that a wall is off by up to half of one.
             assert!(
                 metres <= resolution_m / 2.0 && degrees < 2.0,
                 "{resolution_m}: {truth:?}"
@@ -117,8 +116,7 @@ fn any_field_of_view_and_number_of_beams_will_do() {
                         "{field_of_view} {beams}: {truth:?}"
                     );
                 }
-                // What is seen over a quarter or half of a turn is not always enough
-                // to find which room it is.
+                // A quarter or half of a turn does not always show enough to tell which room it is.
                 if field_of_view >= 270.0 {
                     assert!(
                         metres < 0.1 && degrees < 3.0,

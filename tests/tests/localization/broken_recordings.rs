@@ -1,5 +1,5 @@
-//! The tracker believes no wrong pose where odometry, laser or mount are not what they should
-//! be, and needs none of them more than it says.
+//! The tracker believes no wrong pose if odometry, laser or mount are wrong, and needs no more of
+//! them than documented.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -15,7 +15,7 @@ use tests::world::World;
 
 use super::tracking::{by_graph, figures};
 
-/// A folder of such recordings.
+/// Returns a folder of such recordings.
 fn folder(test: &str, name: &str) -> Option<PathBuf> {
     let found = tests::broken_recordings().map(|all| all.join(name));
     if found.is_none() {
@@ -24,9 +24,9 @@ fn folder(test: &str, name: &str) -> Option<PathBuf> {
     found
 }
 
-/// What a graph with a tracker says of each scan of a drive that holds its own map.
+/// Returns the poses of a graph with a tracker for each scan of a drive that contains its own map.
 fn poses(test: &str, drive: &Path, tracker: &[&str], scans: usize) -> Vec<PoseHeader> {
-    // That of the recording counts.
+    // The map of the recording takes precedence over this one.
     let other = World::of("malaga_corridor").map();
     let files = [other.as_path(), drive].map(|file| file.to_str().unwrap());
     let map = ["--map", files[0], "--recorded", files[1]];
@@ -59,7 +59,7 @@ fn no_start_is_wrong_where_a_sensor_is() {
     // The name of the base changes nothing.
     let control = of("base_called_base_link_control");
     assert_eq!(chassis["right"], control["right"]);
-    // Nobody can know that a laser is mirrored before it has turned; then nobody believes it.
+    // A mirrored laser cannot be detected before it has turned; after that it is not believed.
     let mirrored = of("upside_down_undeclared");
     assert_eq!(mirrored["unique_share"], 0.0, "{mirrored}");
 }
@@ -118,7 +118,7 @@ fn odometry_that_never_moves_is_none() {
         ("odom-dies", "odometry_dies_at_start"),
     ] {
         let said = poses(tag, &folder.join(format!("{name}.mcap")), &[], 170);
-        // By the scans alone it is known a metre or two after the start.
+        // By the scans alone, the pose is known a metre or two after the start.
         let first = said.iter().position(is_unique).unwrap();
         assert!(first <= 15, "{name}: {first}");
         let unique = said.iter().filter(|pose| is_unique(pose)).count();
@@ -143,7 +143,7 @@ fn a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed() {
     let text = |pose: Pose| format!("{},{},{}", pose.x, pose.y, pose.yaw.to_degrees());
     let hinted = said("stands-hint", &["--initial-pose", &text(at)]);
     assert!(unique(&hinted) >= 299, "{}", unique(&hinted));
-    // A hint that is wrong is not believed there.
+    // A wrong hint is not believed.
     let wrong = text(at.then(Pose::new(3.0, 2.0, 1.0)));
     let misled = said("stands-misled", &["--initial-pose", &wrong]);
     assert_eq!(unique(&misled), 0);

@@ -9,8 +9,8 @@ use geometry::Pose;
 use tests::world::{World, as_engine_takes_it};
 use tests::{answers, executables};
 
-/// After a change that is meant to change answers, `backcast regress --accept`
-/// writes them again; the difference is looked at before it is committed.
+/// After a change that is meant to change results, `backcast regress --accept` writes them again;
+/// review the difference before committing it.
 #[test]
 fn the_graph_answers_as_expected() {
     let world = World::of("malaga_corridor");

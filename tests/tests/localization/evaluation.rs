@@ -1,5 +1,5 @@
-//! The graph and `backcast evaluate`, which asks the engine alone, find the same on
-//! recordings of other robots, where these are at hand.
+//! The graph and `backcast evaluate`, which uses the engine alone, have the same results on
+//! recordings of other robots, if these are available.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -20,7 +20,7 @@ const NOT_THERE: &str = "no folder shared/data/evaluation beside the project";
 /// Independent scans of two buildings.
 const FILES: [&str; 2] = ["fr079_queries.mcap", "seattle_queries.mcap"];
 
-/// What is counted by both.
+/// Counts that both report.
 const COUNTS: [&str; 6] = [
     "truths",
     "success_50cm_10deg",
@@ -30,8 +30,8 @@ const COUNTS: [&str; 6] = [
     "unique_wrong",
 ];
 
-/// What is measured by both, with its percentiles. True headings take another way
-/// through angles in the graph, which changes their last bits.
+/// Errors that both report, with their percentiles. True headings take another way through angles
+/// in the graph, which changes their last bits.
 const ERRORS: [&str; 4] = [
     "/error_m/median",
     "/error_m/p90",
@@ -40,7 +40,7 @@ const ERRORS: [&str; 4] = [
 ];
 const ROUNDING: f64 = 1e-9;
 
-/// The last line that a command prints, as JSON.
+/// Returns the last line that a command prints, as JSON.
 fn last_line(command: &mut Command) -> Value {
     let outcome = command.output().unwrap();
     let said = String::from_utf8_lossy(&outcome.stderr);

@@ -1,5 +1,5 @@
-//! A graph on several maps: the search is one over all of them, as the tools have it, and the
-//! tracker goes from one to another where a transition is.
+//! A graph on several maps: one search covers all of them, as in the tools, and the tracker changes
+//! maps at transitions.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -21,7 +21,7 @@ use transport::testing::{Isolated, wait_for};
 use super::lost_searches::Robot;
 use super::starting_over::truth;
 
-/// A file that names maps of the repository.
+/// Writes a file that names maps of the repository.
 fn maps(text: &str) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let recordings = tests::root().join("recordings");
@@ -31,7 +31,7 @@ fn maps(text: &str) -> (TempDir, PathBuf) {
     (folder, file)
 }
 
-/// What `locate` says of the recording's scans on these maps.
+/// Returns the output of `locate` for the recording's scans on these maps.
 fn located(maps: &Path, recording: &Path) -> Vec<Value> {
     let mut command = executables::backcast();
     command.args(["locate", "--json", "--maps"]).arg(maps);
@@ -102,7 +102,7 @@ fn the_maps_of_a_set_are_searched_as_the_tools_do_and_the_robots_own_is_shown() 
     robot.stop();
 }
 
-/// The hypotheses of the graph are those of a row of `locate`.
+/// Checks that the hypotheses of the graph are those of a row of `locate`.
 fn is_row<'a>(found: &[Hypothesis], row: &Value, name: &impl Fn(u64) -> &'a str) {
     let rows = row["hypotheses"].as_array().unwrap();
     assert_eq!(found.len(), rows.len(), "{row}");
@@ -118,7 +118,7 @@ fn is_row<'a>(found: &[Hypothesis], row: &Value, name: &impl Fn(u64) -> &'a str)
 
 #[test]
 fn a_pose_in_a_transition_is_doubtful_and_elsewhere_it_is_not() {
-    // Of one floor there are two.
+    // The map of one floor is there twice.
     let floors = "maps:
   - {name: ground, map: RECORDINGS/malaga_corridor/map.yaml}
   - {name: first, map: RECORDINGS/malaga_corridor/map.yaml}
@@ -143,7 +143,7 @@ transitions:
         };
         loan.send().unwrap();
         let mut last = None;
-        // To later scans nothing says how the robot moved: they may be of either floor.
+        // For later scans there is no odometry: they may be on either floor.
         let scans = [3, 1][number];
         for counter in 0..scans {
             let scan = robot.send(counter);

@@ -1,5 +1,4 @@
-//! Scans that are ambiguous, and scans that can in spite of
-//! everything: what the verdict says of them.
+//! Verdicts on scans that are ambiguous, and on scans that are unique in spite of disturbances.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -11,7 +10,7 @@ use geometry::Pose;
 use messages::Verdict;
 use tests::building::{Building, Laser, Rectangle, places};
 
-/// A scan of what a laser reads all around, on the building's map.
+/// Locates a scan that covers a whole turn on the building's map.
 fn locate(building: &Building, ranges: &[f32]) -> Places {
     let locator = building.map(0.05).locator(LocalizerConfig::default());
     places(&locator, &Laser::AROUND.scan(ranges))
@@ -25,7 +24,7 @@ fn is_at(place: Pose, expected: Pose) -> bool {
     place.is_within(expected, 0.1, 2f64.to_radians())
 }
 
-/// An L: the upper right corner of a room is walled off.
+/// Adds an L: a room whose upper right corner is walled off.
 fn l_shaped(building: Building, left: f64, mirrored: bool) -> Building {
     let corner = if mirrored { left + 0.5 } else { left + 4.0 };
     building
@@ -70,7 +69,7 @@ fn in_an_endless_corridor_no_place_is_unique() {
     let found = locate(&corridor, &seen(&corridor, pose));
     assert_eq!(found.verdict, Verdict::Ambiguous);
     assert!(found.confidence < 0.5);
-    // Along the corridor it might be anywhere, across it is known.
+    // Along the corridor the position is unknown, across it is known.
     let ellipse = found.places[0].covariance.ellipse();
     assert!(ellipse.major_m > 10.0 * ellipse.minor_m, "{ellipse:?}");
     assert!(ellipse.angle.sin().abs() < 0.1, "{ellipse:?}");

@@ -1,5 +1,5 @@
-//! A search that dies with one of those who take part in it: the tracker does not wait for
-//! its answer until it gives up, but continues as soon as another process is in its place.
+//! A search that is lost with one of its processes: the tracker does not wait for its result until
+//! the timeout, but continues as soon as another process has taken over.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -14,10 +14,10 @@ use tests::world::{World, as_the_graph_has_it};
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_until_ready};
 use transport::{Graph, Publisher, Subscriber};
 
-/// The graph, with scans that the test sends.
+/// A graph whose scans the test sends.
 pub(super) struct Robot {
     pub(super) world: World,
-    /// Maps that are served in place of the recording's own.
+    /// Maps that are served instead of the recording's own.
     maps: Option<PathBuf>,
     scans: Publisher<topic::Scan>,
     pub(super) poses: Subscriber<topic::Tracked>,
@@ -32,7 +32,7 @@ impl Robot {
         Self::start_on(isolated, None)
     }
 
-    /// The same on several maps, where a file names some.
+    /// Starts the graph on several maps, if a file names some.
     pub(super) fn start_on(isolated: &Isolated, maps: Option<PathBuf>) -> Self {
         let graph = isolated.join("test");
         let mut robot = Robot {
@@ -76,7 +76,7 @@ impl Robot {
         self.nodes.remove(at.unwrap()).1
     }
 
-    /// Sends one of the recording's scans, as the scan of this number.
+    /// Sends the recording's scan of this number.
     pub(super) fn send(&self, counter: u64) -> ScanHeader {
         let scan = &self.world.scans()[counter as usize];
         let header = as_the_graph_has_it(scan, counter);
@@ -87,21 +87,21 @@ impl Robot {
         header
     }
 
-    /// The state that the tracker is in after this scan.
+    /// Waits for the tracker's state after this scan.
     fn state_after(&self, scan: &ScanHeader) -> u32 {
         wait_for(&self.graph, &self.poses, |pose, _| {
             (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(pose.state)
         })
     }
 
-    /// Ends the graph, those who take first.
+    /// Stops the graph, receivers first.
     pub(super) fn stop(mut self) {
         for (_, node) in self.nodes.drain(..).rev() {
             node.stop();
         }
     }
 
-    /// Waits until a search of this scan is asked for.
+    /// Waits until a search of this scan is requested.
     fn wait_for_request(&self, scan: &ScanHeader) {
         wait_for(&self.graph, &self.requests, |request, _| {
             (request.stamp == scan.stamp).then_some(())
@@ -109,7 +109,7 @@ impl Robot {
     }
 }
 
-/// A search is under way when the node with this name dies.
+/// Checks the case that the node with this name dies during a search.
 fn check(victim: &'static str) {
     let isolated = Isolated::new(victim.get(..8).unwrap());
     let mut robot = Robot::start(&isolated);
@@ -119,19 +119,19 @@ fn check(victim: &'static str) {
     robot.wait_for_request(&first);
     lost.kill();
     robot.start_node(victim);
-    // It is asked for again; the new process does not know the scan.
+    // The search is requested again; the new process does not know the scan.
     robot.wait_for_request(&first);
     wait_until_ready(&robot.graph, victim);
     let mut scan = robot.send(1);
     assert_eq!(robot.state_after(&first), TrackState::Searching as u32);
-    // Until the new process has been sent a scan, it has none to search.
+    // The new process has no scan to search until it is sent one.
     for counter in 2.. {
         if robot.state_after(&scan) != TrackState::Searching as u32 {
             break;
         }
         scan = robot.send(counter);
     }
-    // The last message of a node reaches only those who have received from it before.
+    // The last message of a node reaches only subscribers that have received from it before.
     wait_for_health(&robot.graph, &robot.health, |report| {
         report.node.as_str() == "tracker"
     });
@@ -142,7 +142,7 @@ fn check(victim: &'static str) {
         report.node.as_str() == "tracker" && report.state == messages::NodeState::Stopped as u32
     };
     let (report, error) = wait_for_health(&robot.graph, &robot.health, is_last);
-    // What gives up waiting says so.
+    // A tracker that gives up waiting would report it.
     assert_eq!((report.refused, error.as_str()), (0, ""));
 }
 

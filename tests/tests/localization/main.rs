@@ -1,5 +1,4 @@
-//! Whether the robot is found: by the engine, the tools and the graph, on buildings that
-//! are drawn, simulated and recorded.
+//! Localization by the engine, the tools and the graph, in drawn, simulated and recorded buildings.
 
 mod any_sensor;
 mod broken_recordings;

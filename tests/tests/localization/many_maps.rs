@@ -1,5 +1,5 @@
-//! Several maps that are searched together: what is certain on its own map stays so and names
-//! it, and nothing else becomes certain.
+//! Several maps that are searched together: a result that is Unique on its own map stays so and
+//! names that map, and no other result becomes Unique.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -11,10 +11,9 @@ use serde_json::Value;
 use tests::executables;
 use tests::needs::Need;
 
-/// These are of one drive, and hold each other's places.
+/// Maps of one drive, each of which contains places of the other.
 const ONE_DRIVE: [&str; 2] = ["malaga_campus", "malaga_courtyard"];
 
-/// A building: its name, its map, and scans of it.
 struct Building {
     name: String,
     map: PathBuf,
@@ -34,7 +33,7 @@ fn shipped() -> Vec<Building> {
     names.map(building).into()
 }
 
-/// What `locate` says of each so many-th scan on these maps.
+/// Returns the output of `locate` for every n-th scan on these maps.
 fn locate(scans: &Path, maps: &[&Path], every: usize) -> Vec<Value> {
     let mut command = executables::backcast();
     command.args(["locate", "--json", "--every", &every.to_string()]);
@@ -58,8 +57,8 @@ fn is_near(a: &Value, b: &Value) -> bool {
     dx.hypot(dy) <= 0.5 && turn.min(std::f64::consts::TAU - turn) <= 10f64.to_radians()
 }
 
-/// Compares what is found on all maps together with what is found on its own: how many scans
-/// are certain there, and how many of these are certain here.
+/// Compares the results on all maps together with those on the own map; returns the number of scans
+/// that are Unique on the own map, and how many of these are Unique on all.
 fn compare(buildings: &[Building], building: &Building, every: usize) -> (usize, usize) {
     let maps: Vec<&Path> = buildings.iter().map(|other| &*other.map).collect();
     let alone = locate(&building.scans, &[&building.map], every);
@@ -117,16 +116,16 @@ fn eight_buildings_that_are_searched_together_keep_what_is_right() {
         (certain, kept) = (certain + found.0, kept + found.1);
     }
     assert!(certain > 40, "{certain}");
-    // Places on other maps are alternatives now; all are right, see above.
+    // Places on other maps are alternatives now; all results are right, as checked above.
     assert!(kept * 10 >= certain * 9, "{kept} of {certain}");
 }
 
-/// The YAML file of a map that is shipped.
+/// Returns the YAML file of a map of the repository.
 fn yaml(name: &str) -> PathBuf {
     tests::root().join("recordings").join(name).join("map.yaml")
 }
 
-/// A folder whose list names two maps, one of them with a floor.
+/// Makes a folder whose list names two maps, one of them with a floor.
 fn hall_and_yard() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
@@ -157,7 +156,7 @@ fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
         assert_eq!(found["hypotheses"][0]["map"], "hall");
         assert_eq!(found["verdict"], "Unique");
     }
-    // On one map there is no name.
+    // A single map has no name.
     let found = locate(&scans, &[&yaml("malaga_corridor")], 20);
     assert_eq!(found[0]["map"], Value::Null);
 }
@@ -182,7 +181,7 @@ fn only_the_maps_that_are_named_are_searched() {
         let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
         assert_eq!(found["map"], map, "{names}");
         let is_unique = found["verdict"] == "Unique";
-        // On the yard's map alone it is nowhere.
+        // On the yard's map alone the scan is not found.
         assert_eq!(is_unique, map == "hall", "{names}");
     }
     let outcome = on("hall,attic");

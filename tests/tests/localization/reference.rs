@@ -1,5 +1,5 @@
-//! The search against the plain reference on a piece of a real map, with a
-//! real scan. The reference looks at every pose and takes too long for more.
+//! The search compared with the plain reference on a part of a real map, with a real scan. The
+//! reference looks at every pose, which takes too long on a larger map.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -15,7 +15,7 @@ use engine::sweep::FieldSweep;
 use engine::votes::CollectConfig;
 use tests::world::{World, as_engine_takes_it};
 
-/// Cells of the piece: the corridor around the place of the scan.
+/// The part in cells: the corridor around the pose of the scan.
 const LEFT: usize = 1120;
 const BOTTOM: usize = 62;
 const WIDTH: usize = 96;

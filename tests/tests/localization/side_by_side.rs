@@ -11,7 +11,7 @@ use serde_json::Value;
 use tests::executables;
 
 fn start(name: &str) -> Child {
-    // Built first, so that the runs below find nothing to build.
+    // Built first, so that the runs below do not have to build.
     let _ = executables::path("replayer");
     executables::backcast()
         .args(["run", "--rate", "max", "--json", "--graph", name])

@@ -1,5 +1,5 @@
-//! What somebody says of where the robot is: the tracker forgets its pose where the
-//! robot may be anywhere, and believes a pose at once that is said to be sure.
+//! Initial poses: the tracker forgets its pose if the robot may be anywhere, and believes at once a
+//! pose of kind `Believed`.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -14,7 +14,7 @@ use transport::testing::{Isolated, wait_for};
 
 use super::lost_searches::Robot;
 
-/// What the tracker says of the recording's scan of this number.
+/// Sends the recording's scan of this number and returns the tracker's pose.
 fn pose_of(robot: &Robot, counter: u64) -> PoseHeader {
     let scan = robot.send(counter);
     wait_for(&robot.graph, &robot.poses, |pose, _| {
@@ -22,12 +22,12 @@ fn pose_of(robot: &Robot, counter: u64) -> PoseHeader {
     })
 }
 
-/// Where the laser was at the recording's scan of this number.
+/// Returns the true pose of the laser at the recording's scan of this number.
 pub(super) fn truth(robot: &Robot, counter: u64) -> Pose {
     truth_of(&robot.world, counter)
 }
 
-/// The same in a recording.
+/// Returns the true pose of the laser at this scan of a recording.
 pub(super) fn truth_of(world: &World, counter: u64) -> Pose {
     let recording = Recording::open(world.recording()).unwrap();
     let truths = recording.ground_truths().unwrap();
@@ -46,13 +46,13 @@ fn say(to: &Publisher<topic::InitialPoseTopic>, kind: InitialPoseKind, pose: Pos
     loan.send().unwrap();
 }
 
-/// Sends scans from this one on until one is Unique, at the true place; the next number.
+/// Sends scans from this one on until one is Unique, at the true pose; returns the next number.
 fn drive_until_unique(robot: &Robot, mut counter: u64) -> u64 {
     loop {
         let pose = pose_of(robot, counter);
         if pose.is_unique() {
             let (found, truth) = (Pose::from(pose.map_from_laser), truth(robot, counter));
-            // As near as all answers on this recording are.
+            // The accuracy of all results on this recording.
             assert!(found.is_within(truth, 0.2, 0.05), "{found:?} {truth:?}");
             return counter + 1;
         }
@@ -71,7 +71,7 @@ fn a_tracker_that_starts_over_forgets_its_pose_and_finds_the_robot_again() {
     say(&said, InitialPoseKind::Anywhere, Pose::IDENTITY);
     let pose = pose_of(&robot, next);
     assert_eq!(pose.state, TrackState::Searching as u32);
-    // What is kept of now are the places that this scan alone has.
+    // Only the places of this scan are kept now.
     let reason = TrackReason::from_code(pose.reason);
     let is_first = [TrackReason::SeveralPlaces, TrackReason::TooEarly];
     assert!(is_first.map(Some).contains(&reason), "{reason:?}");

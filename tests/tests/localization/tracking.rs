@@ -1,5 +1,5 @@
-//! The tracker in the graph and in `backcast evaluate --sequence` finds the same poses to
-//! the last bit, and searching on demand changes none of them.
+//! The tracker in the graph and in `backcast evaluate --sequence` has the same poses to the last
+//! bit, and searching on demand changes none of them.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -55,11 +55,12 @@ fn by_tools(recording: &Path, map: &Path) -> Track {
     text.lines().map(line).collect()
 }
 
-/// After so long without a pose, the rest is taken for lost: a test that misses one fails and
-/// does not wait for ever.
+/// Time without a pose after which the rest counts as lost, so that a test that misses one fails
+/// and does not wait forever.
 const SILENCE: Duration = Duration::from_secs(60);
 
-/// The poses of all scans, from a graph that is fed at a rate; the map by options of its server.
+/// Returns the poses of all scans, from a graph that is fed at a rate; `map` holds options of its
+/// server.
 pub(super) fn by_graph(
     tag: &str,
     (recording, map): (&Path, &[&str]),
@@ -106,7 +107,7 @@ pub(super) fn by_graph(
     found
 }
 
-/// Those that a trajectory holds.
+/// Returns the poses that a trajectory contains.
 fn track(poses: &[PoseHeader]) -> Track {
     let states = [TrackState::Unique as u32, TrackState::Doubtful as u32];
     let meant = poses.iter().filter(|pose| states.contains(&pose.state));
@@ -135,7 +136,7 @@ fn the_graph_and_the_tools_track_alike() {
     assert_eq!(track(&asked), expected);
 }
 
-/// evo asks for much that reading and comparing two files needs nothing of.
+/// evo requires many packages that are not needed to read and compare two files.
 const EVO: [&str; 5] = [
     "--no-deps",
     "evo==1.31.1",
@@ -168,8 +169,8 @@ fn evo_finds_the_same_errors_of_a_trajectory() {
     for error in ["ape_m", "rpe_m", "rpe_deg"] {
         for figure in ["rmse", "median", "max"] {
             let [ours, theirs] = [ours, &theirs].map(|all| all[error][figure].as_f64().unwrap());
-            // Quaternions and matrices in double precision, and angles by their cosine,
-            // which is flat near none.
+            // Quaternions and matrices are in double precision; angles come from their cosine,
+            // which is flat near zero.
             assert!(
                 (ours - theirs).abs() < 1e-6,
                 "{error} {figure}: {ours} {theirs}"
@@ -205,7 +206,7 @@ fn drives_of_other_robots_are_tracked() {
         );
         assert!(found["rms_m"].as_f64().unwrap() <= 0.03, "{file}: {found}");
     }
-    // A map that was drawn leaves out doors, and its bays repeat.
+    // A drawn map lacks doors, and its bays repeat.
     let drawn = folder.join("guardian_drawn_map.mcap");
     let found = figures(
         &drawn,

@@ -1,4 +1,4 @@
-//! What is built together, and that it is built once.
+//! Crates that are built together, and that they are built only once.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::links::links_zenoh;
 use crate::workspace::{dependencies, folders, metadata};
 
-/// Whether it builds longer than the nodes of a graph on one machine.
+/// True if it takes longer to build than the nodes of a graph on one machine.
 fn takes_long(dependencies: &BTreeSet<String>) -> bool {
     links_zenoh(dependencies) || dependencies.contains("foxglove")
 }
@@ -31,7 +31,7 @@ fn the_first_command_builds_every_node_but_those_that_take_long() {
     assert_eq!(nodes.collect::<BTreeSet<_>>(), expected);
 }
 
-/// Each dependency with its features, as a line, in the build that the options choose.
+/// Returns each dependency with its features, as a line, in the build that the options choose.
 fn features(options: &[&str]) -> BTreeSet<String> {
     let mut command = Command::new(env!("CARGO"));
     command.args(["tree", "--locked", "--prefix", "none", "--no-dedupe"]);
@@ -60,7 +60,7 @@ fn a_run_what_it_starts_and_the_tests_use_the_same_dependencies() {
     );
 }
 
-/// A robot that runs a graph needs none of the tools, nor what they link.
+/// A robot that runs a graph needs neither the tools nor the crates they link.
 #[test]
 fn the_launcher_alone_links_nothing_of_the_tools() {
     let names = |options: &[&str]| -> BTreeSet<String> {

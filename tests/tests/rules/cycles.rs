@@ -1,9 +1,9 @@
 //! Files of a crate depend on each other in one direction.
 //!
-//! A file that lies below another one may use what that one has, and the other way round: what
-//! stands in a folder's `mod.rs` is there for the files in it. Between all others there is no
-//! way back, so that each file can be read with those alone on which it builds. What an error
-//! names, as the limit that was passed, does not count: `error.rs` does nothing with it.
+//! A file in a folder may use its folder's `mod.rs`, and the other way round: `mod.rs` serves the
+//! files in it. Between all others there is no cycle, so that each file can be read with only those
+//! on which it builds. Items that an error names, such as an exceeded limit, do not count:
+//! `error.rs` does nothing with them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,21 +13,21 @@ use syn::{Attribute, Item, UseTree};
 
 use crate::workspace::metadata;
 
-/// A module by the names on the way to it from the root of its crate.
+/// Path of a module from the root of its crate.
 type Name = Vec<String>;
 
-/// What a file has and what it uses; tests and what is declared inside functions count as used.
+/// Items and uses of a file, including those inside functions; test modules are left out.
 #[derive(Default)]
 struct Module {
-    /// Modules in files of their own and in this one.
+    /// Child modules, in files of their own and in this one.
     children: BTreeSet<String>,
-    /// Names that it brings in, by what they are called here.
+    /// Imported items, by their local names.
     imports: BTreeMap<String, Name>,
-    /// Modules of which it brings in everything.
+    /// Modules that are imported with `*`.
     globs: Vec<Name>,
-    /// What is defined here.
+    /// Names of the items defined here.
     items: BTreeSet<String>,
-    /// All paths in it.
+    /// All paths in the file.
     paths: BTreeSet<Name>,
 }
 
@@ -53,7 +53,7 @@ fn no_two_files_of_a_crate_depend_on_each_other() {
     assert!(cycles.is_empty(), "{}", cycles.join("\n"));
 }
 
-/// The modules of a crate that have files of their own, but for those of tests.
+/// Returns the modules of a crate that have files of their own, except those of tests.
 fn modules_of(root: &Path) -> BTreeMap<Name, Module> {
     let mut modules = BTreeMap::new();
     let folder = root.parent().unwrap();
@@ -150,9 +150,9 @@ impl<'ast> Visit<'ast> for Module {
     }
 }
 
-/// The module in which what a path names is defined, if it is of this crate.
+/// Returns the module of this crate that defines the item of a path, if there is one.
 ///
-/// `asked` are the modules whose globs are being followed: two may bring in each other.
+/// `asked` are the modules whose globs are being followed: two may import each other.
 fn home(
     modules: &BTreeMap<Name, Module>,
     from: &[String],
@@ -170,7 +170,7 @@ fn home(
             first if module.children.contains(first) => at.push(first.to_owned()),
             first if module.items.contains(first) => return Some(at),
             first => {
-                // What is taken from a crate may be called as the crate is.
+                // An item imported from a crate may have the name of the crate.
                 let imported = module.imports.get(first);
                 if let Some(import) = imported.filter(|import| import[0] != first) {
                     return home(modules, &at, &joined(import, rest), asked);
@@ -191,7 +191,7 @@ fn home(
     Some(at)
 }
 
-/// The ways between files of which each depends on the other one, through others or at once.
+/// Returns the dependencies between files that depend on each other, directly or through others.
 fn cycles_between(modules: &BTreeMap<Name, Module>) -> Vec<String> {
     let uses: BTreeMap<&Name, BTreeMap<Name, BTreeSet<String>>> = modules
         .iter()
@@ -247,7 +247,7 @@ fn ways_back_are_found_through_names_that_are_handed_on() {
         "mod a; mod b; mod c; mod d; mod error; pub use d::*; #[cfg(test)] mod tests;",
     );
     write("a/mod.rs", "mod inner; pub use inner::Inner;");
-    // A child may use its parent, and what lies beside that.
+    // A child may use its parent, and the modules next to that.
     write("a/inner.rs", "use super::*; pub struct Inner(crate::c::C);");
     write("b.rs", "use crate::{a::Inner as I, D}; pub struct B(I);");
     write("c.rs", "pub struct C; fn f() { crate::b::B::new(); }");

@@ -1,4 +1,4 @@
-//! What is declared is used, and what others link is little.
+//! Declared dependencies are used, and library users link few of them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::workspace::{files, metadata};
 
 #[test]
 fn every_dependency_is_used() {
-    // Its dependencies are there for their features.
+    // This crate has dependencies only for their features.
     const FEATURES: &str = "shared_features";
     let metadata = metadata();
     for package in metadata["packages"].as_array().unwrap() {
@@ -36,7 +36,7 @@ fn every_dependency_is_used() {
     }
 }
 
-/// What a program links that uses the engine as a library.
+/// Checks the dependencies of a program that uses the engine as a library.
 #[test]
 fn the_engine_as_a_library_brings_no_command_line_and_no_shared_memory() {
     let options = [

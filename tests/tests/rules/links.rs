@@ -1,11 +1,11 @@
-//! Which crate may link which: nodes never each other, and what each is to stay free of.
+//! Links between crates: nodes never link each other, and some crates must stay free of others.
 
 use std::collections::BTreeSet;
 
 use crate::workspace::{dependencies, folders};
 
-/// The only nodes that may link zenoh, by themselves or with `zenoh_session`: the others
-/// must build in a minute.
+/// The only nodes that may link Zenoh, directly or by `zenoh_session`: the others must build in a
+/// minute.
 const ZENOH_NODES: [&str; 4] = ["bridge", "fleet_monitor", "locate_server", "ros2_gateway"];
 
 pub(crate) fn links_zenoh(dependencies: &BTreeSet<String>) -> bool {

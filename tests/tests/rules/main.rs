@@ -1,4 +1,4 @@
-//! Rules of the workspace that the compiler does not keep.
+//! Rules of the workspace that the compiler does not check.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"

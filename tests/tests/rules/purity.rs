@@ -1,4 +1,4 @@
-//! Crates that compute: they link little, and reach for nothing outside their arguments.
+//! Pure crates: they link little, and use nothing outside their arguments.
 
 use std::collections::BTreeSet;
 
@@ -62,7 +62,7 @@ fn is_impure(path: &str) -> bool {
     module == "*" || IMPURE.contains(&module)
 }
 
-/// Every path that a source names, imports in groups one by one.
+/// Returns every path in a source, with grouped imports one by one.
 fn paths_in(source: &str) -> BTreeSet<String> {
     let mut paths = Paths::default();
     paths.visit_file(&syn::parse_file(source).unwrap());

@@ -1,4 +1,4 @@
-//! What cargo and the file system know of the workspace.
+//! The workspace, as cargo and the file system report it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -6,15 +6,15 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// What cargo knows of the workspace.
+/// Returns cargo's metadata of the workspace.
 pub(crate) fn metadata() -> Value {
     let options = ["metadata", "--format-version", "1", "--no-deps", "--locked"];
     let mut command = Command::new(env!("CARGO"));
     tests::json_of(command.args(options).current_dir(tests::root()))
 }
 
-/// The workspace's crates, each with the names of what it links; what only its
-/// tests use does not count.
+/// Returns the workspace's crates, each with the names of the crates it links, without those that
+/// only its tests use.
 pub(crate) fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let metadata = metadata();
     let name = |value: &Value| folder_of(value["name"].as_str().unwrap()).to_owned();
@@ -30,7 +30,7 @@ pub(crate) fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
         .collect()
 }
 
-/// What others may use has a name of its own on crates.io.
+/// Returns the folder of a package: published packages have a prefix in their names.
 pub(crate) fn folder_of(package: &str) -> &str {
     package.strip_prefix("backcast-").unwrap_or(package)
 }
@@ -42,7 +42,7 @@ pub(crate) fn folders(parent: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// All files below a folder.
+/// Returns all files below a folder.
 pub(crate) fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -57,7 +57,7 @@ pub(crate) fn files(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The crates under `common` that this one links.
+/// Returns the crates under `common` that this one links.
 pub(crate) fn known(name: &str) -> BTreeSet<String> {
     let all = folders("common");
     dependencies()[name].intersection(&all).cloned().collect()

@@ -1,9 +1,9 @@
-//! `backcast doctor` on drives with something wrong, where these are at hand.
+//! `backcast doctor` on drives with faults, if these are available.
 
 use tests::needs::Need;
 use tests::{evaluation_data, executables};
 
-/// Files, what is said of them, and the exit code.
+/// File, expected words and exit code.
 const CASES: [(&str, &str, i32); 13] = [
     ("sure/upside_down_undeclared", "turns the other way", 1),
     ("sure/upside_down_declared_control", "sound", 0),

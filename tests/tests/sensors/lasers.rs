@@ -1,5 +1,5 @@
-//! A recording through an emulated device and its reader: every scan arrives as
-//! the device's resolution allows, and faults never let a wrong one through.
+//! A recording through an emulated device and its reader: every scan arrives at the device's
+//! resolution, and faults never let a wrong one through.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -16,10 +16,10 @@ use tests::{answers, executables};
 use transport::testing::{Isolated, NodeProcess};
 use transport::{Flow, Graph, Subscriber, TransportError};
 
-/// How the two are joined.
+/// Connection between device and reader.
 enum Cable {
     Tcp(&'static str),
-    /// Over CoLa B, a device that counts its angles otherwise.
+    /// CoLa B, to a device with another convention for angles.
     Device(&'static str),
     Serial,
 }
@@ -60,15 +60,15 @@ impl Robot {
         }
     }
 
-    /// The next scans, until `is_enough` says so of them and of what the reader
-    /// has refused.
+    /// Collects scans until `is_enough` returns true for their number and that of the reader's
+    /// rejected telegrams.
     fn collect(&self, is_enough: impl Fn(usize, u64) -> bool) -> Vec<Vec<f32>> {
         let mut taken = Vec::new();
         let mut refused = 0;
         let step = |_| {
             while let Some(scan) = self.scans.receive()? {
                 let header = scan.header();
-                // Single precision, as recordings have it.
+                // Single precision, like in recordings.
                 let recordable = |radians: f64| f64::from(radians as f32);
                 assert_eq!(header.angle_min, recordable((-90f64).to_radians()));
                 assert_eq!(header.angle_increment, recordable(0.5f64.to_radians()));
@@ -92,7 +92,7 @@ impl Robot {
     }
 }
 
-/// The arguments of device and reader, and the folder of the link between them.
+/// Returns the arguments of device and reader, and the folder of the link between them.
 fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, Vec<String>, Vec<String>) {
     let words = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
     match cable {
@@ -125,7 +125,7 @@ fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, Vec<String>, Vec<String>) 
 /// Plays the recording once and compares every reading; returns the scans.
 fn every_scan_arrives(tag: &str, cable: &Cable, unit_m: f32) -> Vec<Vec<f32>> {
     let recorded = World::of("malaga_corridor").scans();
-    // Four scans may wait for this test, that is four fifths of a second.
+    // This test may have four scans in its queue, which is four fifths of a second.
     let robot = Robot::start(tag, cable, &["--rate", "1"]);
     let arrived = robot.collect(|scans, _| scans == recorded.len());
     assert_eq!(arrived.len(), recorded.len());
@@ -145,7 +145,7 @@ fn every_scan_arrives(tag: &str, cable: &Cable, unit_m: f32) -> Vec<Vec<f32>> {
     arrived
 }
 
-/// Plays the recording over and over a bad cable: what arrives is one of `sound`.
+/// Plays the recording in a loop over a bad cable: every scan that arrives is one of `sound`.
 fn nothing_wrong_gets_through(tag: &str, cable: &Cable, sound: &[Vec<f32>]) {
     let faults = "crc=0.01,drop=0.01,garbage=0.01,split,merge";
     let robot = Robot::start(tag, cable, &["--loop", "--rate", "20", "--fault", faults]);
@@ -157,7 +157,7 @@ fn nothing_wrong_gets_through(tag: &str, cable: &Cable, sound: &[Vec<f32>]) {
     robot.emulator.stop();
 }
 
-/// A range as it arrives: in a device's units, unless they do not hold it.
+/// Converts a range to a device's units and back; one outside them is infinite.
 type Quantise = fn(f32) -> f32;
 
 /// Steps of two millimetres in 16 bits; the lowest values are codes.
@@ -178,8 +178,8 @@ fn as_lms2xx(range_m: f32) -> f32 {
     }
 }
 
-/// A copy of the corridor with the ranges that a device measures, and in the words
-/// in which its reader says it.
+/// Makes a copy of the corridor's recording with the ranges that a device measures, and with the
+/// angles and limits of its reader.
 fn quantised(folder: &Path, quantise: Quantise) -> PathBuf {
     let original = Recording::open(World::of("malaga_corridor").recording()).unwrap();
     let path = folder.join("quantised.mcap");
@@ -201,8 +201,8 @@ fn quantised(folder: &Path, quantise: Quantise) -> PathBuf {
     path
 }
 
-/// The answers to the corridor through a device are, vote for vote and bit for bit,
-/// those to a replay of what the device can measure.
+/// Checks that the results on the corridor through a device are bit for bit those on a replay of
+/// the ranges that the device can measure.
 fn the_graph_answers_as_to_a_replay(tag: &str, cable: &Cable, quantise: Quantise) {
     let world = World::of("malaga_corridor");
     let scans = world.scans().len();

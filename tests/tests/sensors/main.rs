@@ -1,4 +1,4 @@
-//! From lasers and from other people's recordings into the graph.
+//! Lasers and third-party recordings, up to the graph.
 
 mod doctor;
 mod lasers;

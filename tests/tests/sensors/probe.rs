@@ -1,4 +1,4 @@
-//! `backcast probe` against emulated lasers, and against what is none.
+//! `backcast probe` with emulated lasers, and with other things.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -27,8 +27,8 @@ fn probe(device: &str) -> (Option<i32>, String, String) {
     )
 }
 
-/// What is printed about an emulated device with these arguments; `device` makes
-/// the probe's argument from the graph's own host.
+/// Returns the output about an emulated device with these arguments; `device` makes the probe's
+/// argument from the graph's own host.
 fn emulated(tag: &str, arguments: &[&str], device: impl Fn(&str) -> String) -> String {
     let path = executables::path("emulator");
     let _ = executables::path("backcast");
@@ -50,7 +50,7 @@ fn emulated(tag: &str, arguments: &[&str], device: impl Fn(&str) -> String) -> S
     said
 }
 
-/// Whether somebody listens at the first port, or the link is made.
+/// True if the first port accepts connections, or the link exists.
 fn is_there(device: &str) -> bool {
     match device.starts_with('/') {
         true => Path::new(device).exists(),
@@ -58,7 +58,7 @@ fn is_there(device: &str) -> bool {
     }
 }
 
-/// The corridor's walls are on both sides of the laser.
+/// Checks the picture: the corridor's walls are on both sides of the laser.
 fn has_a_picture(said: &str) {
     let is_dot = |c: char| ('\u{2801}'..='\u{28ff}').contains(&c);
     let dots = said.chars().filter(|&c| is_dot(c)).count();
@@ -73,7 +73,7 @@ fn cola_in_either_encoding() {
         ("probeb", "cola-b", "CoLa B"),
     ] {
         let arguments = ["--listen", "tcp://graph:2112", "--protocol", protocol];
-        // Without a port: both that devices have are tried.
+        // Without a port, both usual ports are tried.
         let said = emulated(tag, &arguments, |host| format!("tcp://{host}"));
         assert!(said.contains(&format!(":2112: answers {name}")), "{said}");
         assert!(said.contains("LMS111 emulated"), "{said}");
@@ -129,7 +129,7 @@ fn what_is_no_laser_is_distinguished() {
         "no device can be reached",
     );
 
-    // Nobody ever accepts: the system does, and says nothing.
+    // The connection is accepted by the system, and stays silent.
     let silent = TcpListener::bind("127.0.0.1:0").unwrap();
     fails(&address(&silent), "nothing came");
 
@@ -139,7 +139,7 @@ fn what_is_no_laser_is_distinguished() {
         for _ in 0..2 {
             let (mut stream, _) = other.accept().unwrap();
             stream.write_all(b"220 mail.example ready\r\n").unwrap();
-            // It stays until the probe hangs up.
+            // It stays until the probe closes the connection.
             let _ = std::io::copy(&mut stream, &mut std::io::sink());
         }
     });

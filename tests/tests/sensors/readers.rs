@@ -1,5 +1,4 @@
-//! What the graph records is read alike by the tools of others, and what they write
-//! by us.
+//! Third-party tools and this project read each other's recordings alike.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -16,10 +15,10 @@ use tests::recorded::{messages, record};
 use tests::world::World;
 use tests::{executables, python};
 
-/// The versions of the Python readers that are compared with.
+/// Versions of the Python readers that are compared with.
 const READERS: [&str; 3] = ["mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
 
-/// What is compared: counts of all channels, and values of some.
+/// Returns the compared data: counts of all channels, and values of some.
 fn as_we_read(path: &Path) -> Value {
     let recording = Recording::open(path).unwrap();
     let count = |c: &recording::Channel| (c.topic.to_string(), json!(c.messages));
@@ -64,7 +63,7 @@ fn as_we_read(path: &Path) -> Value {
     json!({"counts": counts, "scans": scans, "truths": truths, "odometry": odometry, "maps": maps})
 }
 
-/// The same by a reader of others, as JSON on its standard output.
+/// Prints the same data, by a third-party reader, as JSON.
 const SCRIPT: &str = r#"
 import json, math, sys
 from collections import Counter
@@ -146,7 +145,7 @@ fn the_readers_of_others_agree() {
     let by_rosbags = as_read_by(&python, "rosbags", &path);
     assert_eq!(by_mcap["read"], ours, "mcap-ros2-support");
     assert_eq!(by_rosbags["read"], ours, "rosbags");
-    // Our own messages, by schemas that they have never seen.
+    // Our own messages are read by schemas that the readers have never seen.
     assert_eq!(by_mcap["own"], by_rosbags["own"]);
     for (number, votes) in by_mcap["own"]["votes"]
         .as_array()
@@ -161,7 +160,7 @@ fn the_readers_of_others_agree() {
     let said = by_mcap["own"]["log"].as_array().unwrap();
     let is_of = |line: &Value| line[2] == "recorder" && line[1] == 20;
     assert!(said.iter().any(is_of), "{said:?}");
-    // What the launcher did before there was a recorder, too.
+    // The log starts before the recorder, with the launcher.
     let started = |line: &Value| {
         let text = line[3].as_str().unwrap();
         line[2] == "backcast" && text.starts_with("accumulator runs as process")
@@ -171,7 +170,7 @@ fn the_readers_of_others_agree() {
     assert!(beams.iter().all(|beam| beam[2] == 180), "{beams:?}");
     let tracked = by_mcap["own"]["poses"].as_array().unwrap();
     assert_eq!(tracked.len(), 37);
-    // It finds the place on the way, and says so in words.
+    // The tracker finds the place on the way, and has words for it.
     let (first, last) = (&tracked[0], &tracked[36]);
     assert_eq!((&first[1], &last[1]), (&json!(0), &json!(1)), "{tracked:?}");
     assert_eq!(last[2], true);

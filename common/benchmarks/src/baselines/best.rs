@@ -1,6 +1,6 @@
-//! The best pose so far.
+//! Keeps the best pose.
 
-/// A pose and how well the scan fits there.
+/// A pose with its score.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Column of the cell.
@@ -9,12 +9,11 @@ pub struct Estimate {
     pub y: usize,
     /// Index on the heading grid.
     pub heading: usize,
-    /// Higher is better; each method has a scale of its own.
+    /// Higher is better; the scale depends on the method.
     pub score: f32,
 }
 
-/// Keeps the best of poses that come in any order. Ties go to the lowest
-/// (heading, y, x), as the engine's do.
+/// Keeps the best of poses in any order. Ties go to the lowest (heading, y, x), as in the engine.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Best(Option<Estimate>);
 
@@ -23,7 +22,7 @@ impl Best {
         self.0
     }
 
-    /// What a score must reach to matter.
+    /// Score to reach or exceed.
     pub(super) fn score(self) -> f32 {
         self.0.map_or(f32::NEG_INFINITY, |best| best.score)
     }

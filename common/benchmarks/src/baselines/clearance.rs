@@ -1,4 +1,4 @@
-//! How many cells around one are free of obstacles: what lets a ray leap.
+//! Distance of each cell to the nearest obstacle, which lets rays skip free cells.
 
 use engine::chessboard;
 use engine::directions::Direction;
@@ -6,13 +6,12 @@ use engine::grid::Cell;
 
 use crate::worlds::World;
 
-/// For each cell the distance to the nearest cell that ends a ray, the larger
-/// of the two axes counting. There is one cell of margin, so that rays need not
-/// look where the map ends.
+/// Chessboard distance of each cell to the nearest cell that ends a ray. A margin of one cell
+/// spares rays the check for the end of the map.
 #[derive(Debug, Clone)]
 pub(super) struct Clearance {
     stride: usize,
-    /// 0 where a ray ends, saturated at 255.
+    /// 0 where a ray ends; saturated at 255.
     cells: Vec<u8>,
     occupied: Vec<bool>,
 }
@@ -43,9 +42,8 @@ impl Clearance {
         self.cells.len() + self.occupied.len()
     }
 
-    /// Steps to the first occupied cell; `None` if the ray leaves the map, or
-    /// has not met one after `limit` steps. The cells that it leaps over are
-    /// free, so the answer is that of stepping through each.
+    /// Steps to the first occupied cell; `None` if the ray leaves the map or exceeds `limit` steps.
+    /// Skipped cells are free, so the result is the same as with single steps.
     #[inline]
     pub(super) fn range(
         &self,

@@ -1,6 +1,6 @@
-//! Correlation with a likelihood field: how near to an obstacle do the end
-//! points of the beams lie (Thrun, Burgard and Fox, Probabilistic Robotics,
-//! section 6.4)? Whether something stands between is not asked.
+//! Correlation with a likelihood field: scores the distance of each beam's end point to the nearest
+//! obstacle (Thrun, Burgard and Fox, Probabilistic Robotics, section 6.4). It ignores obstacles
+//! along the beam.
 
 use engine::grid::Cell;
 use engine::instruction_set::InstructionSet;
@@ -13,11 +13,10 @@ use super::reading::Readings;
 use super::row_sums::{self, Group};
 use crate::worlds::World;
 
-/// Likelihood of an end point in an obstacle: four bits, as fine as the votes
-/// of the engine.
+/// Likelihood of an end point at an obstacle: four bits, the resolution of the engine's votes.
 const FULL: u8 = 15;
 
-/// Rows whose sum fits eight bits.
+/// Number of rows whose sum fits eight bits.
 const TOGETHER: usize = (u8::MAX / FULL) as usize;
 
 /// Correlation by end points in a likelihood field.
@@ -30,7 +29,7 @@ pub struct FieldCorrelation {
 }
 
 impl FieldCorrelation {
-    /// Prepares a map for readings with one deviation, in cells.
+    /// Prepares a map for readings with one standard deviation, in cells.
     #[must_use]
     pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
         let grid = &world.grid;
@@ -78,7 +77,7 @@ impl Baseline for FieldCorrelation {
     }
 }
 
-/// Where the beams end, in cells from the laser, at one heading.
+/// End points of the beams at one heading, in cells from the laser.
 pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> Vec<(i32, i32)> {
     let end = |reading: &super::Reading| {
         let angle = (heading + reading.bearing) as f64 * space.directions.spacing();
@@ -89,11 +88,11 @@ pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> 
     readings.beams.iter().map(end).collect()
 }
 
-/// Takes the best of a row, if it is better than what there is. Rows come in
-/// order, so that of equal poses the first one stays.
+/// Adds the best pose of a row, if it improves on the best so far. Rows come in order, so the first
+/// of equal poses is kept.
 pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, heading: usize) {
     let score = best.score();
-    // Most rows hold nothing better: one pass over them decides.
+    // Most rows contain nothing better, which one pass decides.
     let most = sums
         .iter()
         .zip(open)
@@ -117,7 +116,7 @@ pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, h
     }
 }
 
-/// For each cell the likelihood of an end point there, up to [`FULL`].
+/// Likelihood of an end point in each cell, up to [`FULL`].
 fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
     // Beyond this distance the likelihood rounds to zero.
     let most = (0..)
@@ -135,10 +134,9 @@ fn level(square: u32, sigma_cells: f64) -> u8 {
     (f64::from(FULL) * height).round() as u8
 }
 
-/// For each cell the squared distance to the nearest boundary cell, exactly:
-/// column by column, then along each row by the lower envelope of parabolas
-/// (Felzenszwalb and Huttenlocher). What lies within an obstacle is none, for
-/// no beam ends there.
+/// Exact squared distance of each cell to the nearest boundary cell: column by column, then along
+/// each row by the lower envelope of parabolas (Felzenszwalb and Huttenlocher). The inside of
+/// obstacles does not count, since no beam ends there.
 fn square_distances(world: &World) -> Vec<u32> {
     let (width, height) = (world.grid.width(), world.grid.height());
     let far = (width + height) as u32;
@@ -158,10 +156,10 @@ fn square_distances(world: &World) -> Vec<u32> {
     columns
 }
 
-/// Turns distances along the columns into squared distances.
+/// Converts distances along the columns to squared distances.
 fn spread_row(row: &mut [u32]) {
     let squares: Vec<i64> = row.iter().map(|&d| i64::from(d) * i64::from(d)).collect();
-    // Parabola `i` is below its predecessor from `from` on.
+    // Each parabola is the lowest from this column on.
     let mut envelope: Vec<(usize, i64)> = Vec::new();
     for (i, &square) in squares.iter().enumerate() {
         let from = loop {

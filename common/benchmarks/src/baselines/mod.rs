@@ -1,17 +1,17 @@
-//! Other methods of global localization, for comparison: those of the paper's
-//! tables and their faster variants, each written as well as it allows.
+//! Other methods of global localization for comparison: those of the paper's tables and their
+//! faster variants, each optimized.
 //!
 //! | method | idea | sees through walls |
 //! |---|---|---|
 //! | [`RayCasting`] | Markov localization: rays cast from each pose | no |
-//! | [`RangeTable`] | the same, ranges looked up in a table of all | no |
+//! | [`RangeTable`] | the same, with all ranges in a table | no |
 //! | [`PatchCorrelation`] | the scan drawn as a patch, correlated with the map | yes |
 //! | [`FieldCorrelation`] | end points looked up in a likelihood field | yes |
-//! | [`MonteCarlo`] | the engine's particles, uniform at the start, on such a field | yes |
+//! | [`MonteCarlo`] | particles in the engine's distance field, uniform at the start | yes |
 //!
-//! All but the last compute the score of every free cell at every heading asked
-//! for. None normalizes its posterior: the best pose does not depend on it, and
-//! to leave it out is only in their favour.
+//! All but the last compute the score of every free cell at every requested heading. None
+//! normalizes its posterior: the best pose does not depend on it, and omitting it only makes them
+//! faster.
 
 mod best;
 mod clearance;
@@ -32,13 +32,12 @@ pub use range_table::RangeTable;
 pub use ray_casting::RayCasting;
 pub use reading::{Reading, Readings};
 
-/// A method, prepared for a map.
 pub trait Baseline {
-    /// The best pose at these headings, given in rising order; of equal ones
-    /// the first by (heading, y, x). `None` if no cell is free.
+    /// Returns the best pose at these headings, given in ascending order; ties go to the first by
+    /// (heading, y, x). `None` if no cell is free.
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate>;
 
-    /// Bytes of what was prepared.
+    /// Size of the prepared data in bytes.
     fn bytes(&self) -> usize;
 }
 
@@ -65,8 +64,8 @@ mod tests {
         noise_percent: 0.0,
     };
 
-    /// Of four scans in each kind of world, with and without their heading,
-    /// all but `missed` of 24 are found, to this many cells and a heading.
+    /// Checks four scans in each kind of world, with and without their heading: all but `missed` of
+    /// 24 are found within this many cells and one heading.
     #[track_caller]
     fn check(cells: usize, missed: usize, make: impl Fn(&World) -> Box<dyn Baseline>) {
         let mut far_off = Vec::new();
@@ -100,8 +99,8 @@ mod tests {
         });
     }
 
-    // What these do not ask, whether something stands between, leads them
-    // astray now and then; and their end points are rounded to cells.
+    // These methods ignore obstacles along the beams, which misleads them now and then; and their
+    // end points are rounded to cells.
     #[test]
     fn methods_that_see_through_walls_mostly_find_the_true_pose() {
         check(1, 4, |world| {

@@ -1,6 +1,6 @@
-//! Monte Carlo localization (the paper's [2]): particles all over the map,
-//! weighed by the scan, drawn again by their weights and scattered a little, until they
-//! have gathered. The robot stands, so that the one scan is taken again and again.
+//! Monte Carlo localization (the paper's [2]): particles all over the map are weighted by the scan,
+//! resampled and scattered slightly, until they have converged. The robot stands still, so the same
+//! scan is used repeatedly.
 
 use engine::fit::DistanceField;
 use engine::grid::{Cell, CellRules, GridFrame};
@@ -17,19 +17,19 @@ use crate::particles::{
 };
 use crate::worlds::World;
 
-/// How many particles there are, and for how long.
+/// Settings of the particles and their updates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MonteCarloConfig {
-    /// The numbers of the filter. The standard deviation is that of the readings.
+    /// Settings of the filter. The standard deviation is replaced by that of the readings.
     pub particles: ParticlesConfig,
-    /// Most updates by the scan.
+    /// Maximum number of updates by the scan.
     pub most_updates: usize,
 }
 
 impl Default for MonteCarloConfig {
-    /// One particle for each bin of 5 · 5 cells and three degrees at the start: so near
-    /// must one be to the true pose to outweigh the others. The error of 0.32 asks for
-    /// as many particles as there are bins.
+    /// One particle for each bin of 5 × 5 cells and three degrees at the start: a particle must be
+    /// this close to the true pose to outweigh the others. The error of 0.32 yields as many
+    /// particles as there are bins.
     fn default() -> Self {
         MonteCarloConfig {
             particles: ParticlesConfig {
@@ -38,7 +38,7 @@ impl Default for MonteCarloConfig {
                 particles_error: 0.32,
                 particles_bin_m: 5.0 * crate::RESOLUTION_M,
                 particles_bin_deg: 3.0,
-                // All that the other methods have, too.
+                // All beams, as in the other methods.
                 particles_beams: u32::MAX,
                 ..ParticlesConfig::default()
             },
@@ -47,36 +47,36 @@ impl Default for MonteCarloConfig {
     }
 }
 
-/// Particles within this many cells of their mean have gathered.
+/// Standard deviation at or below which particles have converged, in cells.
 const GATHERED_CELLS: f64 = 3.0;
 
-/// Scatter of the particles after the first update, cells and radians; it shrinks as
-/// they gather.
+/// Scatter of the particles after the first update, in cells and radians; it decreases with each
+/// update.
 const SCATTER_CELLS: f64 = 4.0;
 const SCATTER_RADIANS: f64 = 0.03;
 
-/// And the least that is left of it.
+/// Smallest factor of the scatter.
 const MIN_SCATTER: f64 = 0.125;
 
-/// Monte Carlo localization on a likelihood field, with particles that become
-/// fewer as they gather.
+/// Monte Carlo localization on a likelihood field; the number of particles decreases as they
+/// converge.
 #[derive(Debug, Clone)]
 pub struct MonteCarlo {
     space: Space,
     distance_field: DistanceField,
     sides: (usize, usize),
     config: MonteCarloConfig,
-    /// Updates of the last scan, and particles that were weighted in all.
+    /// Number of updates for the last scan, and number of particles weighted in all of them.
     effort: (usize, usize),
-    /// Particles with which the last scan began.
+    /// Number of particles at the start of the last scan.
     started_with: usize,
 }
 
 impl MonteCarlo {
-    /// Prepares a map for readings with one deviation, in cells.
+    /// Prepares a map for readings with one standard deviation, in cells.
     ///
     /// # Panics
-    /// If the world has no cells, which none has.
+    /// The world has no cells, which [`World::generate`] never returns.
     #[must_use]
     pub fn new(world: &World, space: &Space, sigma_cells: f64, config: MonteCarloConfig) -> Self {
         let particles = ParticlesConfig {
@@ -96,22 +96,21 @@ impl MonteCarlo {
         }
     }
 
-    /// Updates that the last scan took, and particles that were weighted in
-    /// all of them.
+    /// Number of updates for the last scan, and number of particles weighted in all of them.
     #[must_use]
     pub fn effort(&self) -> (usize, usize) {
         self.effort
     }
 
-    /// With how many particles the last scan began.
+    /// Number of particles at the start of the last scan.
     #[must_use]
     pub fn started_with(&self) -> usize {
         self.started_with
     }
 
-    /// Starts around candidates in place of the whole map, at any heading; the filter is
-    /// otherwise the same. The frame of the candidates is the grid's, metres. `None`
-    /// without readings or candidates.
+    /// Starts around candidates in place of the whole map, at any heading; the filter is the same
+    /// otherwise. The frame of the candidates is the grid's, in metres. `None` without readings or
+    /// candidates.
     #[must_use]
     pub fn locate_from(
         &mut self,
@@ -124,7 +123,7 @@ impl MonteCarlo {
         self.gather(&readings, filter, false)
     }
 
-    /// Where the particles gather.
+    /// Updates the filter until the particles have converged; returns its estimate.
     fn gather(
         &mut self,
         readings: &[Reading],
@@ -159,7 +158,7 @@ impl MonteCarlo {
         }
     }
 
-    /// A known heading does not err.
+    /// A known heading has no error.
     fn noise(&self, scatter: f64, heading_is_known: bool) -> OdometryNoise {
         let radians = match heading_is_known {
             true => 0.0,
@@ -172,7 +171,7 @@ impl MonteCarlo {
         }
     }
 
-    /// Those that returned.
+    /// Converts the readings with a return.
     fn beams(&self, readings: &Readings) -> Vec<Reading> {
         let beams = readings.beams.iter().filter(|beam| beam.cells > 0.0);
         let reading = beams.map(|beam| Reading {
@@ -185,8 +184,7 @@ impl MonteCarlo {
     }
 }
 
-/// The world as the filter reads it. No beam ends within an obstacle, so that what lies
-/// there counts as unknown.
+/// Distance field of the world. No beam ends inside an obstacle, so the inside counts as unknown.
 fn distance_field(world: &World, resolution_m: f64) -> DistanceField {
     let (width, height) = (world.grid.width(), world.grid.height());
     let inner = |&cell: &Cell| if cell == Cell::Open { 0 } else { UNKNOWN };
@@ -220,7 +218,7 @@ impl Baseline for MonteCarlo {
     }
 }
 
-/// Weighted deviation from the weighted mean, in cells.
+/// Weighted standard deviation from the weighted mean, in cells.
 fn spread_cells(particles: &[Particle]) -> f64 {
     let mean = |of: &dyn Fn(&Particle) -> f64| {
         let add = |(sum, weight), particle: &Particle| {

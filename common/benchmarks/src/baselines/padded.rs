@@ -1,9 +1,9 @@
-//! Rows of bytes with zeros around them, so that they can be read shifted.
+//! An image with a margin of zeros, so that its rows can be read with an offset.
 
-/// Bytes that one instruction takes at most.
+/// Number of bytes that the widest instruction processes.
 pub(super) const BLOCK: usize = 64;
 
-/// An image with a margin: shifted by less than its width, a row meets zeros.
+/// An image with a margin: a row shifted by less than its width reads zeros there.
 #[derive(Debug, Clone)]
 pub(super) struct Padded {
     pub(super) height: usize,
@@ -38,8 +38,7 @@ impl Padded {
         &self.bytes
     }
 
-    /// Where row `y` begins, shifted by (dx, dy); `None` if no pixel of it is
-    /// left.
+    /// Offset of row `y` shifted by (dx, dy); `None` if none of its pixels remain.
     #[inline]
     pub(super) fn shifted(&self, y: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let source = y as i64 + i64::from(dy);

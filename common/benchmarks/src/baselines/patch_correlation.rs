@@ -1,6 +1,6 @@
-//! Correlation with a patch, as the paper compares with it (its [5], Konolige
-//! and Chou): the scan is drawn as a small local map, and that is correlated
-//! with the global map at each pose. What stands in between is not asked.
+//! Correlation with a patch, the paper's comparison (its [5], Konolige and Chou): the scan is drawn
+//! as a small local map, which is correlated with the global map at each pose. It ignores obstacles
+//! along the beams.
 
 use std::collections::HashMap;
 
@@ -16,10 +16,10 @@ use super::reading::Readings;
 use super::row_sums::{self, Group};
 use crate::worlds::World;
 
-/// Most that a cell of the patch weighs.
+/// Maximum weight of a cell of the patch.
 const FULL: u16 = 15;
 
-/// Rows of zeros and ones whose sum fits eight bits.
+/// Number of rows of zeros and ones whose sum fits eight bits.
 const TOGETHER: usize = u8::MAX as usize;
 
 /// Correlation of a patch with the map.
@@ -40,8 +40,8 @@ struct PatchCell {
 }
 
 impl PatchCorrelation {
-    /// Prepares a map. Only its boundary counts: the patch shows where beams
-    /// end, and none ends within an obstacle.
+    /// Prepares a map. Only its boundary counts: the patch shows the ends of beams, and none ends
+    /// inside an obstacle.
     #[must_use]
     pub fn new(world: &World, space: &Space) -> Self {
         let cells = world.grid.cells();
@@ -58,8 +58,8 @@ impl PatchCorrelation {
         }
     }
 
-    /// Cells of the patch at a heading: the paper's k for each beam, less what
-    /// beams share.
+    /// Number of cells of the patch at a heading: the paper's k per beam, without cells that beams
+    /// share.
     #[must_use]
     pub fn patch_cells(&self, readings: &Readings, heading: usize) -> usize {
         patch(readings, &self.space, heading).len()
@@ -100,8 +100,8 @@ impl Baseline for PatchCorrelation {
     }
 }
 
-/// Draws the scan: along each beam a taper of two deviations either way around
-/// the reading, the highest weight where beams cross. Sorted by weight.
+/// Draws the scan: along each beam a taper of two standard deviations on both sides of the reading,
+/// with the highest weight where beams cross. Sorted by weight.
 fn patch(readings: &Readings, space: &Space, heading: usize) -> Vec<PatchCell> {
     let mut heights: HashMap<(i32, i32), f64> = HashMap::new();
     for reading in &readings.beams {
@@ -122,7 +122,7 @@ fn patch(readings: &Readings, space: &Space, heading: usize) -> Vec<PatchCell> {
             }
         }
     }
-    // As with votes, the weights are lowered until they fit sixteen bits.
+    // Like votes, the weights are lowered until their sum fits sixteen bits.
     let sum: f64 = heights.values().sum();
     let full = f64::from(FULL)
         .min((f64::from(u16::MAX) / sum).floor())

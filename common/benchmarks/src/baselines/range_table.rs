@@ -1,5 +1,4 @@
-//! Markov localization with all ranges computed beforehand, as Fox, Burgard
-//! and Thrun do it (the paper's [1]).
+//! Markov localization with precomputed ranges, after Fox, Burgard and Thrun (the paper's [1]).
 
 use engine::grid::Cell;
 use engine::instruction_set::InstructionSet;
@@ -10,33 +9,32 @@ use super::best::{Best, Estimate};
 use super::reading::{MAX_DEVIATIONS, Readings};
 use crate::worlds::World;
 
-/// Cells that are scored together: their ranges in 360 directions fit the
-/// second cache.
+/// Number of cells scored together: their ranges in 360 directions fit the L2 cache.
 const TILE: usize = 1024;
 
-/// No obstacle along the ray.
+/// Range without an obstacle along the ray.
 const NO_RANGE: u16 = u16::MAX;
 
 /// Markov localization with a table of ranges.
 ///
-/// The table holds two bytes for each cell and direction. Tiles of cells are
-/// scored side by side, all headings while their ranges are in the cache.
+/// The table has two bytes for each cell and direction. It scores one tile of cells at all headings
+/// while their ranges are in the cache.
 #[derive(Debug, Clone)]
 pub struct RangeTable {
     space: Space,
     width: usize,
-    /// Direction by direction, the range of each cell in steps.
+    /// Range of each cell in steps, direction by direction.
     ranges: Vec<u16>,
-    /// Where in `ranges` a direction begins; `None` if it was left out.
+    /// Start of each direction in `ranges`; `None` if it was left out.
     starts: Vec<Option<usize>>,
-    /// Zero where the robot may stand, else out of the question.
+    /// Zero for free cells, infinite for others.
     blocked: Vec<f32>,
     instructions: InstructionSet,
 }
 
 impl RangeTable {
-    /// Computes the ranges in some directions: all, or those that a known
-    /// heading needs.
+    /// Computes the ranges in the given directions: all of them, or those that a known heading
+    /// needs.
     #[must_use]
     pub fn new(world: &World, space: &Space, directions: impl IntoIterator<Item = usize>) -> Self {
         let cells = world.grid.cells();
@@ -66,7 +64,7 @@ impl RangeTable {
         table
     }
 
-    /// The range of a cell is one step more than that of the next on its line.
+    /// The range of a cell is one step more than that of the next cell on its line.
     fn push(&mut self, world: &World, direction: usize) {
         let grid = &world.grid;
         let (width, height) = (grid.width(), grid.height());
@@ -99,10 +97,10 @@ impl RangeTable {
         }
     }
 
-    /// The ranges of all cells in a direction, row by row.
+    /// Ranges of all cells in a direction, row by row.
     ///
     /// # Panics
-    /// If the direction was left out.
+    /// The direction was left out.
     #[must_use]
     pub fn ranges(&self, direction: usize) -> &[u16] {
         let start = self.starts[direction].expect("the direction is in the table");
@@ -156,12 +154,12 @@ impl Baseline for RangeTable {
     }
 }
 
-/// The squared error of one reading over many ranges.
+/// Adds the squared error of one reading over many ranges.
 #[derive(Debug, Clone, Copy)]
 struct Errors {
-    /// Deviations for each step of range.
+    /// Standard deviations per step of range.
     scale: f32,
-    /// The reading in deviations.
+    /// The reading in standard deviations.
     reading: f32,
 }
 
@@ -181,7 +179,7 @@ impl Errors {
         self.add_plain(ranges, costs);
     }
 
-    /// Compiled once for each instruction set.
+    /// Compiled separately for each instruction set.
     #[inline(always)]
     fn add_plain(self, ranges: &[u16], costs: &mut [f32]) {
         for (cost, &range) in costs.iter_mut().zip(ranges) {

@@ -1,5 +1,5 @@
-//! Markov localization as the paper compares with it (section II B): from each
-//! pose a ray is cast for each reading, and the squared errors are summed.
+//! Markov localization, the paper's comparison (section II B): casts a ray from each pose for each
+//! reading, and sums the squared errors.
 
 use engine::space::Space;
 use messages::BoundaryCell;
@@ -12,13 +12,13 @@ use crate::worlds::World;
 
 /// Markov localization by ray casts.
 ///
-/// Rays leap over free space, and give up where the reading's error can grow
-/// no more. The posterior is complete: no pose is left out early.
+/// Rays skip free space, and stop where the reading's error has reached its maximum. The posterior
+/// is complete: no pose is pruned.
 #[derive(Debug, Clone)]
 pub struct RayCasting {
     space: Space,
     clearance: Clearance,
-    /// Where the robot may stand.
+    /// Cells in which the robot can be.
     free: Vec<BoundaryCell>,
 }
 
@@ -26,16 +26,15 @@ pub struct RayCasting {
 #[derive(Debug, Clone, Copy)]
 struct Beam {
     direction: usize,
-    /// Deviations for each step of range.
+    /// Standard deviations per step of range.
     scale: f32,
-    /// The reading in deviations.
+    /// The reading in standard deviations.
     reading: f32,
-    /// Steps from which on the error is the greatest.
+    /// Number of steps from which the error is at its maximum.
     limit: i64,
 }
 
 impl RayCasting {
-    /// Prepares a map: what lets rays leap.
     #[must_use]
     pub fn new(world: &World, space: &Space) -> Self {
         let grid = &world.grid;
@@ -69,7 +68,7 @@ impl RayCasting {
         readings.beams.iter().map(beam).collect()
     }
 
-    /// Twice the negative logarithm of the likelihood, but for a constant.
+    /// Twice the negative log-likelihood, up to a constant.
     fn cost(&self, x: usize, y: usize, beams: &[Beam]) -> f32 {
         let error = |beam: &Beam| {
             let direction = self.space.directions.get(beam.direction);
@@ -84,8 +83,8 @@ impl RayCasting {
 }
 
 impl RayCasting {
-    /// The best of some poses: columns, rows and headings of free cells. They are best
-    /// given heading by heading, for the beams of each are laid out once.
+    /// Returns the best of some poses, given as column, row and heading of free cells. Sorting them
+    /// by heading is fastest, since the beams are prepared per heading.
     #[must_use]
     pub fn locate_among(
         &self,

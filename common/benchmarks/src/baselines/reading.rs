@@ -1,5 +1,4 @@
-//! A scan as the other methods take it: bearings on the heading grid, and
-//! readings with their deviations.
+//! Scan for the baselines: bearings on the heading grid, and readings with standard deviations.
 
 use engine::program::VoteConfig;
 use engine::scan::Scan;
@@ -7,8 +6,8 @@ use engine::space::Space;
 
 use crate::BenchmarksError;
 
-/// Deviations from which on a reading says nothing more against a pose: the
-/// flat part of a sensor model, for what the map does not know.
+/// Error in standard deviations at which a reading's penalty saturates: the flat part of a sensor
+/// model, for objects that are not on the map.
 pub(super) const MAX_DEVIATIONS: f32 = 3.0;
 
 /// One beam.
@@ -16,13 +15,12 @@ pub(super) const MAX_DEVIATIONS: f32 = 3.0;
 pub struct Reading {
     /// Index on the heading grid.
     pub bearing: usize,
-    /// Cells from the laser to where the beam ended.
+    /// Range of the beam in cells.
     pub cells: f64,
-    /// Standard deviation of that, at least one cell.
+    /// Standard deviation of the range, at least one cell.
     pub sigma_cells: f64,
 }
 
-/// The beams of a scan that returned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Readings {
     /// In the order of the scan.
@@ -30,10 +28,10 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes all readings, with the deviations of the votes.
+    /// Converts all readings, with the standard deviations of the votes.
     ///
     /// # Errors
-    /// If the engine refuses the scan.
+    /// The engine rejects the scan.
     pub fn new(
         scan: &Scan<'_>,
         space: &Space,
@@ -54,7 +52,7 @@ impl Readings {
         })
     }
 
-    /// The median deviation, for methods that know one for all; 1 without any.
+    /// Median standard deviation, for methods with a single one; 1 without beams.
     #[must_use]
     pub fn median_sigma_cells(&self) -> f64 {
         let sigmas = self.beams.iter().map(|beam| beam.sigma_cells).collect();

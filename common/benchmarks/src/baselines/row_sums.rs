@@ -1,24 +1,23 @@
-//! Weighted sums of shifted rows of bytes: what both correlations come to.
+//! Weighted sums of shifted rows of bytes, the kernel of both correlations.
 
 use engine::instruction_set::InstructionSet;
 
 use super::padded::BLOCK;
 
-/// Rows that weigh the same. Their plain sum must fit eight bits.
+/// Rows with the same weight. Their plain sum must fit eight bits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group {
-    /// Which of the offsets belong to it.
+    /// Range of its offsets.
     pub(super) start: usize,
     pub(super) end: usize,
     pub(super) weight: u16,
 }
 
-/// Fills in, for each place of a row, the sum over all groups of the weight
-/// times the bytes at the group's offsets, saturated at 65535.
+/// Computes for each position of a row the sum over all groups of the weight times the bytes at the
+/// group's offsets, saturated at 65535.
 ///
 /// # Panics
-/// If the row does not consist of whole blocks, or a shifted one lies beyond
-/// the bytes.
+/// The row does not consist of whole blocks, or a shifted row exceeds the bytes.
 pub(super) fn fill(
     instructions: InstructionSet,
     bytes: &[u8],
@@ -78,7 +77,7 @@ mod x86 {
             for group in groups {
                 let mut sum = _mm256_setzero_si256();
                 for &offset in &offsets[group.start..group.end] {
-                    // SAFETY: the caller's promise.
+                    // SAFETY: guaranteed by the caller.
                     let row = unsafe { bytes.as_ptr().add(offset + i * BLOCK / 2) };
                     // SAFETY: as above; the load needs no alignment.
                     sum = _mm256_add_epi8(sum, unsafe { _mm256_loadu_si256(row.cast()) });

@@ -1,15 +1,15 @@
-//! The beams by which particles are weighed: some of a scan's, evenly taken.
+//! Beams that weight the particles: an even selection of a scan's beams.
 
 use messages::Reading;
 
 use super::ParticlesConfig;
 
-/// Those of one scan; found again for each, in the buffers of the one before.
+/// Selected beams of one scan; the buffers are reused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Beams {
-    /// Where they end, in cells of the target frame.
+    /// End points in cells of the target frame.
     pub(super) ends: Vec<(f64, f64)>,
-    /// The power to which the likelihood of each is raised.
+    /// Exponent of each beam's likelihood.
     pub(super) weight: f64,
 }
 
@@ -33,7 +33,7 @@ impl Beams {
         self.weight = (independent / count.max(1) as f64).min(1.0);
     }
 
-    /// As many beams as all together count for.
+    /// Number of independent beams that all beams count for.
     pub(super) fn together(&self) -> f64 {
         self.weight * self.ends.len() as f64
     }

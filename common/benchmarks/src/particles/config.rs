@@ -1,40 +1,40 @@
-//! How many particles there are, and how a scan weighs them.
+//! Settings of the particle filter.
 
 use super::OdometryNoise;
 
-/// The numbers of Monte Carlo localization. Where a default is that of AMCL, the
-/// particle filter of ROS, it is the one of nav2's `nav2_amcl`.
+/// Settings of Monte Carlo localization. Defaults that are AMCL's, the particle filter of ROS, are
+/// those of nav2's `nav2_amcl`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticlesConfig {
-    /// Minimum number of particles, 1..=10000000; the default is AMCL's.
+    /// Minimum number of particles, 1..=10000000; AMCL's default.
     pub particles_min: u32,
-    /// Maximum number of particles, 1..=10000000; `--particles-min` if that is more.
-    /// AMCL has 2000 and starts from a given pose; a start on a whole map takes more.
+    /// Maximum number of particles, 1..=10000000; at least `particles_min`. AMCL has 2000 and
+    /// starts from a given pose; a start on a whole map needs more.
     pub particles_max: u32,
-    /// Maximum error of the particle distribution, as a Kullback-Leibler distance that
-    /// is kept with a probability of 99 %, 0.001..=1; AMCL's default.
+    /// Maximum error of the particle distribution, as a Kullback-Leibler distance that is met with
+    /// a probability of 99 %, 0.001..=1; AMCL's default.
     pub particles_error: f64,
-    /// Side of the bins in which particles are counted and clustered, metres,
-    /// 0.05..=10; AMCL's.
+    /// Side of the bins in which particles are counted and clustered, metres, 0.05..=10; AMCL's
+    /// default.
     pub particles_bin_m: f64,
-    /// Their extent in heading, degrees, 1..=360; rounded so that a whole number of them
-    /// make a turn. AMCL's.
+    /// Size of the bins in heading, degrees, 1..=360; rounded so that a whole number of bins make a
+    /// turn. AMCL's default.
     pub particles_bin_deg: f64,
-    /// Maximum number of beams that weigh a particle, 1..=65536, evenly taken from
-    /// those of the scan; AMCL's default.
+    /// Maximum number of beams that weight a particle, 1..=65536, selected evenly from the scan;
+    /// AMCL's default.
     pub particles_beams: u32,
-    /// Standard deviation of an end point around its obstacle, or of a reading, metres,
-    /// 0..=2; at least one cell, to which end points are rounded. AMCL's default.
+    /// Standard deviation of an end point around its obstacle, metres, 0..=2; at least one cell, to
+    /// which end points are rounded. AMCL's default.
     pub particles_sigma_m: f64,
-    /// The share that a reading of something unknown to the map has of the likelihood of
-    /// one that fits, 0.001..=0.5. AMCL's defaults come to 0.03 at 30 m of range.
+    /// Likelihood of a reading that does not fit the map, as a share of that of one that does,
+    /// 0.001..=0.5. AMCL's defaults correspond to 0.03 at 30 m of range.
     pub particles_random: f64,
-    /// The beams weigh a particle as this many independent ones, 1..=65536: neighbours
-    /// end on the same wall and err together.
+    /// Number of independent beams that all beams count for, 1..=65536: neighbouring beams end on
+    /// the same wall and have common errors.
     pub particles_independent: u32,
-    /// Seed of the random numbers: the same seed gives the same particles.
+    /// Seed of the random numbers.
     pub particles_seed: u64,
-    /// How particles scatter as the robot moves.
+    /// Scatter of the particles as the robot moves.
     pub noise: OdometryNoise,
 }
 

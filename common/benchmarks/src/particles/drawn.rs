@@ -1,5 +1,5 @@
-//! Distance fields drawn as text for tests: `#` is occupied, `?` unknown, the rest
-//! free. The last line is the lowest row; cells have sides of 0.1 m.
+//! Distance fields drawn as text for tests: `#` is occupied, `?` unknown, other characters free.
+//! The last line is the lowest row; cells have sides of 0.1 m.
 
 use engine::fit::DistanceField;
 use engine::grid::{CellRules, GridFrame};

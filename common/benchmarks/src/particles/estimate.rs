@@ -1,7 +1,7 @@
-//! Where the particles say that the robot is: the mean of their heaviest cluster. The
-//! mean of all would lie between two places where the robot may be, and at neither.
+//! Pose estimate of the particles: the mean of their heaviest cluster. The mean of all particles
+//! would be between two possible places, and at neither.
 //!
-//! Particles are one cluster whose bins touch, corners included (as AMCL has it).
+//! Particles belong to one cluster if their bins touch, including at corners (as in AMCL).
 
 use geometry::{Covariance, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -11,24 +11,24 @@ use super::kld::{Bin, Binning};
 use engine::fit::GridPose;
 use engine::grid::GridFrame;
 
-/// Where the robot most likely is.
+/// Most likely pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The mean pose of the heaviest cluster.
+    /// Mean pose of the heaviest cluster.
     pub map_from_target: Pose,
-    /// Its spread, in the map.
+    /// Covariance of the cluster, in the map.
     pub covariance: Covariance,
-    /// Its share of the weight of all particles, 0..=1.
+    /// Share of the cluster in the weight of all particles, 0..=1.
     pub share: f64,
 }
 
-/// Finds clusters; kept from scan to scan, for its buffers.
+/// Finds clusters; reused from scan to scan for its buffers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
-    /// The bin of each particle that weighs anything, sorted, with its number.
+    /// Bin and index of each particle with a weight, sorted.
     keys: Vec<(Bin, u32)>,
     bins: Vec<Occupied>,
-    /// Bins whose neighbours are still to be visited.
+    /// Bins with neighbours still to be visited.
     open: Vec<usize>,
 }
 
@@ -36,15 +36,15 @@ pub(super) struct Clusters {
 #[derive(Debug, Clone, Copy)]
 struct Occupied {
     bin: Bin,
-    /// The first of its particles among the keys.
+    /// Index of its first particle in `keys`.
     first: usize,
     weight: f64,
-    /// The number of its cluster, from 1 on; 0 before it is visited.
+    /// Number of its cluster, from 1; 0 before it is visited.
     cluster: u32,
 }
 
 impl Clusters {
-    /// Allocates buffers for this many particles, each in a bin of its own.
+    /// Allocates buffers for this many particles, each in a separate bin.
     pub(super) fn reserve(&mut self, particles: usize) {
         self.keys.clear();
         self.keys.reserve(particles);
@@ -53,7 +53,7 @@ impl Clusters {
         self.open.reserve(particles);
     }
 
-    /// The heaviest cluster; of equal ones the first by heading, y and x. `None` without
+    /// Returns the heaviest cluster; ties go to the first by heading, y and x. `None` without
     /// particles.
     pub(super) fn heaviest(
         &mut self,
@@ -107,7 +107,7 @@ impl Clusters {
         }
     }
 
-    /// Numbers all bins that can be reached from one, and gives their weight.
+    /// Numbers all bins connected to one, and returns their weight.
     fn visit(&mut self, start: usize, cluster: u32, headings: i32) -> f64 {
         let mut weight = 0.0;
         self.bins[start].cluster = cluster;
@@ -129,7 +129,6 @@ impl Clusters {
         weight
     }
 
-    /// The particles of a cluster.
     fn members<'a>(
         &'a self,
         particles: &'a [Particle],
@@ -143,7 +142,7 @@ impl Clusters {
         keys.map(|&(_, i)| &particles[i as usize])
     }
 
-    /// The weighted mean and covariance, in cells and radians; headings are averaged as
+    /// Weighted mean and covariance of a cluster, in cells and radians; headings are averaged as
     /// unit vectors.
     fn moments(&self, particles: &[Particle], cluster: u32) -> (GridPose, Matrix3<f64>) {
         let (mut weight, mut sum, mut sin, mut cos) = (0.0, (0.0, 0.0), 0.0, 0.0);
@@ -168,7 +167,7 @@ impl Clusters {
     }
 }
 
-/// The 26 bins around one; headings wrap around.
+/// The 26 neighbours of a bin; headings wrap around.
 fn neighbours(bin: Bin, headings: i32) -> impl Iterator<Item = Bin> {
     let around =
         (-1..=1).flat_map(|x| (-1..=1).flat_map(move |y| (-1..=1).map(move |h| (x, y, h))));
@@ -188,7 +187,7 @@ mod tests {
     use super::super::ParticlesConfig;
     use super::*;
 
-    /// On cells of 0.5 m, so that a bin is a cell.
+    /// Returns the heaviest cluster, on cells of 0.5 m, so that a bin is a cell.
     fn heaviest(particles: &[(f64, f64, f64, f64)]) -> Option<Estimate> {
         let frame = GridFrame {
             resolution_m: 0.5,
@@ -210,17 +209,17 @@ mod tests {
     #[test]
     fn the_heaviest_cluster_is_that_of_bins_that_touch() {
         let found = heaviest(&[
-            // Three bins in a row that touch by corners, and over the seam of a turn.
+            // Three bins in a row that touch at corners, and across the wrap of a turn.
             (0.5, 0.5, 5.0, 1.0),
             (1.5, 1.5, -5.0, 2.0),
             (2.5, 0.5, -15.0, 1.0),
-            // The heaviest bin, alone, two bins away.
+            // The heaviest bin, isolated, two bins away.
             (4.5, 0.5, 5.0, 3.0),
             (1.5, 1.5, 30.0, 1.0),
         ]);
         let found = found.unwrap();
         assert_eq!(found.share, 0.5);
-        // The mean (1.5, 1) in cells, -5°; the grid is turned by a quarter.
+        // The mean is (1.5, 1) in cells, -5°; the grid is turned by 90°.
         let expected = Pose::new(10.0 - 0.5, 0.75, 85f64.to_radians());
         assert!(found.map_from_target.is_within(expected, 1e-12, 1e-12));
         // Along the grid's x, which is the map's y: (1 + 0 + 0 + 1) / 4 squared cells.

@@ -1,4 +1,4 @@
-//! The filter: its particles, and what a start, a step and a scan do to them.
+//! The particle filter: start, prediction, weighting and resampling.
 
 use geometry::Pose;
 use messages::Reading;
@@ -15,10 +15,9 @@ use engine::fit::{DistanceField, GridPose};
 use engine::grid::GridFrame;
 use engine::particles::{Candidate, Rng, Seeds};
 
-/// Particles are drawn again where their effective number falls below this share of
-/// them: each drawing loses some of what they say. Half is usual (for instance
-/// Grisetti, Stachniss and Burgard, "Improved Techniques for Grid Mapping", IEEE
-/// Transactions on Robotics 23, 2007, section III).
+/// Particles are resampled if their effective number falls below this share: each resampling loses
+/// some information. Half is usual (for instance Grisetti, Stachniss and Burgard, "Improved
+/// Techniques for Grid Mapping", IEEE Transactions on Robotics 23, 2007, section III).
 const RESAMPLE_BELOW: f64 = 0.5;
 
 /// A particle filter on one map.
@@ -28,7 +27,7 @@ pub struct ParticleFilter {
     frame: GridFrame,
     rng: Rng,
     particles: Vec<Particle>,
-    /// Where the next ones are drawn into.
+    /// Buffer for resampling.
     drawn: Vec<Particle>,
     binning: Binning,
     enough: Enough,
@@ -38,11 +37,11 @@ pub struct ParticleFilter {
 }
 
 impl ParticleFilter {
-    /// Particles anywhere in the free cells of a map. As many as their bins ask for: at
-    /// most `particles_max`, which a large map reaches.
+    /// Starts with particles uniform over the free cells of a map. Their number depends on the
+    /// bins: at most `particles_max`, which a large map reaches.
     ///
     /// # Errors
-    /// If no cell is free, or no heading is given or one is not finite.
+    /// No cell is free, no heading is given, or one is not finite.
     pub fn uniform(
         distance_field: &DistanceField,
         headings: StartHeadings<'_>,
@@ -54,11 +53,11 @@ impl ParticleFilter {
         Ok(filter)
     }
 
-    /// Particles around candidates, for instance the places of the votes: as often
-    /// around each as it is likely, and spread by its covariance.
+    /// Starts with particles around candidates, for instance the places of the votes: distributed
+    /// by their weights and covariances.
     ///
     /// # Errors
-    /// If there is no candidate of finite numbers.
+    /// There is no candidate of finite numbers.
     pub fn seeded(
         frame: GridFrame,
         candidates: impl IntoIterator<Item = Candidate>,
@@ -69,11 +68,10 @@ impl ParticleFilter {
         Ok(filter)
     }
 
-    /// Starts again around candidates, see [`ParticleFilter::seeded`]; the random numbers
-    /// go on.
+    /// Restarts around candidates, see [`ParticleFilter::seeded`]; the random numbers continue.
     ///
     /// # Errors
-    /// If there is no candidate of finite numbers; the particles stay then.
+    /// There is no candidate of finite numbers; the particles are kept.
     pub fn seed(
         &mut self,
         candidates: impl IntoIterator<Item = Candidate>,
@@ -99,7 +97,7 @@ impl ParticleFilter {
         }
     }
 
-    /// Draws one by one until there are enough (Probabilistic Robotics, table 8.4).
+    /// Draws particles until their number is sufficient (Probabilistic Robotics, table 8.4).
     fn start(&mut self, mut draw: impl FnMut(&mut Rng) -> GridPose) {
         self.particles.clear();
         self.enough.clear();
@@ -111,15 +109,15 @@ impl ParticleFilter {
         self.drawn.clear();
         self.drawn.reserve(self.particles.len());
         self.clusters.reserve(self.particles.len());
-        // Neighbours follow each other: they look up cells that lie close together, and
-        // systematic drawing takes of each neighbourhood what it weighs.
+        // Sorting puts neighbours next to each other: they read nearby cells, and systematic
+        // resampling draws each neighbourhood by its weight.
         let binning = self.binning;
         self.particles
             .sort_by_cached_key(|particle| binning.bin(particle.pose));
     }
 
-    /// Moves the particles by a step of the odometry, given in the target frame before
-    /// it: `before.inverse().then(after)`. A step that is not finite moves nothing.
+    /// Moves the particles by an odometry step, given in the target frame before it:
+    /// `before.inverse().then(after)`. A step that is not finite is ignored.
     pub fn predict(&mut self, step: Pose, noise: &OdometryNoise) {
         if step.is_finite() {
             let resolution_m = self.frame.resolution_m;
@@ -134,8 +132,7 @@ impl ParticleFilter {
     }
 
     /// Multiplies the weights by the likelihood of a scan. `distance_field` is the map of the
-    /// start, and the readings are those
-    /// of the target frame; a scan without any changes nothing.
+    /// start, and the readings are in the target frame; a scan without readings changes nothing.
     pub fn weigh(&mut self, distance_field: &DistanceField, readings: &[Reading]) {
         debug_assert_eq!(self.frame, distance_field.frame);
         self.beams
@@ -153,8 +150,7 @@ impl ParticleFilter {
         }
     }
 
-    /// Draws the particles again, if their weights differ so much that less than half of
-    /// them count; returns whether.
+    /// Resamples if the effective number of particles is less than half; returns true if so.
     pub fn resample(&mut self) -> bool {
         if self.effective_number() >= RESAMPLE_BELOW * self.particles.len() as f64 {
             return false;
@@ -174,11 +170,10 @@ impl ParticleFilter {
         true
     }
 
-    /// How many are to be drawn: as many as are enough for the bins of this many. It
-    /// differs from KLD-sampling in that drawing is systematic, so that the number must
-    /// be known before: it begins with the fewest and grows as their bins ask for, by a
-    /// quarter at least, which keeps the passes few and the number at most that much too
-    /// large.
+    /// Number of particles to draw: sufficient for the bins of that many. Unlike in KLD-sampling,
+    /// drawing is systematic, so the number must be known in advance: it starts at the minimum and
+    /// grows as the bins require, by at least a quarter, which keeps the passes few and the number
+    /// at most that much too large.
     fn number(&mut self, total: f64, offset: f64) -> usize {
         self.enough.clear();
         let mut number = 0;
@@ -193,25 +188,24 @@ impl ParticleFilter {
         number
     }
 
-    /// Where the robot most likely is; `None` where there is no particle.
+    /// Most likely pose; `None` without particles.
     pub fn estimate(&mut self) -> Option<Estimate> {
         let (binning, frame) = (&self.binning, self.frame);
         self.clusters.heaviest(&self.particles, binning, frame)
     }
 
-    /// How many particles of equal weight are worth as much.
+    /// Effective number: equally weighted particles with the same information.
     #[must_use]
     pub fn effective_number(&self) -> f64 {
         resample::effective_number(self.particles.iter().map(|particle| particle.weight))
     }
 
-    /// The particles, in cells of the grid.
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
         &self.particles
     }
 
-    /// Their poses in the map, and their weights as shares of all.
+    /// Poses in the map, and weights normalized to 1.
     pub fn poses(&self) -> impl Iterator<Item = (Pose, f64)> {
         let total: f64 = self.particles.iter().map(|particle| particle.weight).sum();
         self.particles.iter().map(move |Particle { pose, weight }| {
@@ -221,7 +215,7 @@ impl ParticleFilter {
     }
 }
 
-/// Each particle, and how often it is drawn.
+/// Each particle with the number of its copies.
 fn copies(
     particles: &[Particle],
     total: f64,

@@ -1,10 +1,9 @@
-//! How many particles are enough: KLD-sampling (Fox, "Adapting the Sample Size in
-//! Particle Filters Through KLD-Sampling", International Journal of Robotics Research
-//! 22, 2003; Probabilistic Robotics, section 8.3.7, table 8.4).
+//! Sufficient number of particles: KLD-sampling (Fox, "Adapting the Sample Size in Particle Filters
+//! Through KLD-Sampling", International Journal of Robotics Research 22, 2003; Probabilistic
+//! Robotics, section 8.3.7, table 8.4).
 //!
-//! Where particles fall into k bins, the Kullback-Leibler distance between them and the
-//! distribution from which they come is at most ε with probability 1 - δ if there are
-//! χ²(k - 1, 1 - δ) / 2ε of them.
+//! With particles in k bins, the Kullback-Leibler distance between them and their distribution is
+//! at most ε with probability 1 - δ if there are χ²(k - 1, 1 - δ) / 2ε of them.
 
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -13,11 +12,11 @@ use std::hash::{BuildHasherDefault, DefaultHasher};
 use super::ParticlesConfig;
 use engine::fit::GridPose;
 
-/// The standard normal quantile of 1 - δ = 99 %.
+/// Standard normal quantile of 1 - δ = 99 %.
 const QUANTILE: f64 = 2.326_347_874;
 
-/// The number of particles for this many bins, at an error of ε. The quantile of the χ²
-/// distribution is that of Wilson and Hilferty (table 8.4, line 16).
+/// Number of particles for this many bins, at an error of ε. The χ² quantile is the approximation
+/// of Wilson and Hilferty (table 8.4, line 16).
 fn number_for(bins: usize, error: f64) -> f64 {
     if bins < 2 {
         return 1.0;
@@ -28,8 +27,7 @@ fn number_for(bins: usize, error: f64) -> f64 {
     (freedoms / (2.0 * error) * root.powi(3)).ceil()
 }
 
-/// A bin of poses, by its numbers along each axis; in order, neighbours at a heading
-/// follow each other.
+/// Index of a bin of poses along each axis; in sorted order, neighbours at a heading are adjacent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Bin {
     pub(super) heading: i32,
@@ -37,12 +35,12 @@ pub(super) struct Bin {
     pub(super) x: i32,
 }
 
-/// How the poses of a grid are divided into bins.
+/// Division of the poses of a grid into bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Binning {
     per_cell: f64,
     per_radian: f64,
-    /// Bins a turn.
+    /// Bins per turn.
     pub(super) headings: i32,
 }
 
@@ -61,14 +59,14 @@ impl Binning {
         Bin {
             x: (pose.x * self.per_cell).floor() as i32,
             y: (pose.y * self.per_cell).floor() as i32,
-            // An angle just below zero may be rounded to a whole turn.
+            // An angle just below zero may be rounded to a full turn.
             heading: heading.min(self.headings - 1),
         }
     }
 }
 
-/// Counts the bins that particles fall into, and with them how many are enough. Hashes
-/// have no random key: nothing differs from run to run.
+/// Counts occupied bins, and the number of particles that they require. Hashes have no random key,
+/// so runs are reproducible.
 #[derive(Debug, Clone)]
 pub(super) struct Enough {
     binning: Binning,
@@ -92,13 +90,11 @@ impl Enough {
         }
     }
 
-    /// Begins to count again.
     pub(super) fn clear(&mut self) {
         self.bins.clear();
         self.number = self.min;
     }
 
-    /// Counts the bin of a particle.
     pub(super) fn add(&mut self, pose: GridPose) {
         if self.bins.insert(self.binning.bin(pose)) {
             let number = number_for(self.bins.len(), self.error) as usize;
@@ -106,12 +102,12 @@ impl Enough {
         }
     }
 
-    /// How many particles are enough for the bins so far.
+    /// Sufficient number of particles for the bins so far.
     pub(super) fn number(&self) -> usize {
         self.number
     }
 
-    /// The same, or this many, if that is more and is allowed.
+    /// The sufficient number or, if larger and allowed, this number.
     pub(super) fn at_least(&self, number: usize) -> usize {
         self.number.max(number.min(self.max))
     }
@@ -123,15 +119,15 @@ mod tests {
 
     #[test]
     fn the_number_is_the_quantile_of_the_chi_squared_distribution() {
-        // 99 % quantiles of 1, 9, 30 and 100 degrees of freedom, from tables; Wilson and
-        // Hilferty are known to be this near.
+        // 99 % quantiles for 1, 9, 30 and 100 degrees of freedom, from tables; Wilson and
+        // Hilferty's approximation has this accuracy.
         for (bins, quantile) in [(2, 6.635), (10, 21.666), (31, 50.892), (101, 135.807)] {
             let number = number_for(bins, 0.05);
             let off = number / (quantile / 0.1) - 1.0;
             assert!(off.abs() < 0.01, "{bins} bins: {number}");
         }
         assert_eq!((number_for(0, 0.05), number_for(1, 0.05)), (1.0, 1.0));
-        // As it follows from the formula by hand: 45 · (1 - 2/81 + 2.3263 · √(2/81))³.
+        // Computed by hand from the formula: 45 · (1 - 2/81 + 2.3263 · √(2/81))³.
         assert_eq!(number_for(10, 0.1), 109.0);
     }
 

@@ -1,12 +1,11 @@
-//! How particles move with the robot.
+//! Motion model of the particles.
 //!
-//! Each takes the step that odometry measures, in its own frame, with an error of its own:
-//! sampling from a motion model as in Probabilistic Robotics (Thrun, Burgard and Fox,
-//! 2005), section 5.4. It differs from table 5.6 there. The errors are normal on the
-//! step itself, not on a turn, a way and another turn: whoever stands still, or drives
-//! sideways, has no first turn that could be determined. And their variances grow with the
-//! way, not with its square, as errors do that are independent from step to step, so
-//! that a step in two halves scatters as one does.
+//! Each particle moves by the measured odometry step in its own frame, with an independent error:
+//! sampling from a motion model as in Probabilistic Robotics (Thrun, Burgard and Fox, 2005),
+//! section 5.4. It differs from table 5.6. The errors are normal on the step itself, not on a turn,
+//! a distance and another turn, because a robot that stands still or drives sideways has no first
+//! turn that could be determined. And their variances grow with the distance, not with its square,
+//! as errors do that are independent from step to step, so that two half steps scatter like one.
 
 use geometry::{Pose, wrap_angle};
 use rand_distr::{Distribution, StandardNormal};
@@ -15,24 +14,23 @@ use super::Particle;
 use engine::fit::GridPose;
 use engine::particles::Rng;
 
-/// How far a step errs: normal, along x, y and the heading independently.
+/// Errors of a step: normal, along x, y and the heading independently.
 ///
-/// The emulator's odometry is noisy in the same way, with half the deviations:
-/// particles that scatter too much are weighed down by the next scan, and those that
-/// scatter too little are not where the robot is.
+/// The emulator's odometry has the same kind of noise, with half the deviations: particles that
+/// scatter too much lose weight at the next scan, but particles that scatter too little miss the
+/// robot's pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OdometryNoise {
-    /// Standard deviation after one metre: of x and y in metres and of the heading in
-    /// radians, 0..=2. It grows with the square root of the distance.
+    /// Standard deviation after one metre: of x and y in metres and of the heading in radians,
+    /// 0..=2. It grows with the square root of the distance.
     pub particles_noise_per_metre: f64,
     /// Standard deviation of the heading after turning by one radian, radians, 0..=2.
     /// It grows with the square root of the angle.
     pub particles_noise_per_radian: f64,
-    /// Standard deviation of x and y that each step adds at least, metres, 0..=2:
-    /// copies of a particle spread even if the robot stands still. A fifth of a cell of
-    /// 5 cm.
+    /// Minimum standard deviation of x and y per step, metres, 0..=2: copies of a particle spread
+    /// even if the robot stands still. The default is a fifth of a cell of 5 cm.
     pub particles_noise_least_m: f64,
-    /// The same of the heading, degrees, 0..=180.
+    /// Minimum standard deviation of the heading per step, degrees, 0..=180.
     pub particles_noise_least_deg: f64,
 }
 
@@ -48,7 +46,7 @@ impl Default for OdometryNoise {
 }
 
 impl OdometryNoise {
-    /// Standard deviations of a step: of x and y, metres, and of the heading, radians.
+    /// Standard deviations of a step: of x and y in metres, and of the heading in radians.
     #[must_use]
     pub fn deviations(&self, step: Pose) -> (f64, f64) {
         let (way, turn) = (step.x.hypot(step.y), step.yaw.abs());
@@ -63,7 +61,7 @@ impl OdometryNoise {
     }
 }
 
-/// Moves each particle by the step, in metres and radians of its own frame.
+/// Moves each particle by the step, given in its own frame in metres and radians.
 pub(super) fn advance(
     particles: &mut [Particle],
     step: Pose,
@@ -123,7 +121,7 @@ mod tests {
         particles
     }
 
-    /// Means and deviations of x, y and heading after steps.
+    /// Means and standard deviations of x, y and heading after steps.
     fn moments(steps: &[Pose], noise: &OdometryNoise) -> [(f64, f64); 3] {
         let particles = moved(steps, noise);
         let moment = |of: fn(&GridPose) -> f64| {
@@ -135,8 +133,8 @@ mod tests {
         [moment(|p| p.x), moment(|p| p.y), moment(|p| p.heading)]
     }
 
-    /// Means to within four of their own deviations, and deviations to within 3 %: four
-    /// of theirs, 1 / √(2 · 20000) each.
+    /// Checks means within four of their standard errors, and deviations within 3 %: four of their
+    /// standard errors of 1 / √(2 · 20000).
     #[track_caller]
     fn check(found: [(f64, f64); 3], expected: [(f64, f64); 3]) {
         for ((mean, deviation), (true_mean, true_deviation)) in found.into_iter().zip(expected) {
@@ -150,7 +148,7 @@ mod tests {
     #[test]
     fn a_step_has_the_mean_and_the_deviations_that_are_asked_for() {
         let found = moments(&[Pose::new(4.0, 0.0, 0.5)], &NOISE);
-        // 4 m ahead, which is along y; 2 cells are 0.1 m times the root of 4.
+        // 4 m ahead, along y; 2 cells are 0.1 m times the root of 4.
         let turn = (0.1f64.powi(2) * 4.0 + 0.2f64.powi(2) * 0.5).sqrt();
         let heading = std::f64::consts::FRAC_PI_2 + 0.5;
         check(found, [(100.0, 2.0), (90.0, 2.0), (heading, turn)]);

@@ -1,9 +1,8 @@
-//! Drawing particles by their weights: systematic, or low variance, resampling
-//! (Probabilistic Robotics, table 4.4). One random number serves all.
+//! Resampling by weight: systematic, or low variance (Probabilistic Robotics, table 4.4). One
+//! random number serves all draws.
 
-/// How often each of the weights is drawn where `number` are drawn in all: within one
-/// of its share. `total` is the sum of the weights in their order; `offset` lies in
-/// `0..1`.
+/// Number of copies of each weight among `number` draws: within one of its share. `total` is the
+/// sum of the weights in their order; `offset` is in `0..1`.
 pub(super) fn copies(
     weights: impl Iterator<Item = f64>,
     total: f64,
@@ -14,7 +13,7 @@ pub(super) fn copies(
     let (mut sum, mut drawn) = (0.0, 0);
     weights.map(move |weight| {
         sum += weight;
-        // The draws at offset, offset + 1, … that lie below the sum.
+        // Draws at offset, offset + 1, … below the sum.
         let below = (sum * scale - offset).ceil().max(0.0) as usize;
         let copies = below - drawn;
         drawn = below;
@@ -22,8 +21,8 @@ pub(super) fn copies(
     })
 }
 
-/// How many particles of equal weight are worth as much: Kish's effective sample size,
-/// (Σ w)² / Σ w² (Liu, "Metropolized independent sampling", 1996, of particles).
+/// Kish's effective sample size, (Σ w)² / Σ w²: number of equally weighted particles with the same
+/// information (Liu, "Metropolized independent sampling", 1996, for particles).
 pub(super) fn effective_number(weights: impl Iterator<Item = f64>) -> f64 {
     let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), weight| {
         (sum + weight, squares + weight * weight)

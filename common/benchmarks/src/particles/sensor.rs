@@ -1,38 +1,37 @@
-//! What a scan says for a particle: the likelihood field model of Probabilistic Robotics,
+//! Likelihood of a scan for a particle: the likelihood field model of Probabilistic Robotics,
 //! section 6.4.
 //!
-//! Weights are compared with each other alone, so that each likelihood is given as a
-//! share of that of a reading that fits exactly: the parts of the model are scaled to
-//! a greatest value of 1 where the book has densities (so does AMCL). Where the model
-//! differs otherwise from the book:
+//! Only ratios of weights matter, so each likelihood is a share of that of a reading that fits
+//! exactly: the parts of the model are scaled to a maximum of 1 in place of the book's densities
+//! (as in AMCL). Other differences from the book:
 //!
-//! - Beams of which nothing returned say nothing, for no range is known below which
-//!   they would have; table 6.1 gives them a share of their own.
-//! - Beams count together as a few independent ones: the likelihood is raised to a power
-//!   below 1, as section 6.3.4 advises.
-//! - Who stands off the map or in an obstacle explains nothing.
+//! - Beams without a return are ignored, since the range below which they would have returned is
+//!   not known; table 6.1 gives them a separate share.
+//! - Beams count as a few independent ones: the likelihood is raised to a power below 1, as
+//!   section 6.3.4 advises.
+//! - A pose off the map or in an obstacle explains no reading.
 
 use engine::fit::{DistanceField, GridPose};
 
 use super::ParticlesConfig;
 use super::beams::Beams;
 
-/// Steps of a standard deviation at which the likelihood field is kept: between two, the
-/// likelihood differs by less than 2 %.
+/// Steps per standard deviation in the likelihood table: the likelihood differs by less than 2 %
+/// between two steps.
 const STEPS: f64 = 32.0;
 
-/// Beyond this many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
-/// greatest likelihood, which is less than any random share.
+/// Standard deviations beyond which a reading does not fit at all: 3 · 10⁻⁴ of the maximum
+/// likelihood, less than any random share.
 const REACH: f64 = 4.0;
 
-/// The sensor model, prepared for maps of one resolution.
+/// Sensor model, prepared for maps of one resolution.
 #[derive(Debug, Clone)]
 pub(super) struct Sensor {
     random: f64,
-    /// Logarithms of the likelihood of an end point at each [`STEPS`]th of a standard
-    /// deviation from the nearest obstacle; the last is that of all that are farther.
+    /// Log-likelihood of an end point at each [`STEPS`]th of a standard deviation from the nearest
+    /// obstacle; the last one is for all larger distances.
     field: Vec<f64>,
-    /// Steps for each cell of distance.
+    /// Table steps per cell of distance.
     steps_per_cell: f64,
 }
 
@@ -53,7 +52,7 @@ impl Sensor {
         }
     }
 
-    /// The logarithm of the likelihood of the beams at a pose, at most 0.
+    /// Log-likelihood of the beams at a pose, at most 0.
     pub(super) fn log_likelihood(
         &self,
         distance_field: &DistanceField,
@@ -70,8 +69,8 @@ impl Sensor {
         beams.weight * ends.map(of_beam).sum::<f64>()
     }
 
-    /// Table 6.3: by the nearest obstacle of the end point. The distance is that of the
-    /// cell, up to 0.7 cells off, which is one look-up where the exact one takes four.
+    /// Log-likelihood by the nearest obstacle of the end point (table 6.3). The distance is that of
+    /// the cell, up to 0.7 cells off: one look-up, where the exact distance needs four.
     #[inline(always)]
     fn end(
         &self,
@@ -90,7 +89,7 @@ impl Sensor {
     }
 }
 
-/// The likelihood of an error in standard deviations, as a share of that of none.
+/// Likelihood of an error in standard deviations, as a share of the maximum.
 fn fit(deviations: f64) -> f64 {
     (-0.5 * deviations * deviations).exp()
 }
@@ -137,7 +136,7 @@ mod tests {
     #[test]
     fn an_end_point_at_a_wall_is_likely_and_one_in_the_open_is_not() {
         check(POSE, 8.0, 1.0);
-        // One and two deviations before and behind it, and far away.
+        // At one and two standard deviations before and behind the wall, and far away.
         check(POSE, 6.0, 0.1 + 0.9 * (-0.5f64).exp());
         check(POSE, 10.0, 0.1 + 0.9 * (-0.5f64).exp());
         check(POSE, 4.0, 0.1 + 0.9 * (-2.0f64).exp());

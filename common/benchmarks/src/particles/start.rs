@@ -1,4 +1,4 @@
-//! Where particles start that may be anywhere: in all free cells alike.
+//! Uniform start of the particles over all free cells.
 
 use std::f64::consts::TAU;
 
@@ -9,12 +9,12 @@ use engine::EngineError;
 use engine::fit::{DistanceField, GridPose};
 use engine::particles::Rng;
 
-/// The headings with which particles start.
+/// Headings of the particles at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StartHeadings<'a> {
-    /// Any of a turn.
+    /// Uniform over a turn.
     Any,
-    /// One of these, radians in the map; as likely each.
+    /// One of these, radians in the map, with equal probability.
     OneOf(&'a [f64]),
 }
 
@@ -96,7 +96,7 @@ mod tests {
             counts[y as usize * 3 + x as usize] += 1;
             assert!(heading == 1.0 || heading == wrap_angle(4.0));
         }
-        // 1000 each, with a deviation of 26: within four of those.
+        // 1000 each, with a standard deviation of 26: within four of those.
         for (cell, count) in counts.into_iter().enumerate() {
             let expected = if [0, 1, 4].contains(&cell) {
                 1000i32

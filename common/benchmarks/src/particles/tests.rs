@@ -1,4 +1,4 @@
-//! A drawn world, scans of it, and particles that find the robot there.
+//! A drawn world with simulated scans, in which particles find the robot.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use engine::EngineError;
 use engine::fit::DistanceField;
 use engine::particles::Candidate;
 
-/// Two rooms and a corridor, 4 m long; no turn and no mirror makes it look alike.
+/// Two rooms and a corridor, 4 m long; without rotational or mirror symmetry.
 const WORLD: [&str; 20] = [
     "########################################",
     "#...................#..................#",
@@ -36,7 +36,7 @@ const WORLD: [&str; 20] = [
 ];
 const TRUTH: Pose = Pose::new(0.8, 1.35, 0.4);
 
-/// Enough for every bin of the world to hold some at the start.
+/// Enough particles for every bin of the world to contain some at the start.
 fn config() -> ParticlesConfig {
     ParticlesConfig {
         particles_max: 20_000,
@@ -44,9 +44,9 @@ fn config() -> ParticlesConfig {
     }
 }
 
-/// The readings of a laser that sees all around.
+/// Readings of a laser with a full view.
 fn scan(distance_field: &DistanceField, pose: Pose) -> Vec<Reading> {
-    /// Cells between the points at which a ray looks for an obstacle.
+    /// Step along a ray in cells.
     const STEP: f64 = 0.05;
     let (x, y, heading) = distance_field.frame.cells_from_map(pose);
     let reading = |beam: i32| {
@@ -69,7 +69,7 @@ fn scan(distance_field: &DistanceField, pose: Pose) -> Vec<Reading> {
     (0..120).map(reading).filter(returned).collect()
 }
 
-/// Drives an arc, scan by scan; the last estimate and the last true pose.
+/// Drives an arc, scan by scan; returns the last estimate and the last true pose.
 fn drive(
     filter: &mut ParticleFilter,
     distance_field: &DistanceField,
@@ -99,7 +99,7 @@ fn candidate(pose: Pose, weight: f64) -> Candidate {
 #[track_caller]
 fn check_found((found, truth): (Estimate, Pose)) {
     let pose = found.map_from_target;
-    // A cell, and what an end point a cell off turns at 1 m.
+    // A cell, and the turn that an end point one cell off causes at 1 m.
     assert!(pose.is_within(truth, 0.1, 0.1), "{pose:?} is not {truth:?}");
     assert!(found.share > 0.95, "{}", found.share);
     let deviation = found.covariance.ellipse().major_m;
@@ -126,7 +126,7 @@ fn a_start_at_the_places_of_the_votes_is_right_at_once() {
     let mut filter = ParticleFilter::seeded(distance_field.frame, candidates, config()).unwrap();
     assert!(filter.particles().len() < 2000);
     check_found(drive(&mut filter, &distance_field, 0));
-    // And given another place, it starts there.
+    // Given another place, it starts there.
     filter.seed([candidate(wrong, 1.0)]).unwrap();
     let found = filter.estimate().unwrap();
     assert!(found.map_from_target.is_within(wrong, 0.05, 0.05));

@@ -1,8 +1,8 @@
-//! Cells to draw a world on; it knows its p/n at any time.
+//! Cells to draw a world on, with a running p/n.
 
 use engine::grid::Cell;
 
-/// A rectangle of cells; it may hang over the edge.
+/// A rectangle of cells; it may exceed the canvas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Rect {
     pub(super) x: usize,
@@ -17,14 +17,14 @@ pub(super) struct Canvas {
     pub(super) width: usize,
     pub(super) height: usize,
     cells: Vec<Cell>,
-    /// Open cells among the eight neighbours of each.
+    /// Number of open cells among the eight neighbours of each cell.
     open_neighbours: Vec<u8>,
     free: usize,
     boundary: usize,
 }
 
 impl Canvas {
-    /// Open cells, with a wall one cell thick around.
+    /// Open cells, surrounded by a wall one cell thick.
     pub(super) fn walled(width: usize, height: usize) -> Self {
         let mut canvas = Canvas {
             width,
@@ -56,23 +56,21 @@ impl Canvas {
         canvas
     }
 
-    /// Boundary cells over free cells.
+    /// Ratio of boundary cells to free cells.
     pub(super) fn p_over_n(&self) -> f64 {
         self.boundary as f64 / self.free as f64
     }
 
-    /// Boundary cells that are missing to a ratio; negative where there are
-    /// too many.
+    /// Number of boundary cells missing to a ratio; negative if there are too many.
     pub(super) fn missing(&self, p_over_n: f64) -> f64 {
         p_over_n * self.free as f64 - self.boundary as f64
     }
 
-    /// Puts an obstacle.
     pub(super) fn fill(&mut self, rect: Rect) {
         self.each(rect, Canvas::occupy);
     }
 
-    /// Clears what stands there, but not the wall around the world.
+    /// Clears a rectangle, except for the wall around the world.
     pub(super) fn clear(&mut self, rect: Rect) {
         self.each(rect, Canvas::free);
     }
@@ -85,7 +83,6 @@ impl Canvas {
         }
     }
 
-    /// Makes a cell an obstacle.
     pub(super) fn occupy(&mut self, i: usize) {
         if self.cells[i] == Cell::Occupied {
             return;
@@ -116,7 +113,7 @@ impl Canvas {
         }
     }
 
-    /// The cells around one that are on the canvas. It borrows nothing.
+    /// The neighbours of a cell. The iterator borrows nothing.
     fn neighbours(&self, i: usize) -> impl Iterator<Item = usize> + use<> {
         let (width, height) = (self.width, self.height);
         let (x, y) = (i % width, i / width);
@@ -126,7 +123,7 @@ impl Canvas {
             .filter(move |&near| near != i)
     }
 
-    /// As a map stores it: 100 where something stands, else 0.
+    /// Occupancy of each cell as in a map: 100 if occupied, else 0.
     pub(super) fn occupancy(&self) -> Vec<u8> {
         let value = |&cell| if cell == Cell::Occupied { 100 } else { 0 };
         self.cells.iter().map(value).collect()

@@ -1,8 +1,8 @@
-//! A city: streets between buildings, of which some are known inside.
+//! A city: streets between buildings, some of which are known inside.
 //!
-//! The cells of a map of it, not a world with a wanted p/n: what counts here is its size,
-//! and that robots can be in a small part of it only. Streets, and what is known inside
-//! of buildings, are free, walls are occupied, and all else is unknown.
+//! Returns the cells of a map, not a world with a given p/n: its purpose is its size, and that
+//! robots can be in a small part of it only. Streets and the known inside of buildings are free,
+//! walls are occupied, and all else is unknown.
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -13,15 +13,15 @@ use crate::RESOLUTION_M;
 const FREE: u8 = 0;
 const OCCUPIED: u8 = 100;
 
-/// Widths of streets and sides of buildings, from and to, metres.
+/// Ranges of street widths and building sides, metres.
 const STREET_M: (f64, f64) = (4.0, 7.0);
 const BUILDING_M: (f64, f64) = (50.0, 110.0);
 
-/// Sides of rooms, and how wide their doors are.
+/// Range of room sides, and width of doors, metres.
 const ROOM_M: (f64, f64) = (3.0, 9.0);
 const DOOR_M: f64 = 1.0;
 
-/// Niches and porches of façades: how far apart, how wide and how deep.
+/// Niches and porches of façades: ranges of spacing, width and depth, metres.
 const NICHE_EVERY_M: (f64, f64) = (3.0, 14.0);
 const NICHE_M: (f64, f64) = (0.8, 4.0);
 const NICHE_DEPTH_M: (f64, f64) = (0.2, 1.5);
@@ -29,10 +29,10 @@ const NICHE_DEPTH_M: (f64, f64) = (0.2, 1.5);
 /// Share of the buildings that are known inside.
 const KNOWN_SHARE: f64 = 0.05;
 
-/// What stands in streets, such as cars and lamps, for each square metre of them.
+/// Objects in streets, such as cars and lamps, per square metre.
 const THINGS_PER_M2: f64 = 0.01;
 
-/// Cells of a wall.
+/// Thickness of a wall in cells.
 const WALL: usize = 2;
 
 struct City {
@@ -42,7 +42,7 @@ struct City {
     random: Xoshiro256PlusPlus,
 }
 
-/// The occupancies of a city, row by row.
+/// Occupancies of a city, row by row.
 #[must_use]
 pub fn city((width, height): (usize, usize), seed: u64) -> Vec<u8> {
     let mut city = City {
@@ -71,13 +71,13 @@ impl City {
         (self.random.random_range(from..to) / RESOLUTION_M).round() as usize
     }
 
-    /// Where buildings start and end along an axis; streets lie between.
+    /// Start and end of the buildings along an axis; streets are in between.
     fn spans(&mut self, cells: usize) -> Vec<(usize, usize)> {
         let (mut spans, mut at) = (Vec::new(), 0);
         loop {
             let start = at + self.length(STREET_M);
             let end = start + self.length(BUILDING_M);
-            // The last ones go on beyond the map.
+            // The last building may continue beyond the map.
             if end >= cells {
                 spans.extend((start + 2 * WALL < cells).then_some((start, cells)));
                 return spans;
@@ -134,7 +134,7 @@ impl City {
         }
     }
 
-    /// Cuts niches with walls of their own into one of a building's façades.
+    /// Cuts niches with walls into one façade of a building.
     fn put_niches(&mut self, building: Rect, x_major: bool, far: bool) {
         let length = if x_major {
             building.width
@@ -188,7 +188,7 @@ impl City {
         }
     }
 
-    /// Divides a floor into rooms with doors, again and again.
+    /// Divides a floor into rooms with doors, recursively.
     fn divide(&mut self, floor: Rect) {
         let upright = floor.width > floor.height;
         let length = floor.width.max(floor.height);
@@ -253,7 +253,7 @@ impl City {
     }
 }
 
-/// What lies within the walls.
+/// The inside of the walls.
 fn shrunk(building: Rect) -> Rect {
     Rect {
         x: building.x + WALL,

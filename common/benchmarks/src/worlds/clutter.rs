@@ -1,5 +1,4 @@
-//! Furniture, boxes and rubble: pieces put at random until the boundary is
-//! what was asked for.
+//! Furniture, boxes and rubble: random pieces until the boundary has the requested size.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,20 +7,20 @@ use rand::rngs::Xoshiro256PlusPlus;
 
 use super::canvas::{Canvas, Rect};
 
-/// Adds pieces until `p_over_n` is reached, turned at random or along the axes.
+/// Adds pieces, turned at random or along the axes, until `p_over_n` is reached.
 pub(super) fn add(canvas: &mut Canvas, turned: bool, p_over_n: f64, rng: &mut Xoshiro256PlusPlus) {
-    // The smaller the pieces, the more boundary for the room that they take.
+    // Smaller pieces have more boundary per area.
     let (least, most) = (
         (0.3 / p_over_n).max(1.0),
         (1.2 / p_over_n).clamp(1.0, canvas.width.min(canvas.height) as f64 / 4.0),
     );
-    // Where pieces cover one another the ratio may stop rising.
+    // Overlapping pieces may keep the ratio from rising.
     for _ in 0..4 * canvas.width * canvas.height {
         let missing = canvas.missing(p_over_n);
         if missing < 1.0 {
             return;
         }
-        // A piece of side s has 4s of boundary: the last ones must be small.
+        // A piece of side s has 4s boundary cells, so the last ones must be small.
         let largest = most.min((missing / 8.0).max(1.0));
         let mut side = || {
             rng.random_range(least.min(largest)..=largest)
@@ -33,7 +32,7 @@ pub(super) fn add(canvas: &mut Canvas, turned: bool, p_over_n: f64, rng: &mut Xo
     }
 }
 
-/// Puts one piece anywhere.
+/// Adds one piece at a random position.
 fn put(
     canvas: &mut Canvas,
     (width, height): (f64, f64),
@@ -55,7 +54,7 @@ fn put(
     }
 }
 
-/// Fills the cells whose centres lie in a turned rectangle.
+/// Fills the cells with centres in a rotated rectangle.
 fn put_turned(canvas: &mut Canvas, centre: (f64, f64), (width, height): (f64, f64), angle: f64) {
     let (sin, cos) = angle.sin_cos();
     let reach = width.hypot(height) / 2.0;

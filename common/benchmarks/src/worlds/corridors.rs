@@ -1,5 +1,4 @@
-//! Long corridors with rooms on both sides, crossed by a few others: places
-//! that look like one another.
+//! Long corridors with rooms on both sides, crossed by a few others: places that look alike.
 
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -7,10 +6,10 @@ use rand::rngs::Xoshiro256PlusPlus;
 use super::canvas::{Canvas, Rect};
 use super::rooms::{DOOR, WALL};
 
-/// Fewest cells from wall to wall of a corridor: 1.5 m.
+/// Minimum width of a corridor in cells: 1.5 m.
 const MIN_CORRIDOR: usize = 30;
 
-/// Draws corridors along x whose rooms are about `spacing` cells deep.
+/// Draws corridors along x with rooms about `spacing` cells deep.
 pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256PlusPlus) {
     let corridor = (spacing / 3).max(MIN_CORRIDOR);
     let mut y = 1;
@@ -37,8 +36,7 @@ pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256Plu
     cross(canvas, corridor, 8 * spacing);
 }
 
-/// Draws rooms between two heights, and their wall to the corridor, with a door
-/// for each room.
+/// Draws rooms between two heights, and their wall to the corridor, with a door per room.
 fn row_of_rooms(
     canvas: &mut Canvas,
     (bottom, top): (usize, usize),
@@ -71,7 +69,7 @@ fn row_of_rooms(
     }
 }
 
-/// Clears corridors along y, so far apart.
+/// Clears corridors along y at this spacing.
 fn cross(canvas: &mut Canvas, corridor: usize, apart: usize) {
     let mut x = apart / 2;
     while x + corridor < canvas.width {

@@ -1,9 +1,9 @@
-//! Generated worlds of three kinds, each steered to a wanted p/n: boundary
-//! cells over free cells, the figure that the paper's tables run over.
+//! Generated worlds of three kinds, each with a given p/n: boundary cells per free cell, the
+//! variable of the paper's tables.
 //!
-//! Walls come first, as far apart as the ratio allows; clutter then fills up
-//! what is missing. Above some 25 % the clutter is of single cells, for larger
-//! pieces hide more boundary than they bring.
+//! Walls come first, as dense as the ratio allows; clutter then adds the missing boundary. Above
+//! about 25 % the clutter consists of single cells, because larger pieces hide more boundary than
+//! they add.
 
 mod canvas;
 mod city;
@@ -22,28 +22,27 @@ use crate::{BenchmarksError, RESOLUTION_M};
 use canvas::Canvas;
 pub use city::city;
 
-/// Fewest cells along a side.
+/// Minimum number of cells per side.
 const MIN_SIDE: usize = 16;
 
-/// How far p/n may lie from what was asked for, as a share of it.
+/// Tolerance of p/n, as a share of the requested value.
 const TOLERANCE: f64 = 0.05;
 
-/// Share of the wanted boundary that walls may make up.
+/// Maximum share of the boundary that walls make up.
 const WALL_SHARE: f64 = 0.9;
 
-/// What a world looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Kind {
     /// A building: rooms with doors and furniture.
     Rooms,
-    /// Long corridors with rooms on both sides, one like the other.
+    /// Long corridors with rooms on both sides that look alike.
     Corridors,
-    /// A hall with scattered boxes, turned at random.
+    /// A hall with scattered boxes, rotated at random.
     Boxes,
 }
 
 impl Kind {
-    /// As it is written on the command line and in reports.
+    /// Name on the command line and in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -54,22 +53,20 @@ impl Kind {
     }
 }
 
-/// A generated world.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct World {
-    /// Its cells, closed off by a wall around.
+    /// The cells, surrounded by a wall.
     pub grid: Grid,
-    /// Its boundary cells.
     pub boundary: Vec<BoundaryCell>,
 }
 
 impl World {
-    /// Generates a world of `width` · `height` cells with `p_over_n` boundary
-    /// cells for each free cell, to within 5 % of that.
+    /// Generates a world of `width` · `height` cells with `p_over_n` boundary cells per free cell,
+    /// within 5 %.
     ///
     /// # Errors
-    /// If a side is too short or too long, or the ratio is out of reach at that
-    /// size: the wall around a small world alone is some boundary.
+    /// A side is too short or too long, or the ratio is out of reach at that size: in a small world
+    /// the surrounding wall alone has much boundary.
     pub fn generate(
         kind: Kind,
         (width, height): (usize, usize),
@@ -100,24 +97,23 @@ impl World {
         })
     }
 
-    /// Boundary cells over free cells.
+    /// Ratio of boundary cells to free cells.
     #[must_use]
     pub fn p_over_n(&self) -> f64 {
         self.boundary.len() as f64 / self.grid.free_cells() as f64
     }
 
-    /// The space of a search with this many headings.
+    /// Search space with this many headings.
     ///
     /// # Errors
-    /// If the number of headings is not supported.
+    /// The number of headings is not supported.
     pub fn space(&self, headings: u32) -> Result<Space, BenchmarksError> {
         let (width, height) = (self.grid.width(), self.grid.height());
         Ok(Space::new(headings, RESOLUTION_M, width, height)?)
     }
 }
 
-/// Walls as close together as the wanted ratio allows; at worst only those
-/// around the world.
+/// Draws walls as dense as the ratio allows; at least those around the world.
 fn walls(
     kind: Kind,
     (width, height): (usize, usize),

@@ -1,18 +1,17 @@
-//! A building: the ground is split into rooms, one wall after another, and
-//! every wall has doors.
+//! A building: the ground is split recursively into rooms, and every wall has doors.
 
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::canvas::{Canvas, Rect};
 
-/// Thickness of a wall within, cells.
+/// Thickness of an inner wall in cells.
 pub(super) const WALL: usize = 2;
 
-/// Width of a door, cells.
+/// Width of a door in cells.
 pub(super) const DOOR: usize = 18;
 
-/// Draws rooms whose sides are about `spacing` cells.
+/// Draws rooms with sides of about `spacing` cells.
 pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256PlusPlus) {
     let mut doors = Vec::new();
     let mut grounds = vec![Rect {
@@ -22,7 +21,7 @@ pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256Plu
         height: canvas.height - 2,
     }];
     while let Some(ground) = grounds.pop() {
-        // Between half and one and a half spacings: rooms of many sizes.
+        // Limits from one to one and a half spacings give rooms of many sizes.
         let limit = rng.random_range(spacing..=spacing + spacing / 2);
         if ground.width.max(ground.height) > limit {
             grounds.extend(split(canvas, ground, spacing, &mut doors, rng));
@@ -34,7 +33,7 @@ pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256Plu
     }
 }
 
-/// Draws a wall across the longer side and returns the grounds beside it.
+/// Draws a wall across the longer side and returns the grounds on both sides.
 fn split(
     canvas: &mut Canvas,
     ground: Rect,

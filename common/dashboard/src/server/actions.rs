@@ -1,4 +1,4 @@
-//! What changes the graph: the token is needed.
+//! Write actions; all need the token.
 
 use std::sync::Arc;
 
@@ -14,15 +14,15 @@ use super::{Refusal, Site};
 use crate::robot::Request;
 use crate::view::Abilities;
 
-/// Where to search.
+/// Body of a request that sets the search region.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Wanted {
-    /// Metres in the map: two of an upright rectangle, or all of any polygon.
+    /// In metres in the map: two opposite corners of a rectangle, or all corners of a polygon.
     corners: Vec<[f64; 2]>,
 }
 
-/// Lets poses be searched in a region alone.
+/// Limits the search to a region.
 pub(super) async fn search_in(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -37,7 +37,7 @@ pub(super) async fn search_in(
     request(&site, &name, Request::Region(corners))
 }
 
-/// Lets poses be searched everywhere.
+/// Searches the whole map again.
 pub(super) async fn search_everywhere(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -47,7 +47,7 @@ pub(super) async fn search_everywhere(
     request(&site, &name, Request::Region(Vec::new()))
 }
 
-/// Lets the recorder save its black box.
+/// Makes the recorder save the last minutes.
 pub(super) async fn save(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,

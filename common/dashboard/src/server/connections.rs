@@ -1,9 +1,8 @@
-//! The number of connections, and which one is closed for the next.
+//! Limits the number of connections, in total and per peer.
 //!
-//! Nobody can lock others out by staying: where one peer has as many connections as one
-//! may, or all have, the one that has been silent for longest is closed; those that were
-//! answered, as watchers are, come last. One that does not take what is sent to it is
-//! closed, too.
+//! Idle connections cannot lock out others: at either limit, the connection that was idle for
+//! longest is closed, and connections that were sent data, such as viewers, are closed last. A
+//! connection whose peer does not read is closed as well.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -18,16 +17,14 @@ use tokio::net::TcpStream;
 use tokio::sync::oneshot;
 use tokio::time::{Instant, Sleep, sleep};
 
-/// Most connections at the same time.
 const MAX_CONNECTIONS: usize = 256;
 
-/// Most of them to one address; there may be a proxy, with many behind it.
+/// Maximum number per peer address; it may be a proxy for many users.
 const MAX_OF_PEER: usize = 128;
 
-/// How long a peer may take nothing of what is sent to it.
+/// Longest time for which a peer may accept no data.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// All connections.
 #[derive(Clone, Default)]
 pub(super) struct Connections(Arc<Mutex<Open>>);
 
@@ -39,26 +36,26 @@ struct Open {
 
 struct Entry {
     peer: IpAddr,
-    /// Whether anything was sent to it.
+    /// True if data was sent to it.
     answered: bool,
-    /// When a byte came or went last.
+    /// Time of the last byte in either direction.
     active: Instant,
     _close: oneshot::Sender<()>,
 }
 
-/// A connection that counts as long as it is there.
+/// A connection that is counted until it is dropped.
 pub(super) struct Connection<S = TcpStream> {
     stream: S,
     number: u64,
     all: Connections,
-    /// Ends when the connection is to make room.
+    /// Completes when the connection must close to make room.
     closed: oneshot::Receiver<()>,
-    /// Runs while the peer takes nothing.
+    /// Write timeout, which runs while the peer accepts no data.
     waiting: Option<Pin<Box<Sleep>>>,
 }
 
 impl Connections {
-    /// Counts a new connection; another one makes room for it where that is needed.
+    /// Registers a new connection; closes another one if a limit is reached.
     pub(super) fn admit<S>(&self, stream: S, peer: IpAddr) -> Connection<S> {
         let (close, closed) = oneshot::channel();
         let number = self.open().admit(peer, close);
@@ -72,7 +69,7 @@ impl Connections {
     }
 
     fn open(&self) -> MutexGuard<'_, Open> {
-        // Nothing that is done under the lock can leave it half done.
+        // Each change under the lock is complete even after a panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -97,11 +94,11 @@ impl Open {
         number
     }
 
-    /// Closes the one that has been silent for longest, of those that are meant.
+    /// Closes the connection that was idle for longest among those that `meant` accepts.
     fn close_one(&mut self, meant: impl Fn(&Entry) -> bool) {
         let meant = self.entries.iter().filter(|(_, entry)| meant(entry));
         if let Some((&number, _)) = meant.min_by_key(|(_, entry)| (entry.answered, entry.active)) {
-            // It notices when its sender is dropped.
+            // Dropping its sender closes it.
             self.entries.remove(&number);
         }
     }
@@ -115,7 +112,7 @@ impl<S> Connection<S> {
         }
     }
 
-    /// Fails once it has to make room.
+    /// Fails once the connection must make room.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         match Pin::new(&mut self.closed).poll(context) {
             Poll::Pending => Ok(()),
@@ -123,7 +120,7 @@ impl<S> Connection<S> {
         }
     }
 
-    /// What came of writing; nothing for too long is a failure.
+    /// Passes on the outcome of a write; fails if the peer accepted no data for too long.
     fn written(
         &mut self,
         outcome: Poll<io::Result<usize>>,
@@ -190,7 +187,7 @@ mod tests {
 
     use super::*;
 
-    /// A connection of the peer with this number, and its other end.
+    /// Returns a connection from the peer 10.0.0.`peer`, and its other end.
     fn connect(all: &Connections, peer: u8) -> (Connection<DuplexStream>, DuplexStream) {
         let (ours, theirs) = duplex(16);
         (all.admit(ours, IpAddr::from([10, 0, 0, peer])), theirs)
@@ -223,7 +220,7 @@ mod tests {
                 own.push(connect(&all, 1));
                 tokio::time::advance(Duration::from_secs(1)).await;
             }
-            // The oldest one speaks, so that it is the next one's turn.
+            // The oldest one sends a byte, so that the second one is now idle for longest.
             own[0].1.write_u8(7).await.unwrap();
             assert_eq!(own[0].0.read_u8().await.unwrap(), 7);
             own.push(connect(&all, 1));
@@ -277,7 +274,7 @@ mod tests {
         paused(async {
             let all = Connections::default();
             let (mut connection, mut theirs) = connect(&all, 1);
-            // More than lies on the way, and it is taken slowly.
+            // More than fits the buffer, and the peer reads slowly.
             let send = async { connection.write_all(&[0; 64]).await };
             let take = async {
                 for _ in 0..3 {

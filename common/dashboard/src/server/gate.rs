@@ -1,9 +1,8 @@
-//! Access control. Browsers state for whom they ask; what they ask for another site
-//! is refused.
+//! Access control: rejects requests that a browser makes for another site.
 //!
-//! A foreign page cannot read answers of ours, but it could open a WebSocket, and
-//! it could give its own name our address (DNS rebinding) and so be us. The first
-//! shows in `Origin`, the second in `Host`: it is a name that we do not know.
+//! A foreign page cannot read our responses, but it could open a WebSocket, or resolve its own name
+//! to our address (DNS rebinding) and so count as our origin. The first shows in `Origin`, the
+//! second in `Host`, which then holds a name that is not ours.
 
 use std::net::{IpAddr, Ipv6Addr};
 use std::sync::Arc;
@@ -20,12 +19,12 @@ use axum::response::{IntoResponse, Response};
 
 use super::{Refusal, Site};
 
-/// What the page may do: load from us and speak with us, nothing else.
+/// The page may load and connect to its own origin only.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
                       img-src 'self' blob:; connect-src 'self'; base-uri 'none'; \
                       form-action 'none'; frame-ancestors 'none'";
 
-/// Lets a request pass, or not; nothing is answered without these headers.
+/// Checks a request, and adds the security headers to every response.
 pub(super) async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
     let mut response = match admit(request.headers(), &site.hosts) {
         Ok(()) => next.run(request).await,
@@ -50,7 +49,7 @@ pub(super) async fn guard(State(site): State<Arc<Site>>, request: Request, next:
     response
 }
 
-/// Whether a request comes from our page, or from no browser at all.
+/// Accepts requests from our page or from programs other than browsers.
 fn admit(headers: &HeaderMap, hosts: &[String]) -> Result<(), Refusal> {
     let text = |name: &HeaderName| headers.get(name).map(HeaderValue::to_str);
     let Some(Ok(host)) = text(&HOST) else {
@@ -87,7 +86,7 @@ fn admit(headers: &HeaderMap, hosts: &[String]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// An address cannot be rebound; of names we know our own.
+/// True for addresses, which cannot be rebound, and for our own names.
 fn is_ours(host: &str, names: &[String]) -> bool {
     let Ok(authority) = host.parse::<Authority>() else {
         return false;
@@ -101,7 +100,7 @@ fn is_ours(host: &str, names: &[String]) -> bool {
             || names.contains(&name))
 }
 
-/// Whether whoever asks may change something.
+/// Checks that the request carries the token.
 pub(super) fn authorize(site: &Site, headers: &HeaderMap) -> Result<(), Refusal> {
     let given = headers.get(AUTHORIZATION).and_then(|v| v.to_str().ok());
     let token = given.and_then(|given| given.strip_prefix("Bearer "));

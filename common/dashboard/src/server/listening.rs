@@ -1,4 +1,4 @@
-//! The port, and the course of each connection to it.
+//! Listens on the port and serves each connection.
 
 use std::io;
 use std::net::{SocketAddr, TcpListener as StdListener};
@@ -13,19 +13,19 @@ use tokio::net::TcpListener;
 use super::connections::Connections;
 use crate::DashboardError;
 
-/// Ports that are tried beyond the one that was asked for.
+/// Number of further ports to try.
 const NEXT_PORTS: u16 = 100;
 
-/// How long the head of a request may take, from the end of the one before.
+/// Timeout for the head of a request, counted from the end of the previous one.
 const HEAD_TIMEOUT: Duration = Duration::from_secs(15);
 
-/// How long to wait where a connection cannot be taken: descriptors are short.
+/// Delay before the next accept after one failed (out of file descriptors).
 const SHORTAGE: Duration = Duration::from_millis(500);
 
-/// Listens there or, where the port is taken, on the next free one.
+/// Listens on the address or, if its port is taken, on the next free one.
 ///
 /// # Errors
-/// None is free, or the address is not this machine's.
+/// No port is free, or the address does not belong to this machine.
 pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
     let mut address = wanted;
     loop {
@@ -48,16 +48,16 @@ pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
     }
 }
 
-/// Takes a listener into the runtime, inside of which this is to be called.
+/// Registers the listener with the current tokio runtime.
 ///
 /// # Errors
-/// The system refuses.
+/// The system refuses, for instance non-blocking mode.
 pub(super) fn in_runtime(listener: StdListener) -> io::Result<TcpListener> {
     listener.set_nonblocking(true)?;
     TcpListener::from_std(listener)
 }
 
-/// Answers with `app` whoever connects; never ends.
+/// Serves `app` on each connection; never ends.
 pub(super) async fn serve(listener: TcpListener, app: Router) {
     let connections = Connections::default();
     loop {
@@ -69,7 +69,7 @@ pub(super) async fn serve(listener: TcpListener, app: Router) {
                 continue;
             }
         };
-        // Messages are small and must not wait for each other.
+        // Small messages must not wait for each other.
         let _ = stream.set_nodelay(true);
         let stream = TokioIo::new(connections.admit(stream, peer.ip()));
         let answered = http1::Builder::new()
@@ -77,7 +77,7 @@ pub(super) async fn serve(listener: TcpListener, app: Router) {
             .header_read_timeout(HEAD_TIMEOUT)
             .serve_connection(stream, TowerToHyperService::new(app.clone()))
             .with_upgrades();
-        // Whoever goes, or is sent away, is nobody's loss but its own.
+        // A connection that fails or is closed affects no other.
         tokio::spawn(async { answered.await.ok() });
     }
 }
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_foreign_address_is_refused_by_name() {
-        // A network for documents: no machine has it.
+        // A network for documentation (RFC 5737): no machine has it.
         let error = bind("192.0.2.1:7440".parse().unwrap()).unwrap_err();
         assert!(error.to_string().contains("192.0.2.1:7440"), "{error}");
     }

@@ -14,7 +14,7 @@ const SVG: &str = "image/svg+xml";
 
 macro_rules! files {
     ($($name:literal: $kind:expr),+ $(,)?) => {
-        /// Name, kind and content.
+        /// Name, content type and content of each file.
         const FILES: &[(&str, &str, &str)] = &[
             $(($name, $kind, include_str!(concat!("../../page/", $name)))),+
         ];
@@ -48,18 +48,17 @@ files! {
     "words.js": JS,
 }
 
-/// The page itself.
 pub(super) async fn index(uri: Uri) -> Response {
     file(Path("index.html".to_owned()), uri).await
 }
 
-/// One of its files.
+/// Returns a file of the page.
 pub(super) async fn file(Path(name): Path<String>, uri: Uri) -> Response {
     let Some((_, kind, content)) = FILES.iter().find(|(known, ..)| *known == name) else {
         let problem = format!("there is nothing at {}", uri.path());
         return Refusal::new(StatusCode::NOT_FOUND, problem).into_response();
     };
-    // Another version may be there after a restart.
+    // A restart may bring another version.
     (
         [(CONTENT_TYPE, *kind), (CACHE_CONTROL, "no-cache")],
         *content,
@@ -71,7 +70,7 @@ pub(super) async fn file(Path(name): Path<String>, uri: Uri) -> Response {
 mod tests {
     use super::*;
 
-    /// What a strict policy would keep from working, or would let in.
+    /// A strict content security policy would block these, or they would allow injection.
     #[test]
     fn the_page_needs_nothing_that_its_policy_forbids() {
         for (name, _, content) in FILES {
@@ -85,7 +84,7 @@ mod tests {
             ] {
                 assert!(!content.contains(forbidden), "{name} has {forbidden}");
             }
-            // Only the name of a format may look like an address.
+            // Only the name of a format may look like a URL.
             let addresses = content.matches("http://").count();
             let formats = content.matches("http://www.w3.org/").count();
             assert_eq!(addresses, formats, "{name}");

@@ -6,12 +6,12 @@ use qrcode::render::unicode::Dense1x2;
 use qrcode::types::QrError;
 use qrcode::{EcLevel, QrCode};
 
-/// An address of a network for documents: no machine has it, the default route leads there.
+/// An address of the documentation network (RFC 5737): it follows the default route.
 const ELSEWHERE: (&str, u16) = ("192.0.2.1", 9);
 
-/// Where other machines open the page: by the `host`, else by the address that is listened
-/// to or, where that is any, by the one of the default route. The `token` follows after `#`,
-/// which browsers do not send. None where no route leads to other machines.
+/// URL of the page for other machines: `host` if given, else the address listened on or, if that is
+/// unspecified, this machine's address on the default route. The `token` follows after `#`, which
+/// browsers do not send. `None` if no route leads to other machines.
 pub(super) fn place(
     listening: SocketAddr,
     host: Option<&str>,
@@ -27,20 +27,20 @@ pub(super) fn place(
     Some(format!("http://{server}/{}", token.unwrap_or_default()))
 }
 
-/// This machine's address towards others. Connecting such a socket sends nothing.
+/// This machine's address on the default route. Connecting a UDP socket sends nothing.
 fn on_default_route() -> Option<IpAddr> {
     let socket = UdpSocket::bind("0.0.0.0:0").ok()?;
     socket.connect(ELSEWHERE).ok()?;
     Some(socket.local_addr().ok()?.ip())
 }
 
-/// The code, two rows of modules in a line, for bright characters on a dark terminal; phones
-/// read it inverted, too.
+/// QR code with two rows of modules per line, as light characters on a dark terminal; phones also
+/// read inverted codes.
 ///
 /// # Errors
 /// The text is too long.
 pub(super) fn code(text: &str) -> Result<String, QrError> {
-    // A screen has no stains that more redundancy would be for.
+    // A screen needs no redundancy against dirt.
     let code = QrCode::with_error_correction_level(text, EcLevel::L)?;
     let mut picture = code.render::<Dense1x2>();
     picture
@@ -70,7 +70,7 @@ mod tests {
             place("[2001:db8::7]:80", None, None),
             "http://[2001:db8::7]:80/"
         );
-        // Where there is a route at all, it is no address that only this machine has.
+        // If there is a route, its address is not one that only this machine can reach.
         let any = super::place("0.0.0.0:7440".parse().unwrap(), None, None);
         assert!(any.is_none_or(|place| !place.contains("//0.0.0.0") && !place.contains("//127.")));
     }
@@ -80,13 +80,13 @@ mod tests {
         let text = format!("http://192.168.100.100:7440/#token={}", "0f".repeat(16));
         let code = code(&text).unwrap();
         let lines: Vec<Vec<char>> = code.lines().map(|line| line.chars().collect()).collect();
-        // It fits a terminal of 80 columns, beside who says it.
+        // It fits a terminal of 80 columns, next to the prefix of a log line.
         assert!(
             lines
                 .iter()
                 .all(|line| line.len() == lines[0].len() && line.len() <= 58)
         );
-        // Bright is the ground, of which four modules are around the code.
+        // The background is light, with a margin of four modules.
         let is_bright = |x: usize, y: usize| match lines[y / 2][x] {
             '█' => true,
             '▀' => y.is_multiple_of(2),

@@ -1,4 +1,4 @@
-//! What can be read at once.
+//! Read requests that are answered at once.
 
 use std::sync::Arc;
 
@@ -13,7 +13,6 @@ use serde_json::{Value, json};
 
 use super::{Refusal, Site};
 
-/// The robots' names.
 pub(super) async fn robots(State(site): State<Arc<Site>>) -> Json<Value> {
     Json(json!({
         "schema": json::SCHEMA,
@@ -22,7 +21,6 @@ pub(super) async fn robots(State(site): State<Arc<Site>>) -> Json<Value> {
     }))
 }
 
-/// All that is known of a robot.
 pub(super) async fn robot(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -35,7 +33,7 @@ pub(super) async fn robot(
     Ok((headers, snapshot.to_string()).into_response())
 }
 
-/// The cells of its map, packed where the reader can unpack.
+/// Cells of the robot's map, gzip-compressed if the client accepts it.
 pub(super) async fn map(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -62,7 +60,7 @@ pub(super) async fn map(
     if !accepted.is_some_and(|accepted| accepted.contains("gzip")) {
         return Ok((described, map.cells().to_vec()).into_response());
     }
-    // A large one takes a tenth of a second, in which others are served.
+    // A large map takes a tenth of a second; other requests are served meanwhile.
     let packed = tokio::task::spawn_blocking(move || map.packed().to_vec()).await;
     let packed = packed
         .map_err(|_| Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, "packing the map failed"))?;

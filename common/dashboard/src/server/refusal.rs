@@ -5,7 +5,6 @@ use axum::http::{StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
-/// A status and its reason.
 #[derive(Debug)]
 pub(super) struct Refusal {
     status: StatusCode,
@@ -44,7 +43,7 @@ impl IntoResponse for Refusal {
     }
 }
 
-/// Of every other address.
+/// Response to every unknown address.
 pub(super) async fn nothing_here(uri: Uri) -> Refusal {
     Refusal::new(
         StatusCode::NOT_FOUND,

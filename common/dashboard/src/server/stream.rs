@@ -1,8 +1,8 @@
-//! A WebSocket: first all that is known, then what happens.
+//! A WebSocket: first a snapshot, then each change.
 //!
-//! The reader may ask for the field, and send its clock to get it back. Who does
-//! not read is disconnected; who reads slowly loses messages, is notified and gets
-//! all that is known again.
+//! The reader may open the intensity field, and send its clock, which is sent back. A reader that
+//! stops reading is disconnected; a slow one loses messages, is told how many and gets a new
+//! snapshot.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -20,32 +20,26 @@ use super::{Refusal, Site};
 use crate::robot::{FieldView, Robot, Watching, text};
 use crate::view::Message;
 
-/// Most bytes of a message to us.
+/// Largest message from a reader, in bytes.
 const MAX_MESSAGE: usize = 1024;
 
-/// How long a reader may take for one message.
+/// Longest time for sending one message to a reader.
 const TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The reader spoke what we do not understand.
+/// Close code for a message that is not understood (RFC 6455, section 7.4.1).
 const POLICY_VIOLATION: u16 = 1008;
 
-/// What a reader may say.
+/// Message from a reader.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum Said {
-    /// Whether it looks at the field.
-    Field {
-        /// It does from now on.
-        on: bool,
-    },
-    /// A look at its clock, to be sent back.
-    Ping {
-        /// In its own unit.
-        t: f64,
-    },
+    /// Opens or closes the intensity field.
+    Field { on: bool },
+    /// Time stamp to be sent back.
+    Ping { t: f64 },
 }
 
-/// Begins to stream.
+/// Upgrades the request and starts the stream.
 pub(super) async fn open(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -70,7 +64,7 @@ async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePerm
         robot,
         field: None,
     };
-    // The reader is gone: nobody is left to be notified.
+    // On failure the reader is gone.
     if reader.send(Frame::Text(snapshot)).await.is_some() {
         reader.follow(news).await;
     }
@@ -83,7 +77,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// Passes on what happens until the reader goes.
+    /// Passes on messages until the reader disconnects.
     async fn follow(
         &mut self,
         mut news: tokio::sync::broadcast::Receiver<Utf8Bytes>,
@@ -110,7 +104,7 @@ impl Reader {
 
     async fn receive(&mut self, frame: Frame) -> Option<()> {
         let Frame::Text(said) = frame else {
-            // Pings are answered by the library; the end comes as none.
+            // The library answers pings; the end of the stream arrives as `None`.
             return matches!(frame, Frame::Ping(_) | Frame::Pong(_)).then_some(());
         };
         match serde_json::from_str(&said) {
@@ -121,7 +115,7 @@ impl Reader {
             }
             Err(error) => {
                 let mut reason = error.to_string();
-                // A reason has 123 bytes at most.
+                // The reason of a close frame holds 123 bytes at most.
                 reason.truncate(reason.floor_char_boundary(120));
                 let close = CloseFrame {
                     code: POLICY_VIOLATION,
@@ -139,7 +133,7 @@ impl Reader {
     }
 }
 
-/// Waits for an image; for ever where nobody looks.
+/// Waits for an image; forever if the field is not open.
 async fn next_image(field: &mut Option<FieldView>) -> Option<Bytes> {
     let Some(view) = field else {
         return std::future::pending().await;

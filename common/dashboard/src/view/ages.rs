@@ -1,33 +1,32 @@
-//! How old what is known is: whether scans and poses still come.
+//! Ages of the newest scan and pose: show whether data still arrives.
 
 use messages::{HypothesesHeader, PoseHeader};
 use serde::Serialize;
 
-/// When what is known was new, by the host's clock.
+/// Arrival times of the newest data, by the host's monotonic clock.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Times {
-    /// When the newest scan that was answered entered the graph.
+    /// Entry into the graph of the newest scan with a result.
     scan_ns: Option<i64>,
-    /// When the tracker sent its newest pose.
+    /// Time at which the tracker sent its newest pose.
     pose_ns: Option<i64>,
 }
 
-/// Seconds since then; none where nothing came yet.
+/// Ages in seconds; `None` before the first one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Ages {
-    /// Since the newest scan that was answered entered the graph.
+    /// Since the newest scan with a result entered the graph.
     pub(crate) scan_s: Option<f64>,
     /// Since the tracker sent its newest pose.
     pub(crate) pose_s: Option<f64>,
 }
 
 impl Times {
-    /// Takes the answer to a scan.
     pub(crate) fn on_answer(&mut self, header: &HypothesesHeader) {
         self.scan_ns = self.scan_ns.max(Some(header.stamp.entered_ns));
     }
 
-    /// Takes the tracker's pose, of a scan or between scans.
+    /// Takes the tracker's pose, from a scan or from odometry between scans.
     pub(crate) fn on_pose(&mut self, header: &PoseHeader) {
         if header.from_scan == 1 {
             self.scan_ns = self.scan_ns.max(Some(header.stamp.entered_ns));
@@ -35,13 +34,12 @@ impl Times {
         self.pose_ns = self.pose_ns.max(Some(header.sent_ns));
     }
 
-    /// When the newest scan or, with a tracker, its newest pose came, whichever is older.
+    /// Time of the newest scan or, with a tracker, of its newest pose: the earlier of the two.
     pub(crate) fn newest_ns(self) -> Option<i64> {
         let scan_ns = self.scan_ns.or(self.pose_ns)?;
         Some(self.pose_ns.map_or(scan_ns, |pose_ns| scan_ns.min(pose_ns)))
     }
 
-    /// How old all is at `now_ns`.
     pub(crate) fn ages(self, now_ns: i64) -> Ages {
         let seconds = |ns: i64| now_ns.saturating_sub(ns).max(0) as f64 / 1e9;
         Ages {

@@ -1,4 +1,4 @@
-//! What a scan says of the pose.
+//! Result of one scan: verdict and hypotheses.
 
 use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
@@ -7,63 +7,62 @@ use serde::Serialize;
 
 use super::{Ellipse, PoseJson, ms};
 
-/// Most places that are sent; the engine keeps 64.
+/// Maximum number of hypotheses sent; the engine keeps 64.
 const MAX_PLACES: usize = 64;
 
-/// The answer to one scan.
+/// Result of one scan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Answer {
-    /// Counts the scans.
+    /// Number of the scan.
     pub(crate) counter: u64,
-    /// When the scan was measured, since 1970.
+    /// Time of measurement, in seconds since 1970.
     pub(crate) stamp_s: f64,
-    /// The map that was searched, as hexadecimal digits.
+    /// Map that was searched, in hexadecimal.
     pub(crate) map_id: String,
-    /// The verdict, or `?` for one that this version does not know.
+    /// The verdict; `?` if this version does not know its code.
     pub(crate) verdict: &'static str,
     /// The verdict in words.
     pub(crate) says: String,
-    /// Other places that fit about as well.
+    /// Number of other places that fit about as well.
     pub(crate) alternatives: u32,
-    /// The probability of the best place.
+    /// Probability of the best place.
     pub(crate) confidence: f32,
-    /// Share of the beams' weight that agrees with it.
+    /// Share of the beams' weight that agrees with the best place.
     pub(crate) inlier_share: f32,
-    /// From the scan's entry into the graph to the answer.
+    /// From the scan's entry into the graph to the result.
     pub(crate) latency_ms: f64,
-    /// Of that, the search.
+    /// Duration of the search, part of the latency.
     pub(crate) search_ms: f64,
-    /// Of that, what followed.
+    /// Duration of the peak extraction, part of the latency.
     pub(crate) extract_ms: f64,
-    /// From the scan's entry to this message.
+    /// From the scan's entry into the graph to this message.
     pub(crate) age_ms: f64,
-    /// Where the robot may be, best first.
+    /// Possible poses, best first.
     pub(crate) hypotheses: Vec<Place>,
 }
 
-/// One place.
+/// One hypothesis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Place {
-    /// The map that it is on, as hexadecimal digits.
+    /// Map of the pose, in hexadecimal.
     pub(crate) map_id: String,
-    /// Of the laser in the map.
+    /// Pose of the laser.
     pub(crate) laser: PoseJson,
-    /// Of the robot's base, where the laser's mount is known.
+    /// Pose of the robot's base; `None` if the laser's mount is not known.
     pub(crate) base: Option<PoseJson>,
-    /// How well the scan fits.
+    /// Fit of the scan.
     pub(crate) score: f32,
-    /// How likely the robot is there.
     pub(crate) probability: f32,
-    /// Votes that led there.
+    /// Number of votes for the place.
     pub(crate) support: u64,
-    /// The ellipse of one standard deviation.
+    /// One-sigma ellipse of the laser's pose.
     pub(crate) ellipse: Option<Ellipse>,
-    /// That of the base's pose, where the mount is known.
+    /// One-sigma ellipse of the base's pose; `None` if the laser's mount is not known.
     pub(crate) base_ellipse: Option<Ellipse>,
 }
 
 impl Answer {
-    /// Reads a message of `hypotheses` at a time of the host's clock.
+    /// Converts a message of `hypotheses`. `now_ns`: monotonic clock of the host.
     pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
         let verdict = Verdict::from_code(header.verdict);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
@@ -180,7 +179,7 @@ mod tests {
             ..header(Verdict::Unique)
         };
         let mut place = hypothesis(1.0);
-        // The laser looks along x, two metres before the base: 0.06 m a deviation of yaw.
+        // The laser looks along x, two metres ahead of the base: 0.06 m per sigma of yaw.
         place.map_from_laser.yaw = 0.0;
         place.covariance = [1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 0.0009];
         place.map_from_base = Pose2 {

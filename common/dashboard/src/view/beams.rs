@@ -1,32 +1,32 @@
-//! What became of the beams of a scan.
+//! Beams of a scan, each with its fate.
 
 use messages::{Beam, BeamFate, BeamsHeader};
 use serde::Serialize;
 
 use super::PoseJson;
 
-/// Most beams that are sent: as many as a picture can show.
+/// Maximum number of beams sent: as many as a picture can show.
 const MAX_BEAMS: usize = 1440;
 
-/// The beams of one scan that returned, column by column.
+/// Beams of one scan with a return, as columns.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Beams {
-    /// Of the scan.
+    /// Number of the scan.
     pub(crate) counter: u64,
-    /// Where they were compared with the map.
+    /// Pose of the laser at which the beams were compared with the map.
     pub(crate) laser: PoseJson,
-    /// In the laser's frame, to a tenth of a milliradian.
+    /// In the laser's frame, rounded to 0.1 mrad.
     pub(crate) bearing: Vec<f64>,
-    /// To a millimetre.
+    /// Rounded to a millimetre.
     pub(crate) range_m: Vec<f64>,
-    /// `hit`, `short`, `through` or `unknown`, by the first letter.
+    /// First letters of `hit`, `short`, `through` or `unknown`, one per beam.
     pub(crate) fate: String,
-    /// Beams of which nothing returned.
+    /// Number of beams left out, most of them without a return.
     pub(crate) silent: usize,
 }
 
 impl Beams {
-    /// Reads a message of `beams`. What is no number is left out.
+    /// Converts a message of `beams`. Beams that are NaN or infinite are left out.
     pub(crate) fn new(header: &BeamsHeader, items: &[Beam]) -> Self {
         let is_number = |beam: &&Beam| beam.bearing.is_finite() && beam.range_m.is_finite();
         let shown = items
@@ -52,7 +52,7 @@ impl Beams {
     }
 }
 
-/// A digit more would not be seen.
+/// Rounds to 1/`steps`; more digits would not be visible.
 fn rounded(number: f32, steps: f64) -> f64 {
     (f64::from(number) * steps).round() / steps
 }

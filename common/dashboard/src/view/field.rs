@@ -3,10 +3,10 @@
 use messages::{FieldHeader, FieldKind};
 use serde::Serialize;
 
-/// Most pixels of an image; a larger one is made smaller by whole factors.
+/// Maximum number of pixels; a larger image is reduced by a whole factor.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// What stands before the pixels.
+/// Header of an image, as JSON.
 #[derive(Debug, PartialEq, Serialize)]
 struct Head {
     schema: u32,
@@ -14,22 +14,22 @@ struct Head {
     kind_of_message: &'static str,
     counter: u64,
     map_id: String,
-    /// `exact` at a heading, or an `upper_bound` for all.
+    /// `exact` for one heading, or `upper_bound` for all headings.
     kind: &'static str,
     heading: f64,
     width: usize,
     height: usize,
-    /// Cells of the map along each side of a pixel.
+    /// Map cells per pixel and axis.
     block: usize,
     best: u32,
     highest_possible: u32,
 }
 
-/// A binary message: four bytes with the length of the head, least significant
-/// first, the head as JSON, and a byte for each pixel, row by row from the
-/// lowest y; 255 is the best. A pixel that stands for several has the highest.
+/// Returns a binary message: the length of the head in four bytes, little-endian, the head as JSON,
+/// then one byte per pixel, row by row from the lowest y; 255 is the best value. A pixel of a
+/// reduced image has the maximum of its cells.
 ///
-/// `None` where header and items contradict each other.
+/// `None` if header and items contradict each other.
 pub(crate) fn frame(header: &FieldHeader, items: &[u16]) -> Option<Vec<u8>> {
     let (width, height) = (header.width as usize, header.height as usize);
     if width == 0 || height == 0 || width.checked_mul(height) != Some(items.len()) {

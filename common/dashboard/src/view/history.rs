@@ -1,4 +1,4 @@
-//! The states of the last hour: since when, why, and where the robot was.
+//! States of the last hour: start, reason, and the robot's poses.
 
 use std::collections::VecDeque;
 
@@ -6,30 +6,29 @@ use serde::Serialize;
 
 use super::{Answer, PoseJson, Tracked};
 
-/// How far back it goes.
+/// Length of the history.
 const KEPT_NS: i64 = 3600 * 1_000_000_000;
 
-/// States that are kept at most, where they change fast.
+/// Maximum number of states, in case they change fast.
 const CAPACITY: usize = 300;
 
-/// Without a scan for so long, nothing is known.
+/// Without a scan for this time, the state is `NoData`.
 const SILENT_AFTER_NS: i64 = 2_000_000_000;
 
-/// The state while nothing comes.
 const NO_DATA: &str = "NoData";
 
 /// A state of the robot, which lasts until the next one begins.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Period<'a> {
-    /// The tracker's state or, without one, the verdict; `NoData` where no scan came.
+    /// The tracker's state or, without a tracker, the verdict; `NoData` without scans.
     pub(crate) state: &'static str,
-    /// Why it began.
+    /// Reason for the state.
     pub(crate) why: &'a str,
-    /// How long ago it began.
+    /// Time since the state began.
     pub(crate) ago_s: f64,
-    /// Of the base or, where its mount is not known, of the laser, when it began.
+    /// Pose at the start of the state: of the base or, if its mount is not known, of the laser.
     pub(crate) first: Option<PoseJson>,
-    /// The same of the last scan in this state.
+    /// Pose of the last scan in this state, in the same frame as `first`.
     pub(crate) last: Option<PoseJson>,
 }
 
@@ -42,27 +41,25 @@ struct Entry {
     last: Option<PoseJson>,
 }
 
-/// What is known of the past.
 #[derive(Debug, Default)]
 pub(crate) struct History {
     entries: VecDeque<Entry>,
 }
 
 impl History {
-    /// Takes the answer to a scan, where there is no tracker; returns whether a state
-    /// begins.
+    /// Takes the result of a scan, in graphs without a tracker; true if a state begins.
     pub(crate) fn on_answer(&mut self, answer: &Answer, now_ns: i64) -> bool {
         let best = answer.hypotheses.first();
         let pose = best.map(|place| place.base.unwrap_or(place.laser));
         self.add(answer.verdict, &answer.says, pose, now_ns)
     }
 
-    /// Takes the tracker's pose; returns whether a state begins.
+    /// Takes the tracker's pose; true if a state begins.
     pub(crate) fn on_pose(&mut self, pose: &Tracked, now_ns: i64) -> bool {
         self.add(pose.state, &pose.why, pose.base.or(pose.laser), now_ns)
     }
 
-    /// Looks whether nothing has come since `newest_ns`; returns whether that is new.
+    /// Checks whether no scan has come since `newest_ns`; true if this begins a state.
     pub(crate) fn look_for_silence(&mut self, newest_ns: Option<i64>, now_ns: i64) -> bool {
         let since_ns = newest_ns.unwrap_or(now_ns);
         let is_silent = now_ns.saturating_sub(since_ns) > SILENT_AFTER_NS;
@@ -79,7 +76,7 @@ impl History {
         if self.entries.len() == CAPACITY {
             self.entries.pop_front();
         }
-        // The one that holds when the hour begins stays.
+        // The state that held when the hour began stays.
         while let Some(second) = self.entries.get(1)
             && now_ns.saturating_sub(second.from_ns) >= KEPT_NS
         {
@@ -96,7 +93,7 @@ impl History {
         true
     }
 
-    /// The states, oldest first, as they are at `now_ns`.
+    /// States, oldest first, with ages at `now_ns`.
     pub(crate) fn periods(&self, now_ns: i64) -> impl DoubleEndedIterator<Item = Period<'_>> {
         self.entries.iter().map(move |entry| Period {
             state: entry.state,
@@ -107,12 +104,11 @@ impl History {
         })
     }
 
-    /// The state that holds.
     pub(crate) fn newest(&self, now_ns: i64) -> Option<Period<'_>> {
         self.periods(now_ns).next_back()
     }
 
-    /// The state before that.
+    /// The state before the newest one.
     pub(crate) fn before(&self, now_ns: i64) -> Option<Period<'_>> {
         self.periods(now_ns).nth_back(1)
     }

@@ -1,22 +1,21 @@
-//! What the nodes log.
+//! Log lines of the nodes.
 
 use std::collections::VecDeque;
 
 use messages::{LogHeader, LogLevel};
 use serde::Serialize;
 
-/// Lines that are kept for whoever comes.
+/// Number of lines kept for new viewers.
 const CAPACITY: usize = 200;
 
-/// A line of a node's log.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct LogLine {
     node: String,
-    /// With the counter it identifies a line.
+    /// Identifies a line, together with the counter.
     pid: u32,
     counter: u64,
     level: &'static str,
-    /// Since 1970.
+    /// In seconds since 1970.
     at_s: f64,
     text: String,
 }
@@ -46,7 +45,6 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Takes a line.
     pub(crate) fn receive(&mut self, line: LogLine) {
         if self.lines.len() == CAPACITY {
             self.lines.pop_front();
@@ -54,7 +52,7 @@ impl Log {
         self.lines.push_back(line);
     }
 
-    /// The lines as they came.
+    /// Lines, oldest first.
     pub(crate) fn lines(&self) -> impl Iterator<Item = &LogLine> {
         self.lines.iter()
     }

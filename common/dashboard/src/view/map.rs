@@ -1,4 +1,4 @@
-//! The map: what it is, and its cells.
+//! The map: description and cells.
 
 use std::io::Write;
 use std::sync::OnceLock;
@@ -10,24 +10,23 @@ use serde::Serialize;
 
 use super::PoseJson;
 
-/// What a map is; its cells are asked for by its id.
+/// Description of a map; the cells are requested separately.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct MapInfo {
-    /// Hash of cells and geometry, as hexadecimal digits.
+    /// Hash of cells and geometry, in hexadecimal.
     pub(crate) id: String,
-    /// What it is called in its set; empty of one that is served alone.
+    /// Name in its map set; empty for a single map.
     pub(crate) name: String,
-    /// Cells along x.
+    /// Number of cells along x.
     pub(crate) width: u32,
-    /// Cells along y.
+    /// Number of cells along y.
     pub(crate) height: u32,
     /// Side of a cell.
     pub(crate) resolution_m: f64,
-    /// The lower left corner of the first cell, and the turn of the axes.
+    /// Pose of the grid: its lower left corner and the rotation of its axes.
     pub(crate) map_from_grid: PoseJson,
 }
 
-/// A map with its cells.
 #[derive(Debug)]
 pub(crate) struct Map {
     pub(crate) info: MapInfo,
@@ -36,7 +35,7 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    /// Reads a message of `map`; `None` where it contradicts itself.
+    /// Converts a message of `map`; `None` if it contradicts itself.
     pub(crate) fn new(header: &MapHeader, cells: &[u8]) -> Option<Self> {
         let sides = (header.width as usize).checked_mul(header.height as usize);
         let is_sound = sides == Some(cells.len())
@@ -59,18 +58,16 @@ impl Map {
         })
     }
 
-    /// A byte for each cell, row by row from the lowest y: 0 free to 100
-    /// occupied, 255 unknown.
+    /// One byte per cell, row by row from the lowest y: 0 free to 100 occupied, 255 unknown.
     pub(crate) fn cells(&self) -> &[u8] {
         &self.cells
     }
 
-    /// The cells, packed by gzip. Takes a while the first time.
+    /// Gzip-compressed cells; compresses on the first call.
     pub(crate) fn packed(&self) -> &[u8] {
         self.packed.get_or_init(|| {
             let mut packer = GzEncoder::new(Vec::new(), Compression::fast());
-            // Nothing can go wrong in memory; if it did, the cells would be short
-            // and the reader would say so.
+            // Writing to memory cannot fail; if it did, the reader would notice missing cells.
             let _ = packer.write_all(&self.cells);
             packer.finish().unwrap_or_default()
         })

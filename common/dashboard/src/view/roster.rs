@@ -1,56 +1,51 @@
-//! The nodes of a graph and their states.
+//! Nodes of a graph and their states.
 
 use messages::{HealthHeader, NodeState};
 use serde::Serialize;
 
-/// Nodes that are kept; a graph has a dozen.
+/// Maximum number of nodes; a graph has about a dozen.
 const CAPACITY: usize = 64;
 
-/// A node reports each second. One that has not for so long is silent.
+/// Age of the last report after which a node is silent; nodes report each second.
 const SILENT_AFTER_NS: i64 = 2_500_000_000;
 
-/// Rates are taken over at least so long.
+/// Minimum interval over which rates are computed.
 const RATE_NS: i64 = 900_000_000;
 
-/// The state of a node.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct NodeReport {
     pub(crate) name: String,
-    /// `waiting`, `ready`, `busy`, `degraded`, `stopped`, or `silent` where no report
-    /// came for a while.
+    /// `waiting`, `ready`, `busy`, `degraded`, `stopped`, or `silent` if reports stay away.
     pub(crate) state: &'static str,
     pub(crate) pid: u32,
     pub(crate) received: u64,
     pub(crate) sent: u64,
     pub(crate) dropped: u64,
     pub(crate) refused: u64,
-    /// Samples received a second.
     pub(crate) received_hz: f64,
-    /// Samples sent a second.
     pub(crate) sent_hz: f64,
-    /// How often another process took its place since the monitor started.
+    /// Number of times another process took over since the monitor started.
     pub(crate) restarts: u32,
-    /// Empty where there was none.
+    /// Empty without an error.
     pub(crate) last_error: String,
-    /// How old the last report is.
+    /// Age of the last report.
     pub(crate) quiet_s: f64,
 }
 
-/// All nodes that have reported.
 #[derive(Debug, Default)]
 pub(crate) struct Roster(Vec<Entry>);
 
 #[derive(Debug)]
 struct Entry {
     report: NodeReport,
-    /// Of the last report.
+    /// Time of the last report.
     received_ns: i64,
-    /// Counters at the time from which rates are taken.
+    /// Start of the interval for rates: time, and the counters received and sent.
     base: (i64, u64, u64),
 }
 
 impl Roster {
-    /// Takes a report; `None` where there are too many nodes.
+    /// Takes a report; `None` if there are too many nodes.
     pub(crate) fn receive(&mut self, header: &HealthHeader, error: &[u8]) -> Option<&NodeReport> {
         let name = header.node.as_str();
         let at = match self.0.iter().position(|entry| entry.report.name == name) {
@@ -67,7 +62,7 @@ impl Roster {
         Some(&entry.report)
     }
 
-    /// The nodes that have become silent by now, each once.
+    /// Nodes that have become silent since the last call.
     pub(crate) fn newly_silent(&mut self, now_ns: i64) -> Vec<&NodeReport> {
         let mut silent = Vec::new();
         for entry in &mut self.0 {
@@ -130,7 +125,7 @@ impl Entry {
             report.sent_hz = rate(header.sent, sent);
             self.base = (header.sent_ns, header.received, header.sent);
         }
-        // A state that this version does not know is worth a look.
+        // A state code that this version does not know shows as degraded.
         let state = NodeState::from_code(header.state).unwrap_or(NodeState::Degraded);
         report.state = state.as_str();
         report.received = header.received;

@@ -1,22 +1,22 @@
-//! That another state begins, as it is posted to a webhook.
+//! A state change, as posted to a webhook.
 
 use serde::Serialize;
 
 use super::{Period, PoseJson};
 
-/// The state that begins, of which robot, and what was before.
+/// A robot's new state, and the one before.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct StateChange<'a> {
     pub(crate) robot: &'a str,
-    /// The graph's name; none where it is elsewhere.
+    /// `None` if it is not known (a graph on another machine).
     pub(crate) graph: Option<&'a str>,
-    /// When it began, since 1970.
+    /// Start of the new state, in seconds since 1970.
     pub(crate) since_s: f64,
-    /// The state before; none where it is the first that is known.
+    /// The state before; `None` for the first one.
     pub(crate) before: Option<&'static str>,
-    /// The last pose in that.
+    /// The last pose in the state before.
     pub(crate) before_pose: Option<PoseJson>,
-    /// The state that begins.
+    /// The new state.
     #[serde(flatten)]
     pub(crate) period: Period<'a>,
 }

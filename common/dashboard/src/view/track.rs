@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::{Answer, PoseJson, Tracked};
 
-/// Poses that are kept: some minutes.
+/// Maximum number of poses: some minutes.
 const CAPACITY: usize = 3000;
 
-/// One pose of the laser's way: x, y, the first letter of the tracker's state or, where
-/// there is no tracker, of the verdict, and the heading.
+/// A pose of the laser: x, y, the first letter of the tracker's state (of the verdict without a
+/// tracker), and the heading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct TrackPoint(
     pub(crate) f64,
@@ -19,18 +19,18 @@ pub(crate) struct TrackPoint(
     pub(crate) f64,
 );
 
-/// The poses of the last scans, all in one map: the tracker's, or the best of each scan
-/// where there is no tracker.
+/// Poses of the last scans, all in one map: the tracker's or, without a tracker, the best of each
+/// scan.
 #[derive(Debug, Default)]
 pub(crate) struct Track {
     map_id: String,
     points: VecDeque<TrackPoint>,
-    /// Whether they are the tracker's.
+    /// True if the poses are the tracker's.
     is_tracked: bool,
 }
 
 impl Track {
-    /// Takes the best pose of an answer, if it has one, and no tracker is there.
+    /// Takes the best pose of a result; ignored if there is a tracker.
     pub(crate) fn on_answer(&mut self, answer: &Answer) {
         if self.is_tracked {
             return;
@@ -39,7 +39,7 @@ impl Track {
         self.add(&answer.map_id, answer.verdict, best);
     }
 
-    /// Takes the tracker's pose, if it is of a scan. With the first one a new way begins.
+    /// Takes the tracker's pose, if it is from a scan. The first one starts a new track.
     pub(crate) fn on_pose(&mut self, pose: &Tracked) {
         if !std::mem::replace(&mut self.is_tracked, true) {
             self.points.clear();
@@ -49,7 +49,7 @@ impl Track {
         }
     }
 
-    /// In another map a new way begins.
+    /// Adds a pose; another map starts a new track.
     fn add(&mut self, map_id: &str, word: &str, pose: Option<PoseJson>) {
         if map_id != self.map_id {
             map_id.clone_into(&mut self.map_id);
@@ -67,7 +67,6 @@ impl Track {
         self.points.push_back(TrackPoint(x, y, letter, yaw));
     }
 
-    /// The poses, oldest first.
     pub(crate) fn points(&self) -> impl Iterator<Item = &TrackPoint> {
         self.points.iter()
     }

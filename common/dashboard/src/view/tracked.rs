@@ -1,4 +1,4 @@
-//! Where the tracker has the robot.
+//! Pose of the tracker.
 
 use engine::tracking::Report;
 use messages::{PoseHeader, TrackState};
@@ -9,54 +9,53 @@ use super::{Ellipse, PoseJson, ms};
 /// The tracker's pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Tracked {
-    /// Of the scan or, between scans, of the odometry.
+    /// Number of the scan or, between scans, of the odometry.
     pub(crate) counter: u64,
-    /// When that was measured, since 1970.
+    /// Time of that measurement, in seconds since 1970.
     pub(crate) stamp_s: f64,
-    /// The map that the pose is about, as hexadecimal digits.
+    /// Map of the pose, in hexadecimal.
     pub(crate) map_id: String,
-    /// Whether it is of a scan; else odometry carried it on.
+    /// True if the pose is from a scan; false if odometry predicted it.
     pub(crate) from_scan: bool,
-    /// The state, or `?` for one that this version does not know.
+    /// The state; `?` if this version does not know its code.
     pub(crate) state: &'static str,
-    /// Why it is in this state, and what to do.
+    /// Reason for the state, and advice.
     pub(crate) says: String,
-    /// Of that, why.
+    /// The reason alone.
     pub(crate) why: String,
-    /// Of that, what to do; empty where nothing.
+    /// The advice alone; empty if there is none.
     pub(crate) advice: String,
-    /// Of the laser in the map, where it is known.
+    /// Pose of the laser in the map; `None` if it is not known.
     pub(crate) laser: Option<PoseJson>,
-    /// Of the robot's base, where the laser's mount is known, too.
+    /// Pose of the robot's base; `None` if that or the laser's mount is not known.
     pub(crate) base: Option<PoseJson>,
-    /// The ellipse of one standard deviation of the laser's pose.
+    /// One-sigma ellipse of the laser's pose.
     pub(crate) ellipse: Option<Ellipse>,
-    /// That of the base's pose, where it is known.
+    /// One-sigma ellipse of the base's pose.
     pub(crate) base_ellipse: Option<Ellipse>,
-    /// How likely the robot is there.
     pub(crate) probability: f64,
-    /// By how much the place leads over the next, in natural logarithms of odds.
+    /// Log odds of this place over the next one.
     pub(crate) lead: f64,
-    /// How well the last scan fits there.
+    /// Fit of the last scan at this pose.
     pub(crate) score: f64,
-    /// Places that are kept as possible.
+    /// Number of places kept as possible.
     pub(crate) places: u32,
-    /// When the state began, since 1970.
+    /// Start of the state, in seconds since 1970.
     pub(crate) since_s: f64,
-    /// Metres that the robot has gone since.
+    /// Distance travelled since then, in metres.
     pub(crate) since_m: f64,
     /// From the measurement's entry into the graph to the pose.
     pub(crate) latency_ms: f64,
-    /// Of that, the tracker.
+    /// Duration of the tracking, part of the latency.
     pub(crate) tracking_ms: f64,
-    /// From the measurement's entry to this message.
+    /// From the measurement's entry into the graph to this message.
     pub(crate) age_ms: f64,
     /// From the sending of the pose to this message.
     pub(crate) sent_age_ms: f64,
 }
 
 impl Tracked {
-    /// Reads a message of `pose` at a time of the host's clock.
+    /// Converts a message of `pose`. `now_ns`: monotonic clock of the host.
     pub(crate) fn new(header: &PoseHeader, words: &[u8], now_ns: i64) -> Self {
         let state = TrackState::from_code(header.state);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));

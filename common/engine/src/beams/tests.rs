@@ -32,7 +32,7 @@ fn a_fine_scan_is_thinned_to_beams_on_the_heading_grid() {
         &BeamConfig::default(),
     );
     assert_eq!(chosen.beams.len(), 180);
-    // Rounding a half degree is the worst; all but the odd sector avoid it.
+    // A half degree is the worst rounding; all but the odd sector avoid it.
     let exact = chosen
         .beams
         .iter()
@@ -109,7 +109,7 @@ fn carried_nowhere_a_scan_is_thinned_as_it_came() {
     chosen.choose(Observation::Carried(&carried), 0.25, &space(), &config);
     assert_eq!(chosen.beams.len(), expected.beams.len());
     for (found, expected) in chosen.beams.iter().zip(&expected.beams) {
-        // From sine, cosine and arc tangent: a few units in the last place.
+        // Sine, cosine and arc tangent err by a few units in the last place.
         assert_eq!(
             (found.index, found.bearing),
             (expected.index, expected.bearing)
@@ -121,8 +121,8 @@ fn carried_nowhere_a_scan_is_thinned_as_it_came() {
 
 #[test]
 fn of_several_lasers_the_nearest_end_in_a_sector_votes() {
-    // Half a metre ahead, and half a metre behind looking back. The rear laser's
-    // left lies where the front laser's right does.
+    // One laser is half a metre ahead; the other is half a metre behind and looks back. The rear
+    // laser's left is on the same side as the front laser's right.
     let (front, rear) = ([3.0, 4.0, f32::NAN], [2.0, 1.0, 2.5]);
     let at = |x: f64, yaw: f64| [Pose::new(x, 0.0, yaw); 3];
     let (ahead, behind) = (at(0.0, 0.0), at(0.0, std::f64::consts::PI));
@@ -154,7 +154,7 @@ fn of_several_lasers_the_nearest_end_in_a_sector_votes() {
     );
     let arc = 90f64.to_radians();
     assert_eq!(chosen.beams[2].weight, (1.0 * arc / 2.0).min(1.0) + 0.05);
-    // Carried a metre to the left, everything lies a metre further there.
+    // A laser that is carried a metre to the left sees everything a metre further there.
     let left = [Pose::new(0.0, 1.0, 0.0); 3];
     let alone = [
         CarriedScan {

@@ -1,18 +1,18 @@
-//! How well a scan agrees with the map at a pose, beam by beam.
+//! Agreement of a scan with the map at a pose, beam by beam.
 
 use super::ends::{End, Ends};
 use super::{BeamClass, DistanceField, FitConfig, GridPose};
 
-/// An end point within this many standard deviations lies at the obstacle.
+/// Largest distance of an end point from an obstacle that counts as a hit, in standard deviations.
 const HIT_SIGMAS: f64 = 2.0;
 
-/// A reading that is longer than the way to an obstacle by this many standard
-/// deviations passes through it.
+/// A beam passes through an obstacle if its reading is longer than the distance to it by more than
+/// this many standard deviations.
 const THROUGH_SIGMAS: f64 = 3.0;
 
 impl DistanceField {
-    /// How well a scan agrees with the map at a pose: the mean score of the beams
-    /// by weight, at most 1; below 0 where most beams pass through obstacles.
+    /// Returns the score of a scan at a pose: the weighted mean of the scores of its beams, at most
+    /// 1; below 0 if most beams pass through obstacles.
     #[must_use]
     pub fn score(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> f64 {
         let mut score = 0.0;
@@ -22,7 +22,8 @@ impl DistanceField {
         score / ends.weight.max(f64::MIN_POSITIVE)
     }
 
-    /// What [`DistanceField::score`] is at most, by the ends alone: no ray is followed.
+    /// Returns an upper bound of [`DistanceField::score`] from the ends alone, without following
+    /// rays.
     pub(crate) fn score_at_most(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> f64 {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let turn = pose.heading.sin_cos();
@@ -36,15 +37,15 @@ impl DistanceField {
         score / ends.weight.max(f64::MIN_POSITIVE)
     }
 
-    /// How many standard deviations an end lies from an obstacle, and what it is worth for
-    /// that.
+    /// Returns the distance of an end from an obstacle in standard deviations, and the score for
+    /// it.
     fn near(&self, x: f64, y: f64, sigma: f64) -> (f64, f64) {
         let distance = self.distance(x, y);
         let off = distance.map_or(f64::INFINITY, |distance| distance / sigma);
         (off, (-0.5 * off * off).exp())
     }
 
-    /// What became of each beam at a pose, in the order of their bearings.
+    /// Returns the class of each beam at a pose, in the order of bearings.
     #[must_use]
     pub fn classes(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> Vec<BeamClass> {
         let mut classes = Vec::new();
@@ -52,7 +53,7 @@ impl DistanceField {
         classes
     }
 
-    /// Fills in the same.
+    /// Does the same as [`DistanceField::classes`] in a given buffer.
     pub(crate) fn classify(
         &self,
         ends: &Ends,
@@ -81,7 +82,7 @@ impl DistanceField {
         }
     }
 
-    /// What a beam is worth, and what became of it.
+    /// Returns the score and the class of a beam.
     fn judge_beam(
         &self,
         reading: f64,
@@ -147,7 +148,7 @@ mod tests {
         Ends::of(readings.iter().map(end).collect())
     }
 
-    /// One cell is 0.1 m: σ is one cell.
+    /// Settings with a σ of one cell; a cell is 0.1 m.
     fn config() -> FitConfig {
         FitConfig {
             fit_sigma_cells: 1.0,
@@ -168,7 +169,7 @@ mod tests {
         let expected = [
             BeamClass::Hit,
             BeamClass::Short,
-            // Through the first obstacle to the second is through all the same.
+            // A beam through the first obstacle that ends at the second is still `Through`.
             BeamClass::Through,
             BeamClass::Unknown,
             BeamClass::Short,
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn the_score_is_what_the_ends_are_worth() {
         let map = distance_field(&MAP);
-        // The score, and the share of hits.
+        // Returns the score and the share of hits.
         let judged = |readings: &[(f64, f64)]| {
             let scan = ends(readings);
             let classes = map.classes(&scan, POSE, &config());
@@ -189,10 +190,10 @@ mod tests {
         let score = |readings: &[(f64, f64)]| judged(readings).0;
         let on_the_wall = judged(&[(0.0, 6.0)]);
         assert_eq!(on_the_wall, (1.0, 1.0));
-        // One σ before the wall, and in the open.
+        // One end is one σ before the wall, one in the open.
         assert!((score(&[(0.0, 5.0)]) - (-0.5f64).exp()).abs() < 1e-12);
         assert!(score(&[(0.0, 1.0)]) < 1e-5);
-        // At an obstacle, but through another.
+        // The end is at an obstacle, but the beam passes through another.
         assert!((score(&[(0.0, 9.0)]) - 0.85).abs() < 1e-12);
         assert_eq!(score(&[(22.0, 6.0)]), 0.3);
         let both = judged(&[(0.0, 6.0), (22.0, 6.0)]);

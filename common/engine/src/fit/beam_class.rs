@@ -1,14 +1,14 @@
-//! How single beams agree with the map.
+//! Classes of beams by their agreement with the map.
 
-/// What became of a beam.
+/// Class of a beam at a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeamClass {
-    /// It ends at an obstacle.
+    /// The beam ends at an obstacle.
     Hit,
-    /// It ends in the open: something stands there that the map does not have.
+    /// The beam ends in the open, at something that is not on the map.
     Short,
-    /// It passes through an obstacle of the map.
+    /// The beam passes through an obstacle of the map.
     Through,
-    /// It ends behind unknown space, where the map says nothing.
+    /// The beam ends behind unknown space, where the map has no information.
     Unknown,
 }

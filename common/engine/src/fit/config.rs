@@ -1,9 +1,9 @@
-//! The lengths and shares of the second stage.
+//! Settings of the second stage, which compares beams with the map.
 
 #[cfg(feature = "clap")]
 use crate::config::{parse_length, parse_share};
 
-/// How end points are judged by their distance to obstacles.
+/// Scores of end points by their distance to obstacles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FitConfig {
@@ -11,7 +11,8 @@ pub struct FitConfig {
     /// to, map errors included, metres, 0..=2; at least `--fit-sigma-cells`.
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = parse_length))]
     pub fit_sigma_m: f64,
-    /// The same in cells of the map, 0.1..=10: coarse maps are less exact.
+    /// Lower limit of `--fit-sigma-m` in cells of the map, 0.1..=10, since coarse maps are
+    /// less exact.
     #[cfg_attr(feature = "clap", arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells))]
     pub fit_sigma_cells: f64,
     /// Penalty for a beam that passes through an obstacle, as a share of its full
@@ -19,8 +20,8 @@ pub struct FitConfig {
     /// to the first obstacle by three standard deviations.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.15, value_parser = parse_share))]
     pub through_penalty: f64,
-    /// The score of a beam that ends behind unknown space, 0..=1; half of it if
-    /// it passes through an obstacle there.
+    /// Score of a beam that ends behind unknown space, 0..=1; half of it if the beam also passes
+    /// through an obstacle.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share))]
     pub unknown_score: f64,
     /// Tolerance for drawn maps, which leave out what their author did not know: the
@@ -48,7 +49,7 @@ impl Default for FitConfig {
 }
 
 impl FitConfig {
-    /// The standard deviation in cells of a map.
+    /// Returns the standard deviation in cells of a map.
     pub(crate) fn sigma_cells(&self, resolution_m: f64) -> f64 {
         (self.fit_sigma_m / resolution_m).max(self.fit_sigma_cells)
     }

@@ -1,15 +1,14 @@
-//! The Euclidean distance of every cell to the nearest marked one.
+//! Euclidean distance transform: the distance of every cell to the nearest marked one.
 //!
-//! Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions"
-//! (Theory of Computing 8, 2012), section 2: squared distances are lower
-//! envelopes of parabolas, first along columns and then along rows.
+//! Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions" (Theory of Computing
+//! 8, 2012), section 2: squared distances are lower envelopes of parabolas, first along columns and
+//! then along rows.
 
-/// Squared distance of cells when none is marked: farther than any map is
-/// wide, and yet exact in sums.
+/// Squared distance if no cell is marked: larger than any map, and still exact in sums.
 const FAR: f32 = 1e12;
 
-/// Distances in cells between cell centres, row by row, 0 in marked cells;
-/// 10⁶ everywhere where none is marked.
+/// Returns the distances between cell centres in cells, row by row: 0 in marked cells, 10⁶
+/// everywhere if none is marked.
 pub(crate) fn transform(
     width: usize,
     height: usize,
@@ -28,8 +27,8 @@ pub(crate) fn transform(
     field
 }
 
-/// Squared distances within each column: cells are 0 or [`FAR`], so that
-/// counting from the last marked cell, there and back, is enough.
+/// Computes squared distances within each column. Cells are 0 or [`FAR`], so that counting from the
+/// last marked cell, in both directions, is enough.
 fn along_columns(width: usize, height: usize, field: &mut [f32]) {
     let mut steps = vec![f32::INFINITY; width];
     let mut pass = |y: usize, field: &mut [f32]| {
@@ -45,11 +44,11 @@ fn along_columns(width: usize, height: usize, field: &mut [f32]) {
 
 /// The lower envelope of parabolas over one row.
 struct Envelope {
-    /// The row as it was.
+    /// Original heights of the row.
     heights: Vec<f32>,
-    /// Where the parabolas of the envelope have their lowest points.
+    /// Positions of the lowest points of the envelope's parabolas.
     centres: Vec<usize>,
-    /// From where on each of them is the lowest.
+    /// Position from which each of them is the lowest.
     starts: Vec<f64>,
 }
 
@@ -81,7 +80,7 @@ impl Envelope {
         }
     }
 
-    /// Adds the parabola of a place to the right of all others.
+    /// Adds the parabola of a cell to the right of all others.
     fn push(&mut self, centre: usize) {
         loop {
             let Some((&last, &start)) = self.centres.last().zip(self.starts.last()) else {

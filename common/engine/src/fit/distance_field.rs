@@ -1,5 +1,4 @@
-//! A map as the second stage reads it: how far from obstacles a point is, and
-//! what a ray meets on its way.
+//! A map for the second stage: distances of points from obstacles, and obstacles along rays.
 
 use super::lanes::{LANES, Lanes, lanes};
 use super::{FitConfig, distance, drawing};
@@ -8,55 +7,53 @@ use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
 use crate::simd::Simd;
 
-/// Distances to obstacles and to what is unknown.
+/// Distances of the cells of a map to obstacles and to unknown cells.
 #[derive(Debug, Clone)]
 pub struct DistanceField {
-    /// Where the grid lies in the map.
+    /// Cell size and pose of the grid in the map.
     pub frame: GridFrame,
     width: usize,
     height: usize,
-    /// To the nearest occupied cell, cells between centres.
+    /// Distance to the nearest occupied cell, in cells between centres.
     to_occupied: Vec<f32>,
-    /// To the nearest unknown cell, whole cells, 255 for more.
+    /// Distance to the nearest unknown cell, in whole cells; 255 for more.
     to_unknown: Vec<u8>,
-    /// How far the map is a drawing, 0..=1.
+    /// Degree to which the map is a drawing, 0..=1.
     drawn_share: f64,
-    /// What it is read with.
+    /// Instruction set with which it is read.
     pub(super) simd: Simd,
 }
 
-/// What a ray hits, in cells from where it starts.
+/// Cells that a ray meets, as distances in cells from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RayHit {
-    /// To the first occupied cell, if it is on the map and near enough.
+    /// Distance to the first occupied cell; `None` if it is off the map or beyond the limit.
     pub occupied: Option<f64>,
-    /// To the first unknown cell before that.
+    /// Distance to the first unknown cell before that.
     pub unknown: Option<f64>,
 }
 
-/// Cells that a ray moves on at least; it may miss a corner that it cuts by
-/// less.
+/// Smallest step of a ray, in cells; a ray may miss a corner that it cuts by less.
 const MIN_STEP: f64 = 0.5;
 
-/// How far walls lie from where somebody drew them, metres: right answers on a map of
-/// offices that was drawn by hand lie 12 cm off, along both axes together.
+/// Distance of walls from where they were drawn, in metres: correct poses on a hand-drawn map of
+/// offices are 12 cm off, along both axes together.
 const DRAWN_ERROR_M: f64 = 0.1;
 
-/// Farther than any reach, cells.
+/// Distance of points off the map, in cells: farther than any reach.
 const OFF_THE_MAP: f32 = 1e6;
 
-/// The farthest that a point of a cell and a point of another cell can lie
-/// nearer to each other than the centres do.
+/// Largest amount, in cells, by which points of two cells can be nearer to each other than the
+/// cells' centres.
 const SLACK: f64 = std::f64::consts::SQRT_2;
 
-/// Where the best place lacks little itself, the true one does not lack much more than this.
+/// Largest score gap between the best place and the true one, given the best score.
 pub(crate) fn lacks(best: f64) -> f64 {
     2.0 * (1.0 - best).max(0.0)
 }
 
 impl DistanceField {
-    /// Prepares a map of `width · height` occupancies, row by row from the
-    /// lowest y.
+    /// Prepares a map of `width · height` occupancies, row by row from the lowest y.
     ///
     /// # Errors
     /// See [`Grid::new`].
@@ -66,7 +63,7 @@ impl DistanceField {
         occupancy: &[u8],
         rules: CellRules,
     ) -> Result<Self, EngineError> {
-        // A grid in which unknown cells block distinguishes them.
+        // Unknown cells are distinguished only in a grid in which they block.
         let rules = CellRules {
             unknown_blocks: true,
             ..rules
@@ -85,38 +82,35 @@ impl DistanceField {
         })
     }
 
-    /// The same, read with the instructions of this set.
+    /// Makes the field use this instruction set.
     #[cfg(test)]
     pub(super) fn with(self, set: InstructionSet) -> Self {
         let simd = Simd::new(set);
         DistanceField { simd, ..self }
     }
 
-    /// What the map may leave out of the score of the true place, 0..=1, where the best
-    /// place has this one: nothing where it was measured, and little where the best lacks
-    /// little itself.
+    /// Returns the score that the true place may lack because a drawn map leaves things out, 0..=1,
+    /// given the best score: 0 on a measured map, and little if the best score is near 1.
     #[must_use]
     pub fn left_out(&self, best: f64, config: &FitConfig) -> f64 {
         self.drawn_share * config.drawn_doubt.min(lacks(best))
     }
 
-    /// The same, however good the best place is: by so much less may the true place on a map
-    /// that was measured fit than a wrong one here.
+    /// Returns the same without the limit by the best score: the score by which the true place, on
+    /// a measured map, may fit worse than a wrong place on this map.
     #[must_use]
     pub fn drawn_doubt(&self, config: &FitConfig) -> f64 {
         self.drawn_share * config.drawn_doubt
     }
 
-    /// What the walls of the map are off by because they were drawn, metres: nothing
-    /// where it was measured.
+    /// Returns the error of the walls that comes from drawing, in metres; 0 on a measured map.
     #[must_use]
     pub fn drawn_error_m(&self) -> f64 {
         self.drawn_share * DRAWN_ERROR_M
     }
 
-    /// Distance of a point to the nearest occupied cell: bilinear between the centres of
-    /// cells, and beyond the outermost as at the nearest point between them. `None` off the
-    /// map.
+    /// Distance of a point to the nearest occupied cell, in cells: bilinear between the centres of
+    /// cells, and constant beyond the outermost centres. `None` off the map.
     #[inline(always)]
     pub(super) fn distance(&self, x: f64, y: f64) -> Option<f64> {
         let (right, top) = (self.width - 1, self.height - 1);
@@ -135,8 +129,8 @@ impl DistanceField {
         Some(low + v * (high - low))
     }
 
-    /// The distances of points side by side, and how they grow along x and y; off the map
-    /// they are far from everything.
+    /// Distances of eight points, and their derivatives along x and y; points off the map get
+    /// [`OFF_THE_MAP`].
     #[inline(always)]
     pub(super) fn distances(&self, x: Lanes, y: Lanes) -> (Lanes, [Lanes; 2]) {
         let (width, height) = (self.width as f32, self.height as f32);
@@ -159,8 +153,7 @@ impl DistanceField {
         (distance, [along_x, along_y])
     }
 
-    /// What a ray from a point in a direction, a vector of length 1, meets
-    /// within `limit` cells.
+    /// Returns what a ray meets within `limit` cells, from a point in a direction (a unit vector).
     pub(crate) fn cast_ray(&self, (x, y): (f64, f64), (dx, dy): (f64, f64), limit: f64) -> RayHit {
         let mut hit = RayHit {
             occupied: None,
@@ -190,21 +183,21 @@ impl DistanceField {
         hit
     }
 
-    /// Distance of the cell at a point to the nearest occupied one, between the cells'
-    /// centres: 0 in an occupied cell, 10⁶ where none is. `None` off the map.
+    /// Returns the distance of the cell at a point to the nearest occupied cell, between centres: 0
+    /// in an occupied cell, 10⁶ if there is none. `None` off the map.
     #[inline(always)]
     #[must_use]
     pub fn cell_distance(&self, x: f64, y: f64) -> Option<f32> {
         self.index(x, y).map(|at| self.to_occupied[at])
     }
 
-    /// Bytes of the distances.
+    /// Memory of the distances in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of_val(&self.to_occupied[..]) + size_of_val(&self.to_unknown[..])
     }
 
-    /// The cells that are neither occupied nor unknown, row by row.
+    /// Indices of the cells that are neither occupied nor unknown, row by row.
     pub fn free_cells(&self) -> impl Iterator<Item = usize> {
         let both = self.to_occupied.iter().zip(&self.to_unknown);
         let free = |(occupied, unknown): (&f32, &u8)| *occupied > 0.0 && *unknown > 0;
@@ -213,7 +206,7 @@ impl DistanceField {
             .map(|(at, _)| at)
     }
 
-    /// Cells along x.
+    /// Number of cells along x.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
@@ -226,9 +219,9 @@ impl DistanceField {
     }
 }
 
-/// The cells whose centres lie below places along an axis of so many cells, how many cells
-/// on the next centres are, which is none behind the last, and how far the places lie on the
-/// way there, 0..=1.
+/// Interpolates places along an axis of `cells` cells. Returns the cell whose centre is below each
+/// place, the step to the next centre (1, or 0 at the last), and the fraction of the way there,
+/// 0..=1.
 #[inline(always)]
 fn between_centres(places: Lanes, cells: usize) -> ([u32; LANES], [u32; LANES], Lanes) {
     let last = cells as u32 - 1;
@@ -268,7 +261,7 @@ mod tests {
         let distance_field = distance_field(&["......?..#..#"]);
         let from = |x, limit| distance_field.cast_ray((x, 0.5), (1.0, 0.0), limit);
         let hit = from(0.5, 20.0);
-        // It steps by half a cell at most where it matters.
+        // Near obstacles it steps by half a cell at most.
         assert!((8.5..9.0).contains(&hit.occupied.unwrap()), "{hit:?}");
         assert!((5.5..6.0).contains(&hit.unknown.unwrap()), "{hit:?}");
         assert_eq!(from(7.5, 20.0).unknown, None);
@@ -292,7 +285,7 @@ mod tests {
                 let (x, y) = (f64::from(x as f32), f64::from(y as f32));
                 let expected = field.distance(x, y).unwrap_or(f64::from(OFF_THE_MAP));
                 prop_assert!((f64::from(distances[i]) - expected).abs() <= 1e-5 * expected.max(1.0));
-                // Centres of neighbouring cells differ by one cell at most.
+                // Distances of neighbouring cells differ by at most one cell.
                 prop_assert!(slopes.iter().all(|slope| slope[i].abs() < 1.0 + 1e-5));
             }
         }
@@ -308,7 +301,7 @@ mod tests {
             for step in 0..1000 {
                 let gone = 0.1 * f64::from(step);
                 let Some(at) = distance_field.index(start.0 + gone * dx, start.1 + gone * dy) else { break };
-                // The shortest step enters a cell late, but passes none.
+                // A ray may enter a cell one shortest step late, but passes through none.
                 if hit.occupied.is_some_and(|end| gone > end - MIN_STEP) { break }
                 let (x, y) = (start.0 + gone * dx, start.1 + gone * dy);
                 let inner = [x, y].iter().all(|c| (0.36..0.64).contains(&c.fract()));

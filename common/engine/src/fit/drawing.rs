@@ -1,22 +1,22 @@
-//! How far a map is a drawing: what a laser mapped has ragged walls, and what was drawn
-//! has straight ones.
+//! Distinguishes drawn maps from measured ones: maps made with a laser have ragged walls, drawn
+//! ones straight walls.
 //!
-//! A drawing leaves out what its author did not know or did not care for, such as doors
-//! and furniture, and so the true place may fit worse than another that looks alike.
+//! A drawing leaves out things that its author did not know or did not care about, such as doors
+//! and furniture, so that the true place may fit worse than another that looks alike.
 
 use crate::grid::{Cell, Grid};
 
-/// A straight piece of a wall is at least so long, metres.
+/// Smallest length of a straight piece of wall, in metres.
 const STRAIGHT_M: f64 = 1.0;
 
-/// Shares of the walls in straight pieces at which a map is taken to be measured, and
-/// drawn. Of nine maps made by lasers with cells of 2.5 to 10 cm the largest share is
-/// 0.34, of a simulated world 0.43, and of two drawings 0.64 and 0.85.
+/// Shares of the walls in straight pieces below which a map counts as measured, and above which as
+/// drawn. The largest share of nine maps made by lasers with cells of 2.5 to 10 cm is 0.34, that of
+/// a simulated world 0.43, and those of two drawings 0.64 and 0.85.
 const MEASURED: f64 = 0.4;
 const DRAWN: f64 = 0.6;
 
-/// How far a grid is a drawing, from 0 for one that was measured to 1; its cells have
-/// sides of `resolution_m`.
+/// Returns the degree to which a grid is a drawing, from 0 (measured) to 1; its cells have sides of
+/// `resolution_m`.
 pub(super) fn share(grid: &Grid, resolution_m: f64) -> f64 {
     let (width, height) = (grid.width(), grid.height());
     let least = (STRAIGHT_M / resolution_m).ceil() as usize;
@@ -32,7 +32,7 @@ pub(super) fn share(grid: &Grid, resolution_m: f64) -> f64 {
     ((straight - MEASURED) / (DRAWN - MEASURED)).clamp(0.0, 1.0)
 }
 
-/// Whether a cell is occupied, with an open one beside, above or below it.
+/// True if a cell is occupied and one of its four neighbours is open.
 fn is_wall(grid: &Grid, i: usize) -> bool {
     let (width, cells) = (grid.width(), grid.cells());
     let x = i % width;
@@ -45,7 +45,7 @@ fn is_wall(grid: &Grid, i: usize) -> bool {
             || is_open(Some(i + width)))
 }
 
-/// Marks the cells of a line that stand in a row of at least this many.
+/// Marks the cells of a line that are in a run of at least `least` wall cells.
 fn mark_straight(
     (start, step, length): (usize, usize, usize),
     least: usize,
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(share_of(&straight), 1.0);
         let ragged = ["...##....##.", "###..####..#", "............"];
         assert_eq!(share_of(&ragged), 0.0);
-        // Half of the cells lie in a piece of a metre: 10 of 20.
+        // Half of the cells are in a piece of a metre: 10 of 20.
         let half = [
             "##########...........",
             ".....................",

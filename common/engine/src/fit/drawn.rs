@@ -1,5 +1,5 @@
-//! Distance fields drawn as text for tests: `#` is occupied, `?` unknown, the rest
-//! free. The last line is the lowest row; cells have sides of 0.1 m.
+//! Distance fields drawn as text for tests: `#` is occupied, `?` unknown, all else free. The last
+//! line is the lowest row; cells have sides of 0.1 m.
 
 use geometry::Pose;
 use messages::UNKNOWN;
@@ -22,7 +22,7 @@ pub(crate) fn distance_field(rows: &[&str]) -> DistanceField {
     of_cells((rows[0].len(), rows.len()), &occupancy)
 }
 
-/// That of a grid.
+/// Distance field of a grid.
 pub(crate) fn field_of(grid: &Grid) -> DistanceField {
     let occupancy = |cell: &Cell| match cell {
         Cell::Occupied => 100,

@@ -1,4 +1,4 @@
-//! Where the beams of a scan end, seen from the target frame.
+//! End points of the beams of a scan, seen from the target frame.
 
 use messages::Reading;
 
@@ -10,50 +10,48 @@ use crate::fit::readings::{Readings, is_sound};
 use crate::observation::Observation;
 use crate::space::Space;
 
-/// The end points of a scan's beams, in cells; by default those of a scan
-/// without beams. They can be found again for each scan, in the buffers of the one
-/// before.
+/// End points of a scan's beams, in cells; the default has no beams. The buffers are reused from
+/// scan to scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
     chosen: Chosen,
     pub(crate) ends: Vec<End>,
-    /// The same side by side.
+    /// The same ends in groups of eight.
     pub(super) lanes: Vec<EndLanes>,
     silent: Vec<f64>,
     readings: Readings,
-    /// The weights of all beams together.
+    /// Total weight of the beams.
     pub(crate) weight: f64,
 }
 
-/// Where a beam ends.
+/// End point of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct End {
-    /// Where the laser was, cells in the target frame; its origin where the
-    /// laser stood still.
+    /// Position of the laser at the beam's time, in cells in the target frame; (0, 0) without
+    /// motion compensation.
     pub from: (f64, f64),
-    /// In the target frame, radians.
+    /// Bearing in the target frame, in radians.
     pub bearing: f64,
-    /// Metres from the laser.
+    /// Distance from the laser, in metres.
     pub reading_m: f64,
-    /// The unit vector along the beam, in the target frame.
+    /// Unit vector along the beam, in the target frame.
     pub towards: (f64, f64),
-    /// Cells.
+    /// Distance from the laser, in cells.
     pub reading: f64,
-    /// How much the beam counts.
+    /// Weight of the beam.
     pub weight: f64,
 }
 
-/// Ends farther off than this lie on no map that their pose is on, and have no say there, cells:
-/// what is summed up of those that are nearer has room in 32 bits.
+/// Largest coordinate of an end that counts, in cells: farther ends are off any map that contains
+/// their pose, and sums over nearer ones fit in 32 bits.
 const FARTHEST: f64 = 1e6;
 
 impl Ends {
-    /// The ends of a scan's beams, thinned as for voting; bearings are not rounded.
-    /// Where several lasers are joined, they are the beams of each, seen from its
-    /// own place.
+    /// Finds the ends of a scan's beams, thinned as for voting; bearings are not rounded. With
+    /// several lasers, each beam is seen from its own laser's pose.
     ///
     /// # Errors
-    /// If [`Observation::check`] refuses the scan.
+    /// If [`Observation::check`] rejects the scan.
     pub fn new<'a>(
         scan: impl Into<Observation<'a>>,
         space: &Space,
@@ -64,8 +62,7 @@ impl Ends {
         Ok(ends)
     }
 
-    /// The same in the buffers of a scan before; where it is refused, that scan
-    /// stays.
+    /// Does the same in the buffers of the scan before, which is kept if the scan is rejected.
     ///
     /// # Errors
     /// See [`Ends::new`].
@@ -100,7 +97,7 @@ impl Ends {
         }
     }
 
-    /// Beams that end somewhere.
+    /// Number of beams with an end.
     #[must_use]
     pub fn beams(&self) -> usize {
         self.ends.len()
@@ -113,7 +110,7 @@ impl Ends {
         self.weight = 0.0;
     }
 
-    /// Fills in what follows from the ends.
+    /// Computes what follows from the ends.
     fn sum_up(&mut self) {
         self.weight = self.ends.iter().map(|end| end.weight).sum();
         self.lanes.clear();
@@ -131,11 +128,11 @@ impl Ends {
         }));
     }
 
-    /// Takes the beams from a message, in the buffers of a scan before.
+    /// Takes the beams from a message, in the buffers of the scan before.
     ///
     /// # Errors
-    /// If a number is not finite, or a beam has no length or a weight that none can
-    /// have; nothing is left then.
+    /// If a position, bearing or weight is not finite, a range is not above 0, or a weight is not
+    /// within 0..=2; no beams are left then.
     pub fn take(&mut self, readings: &[Reading], resolution_m: f64) -> Result<(), EngineError> {
         self.clear();
         for (beam, reading) in readings.iter().enumerate() {
@@ -167,22 +164,22 @@ impl Ends {
     }
 }
 
-/// A beam, and what became of it.
+/// A beam with its class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgedBeam {
-    /// Where it ends, seen from the origin of the target frame (the laser's
-    /// where it stood still): counter-clockwise from ahead, radians.
+    /// Bearing of the end, seen from the origin of the target frame (the laser, without motion
+    /// compensation): counter-clockwise from ahead, in radians.
     pub bearing: f64,
-    /// Metres from there.
+    /// Distance of the end from there, in metres.
     pub reading_m: f64,
-    /// How much it counted.
+    /// Weight of the beam.
     pub weight: f64,
-    /// What became of it.
+    /// Agreement of the beam with the map.
     pub class: BeamClass,
 }
 
 impl Ends {
-    /// The beams that voted, with their classes: those of
+    /// Pairs the beams that voted with their classes from
     /// [`DistanceField::classes`](super::DistanceField::classes).
     pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
         let both = self.ends.iter().zip(classes);
@@ -197,17 +194,16 @@ impl Ends {
         })
     }
 
-    /// How many beams of equal weight would make scores that chance moves as much:
-    /// Kish's effective sample size, (Σ w)² / Σ w².
+    /// Returns the number of beams of equal weight whose score would vary as much by chance: Kish's
+    /// effective sample size, (Σ w)² / Σ w².
     #[must_use]
     pub fn effective_beams(&self) -> f64 {
         self.effective(self.ends.iter().map(|end| end.weight))
     }
 
-    /// How many pieces of equal weight the scan sees, where neighbouring readings
-    /// that differ by more than this many metres lie on different pieces: Kish's
-    /// effective sample size, as for [`Ends::effective_beams`]. The beams of one
-    /// piece fit, or do not fit, together.
+    /// Returns the effective number of pieces of equal weight that the scan sees, by Kish's formula
+    /// as in [`Ends::effective_beams`]. A new piece begins where neighbouring readings differ by
+    /// more than `apart_m` metres. The beams of one piece fit, or do not fit, together.
     #[must_use]
     pub fn effective_pieces(&self, apart_m: f64) -> f64 {
         let together = |a: &End, b: &End| (a.reading_m - b.reading_m).abs() <= apart_m;
@@ -215,21 +211,21 @@ impl Ends {
         self.effective(pieces.map(|piece| piece.iter().map(|end| end.weight).sum()))
     }
 
-    /// Of how many parts of equal weight a mean would be as uncertain; the weights of
-    /// the parts are those of all beams together.
+    /// Returns the number of parts of equal weight whose mean would be as uncertain; the weights of
+    /// the parts add up to that of all beams.
     fn effective(&self, weights: impl Iterator<Item = f64>) -> f64 {
         let squares: f64 = weights.map(|weight| weight * weight).sum();
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 
-    /// Bearings of the beams that say nothing, in the target frame, radians.
+    /// Bearings of the silent beams in the target frame, in radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
         &self.silent
     }
 
-    /// Share of the beams by weight that are of a class, 0..=1; `classes` are
-    /// those of [`DistanceField::classes`](super::DistanceField::classes).
+    /// Returns the share of the beams, by weight, that are of a class, 0..=1; `classes` are those
+    /// of [`DistanceField::classes`](super::DistanceField::classes).
     #[must_use]
     pub fn share(&self, classes: &[BeamClass], class: BeamClass) -> f64 {
         let both = self.ends.iter().zip(classes);
@@ -240,7 +236,7 @@ impl Ends {
 }
 
 impl End {
-    /// An end at a bearing from a place in cells; the reading in metres and in cells.
+    /// Makes an end at a bearing from a position in cells, with the reading in metres and in cells.
     pub(super) fn new(
         from: (f64, f64),
         bearing: f64,
@@ -258,20 +254,19 @@ impl End {
         }
     }
 
-    /// The direction of the beam where the target frame is turned.
+    /// Direction of the beam when the target frame is turned.
     #[inline]
     pub(super) fn direction(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.towards, turn)
     }
 
-    /// Where the laser was from the target frame's origin, where that is turned.
+    /// Position of the laser from the target frame's origin when that frame is turned.
     #[inline]
     pub(super) fn start(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.from, turn)
     }
 
-    /// Where the beam ends, seen from the origin of the target frame: bearing and
-    /// metres.
+    /// Bearing and distance in metres of the end, seen from the origin of the target frame.
     fn seen_from_origin(&self) -> (f64, f64) {
         if self.from == (0.0, 0.0) {
             return (self.bearing, self.reading_m);
@@ -283,7 +278,7 @@ impl End {
     }
 }
 
-/// A vector that is turned by an angle, given as sine and cosine.
+/// Turns a vector by an angle, given as sine and cosine.
 #[inline]
 fn turned((x, y): (f64, f64), (sin, cos): (f64, f64)) -> (f64, f64) {
     (x * cos - y * sin, x * sin + y * cos)
@@ -308,8 +303,8 @@ mod tests {
         check(&[], 0.0);
         check(&[(2.0, 1.0), (2.3, 1.0), (2.6, 1.0), (2.9, 1.0)], 1.0);
         check(&[(2.0, 1.0), (2.3, 1.0), (4.0, 1.0), (4.0, 1.0)], 2.0);
-        // Back at the same distance it is another piece, too; a small one counts
-        // for less: (1 + 1 + 0.5)² / (1 + 1 + 0.25).
+        // A return to the same distance is a new piece, too, and a small piece counts for less:
+        // (1 + 1 + 0.5)² / (1 + 1 + 0.25).
         check(&[(2.0, 1.0), (4.0, 0.5), (2.0, 1.0)], 6.25 / 2.25);
     }
 }

@@ -1,18 +1,18 @@
-//! Eight ends of beams side by side. Numbers have 32 bits, which is 1/256 of a cell on the
-//! largest map; sums go lane by lane, so that every instruction set gives the same ones.
+//! Groups of eight beam ends. Numbers have 32 bits, which is 1/256 of a cell on the largest map;
+//! sums are per lane, so that every instruction set gives the same ones.
 
-/// Ends at a time.
+/// Number of ends in a group.
 pub(super) const LANES: usize = 8;
 
 pub(super) type Lanes = [f32; LANES];
 
-/// One number for each lane.
+/// Computes one value for each lane.
 #[inline(always)]
 pub(super) fn lanes<T>(of: impl FnMut(usize) -> T) -> [T; LANES] {
     std::array::from_fn(of)
 }
 
-/// Ends of beams as seen from the target frame, cells; lanes that are left have no weight.
+/// Ends of beams in the target frame, in cells; unused lanes have weight 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct EndLanes {
     pub x: Lanes,

@@ -1,17 +1,17 @@
-//! The second stage: how well a scan fits the map at a pose, judged by how far
-//! its end points lie from obstacles.
+//! The second stage: the fit of a scan to the map at a pose, by the distances of its end points
+//! from obstacles.
 //!
-//! Votes count along rays, and where a ray grazes a wall, centimetres of wall
-//! are half a metre of range. So the places that the votes name are refined
-//! continuously and judged again by the perpendicular distance:
+//! Votes count along rays, and where a ray grazes a wall, centimetres of wall are half a metre of
+//! range. So the places found by the votes are refined continuously and judged again by the
+//! perpendicular distance:
 //!
 //! ```text
 //! occupancy ─ distance ─ distance_field ─┬─ refine ─ agreement ─ score, beam classes
-//! scan ─ beams ─ ends ────────────┘
+//! scan ─ beams ─ ends ───────────────────┘
 //! ```
 //!
-//! Lengths here are in cells and positions in the grid's frame, the centre of
-//! cell (0, 0) at (0.5, 0.5).
+//! Lengths here are in cells and positions in the grid's frame; the centre of cell (0, 0)
+//! is (0.5, 0.5).
 
 mod agreement;
 mod beam_class;
@@ -43,23 +43,23 @@ pub use refine::{Expected, Refined};
 /// A pose in cells of the grid and radians in its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridPose {
-    /// Cells along the grid's x axis.
+    /// Position along the grid's x axis, in cells.
     pub x: f64,
-    /// Cells along the grid's y axis.
+    /// Position along the grid's y axis, in cells.
     pub y: f64,
-    /// Radians, counter-clockwise from the grid's x axis.
+    /// Heading in radians, counter-clockwise from the grid's x axis.
     pub heading: f64,
 }
 
 impl GridPose {
-    /// Of a pose in the map.
+    /// Converts a pose in the map.
     #[must_use]
     pub fn of(frame: GridFrame, map_pose: Pose) -> Self {
         let (x, y, heading) = frame.cells_from_map(map_pose);
         GridPose { x, y, heading }
     }
 
-    /// How far it lies from another one: cells, cells and radians in `(-π, π]`.
+    /// Difference from another pose: cells, cells and radians in `(-π, π]`.
     fn minus(self, other: GridPose) -> Vector3<f64> {
         Vector3::new(
             self.x - other.x,

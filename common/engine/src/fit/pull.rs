@@ -1,30 +1,30 @@
-//! How far ends of beams lie from obstacles, and how that changes as the pose does.
+//! Distances of beam ends from obstacles, and their derivatives by the pose.
 
 use super::lanes::{EndLanes, Lanes, lanes};
 use super::{DistanceField, GridPose};
 use crate::simd::{Kernel, Set};
 
-/// What ends say of a pose.
+/// Distances of eight ends at a pose, and their derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pulls {
-    /// 0 for an end that has no say.
+    /// Weight; 0 for an end that does not count.
     pub weight: Lanes,
     pub distance: Lanes,
-    /// How the distance grows with x, y and the heading.
+    /// Derivatives of the distance by x, y and the heading.
     pub slope: [Lanes; 3],
 }
 
-/// Passes what all ends say of a pose to `add`.
+/// Kernel that passes the pulls of all ends at a pose to `add`.
 pub(super) struct Pull<'a, A> {
     pub field: &'a DistanceField,
     pub ends: &'a [EndLanes],
     pub pose: GridPose,
-    /// Ends farther from obstacles have no say, cells.
+    /// Largest distance from obstacles of ends that count, in cells.
     pub reach: f64,
     pub sums: A,
 }
 
-/// What becomes of pulls.
+/// Consumer of pulls.
 pub(super) trait Add {
     fn add(&mut self, pulls: &Pulls);
 }
@@ -39,7 +39,7 @@ impl<A: Add> Kernel for Pull<'_, A> {
         let (x, y) = (self.pose.x as f32, self.pose.y as f32);
         let nearness = 1.0 / self.reach as f32;
         for ends in self.ends {
-            // From the pose, along the axes of the grid.
+            // Offsets from the pose, along the axes of the grid.
             let along = lanes(|i| ends.x[i] * cos - ends.y[i] * sin);
             let up = lanes(|i| ends.x[i] * sin + ends.y[i] * cos);
             let (distance, [slope_x, slope_y]) = self

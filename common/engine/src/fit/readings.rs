@@ -1,5 +1,4 @@
-//! The beams of carried scans, as the second stage judges them: each from its own
-//! laser's place.
+//! Beams of carried scans for the second stage, each seen from its own laser's pose.
 
 use messages::Reading;
 
@@ -8,21 +7,19 @@ use crate::beams::{BeamConfig, Chosen};
 use crate::observation::{CarriedScan, Observation};
 use crate::space::Space;
 
-/// The beams of an observation, in the target frame; found again for each
-/// scan, in the buffers of the one before.
+/// The beams of an observation in the target frame; the buffers are reused from scan to scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Readings {
     chosen: Chosen,
-    /// Those that end somewhere, laser by laser, and behind them those of which
-    /// nothing returned.
+    /// Beams with an end, laser by laser, followed by the silent ones.
     pub found: Vec<Reading>,
 }
 
 impl Readings {
-    /// The beams of each laser, thinned as for voting; none of a scan as it came.
+    /// Finds the beams of each laser, thinned as for voting; none for an [`Observation::Still`].
     ///
     /// # Errors
-    /// If [`Observation::check`] refuses the scan; those of the scan before stay.
+    /// If [`Observation::check`] rejects the scan; the beams of the scan before stay.
     pub fn find(
         &mut self,
         observation: Observation<'_>,
@@ -37,7 +34,7 @@ impl Readings {
         for carried in scans {
             self.add(carried, space, config);
         }
-        // Ends first; the order among them stays.
+        // Stable sort: beams with an end first, otherwise in the same order.
         self.found
             .sort_by_key(|reading| reading.range_m == f64::INFINITY);
         Ok(())
@@ -66,7 +63,7 @@ impl Readings {
     }
 }
 
-/// Whether a reading that came from elsewhere is one.
+/// True if a reading from another process is valid.
 pub(super) fn is_sound(reading: &Reading) -> bool {
     let Reading {
         from_x,

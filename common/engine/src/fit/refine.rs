@@ -1,5 +1,5 @@
-//! Moving a pose to where the end points lie on obstacles: Gauss-Newton on
-//! their distances, with Tukey's weights against those that belong to nothing.
+//! Refinement of a pose: Gauss-Newton on the distances of end points from obstacles, with Tukey's
+//! weights against ends that belong to no obstacle.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,80 +8,77 @@ use super::lanes::{Lanes, lanes};
 use super::pull::{Add, Pull, Pulls};
 use super::{DistanceField, FitConfig, GridPose};
 
-/// A pose that was moved to the nearest best fit.
+/// A refined pose and the quality of its fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refined {
-    /// Where the scan fits best nearby.
+    /// Pose nearby with the best fit.
     pub pose: GridPose,
-    /// The curvature of half the squared distances there: Σ w ∇d ∇dᵀ over x, y
-    /// (cells) and the heading (radians).
+    /// Curvature of half the squared distances there: Σ w ∇d ∇dᵀ over x, y (cells) and the heading
+    /// (radians).
     pub curvature: Matrix3<f64>,
-    /// Weighted variance of the distances of the beams that belong to
-    /// obstacles, squared cells.
+    /// Weighted variance of the distances of the beams that belong to obstacles, in squared cells.
     pub variance: f64,
-    /// Weights of these beams together.
+    /// Total weight of these beams.
     pub weight: f64,
-    /// What all ends at walls of one direction pull by together, where these walls are
-    /// off by a cell: Σ (Σ w ∇d) (Σ w ∇d)ᵀ, the outer sum over the directions.
+    /// Combined pull of all ends at walls of one direction when these walls are off by a cell:
+    /// Σ (Σ w ∇d) (Σ w ∇d)ᵀ, where the outer sum is over the directions.
     pub walls: Matrix3<f64>,
 }
 
-/// What is known of a pose before the scan.
+/// Prior knowledge of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
-    /// Where it should be.
+    /// Expected pose.
     pub pose: GridPose,
-    /// The inverse of its covariance over x, y (cells) and the heading (radians).
+    /// Inverse of its covariance over x, y (cells) and the heading (radians).
     pub information: Matrix3<f64>,
 }
 
-/// What the pose is moved by.
+/// Prior knowledge used in a refinement.
 #[derive(Debug, Clone, Copy)]
 struct Known<'a> {
     heading: bool,
     expected: Option<&'a Expected>,
 }
 
-/// Neighbouring beams end on the same piece of wall, and maps err by walls, not
-/// by points: this many beams are worth one with an independent error.
+/// Number of beams that are worth one with an independent error: neighbouring beams end on the same
+/// piece of wall, and maps err by walls, not by points.
 const BEAMS_TOGETHER: f64 = 8.0;
 
-/// No end point is known better than the cell that it is compared with: the
-/// variance of a number that is anywhere within one, squared cells.
+/// Smallest variance of an end point, in squared cells: that of a uniform position within the cell
+/// to which it is compared.
 const MIN_VARIANCE: f64 = 1.0 / 12.0;
 
-/// What walls are off by at least, cells: they lie anywhere between the middle of
-/// their cells and their edges.
+/// Smallest error of walls, in cells: they can be anywhere between the middle of their cells and
+/// the edges.
 const MIN_WALL_ERROR: f64 = 0.5;
 
-/// Beams farther off have no say: coarse first, then fine, in standard
-/// deviations.
+/// Largest distances of beams that count, in standard deviations: coarse first, then fine.
 const REACHES: [f64; 2] = [4.0, 2.0];
 
-/// Most steps with each reach.
+/// Largest number of steps with each reach.
 const MAX_STEPS: usize = 6;
 
-/// A step shorter than this, cells and radians times a hundred, is the last
-/// with each reach.
+/// Length below which a step is the last with each reach, in cells and in hundredths of a radian.
 const LAST_STEPS: [f64; 2] = [0.1, 0.02];
 
-/// The variance with which a beam counts, of one that is measured so.
+/// Returns the variance with which a single beam counts, given the measured variance.
 fn independent(variance: f64) -> f64 {
     BEAMS_TOGETHER * variance.max(MIN_VARIANCE)
 }
 
 impl Refined {
-    /// What the scan says about the pose: the inverse of its covariance over x, y
-    /// (cells) and the heading (radians).
+    /// Information of the scan about the pose: the inverse of its covariance over x, y (cells) and
+    /// the heading (radians).
     #[must_use]
     pub fn information(&self) -> Matrix3<f64> {
         self.curvature / independent(self.variance)
     }
 
-    /// What is added to such a covariance of the pose, x, y (cells) and the heading
-    /// (radians), where the map errs by walls: the walls of one direction are off
-    /// together, by as much as the scan's ends lie from them and by `drawn` cells in
-    /// addition, those of other directions by as much for themselves.
+    /// Returns the covariance to add for the errors of walls to a covariance of the pose over x, y
+    /// (cells) and the heading (radians). The walls of one direction are off together, by the
+    /// distance of the scan's ends from them and by `drawn` cells in addition; different directions
+    /// are independent.
     #[must_use]
     pub fn by_walls(&self, covariance: Matrix3<f64>, drawn: f64) -> Matrix3<f64> {
         let error = self.variance.max(MIN_WALL_ERROR.powi(2)) + drawn * drawn;
@@ -90,13 +87,13 @@ impl Refined {
     }
 }
 
-/// Keeps steps short along what the scan does not constrain, as a share of the
-/// weight of all beams.
+/// Damping along directions that the scan does not constrain, as a share of the weight of all
+/// beams.
 const DAMPING: f64 = 1e-3;
 
 impl DistanceField {
-    /// Moves a pose to where the scan fits best nearby; its heading only where
-    /// that is not known. It stays where it is along what no beam constrains.
+    /// Moves a pose to the best fit nearby; the heading only if it is not known. The pose does not
+    /// move along directions that no beam constrains.
     #[must_use]
     pub fn refine(
         &self,
@@ -112,9 +109,9 @@ impl DistanceField {
         self.descend(ends, start, (REACHES, known), config)
     }
 
-    /// Moves a pose to where the scan and what was expected agree best, by their
-    /// squared errors (maximum a posteriori). Beams have a say within these reaches,
-    /// standard deviations of the fit, first the one and then the other.
+    /// Moves a pose to the best agreement of scan and expectation, by their squared errors (maximum
+    /// a posteriori). Beams count within the two reaches, in standard deviations of the fit, one
+    /// after the other.
     #[must_use]
     pub fn refine_expected(
         &self,
@@ -166,7 +163,7 @@ impl DistanceField {
         }
     }
 
-    /// Sums what the ends say of a pose.
+    /// Sums the pulls of the ends at a pose.
     fn linearise<A: Add + Default>(&self, ends: &Ends, pose: GridPose, reach: f64) -> A {
         self.simd.run(Pull {
             field: self,
@@ -178,12 +175,12 @@ impl DistanceField {
     }
 }
 
-/// What the ends pull by at the walls of each of eight directions, by which way the
+/// Pulls of the ends at the walls of each of eight directions, by the direction in which the
 /// distance to them grows.
 #[derive(Debug, Default)]
 struct Walls([Vector3<f64>; 8]);
 
-/// Directions along the axes reach half of 45° to either side: the tangent of that.
+/// Tangent of 22.5°: directions along the axes extend over half of 45° to either side.
 const HALF_DIRECTION: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 impl Add for Walls {
@@ -208,18 +205,17 @@ impl Walls {
     }
 }
 
-/// The normal equations.
+/// Normal equations of a step.
 #[derive(Debug)]
 struct Sums {
-    /// Σ w ∇d ∇dᵀ, whose lower half is the mirrored upper one: xx, xy, xh, yy,
-    /// yh, hh.
+    /// Upper half of the symmetric matrix Σ w ∇d ∇dᵀ: xx, xy, xh, yy, yh, hh.
     products: [f64; 6],
     slope: [f64; 3],
     squares: f64,
     weight: f64,
 }
 
-/// The same, lane by lane.
+/// The same per lane.
 #[derive(Debug, Default)]
 struct LaneSums {
     products: [Lanes; 6],
@@ -281,7 +277,7 @@ impl Sums {
         self.squares / self.weight.max(f64::MIN_POSITIVE)
     }
 
-    /// The step to the minimum from a pose, if the beams have a say.
+    /// Returns the step from a pose to the minimum; `None` without beams that count.
     fn step(&self, all: f64, pose: GridPose, known: Known<'_>) -> Option<Vector3<f64>> {
         let curvature = self.curvature();
         let turning = curvature[(2, 2)].max(1.0);
@@ -289,7 +285,7 @@ impl Sums {
         let mut damped = curvature + Matrix3::from_diagonal(&damping);
         let mut slope = Vector3::from(self.slope);
         if let Some(expected) = known.expected {
-            // Both in the units of the beams' squared distances.
+            // Both terms are in the units of the beams' squared distances.
             let information = expected.information * independent(self.variance());
             damped += information;
             slope += information * pose.minus(expected.pose);

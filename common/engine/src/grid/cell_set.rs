@@ -1,16 +1,16 @@
-//! Some of the cells of a grid, a bit for each.
+//! A set of cells of a grid, one bit per cell.
 
-/// Bits of a word.
+/// Bits per word.
 pub(crate) const WORD: usize = 64;
 
-/// Cells of a grid, by where they are in it, row by row.
+/// A set of cells of a grid, numbered row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CellSet {
     words: Vec<u64>,
 }
 
 impl CellSet {
-    /// Those of this many cells that `holds` says.
+    /// Collects the cells, of this many, for which `holds` returns true.
     pub(crate) fn of(cells: usize, holds: impl Fn(usize) -> bool) -> Self {
         let word = |first: usize| {
             let word = first..cells.min(first + WORD);
@@ -21,10 +21,10 @@ impl CellSet {
         }
     }
 
-    /// Those of some cells, a byte each, of which `holds` says so: the same many times as
-    /// fast.
+    /// Collects the cells for whose byte `holds` returns true; many times faster than
+    /// [`CellSet::of`].
     pub(crate) fn of_bytes(cells: &[u8], holds: impl Fn(u8) -> bool) -> Self {
-        /// Multiplied by this, the lowest bits of eight bytes come together in the last one.
+        /// Multiplication by this gathers the lowest bits of eight bytes in the last byte.
         const GATHER: u64 = 0x0102_0408_1020_4080;
         let word = |cells: &[u8]| {
             let mut flags = [0; WORD];
@@ -42,14 +42,14 @@ impl CellSet {
         }
     }
 
-    /// None of this many cells.
+    /// Creates an empty set for this many cells.
     pub(crate) fn none(cells: usize) -> Self {
         CellSet {
             words: vec![0; cells.div_ceil(WORD)],
         }
     }
 
-    /// Leaves out those of which `holds` says no.
+    /// Removes the cells for which `holds` returns false.
     pub(crate) fn retain(&mut self, holds: impl Fn(usize) -> bool) {
         for (i, word) in self.words.iter_mut().enumerate() {
             let first = i * WORD;
@@ -59,7 +59,6 @@ impl CellSet {
         }
     }
 
-    /// How many they are.
     pub(crate) fn count(&self) -> usize {
         self.words
             .iter()
@@ -67,42 +66,40 @@ impl CellSet {
             .sum()
     }
 
-    /// Bytes that they take.
+    /// Memory in bytes.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.words[..])
     }
 
-    /// A bit for each cell, the first cell's lowest.
+    /// One bit per cell, lowest first.
     #[inline(always)]
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
     }
 
-    /// The same, to be filled in.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words
     }
 
-    /// Whether all cells in the set are among the first `cells`.
+    /// True if all cells in the set are among the first `cells`.
     pub(crate) fn are_below(&self, cells: usize) -> bool {
         let (full, rest) = (cells / WORD, cells % WORD);
         let mut beyond = self.words.iter().skip(full);
         beyond.next().is_none_or(|word| word >> rest == 0) && beyond.all(|&word| word == 0)
     }
 
-    /// Whether a cell is among them.
     #[inline(always)]
     pub(crate) fn holds(&self, cell: usize) -> bool {
         self.words[cell / WORD] >> (cell % WORD) & 1 == 1
     }
 
-    /// The cells, in ascending order.
+    /// Cells of the set, in ascending order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = usize> {
         let words = self.words.iter().enumerate();
         words.flat_map(|(i, &word)| ones(word).map(move |bit| i * WORD + bit))
     }
 
-    /// Makes 0 the votes of all other cells.
+    /// Sets the votes of all other cells to 0.
     pub(crate) fn clear_others(&self, votes: &mut [u16]) {
         for (votes, &word) in votes.chunks_mut(WORD).zip(&self.words) {
             match word {
@@ -118,7 +115,7 @@ impl CellSet {
     }
 }
 
-/// The places of the ones of a word, in ascending order.
+/// Indices of the one bits of a word, in ascending order.
 fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = word.trailing_zeros() as usize;

@@ -1,4 +1,4 @@
-//! Where a grid lies in the map: the one reading of a map's header.
+//! Pose of a grid in the map, read and checked from a map's header.
 
 use std::f64::consts::TAU;
 
@@ -9,22 +9,21 @@ use nalgebra::{Matrix3, Rotation2, Vector3};
 use super::{MAX_ORIGIN_M, check_resolution, check_sides};
 use crate::EngineError;
 
-/// Where a grid lies in the map frame.
+/// Cell size and pose of a grid in the map frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridFrame {
-    /// Side of a cell, metres.
+    /// Side of a cell, in metres.
     pub resolution_m: f64,
-    /// The lower left corner of cell (0, 0), and the turn of the grid's axes.
+    /// Pose of the lower left corner of cell (0, 0) and of the grid's axes in the map.
     pub map_from_grid: Pose,
 }
 
 impl GridFrame {
-    /// The frame of a map's grid, whose whole header is checked, for it comes
-    /// from another process.
+    /// Reads the frame of a map's grid. The whole header is checked, since it comes from another
+    /// process.
     ///
     /// # Errors
-    /// If the sides, their product, the resolution or the origin are out of
-    /// range, or no numbers.
+    /// If the sides, their product, the resolution or the origin are out of range or not finite.
     pub fn of(map: &MapHeader) -> Result<Self, EngineError> {
         check_sides(map.width as usize, map.height as usize)?;
         check_resolution(map.resolution_m)?;
@@ -39,8 +38,8 @@ impl GridFrame {
         })
     }
 
-    /// The pose in the map of a position in cells and a heading in the grid's
-    /// frame, radians. The centre of cell (0, 0) is (0.5, 0.5).
+    /// Converts a position in cells and a heading in the grid's frame (radians) to a pose in the
+    /// map. The centre of cell (0, 0) is (0.5, 0.5).
     #[must_use]
     pub fn map_from_cells(&self, x: f64, y: f64, heading: f64) -> Pose {
         self.map_from_grid.then(Pose::new(
@@ -50,16 +49,16 @@ impl GridFrame {
         ))
     }
 
-    /// Takes a difference of poses in cells and radians of the grid to metres and radians
-    /// along the map's axes.
+    /// Matrix that converts a pose difference from cells and radians of the grid to metres and
+    /// radians along the map's axes.
     pub fn metres_from_cells(&self) -> Matrix3<f64> {
         let side = self.resolution_m;
         let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
         Rotation2::new(self.map_from_grid.yaw).to_homogeneous() * scale
     }
 
-    /// The inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the
-    /// heading in the grid's frame.
+    /// Inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the heading in the grid's
+    /// frame.
     #[must_use]
     pub fn cells_from_map(&self, map_pose: Pose) -> (f64, f64, f64) {
         let grid_pose = self.map_from_grid.inverse().then(map_pose);

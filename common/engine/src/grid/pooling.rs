@@ -1,35 +1,35 @@
-//! Fine maps, searched in larger cells.
+//! Pooling of fine maps to larger cells.
 //!
-//! The search need not be finer than lasers and maps are exact; what it finds
-//! is refined on the map as it is.
+//! The search need not be finer than the accuracy of lasers and maps; its results are refined on
+//! the map at full resolution.
 
 use messages::UNKNOWN;
 
 use super::{CellRules, GridFrame, check_cells};
 use crate::EngineError;
 
-/// A map of which each square of cells is one.
+/// A map whose squares of cells are pooled to one cell each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pooled {
-    /// Where its grid lies in the map.
+    /// Cell size and pose of the pooled grid in the map.
     pub frame: GridFrame,
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     pub sides: (usize, usize),
-    /// Row by row from the lowest y.
+    /// Occupancies, row by row from the lowest y.
     pub occupancy: Vec<u8>,
 }
 
-/// Cells of a map along the side of the largest square of which the side is at
-/// most `most_m`; at least 1.
+/// Returns the side, in map cells, of the largest square whose side is at most `most_m` metres; at
+/// least 1.
 #[must_use]
 pub fn pooling(resolution_m: f64, most_m: f64) -> usize {
-    // Resolutions are often kept in 32 bits.
+    // Tolerance, since resolutions are often stored in 32 bits.
     const ROUNDING: f64 = 1e-3;
     ((most_m / resolution_m + ROUNDING) as usize).max(1)
 }
 
 impl GridFrame {
-    /// The frame of the grid whose cells are `pooling` of these a side.
+    /// Returns the frame of the grid whose cells are `pooling` of these along a side.
     #[must_use]
     pub fn pooled(self, pooling: usize) -> Self {
         GridFrame {
@@ -40,8 +40,8 @@ impl GridFrame {
 }
 
 impl Pooled {
-    /// Makes `pooling · pooling` cells one: occupied where any of them is, else
-    /// free where any is, else unknown.
+    /// Pools `pooling · pooling` cells to one: occupied if any of them is, else free if any is,
+    /// else unknown.
     ///
     /// # Errors
     /// See [`Grid::new`](super::Grid::new).

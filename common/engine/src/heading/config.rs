@@ -1,8 +1,8 @@
-//! The settings about the heading.
+//! Settings of the known heading.
 
 use super::HeadingSource;
 
-/// What is known of the heading. With nothing given, all headings are searched.
+/// Source of a known heading. By default all headings are searched.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct HeadingConfig {
@@ -12,7 +12,7 @@ pub struct HeadingConfig {
     #[cfg_attr(feature = "clap", arg(conflicts_with = "heading_from"))]
     pub heading: Option<f64>,
 
-    /// Where each scan's heading comes from: only x and y are searched.
+    /// Source of each scan's heading: only x and y are searched.
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "SOURCE"))]
     pub heading_from: Option<HeadingFrom>,
 
@@ -27,13 +27,13 @@ pub struct HeadingConfig {
     pub heading_max_age_s: Option<f64>,
 }
 
-/// What headings come from.
+/// Source of headings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum HeadingFrom {
     /// The newest odometry that was measured before the scan.
     Odometry,
-    /// The true pose of the scan, where a recording holds it; for tests.
+    /// The true pose of the scan, if a recording contains it; for tests.
     Truth,
 }
 
@@ -47,7 +47,7 @@ impl std::fmt::Display for HeadingFrom {
 }
 
 impl HeadingConfig {
-    /// Where headings come from, in radians and nanoseconds.
+    /// Returns the source of headings, in radians and nanoseconds.
     #[must_use]
     pub fn source(&self) -> HeadingSource {
         match (self.heading, self.heading_from) {
@@ -61,8 +61,8 @@ impl HeadingConfig {
         }
     }
 
-    /// Checks what no option can check alone: clap lets an option's requirement
-    /// go where something else excludes it, as `--heading` does here.
+    /// Checks a rule that clap cannot: an option's requirement is waived if another option excludes
+    /// it, as `--heading` does here.
     ///
     /// # Errors
     /// Names the option and what it needs.

@@ -110,7 +110,7 @@ fn odometry_that_is_too_old_or_too_new_is_refused() {
             allowed_ns: SECOND_NS
         }
     ));
-    // Times that foreign bytes may hold do not overflow.
+    // Times from corrupt input must not overflow.
     refused(i64::MIN);
     let ancient = self::history(&[(i64::MIN, 0.0)]);
     assert!(BY_ODOMETRY.heading_of(&scan(i64::MAX), &ancient).is_err());

@@ -1,60 +1,60 @@
-//! How scans were brought to one time, and what an operator should know of it.
+//! Result of joining scans, and warnings about it for the operator.
 
 use messages::Name;
 
 use crate::EngineError;
 
-/// How scans were brought to one time.
+/// Result of joining scans.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Brought {
-    /// Lasers that were joined.
+    /// Number of lasers joined.
     pub lasers: u32,
-    /// Those that were left out, and why.
+    /// Lasers left out, with the reasons.
     pub left_out: Vec<(Name, LeftOut)>,
-    /// How their motion was known.
+    /// Source of their motion.
     pub motion: MotionKnown,
 }
 
-/// How the motion within a scan, and between scans, was known; the worse, the greater.
+/// Source of the motion within a scan and between scans, in order from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum MotionKnown {
-    /// It was not asked for: all beams are of one time.
+    /// Not needed: all beams count as measured at one time.
     #[default]
     NotNeeded,
-    /// By odometry around the scans.
+    /// Odometry around the scans.
     ByOdometry,
-    /// Odometry ended before the last beam, and its last twist was taken to go on.
+    /// The last twist: odometry ended before the last beam.
     LastTwist,
-    /// No odometry reaches the scan; the robot is taken to have stood still.
+    /// Unknown: no odometry reaches the scan, and the robot is assumed to stand still.
     Unknown,
 }
 
-/// Why a laser was left out.
+/// Reason why a laser was left out.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LeftOut {
-    /// It sent nothing yet.
+    /// The laser has not sent any scan yet.
     #[error("no scan received")]
     NoScan,
-    /// Its newest scan is too old.
+    /// The newest scan is too old.
     #[error("its newest scan is {age_ms} ms older, more than 1.5 scan periods")]
     Old {
         /// Milliseconds before the first laser's scan.
         age_ms: i64,
     },
-    /// It is not known where it sits.
+    /// The mount on the base is unknown.
     #[error("its mount on the base is not known")]
     NoMount,
     /// The robot moves, and odometry does not reach the scan.
     #[error("no odometry for the robot's motion since")]
     NoOdometry,
-    /// Its scan is refused.
+    /// The scan is rejected.
     #[error(transparent)]
     Refused(EngineError),
 }
 
 impl Brought {
-    /// What an operator should know, where odometry flows or not; figures that change
-    /// from scan to scan are left out.
+    /// Returns warnings for the operator, without figures that change from scan to scan.
+    /// `odometry_flows` is true if any odometry has arrived.
     #[must_use]
     pub fn notes(&self, odometry_flows: bool) -> Vec<String> {
         let left_out = self.left_out.iter().map(|(laser, why)| match why {

@@ -1,6 +1,6 @@
-//! The settings of joining.
+//! Settings for joining scans.
 
-/// What is joined, and how the motion is known.
+/// Lasers that are joined, and the measurement of motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct JoinConfig {
@@ -8,12 +8,12 @@ pub struct JoinConfig {
     /// answer. By default the graph has one laser.
     #[cfg_attr(feature = "clap", arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser))]
     pub scans: Vec<String>,
-    /// How the motion is measured.
+    /// Measurement of the motion.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub motion: MotionConfig,
 }
 
-/// How the motion within a scan, and between scans, is known.
+/// Measurement of the motion within a scan and between scans.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct MotionConfig {
@@ -21,30 +21,29 @@ pub struct MotionConfig {
     /// laser.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay))]
     pub odometry_delay_s: f64,
-    /// Which beam the stamp of a scan belongs to.
+    /// Beam to which the stamp of a scan belongs.
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ScanStamp::First))]
     pub scan_stamp: ScanStamp,
-    /// Whether the motion within a scan is compensated (deskewed), if odometry covers
-    /// it.
+    /// True if the motion within a scan is compensated (deskewed), if odometry covers it.
     #[cfg_attr(feature = "clap", arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set))]
     pub deskew: bool,
 }
 
-/// Which beam the stamp of a scan belongs to.
+/// Beam to which the stamp of a scan belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum ScanStamp {
-    /// The first, as `sensor_msgs/LaserScan` defines it.
+    /// The first beam, as `sensor_msgs/LaserScan` defines it.
     #[default]
     First,
-    /// The one in the middle.
+    /// The middle beam.
     Middle,
-    /// The last.
+    /// The last beam.
     Last,
 }
 
 impl MotionConfig {
-    /// What is added to the stamps of odometry, nanoseconds.
+    /// Offset added to odometry stamps, in nanoseconds.
     pub(super) fn delay_ns(&self) -> i64 {
         (self.odometry_delay_s * 1e9).round() as i64
     }

@@ -1,4 +1,4 @@
-//! The scans of an answer, copied, for a search that somebody may ask for later.
+//! Copies of joined scans, for a search that may be requested later.
 
 use geometry::Pose;
 
@@ -6,14 +6,14 @@ use super::Seen;
 use crate::observation::CarriedScan;
 use crate::scan::Scan;
 
-/// The scans of an answer, kept for later.
+/// A copy of joined scans that outlives the joiner's buffers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Kept {
     scans: Vec<KeptScan>,
     is_carried: bool,
 }
 
-/// One of them, and where its laser was at each beam.
+/// One scan, with the pose of its laser at each beam.
 #[derive(Debug, Clone, PartialEq)]
 struct KeptScan {
     angle_min: f64,
@@ -48,7 +48,7 @@ impl KeptScan {
 }
 
 impl Kept {
-    /// Copies what was seen.
+    /// Copies the scans.
     #[must_use]
     pub fn of(seen: &Seen<'_>) -> Self {
         match seen {
@@ -66,7 +66,7 @@ impl Kept {
         }
     }
 
-    /// What was seen; nothing where nothing is kept.
+    /// Returns the scans; none if nothing was copied.
     #[must_use]
     pub fn seen(&self) -> Seen<'_> {
         match &self.scans[..] {

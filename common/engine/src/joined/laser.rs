@@ -1,4 +1,4 @@
-//! The newest scan of one laser, and where the laser was at each of its beams.
+//! The newest scan of one laser, and the pose of the laser at each beam.
 
 use bytemuck::Zeroable;
 use geometry::Pose;
@@ -9,23 +9,23 @@ use crate::EngineError;
 use crate::observation::CarriedScan;
 use crate::scan::Scan;
 
-/// No laser takes longer than this for a scan; increments that say so are wrong.
+/// Longest plausible time of a scan; larger time increments are ignored as wrong.
 const MAX_SCAN_TIME_NS: f64 = 1e9;
 
-/// A scan is of its time if it is at most this many periods of its laser older.
+/// Largest age of a scan that can be joined, in periods of its laser.
 const MAX_AGE_PERIODS: f64 = 1.5;
 
 #[derive(Debug, Clone)]
 pub(super) struct Laser {
     pub(super) name: Name,
-    /// None before the first scan.
+    /// `None` before the first scan.
     header: Option<ScanHeader>,
     ranges: Vec<f32>,
-    /// Of the first range, nanoseconds.
+    /// Time of the first range, in nanoseconds.
     first_beam_ns: i64,
-    /// From one range to the next, nanoseconds; 0 where all are of one time.
+    /// Time from one range to the next, in nanoseconds; 0 if all have the same time.
     beam_ns: f64,
-    /// From the scan before to this one; 0 where there was none.
+    /// Time from the scan before to this one, in nanoseconds; 0 if there was none.
     period_ns: i64,
     target_from_laser: Vec<Pose>,
 }
@@ -80,7 +80,7 @@ impl Laser {
         Some(self.first_beam_ns.max(self.beam_at_ns(last)))
     }
 
-    /// When half of the beams were measured.
+    /// Time of the middle of the scan.
     pub(super) fn middle_ns(&self) -> i64 {
         let last = self.ranges.len().saturating_sub(1);
         i64::midpoint(self.first_beam_ns, self.beam_at_ns(last))
@@ -126,7 +126,7 @@ impl Laser {
         }
     }
 
-    /// Whether the newest scan can be joined with one of that time.
+    /// Checks if the newest scan can be joined with one of that time.
     pub(super) fn check_for(&self, stamp_ns: i64) -> Result<(), LeftOut> {
         let header = self.header.ok_or(LeftOut::NoScan)?;
         self.check().map_err(LeftOut::Refused)?;
@@ -134,7 +134,7 @@ impl Laser {
             return Err(LeftOut::NoMount);
         }
         let age_ns = stamp_ns.saturating_sub(header.stamp.measured_ns);
-        // What a driver states may be the device's period, of which some are left out.
+        // The stated scan time may be the device's period although some scans are left out.
         let period_ns = (header.scan_time_s * 1e9).max(self.period_ns as f64);
         if period_ns > 0.0 && age_ns as f64 > MAX_AGE_PERIODS * period_ns {
             return Err(LeftOut::Old {
@@ -144,14 +144,13 @@ impl Laser {
         Ok(())
     }
 
-    /// The laser stayed at one place in the target frame.
+    /// Sets one pose in the target frame for all beams.
     pub(super) fn stand(&mut self, at: Pose) {
         self.target_from_laser.clear();
         self.target_from_laser.resize(self.ranges.len(), at);
     }
 
-    /// The laser was where `at` says for the time of each beam; `None` where it does
-    /// not.
+    /// Sets the pose for the time of each beam; `None` if `at` has none for one of them.
     pub(super) fn carry(&mut self, mut at: impl FnMut(i64) -> Option<Pose>) -> Option<()> {
         if self.beam_ns == 0.0 {
             let place = at(self.first_beam_ns)?;

@@ -12,7 +12,7 @@ fn stamp(ms: i64) -> Stamp {
     }
 }
 
-/// Ahead at 0.5 m or behind at -0.5 m, three beams of 0, 90 and 180 degrees.
+/// A laser ahead at 0.5 m or behind at -0.5 m, with three beams at 0, 90 and 180 degrees.
 fn scan(laser: &str, ms: i64) -> ScanHeader {
     let ahead = laser != "rear";
     ScanHeader {
@@ -31,7 +31,7 @@ fn scan(laser: &str, ms: i64) -> ScanHeader {
     }
 }
 
-/// Drives ahead, a metre a second.
+/// Odometry of a robot that drives ahead at 1 m/s.
 fn odometry(ms: i64) -> Odometry {
     Odometry {
         stamp: stamp(ms),
@@ -52,7 +52,7 @@ fn pair() -> Joiner {
     })
 }
 
-/// x of the laser in the target frame at each beam, by laser.
+/// x of each laser in the target frame at each beam.
 fn places(joiner: &Joiner) -> Vec<Vec<f64>> {
     match joiner.seen() {
         Seen::Still(_) => Vec::new(),
@@ -63,7 +63,7 @@ fn places(joiner: &Joiner) -> Vec<Vec<f64>> {
     }
 }
 
-/// Sums and rotations of numbers near 1 leave a few units in the last place.
+/// Compares with a tolerance for sums and rotations of numbers near 1.
 #[track_caller]
 fn check_places(joiner: &Joiner, expected: &[&[f64]]) {
     let found = places(joiner);
@@ -182,7 +182,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan received");
     joiner.on_scan(&scan("rear", 100), &RANGES);
     assert_eq!(left_out(&mut joiner), None, "no odometry, nothing moves");
-    // Every 50 ms from now on.
+    // One scan every 50 ms from now on.
     joiner.on_scan(&scan("rear", 150), &RANGES);
     joiner.on_scan(&scan("front", 225), &RANGES);
     assert_eq!(left_out(&mut joiner), None);
@@ -200,7 +200,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     );
     joiner.on_scan(&scan("rear", 226), &[]);
     assert!(left_out(&mut joiner).unwrap().contains("no ranges"));
-    // The robot moved when the odometry ended, long ago.
+    // The robot moved when odometry ended, long ago.
     joiner.on_odometry(&odometry(300));
     joiner.on_odometry(&odometry(400));
     joiner.on_scan(&scan("rear", 990), &RANGES);
@@ -236,7 +236,7 @@ fn odometry_that_begins_anew_says_nothing_of_the_motion_since_before() {
     let (one, two) = (at(&mut joiner, 3000), at(&mut joiner, 3500));
     let moved = two.moved_since(&one).unwrap();
     assert!(moved.is_within(Pose::new(0.5, 0.0, 0.0), 1e-9, 1e-9));
-    // Restarted where the robot is.
+    // Odometry restarts; the robot has not moved.
     joiner.on_odometry(&Odometry {
         odom_from_child: Pose::IDENTITY.into(),
         ..odometry(4000)

@@ -1,15 +1,15 @@
-//! Options of the limits.
+//! Settings of the limits.
 
 use super::Region;
 use crate::config;
 
-/// Where poses are searched; by default wherever the robot may stand.
+/// Poses that are searched; by default all at which the robot may stand.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct LimitsConfig {
     /// Unknown cells that do not block can hold the laser only within this distance of
     /// a free cell, between centres, metres, 0..=1000: a map ends where the robot that
-    /// made it could not see, and not far behind that nothing can be found.
+    /// made it could not see, and poses far beyond that cannot be found.
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = parse_reach))]
     pub unknown_reach: f64,
     /// Only cells at least this far from the centre of every occupied cell can hold the
@@ -44,24 +44,25 @@ impl Default for LimitsConfig {
     }
 }
 
-/// Headings from one counter-clockwise to another, both included, radians in
-/// the map frame.
+/// An interval of headings, counter-clockwise from one to another inclusive, in radians in the map
+/// frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeadingInterval {
-    /// The first.
+    /// First heading.
     pub from: f64,
-    /// The last.
+    /// Last heading.
     pub to: f64,
 }
 
 impl HeadingInterval {
-    /// Whether a heading lies within, up to rounding.
+    /// True if a heading is in the interval, up to rounding.
     #[must_use]
     pub fn holds(&self, heading: f64) -> bool {
-        // What computing with angles of some turns may be off by.
+        // Tolerance for rounding in angles of several turns.
         const ROUNDING: f64 = 1e-9;
         let ahead = |angle: f64| angle.rem_euclid(std::f64::consts::TAU);
-        // An interval of whole turns from a heading to itself holds that alone.
+        // An interval of whole turns holds all headings; one from a heading to itself holds that
+        // alone.
         let width = match self.to - self.from {
             width if width.abs() >= std::f64::consts::TAU => std::f64::consts::TAU,
             width => ahead(width),

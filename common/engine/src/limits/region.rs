@@ -2,25 +2,25 @@
 
 use std::str::FromStr;
 
-/// Most corners: a region is drawn by hand.
+/// Largest number of corners; regions are drawn by hand.
 const MAX_CORNERS: usize = 1_000;
 
-/// Farthest corner from the map's origin along each axis, metres.
+/// Largest distance of a corner from the map's origin along each axis, in metres.
 const MAX_METRES: f64 = 1e8;
 
-/// A polygon in the map frame. Two corners are the ends of a diagonal of an
-/// upright rectangle.
+/// A polygon in the map frame. Two corners define an upright rectangle by its diagonal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// At least three, in turn, metres.
+    /// At least three corners in order, in metres.
     corners: Vec<[f64; 2]>,
 }
 
 impl Region {
-    /// A region by its corners, metres in the map frame.
+    /// Makes a region from its corners, in metres in the map frame.
     ///
     /// # Errors
-    /// There are fewer than two or more than a thousand, or one is no number.
+    /// If there are fewer than two corners or more than a thousand, or one is not finite or too
+    /// far.
     pub fn new(corners: &[[f64; 2]]) -> Result<Self, String> {
         if !(2..=MAX_CORNERS).contains(&corners.len()) {
             let found = corners.len();
@@ -39,8 +39,8 @@ impl Region {
         Ok(Region { corners })
     }
 
-    /// Whether a point lies inside: a line from it to the right crosses the
-    /// border an odd number of times.
+    /// True if a point is inside: a line from it to the right crosses the border an odd number of
+    /// times.
     #[must_use]
     pub fn holds(&self, x: f64, y: f64) -> bool {
         let next = self.corners.iter().cycle().skip(1);
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_polygon_may_have_bays() {
-        // A U, open to the top.
+        // A U that is open at the top.
         let region: Region = "0,0 3,0 3,3 2,3 2,1 1,1 1,3 0,3".parse().unwrap();
         assert!(region.holds(0.5, 2.0) && region.holds(2.5, 2.0) && region.holds(1.5, 0.5));
         assert!(!region.holds(1.5, 2.0));

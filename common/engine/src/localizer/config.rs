@@ -1,23 +1,23 @@
-//! The settings of a localizer.
+//! Settings of a localizer.
 
 use crate::limits::LimitsConfig;
 use crate::program::VoteConfig;
 use crate::votes::CollectConfig;
 
-/// How votes are counted where the heading is known. The votes are the same.
+/// Method of counting votes at a known heading. All methods give the same votes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum FieldMethod {
-    /// The one that takes fewer steps, scan by scan.
+    /// The method with fewer steps, chosen for each scan.
     #[default]
     Auto,
     /// Line sweeps over all cells, beam by beam.
     Sweep,
-    /// Out from the boundary cells of the obstacles, as the paper does it.
+    /// Projection out from the boundary cells of the obstacles, as in the paper.
     Scatter,
 }
 
-/// How scans are matched with the map.
+/// Settings for matching scans with the map.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct LocalizerConfig {
@@ -30,16 +30,16 @@ pub struct LocalizerConfig {
     /// Threads of a search, 1..=64; the answer is the same with any number.
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64)))]
     pub threads: u8,
-    /// How readings become votes.
+    /// Conversion of readings to votes.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub votes: VoteConfig,
-    /// Which poses a search collects.
+    /// Poses that a search collects.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub collect: CollectConfig,
-    /// Where poses are searched.
+    /// Region and headings that are searched.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub limits: LimitsConfig,
-    /// How votes are counted if the heading is known; the answer is the same.
+    /// Method of counting votes if the heading is known; the answer is the same.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "METHOD", value_enum, default_value_t)

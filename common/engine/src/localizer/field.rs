@@ -1,4 +1,4 @@
-//! Counting votes at a known heading: by sweeps over all cells, or out from the boundary.
+//! Counting of votes at a known heading: by sweeps over all cells, or out from the boundary.
 
 use messages::BoundaryCell;
 
@@ -11,12 +11,11 @@ use crate::scatter::Scatter;
 use crate::simd::Simd;
 use crate::sweep::{self, FieldSweep};
 
-/// Cells that a sweep passes in the time of a step of a projection, which goes to memory
-/// wherever it leads: 0.1 to 0.25 ns a cell with AVX2 against some 2.5 ns a step
-/// (`field_time boxes 1200 1 5 --beams 8`).
+/// Number of cells that a sweep passes in the time of one projection step. A step misses the cache:
+/// some 2.5 ns, against 0.1 to 0.25 ns per cell with AVX2 (`field_time boxes 1200 1 5 --beams 8`).
 const CELLS_A_STEP: u64 = 16;
 
-/// A grid that is ready for votes at known headings.
+/// A grid prepared for votes at known headings.
 #[derive(Debug, Clone)]
 pub(super) struct Fields {
     sweeps: FieldSweep,
@@ -24,7 +23,7 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    /// Prepares a grid, whose boundary may be known.
+    /// Prepares a grid; extracts its boundary unless given.
     pub(super) fn new(grid: &Grid, boundary: Option<Vec<BoundaryCell>>) -> Self {
         Fields {
             sweeps: FieldSweep::new(grid),
@@ -32,13 +31,12 @@ impl Fields {
         }
     }
 
-    /// Bytes of what is kept.
     pub(super) fn bytes(&self) -> usize {
         self.sweeps.bytes() + size_of_val(&self.boundary[..])
     }
 
-    /// Fills in the intensities of all cells, row by row from the lowest y; `None` if
-    /// `stop` said so before the end.
+    /// Fills in the intensities of all cells, row by row from the lowest y; `None` if `stop`
+    /// returned true before the end.
     pub(super) fn fill(
         &self,
         (grid, method): (&Grid, FieldMethod),
@@ -58,8 +56,8 @@ impl Fields {
         self.sweeps.fill(best, query, workspace, field, stop)
     }
 
-    /// Whether projections, even if nothing ends them, take fewer steps than the sweeps
-    /// pass cells.
+    /// True if projections take fewer steps than the sweeps pass cells, even if no obstacle ends a
+    /// projection early.
     fn scatter_is_cheaper(&self, grid: &Grid, query: Query<'_>) -> bool {
         let beams = 0..query.program.beams();
         let swept = (grid.cells().len() * beams.len()) as u64;

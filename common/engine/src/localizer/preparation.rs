@@ -1,4 +1,4 @@
-//! From a map to a localizer, whose index is made or was kept.
+//! Preparation of a map for a localizer; its index is built, or read from a cache.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::space::Space;
 
 const MEGABYTE: u64 = 1_000_000;
 
-/// A map and its settings, checked: of a localizer all but what takes long to make.
+/// A map and its settings, checked: a localizer without the parts that take long to build.
 #[derive(Debug)]
 pub struct Preparation {
     frame: GridFrame,
@@ -27,8 +27,8 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// Takes a map of `width · height` occupancies, row by row from the lowest y; one finer
-    /// than is searched is pooled.
+    /// Takes a map of `width · height` occupancies, row by row from the lowest y; cells smaller
+    /// than the search cell are pooled.
     ///
     /// # Errors
     /// See [`Grid::new`] and [`Preparation::new`].
@@ -55,7 +55,7 @@ impl Preparation {
         })
     }
 
-    /// Takes a grid, which is searched as it is.
+    /// Takes a grid, which is searched at its own resolution.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
@@ -88,17 +88,17 @@ impl Preparation {
         })
     }
 
-    /// Takes the boundary of the map's obstacles along, all cells of
-    /// [`crate::boundary::extract`]; otherwise it is extracted where it is needed. A map that
-    /// is searched in larger cells has another one.
+    /// Adds the boundary of the map's obstacles, all cells of [`crate::boundary::extract`], which
+    /// is extracted on demand otherwise. It is ignored if the map is searched in larger cells,
+    /// whose boundary differs.
     #[must_use]
     pub fn with_boundary(mut self, boundary: Vec<BoundaryCell>) -> Self {
         self.boundary = (self.pooling == 1).then_some(boundary);
         self
     }
 
-    /// The key of the index that would be made; `None` where headings are known, for which
-    /// none is.
+    /// Returns the key of the index that would be built; `None` for known headings, which need no
+    /// index.
     #[must_use]
     pub fn key(&self) -> Option<IndexKey> {
         let Preparation {
@@ -112,10 +112,10 @@ impl Preparation {
         (self.prior == Prior::None).then(key)
     }
 
-    /// Buffers for the sections of a cached index, of such lengths in bytes.
+    /// Allocates buffers for the sections of a cached index, given their lengths in bytes.
     ///
     /// # Errors
-    /// They are none of an index of this map, or take more memory than is allowed.
+    /// If the lengths do not fit an index of this map, or exceed the memory limit.
     pub fn unchecked_index(
         &self,
         lengths: [u64; SECTIONS],
@@ -129,16 +129,16 @@ impl Preparation {
         }
     }
 
-    /// Ends with an index that was kept under the key of this map.
+    /// Finishes with a cached index that has the key of this map.
     #[must_use]
     pub fn with(self, index: SearchIndex) -> Localizer {
         self.localizer(Method::Search(Arc::new(index)))
     }
 
-    /// Ends with all that is still to be made.
+    /// Finishes by building what is missing.
     ///
     /// # Errors
-    /// If the limits leave no pose, or more memory would be needed than is allowed.
+    /// If the limits exclude every pose, or more memory would be needed than is allowed.
     pub fn finish(mut self) -> Result<Localizer, EngineError> {
         let boundary = self.boundary.take();
         let Preparation {
@@ -178,14 +178,14 @@ impl Preparation {
         }
     }
 
-    /// Bytes.
+    /// Memory limit in bytes.
     fn memory_limit(&self) -> Option<u64> {
         let megabytes = self.config.memory_limit?;
         Some(u64::from(megabytes) * MEGABYTE)
     }
 
-    /// Refuses what needs more memory than is allowed, before it is allocated. What that
-    /// is, is asked only where there is a limit.
+    /// Rejects a map that needs more memory than allowed, before it is allocated. The need is
+    /// computed only if there is a limit.
     fn check_memory(&self, limits: &Limits) -> Result<(), EngineError> {
         let Some(limit) = self.memory_limit() else {
             return Ok(());

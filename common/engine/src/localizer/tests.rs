@@ -13,7 +13,7 @@ use crate::reference;
 use crate::scan::Scan;
 use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan};
 
-/// An L-shaped room with a pillar: no pose looks like another.
+/// An L-shaped room with a pillar, without symmetry: every pose is distinguishable.
 const ROOM: [&str; 12] = [
     "####################",
     "#..................#",
@@ -38,7 +38,7 @@ fn localizer(prior: Prior) -> Localizer {
     Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
 }
 
-/// What a laser with a beam a degree all around reads at a pose of the grid.
+/// Ranges of a laser with one beam per degree all around at a pose of the grid.
 fn ranges(x: i64, y: i64, heading: usize) -> Vec<f32> {
     let grid = grid(&ROOM);
     let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
@@ -139,7 +139,7 @@ fn a_scan_in_which_nothing_returned_has_no_votes() {
     assert!(field.iter().all(|&intensity| intensity == 0));
 }
 
-/// A workspace for each step from a scan to its places.
+/// One workspace for each step from a scan to its places.
 #[derive(Default)]
 struct All {
     localizer: Workspace,
@@ -147,7 +147,7 @@ struct All {
     peaks: peaks::Workspace,
 }
 
-/// Everything there is to say of a scan, in one text.
+/// Debug text of every result for a scan, for comparison.
 fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Option<String> {
     let frame = GridFrame {
         resolution_m: RESOLUTION_M,
@@ -166,7 +166,7 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     };
     let occupancy: Vec<u8> = grid.cells().iter().map(occupied).collect();
     let distance_field = DistanceField::new(frame, sides, &occupancy, Default::default()).unwrap();
-    // Grids without obstacles or space are refused.
+    // Grids without obstacles or free cells are rejected.
     let localizer = Localizer::new(frame, grid.clone(), config, prior).ok()?;
     let (workspace, scan) = (&mut all.localizer, scan.scan());
     let mut text = String::new();

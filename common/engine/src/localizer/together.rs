@@ -1,4 +1,4 @@
-//! Several maps that are searched together.
+//! A search over several maps together.
 
 use std::cmp::Ordering;
 
@@ -10,18 +10,18 @@ use crate::search::{Lead, SearchIndex, Searched};
 use crate::votes::{VoteShare, least_close};
 
 impl Localizer {
-    /// Searches maps together, each in a workspace of its own, with the settings of the first:
-    /// of each map the poses that come near the best one of all. The number of the map that
-    /// has the best pose, of equally good ones the first; `None` if `stop` said so before the
-    /// end.
+    /// Searches several maps together, each in its own workspace, with the settings of the first:
+    /// collects from each map the poses that come near the best one of all. Returns the number of
+    /// the map with the best pose (the first one on a tie), or `None` if `stop` returned true
+    /// before the end.
     ///
-    /// Votes are compared as shares of the highest possible on each map, without rounding.
+    /// Votes are compared as exact shares of the highest possible on each map.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
     ///
     /// # Panics
-    /// If there is no map, or a localizer was prepared for the other kind of question.
+    /// If there is no map, or a localizer was prepared for the other [`Prior`](super::Prior).
     pub fn search_together(
         mut maps: Vec<(&Localizer, &mut Workspace)>,
         scan: Observation<'_>,

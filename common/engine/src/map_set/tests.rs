@@ -12,7 +12,7 @@ use crate::program::VoteConfig;
 use crate::scan::Scan;
 use crate::testing::{any_grid, any_scan};
 
-/// None where the grid has no obstacle or no room.
+/// Prepares a locator; `None` if the grid has no obstacle or no free cell.
 fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> Option<Locator> {
     let occupancy: Vec<u8> = grid
         .cells()
@@ -62,7 +62,7 @@ proptest! {
         prop_assert_eq!(&all.places.classes, &found.places.classes);
         let said = |places: &Places| (places.verdict, places.alternatives, places.inlier_share);
         prop_assert_eq!(said(all.places), said(found.places));
-        // By votes alone they are shares here, and votes there.
+        // By votes alone, confidences are computed from shares here and from votes there.
         prop_assert!((all.places.confidence - found.places.confidence).abs() < 1e-12);
         prop_assert_eq!(all.ends, found.ends);
     }
@@ -81,7 +81,7 @@ proptest! {
         for place in &mut scored.places {
             let pose = GridPose::of(locator.distance_field().frame, place.map_from_laser);
             let score = locator.distance_field().score(ends, pose, &config.fit);
-            // A pose that was carried to the map and back differs in its last digits.
+            // A pose converted to the map and back differs in its last digits.
             if place.score - score > 1e-9 {
                 place.score = score;
             }

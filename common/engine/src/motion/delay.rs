@@ -1,43 +1,42 @@
-//! By how much the clock of the odometry is off that of the laser.
+//! Offset between the clocks of odometry and laser.
 
 use geometry::Pose;
 
 use super::Motion;
 
-/// A pose that a scan gave, and when.
+/// A pose found for a scan, with its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sighting {
-    /// The scan's stamp, with which its pose is published, nanoseconds.
+    /// Stamp of the scan, with which its pose is published, in nanoseconds.
     pub at_ns: i64,
-    /// Where the laser was.
+    /// Pose of the laser in the map.
     pub map_from_laser: Pose,
 }
 
-/// Delays that are tried, seconds: twice as many lie below 0, above it, and between.
+/// Largest delay that is tried to either side, and the step between delays, in seconds.
 const MAX_DELAY_S: f64 = 0.5;
 const STEP_S: f64 = 0.005;
 
-/// Between two sightings that are compared, nanoseconds: nearer to each other, the
-/// noise of the poses hides the motion; farther apart, odometry drifts.
+/// Time between two sightings that are compared, in nanoseconds: below it the noise of the poses
+/// hides the motion, above it odometry drifts.
 const GAP_NS: std::ops::RangeInclusive<i64> = 450_000_000..=1_000_000_000;
 
-/// Fewest pairs of sightings that can distinguish a delay from chance.
+/// Smallest number of pairs of sightings that can distinguish a delay from chance.
 const MIN_PAIRS: usize = 20;
 
-/// What a pair differs by at most, metres; a pose in another place must not decide.
+/// Cap on the difference of a pair, in metres, so that a pose at a wrong place does not decide.
 const MAX_DIFFERENCE_M: f64 = 0.2;
 
-/// A delay is reported only where it explains half of what the odometry at other delays
-/// leaves open: a robot that never speeds up or turns shows none.
+/// Largest ratio of the best delay's squared differences to the mean over all delays. A robot that
+/// never accelerates or turns shows no delay.
 const MAX_REST: f64 = 0.5;
 
 impl Motion {
-    /// What is to be added to the stamps of the odometry, seconds, so that it moves as
-    /// the sightings do: above zero where it leads the laser. `None` if they do not
-    /// show it.
+    /// Returns the offset, in seconds, to add to the stamps of odometry so that it moves as the
+    /// sightings do: positive if odometry leads the laser. `None` if they do not show it.
     ///
-    /// The motion between sightings half a second apart is compared with that of the
-    /// odometry at the same times, shifted; a radian counts as a metre.
+    /// The motion between sightings half a second apart is compared with that of odometry at the
+    /// same times, shifted by each delay; a radian counts as a metre.
     #[must_use]
     pub fn delay_s(&self, sightings: &[Sighting], child_from_laser: Pose) -> Option<f64> {
         let steps = (MAX_DELAY_S / STEP_S).round() as i32;
@@ -75,7 +74,7 @@ impl Motion {
         if !is_inside || *least > MAX_REST * mean {
             return None;
         }
-        // The lowest point of the parabola through the best delay and its neighbours.
+        // Minimum of the parabola through the best delay and its neighbours.
         let (before, after) = (rests[best - 1], rests[best + 1]);
         let curvature = before - 2.0 * least + after;
         let off = if curvature > 0.0 {
@@ -86,7 +85,7 @@ impl Motion {
         Some((best as f64 + off - f64::from(steps)) * STEP_S)
     }
 
-    /// Whether odometry is there for all delays.
+    /// True if odometry covers the pair at all delays.
     fn covers(&self, pair: &[Sighting; 2], child_from_laser: Pose) -> bool {
         let most_ns = (MAX_DELAY_S * 1e9) as i64;
         [-most_ns, most_ns]
@@ -94,7 +93,7 @@ impl Motion {
             .all(|delay_ns| self.between(pair, delay_ns, child_from_laser).is_some())
     }
 
-    /// How the laser moved between two sightings by the odometry, delayed.
+    /// Motion of the laser between two sightings by delayed odometry.
     fn between(&self, pair: &[Sighting; 2], delay_ns: i64, child_from_laser: Pose) -> Option<Pose> {
         let laser_at = |at_ns: i64| -> Option<Pose> {
             let located = self.at(at_ns.saturating_sub(delay_ns))?;
@@ -105,7 +104,7 @@ impl Motion {
     }
 }
 
-/// How far the motion between two sightings is from another one, squared metres.
+/// Difference between the motion from a pair of sightings and another one, in squared metres.
 fn difference(pair: &[Sighting; 2], moved: Pose) -> f64 {
     let seen = pair[0]
         .map_from_laser
@@ -120,7 +119,7 @@ fn difference(pair: &[Sighting; 2], moved: Pose) -> f64 {
 mod tests {
     use super::*;
 
-    /// A robot that swings to both sides while it drives.
+    /// Pose of a robot that swings to both sides while it drives.
     fn at(seconds: f64) -> Pose {
         Pose::new(0.5 * seconds, 0.0, 0.4 * (1.5 * seconds).sin())
     }
@@ -133,7 +132,7 @@ mod tests {
         let mut motion = Motion::keeping(usize::MAX);
         for i in 0..600 {
             let seconds = f64::from(i) * 0.02;
-            // The odometry shows now what the laser sees later.
+            // Odometry shows now what the laser sees later.
             motion.add(ns(seconds), truth(seconds + lead_s));
         }
         let mount = Pose::new(0.3, 0.0, 0.5);
@@ -151,7 +150,7 @@ mod tests {
     fn a_lead_and_a_lag_are_reported() {
         for lead_s in [0.13, 0.0, -0.2] {
             let found = delay_s(at, lead_s).unwrap();
-            // A parabola through steps of 5 ms, on a curve that is one nearby.
+            // The parabola is fitted through steps of 5 ms to a curve that is nearly one.
             assert!((found - lead_s).abs() < 0.002, "{found} is not {lead_s}");
         }
     }

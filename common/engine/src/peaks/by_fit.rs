@@ -1,5 +1,5 @@
-//! Places by how well the scan fits the map there: the votes' candidates are
-//! refined, judged again and put in order.
+//! Places judged by the fit of the scan: the candidates of the votes are refined, judged again and
+//! sorted.
 
 use std::cmp::Ordering;
 
@@ -12,8 +12,7 @@ use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map, lik
 use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined, lacks};
 use crate::votes::most_candidates;
 
-/// Reads the places from the votes of a scan and from the scan itself, see
-/// [`Workspace::by_fit`].
+/// Finds the places from the votes of a scan and from the scan itself, see [`Workspace::by_fit`].
 #[must_use]
 pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &PeakConfig) -> Places {
     let mut workspace = Workspace::default();
@@ -21,22 +20,21 @@ pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &Pea
     workspace.places
 }
 
-/// Neighbouring beams whose readings differ by more standard deviations of the fit
-/// end on different pieces of what is seen.
+/// Difference between the readings of neighbouring beams at which a new piece begins, in standard
+/// deviations of the fit.
 const PIECE_SIGMAS: f64 = 4.0;
 
-/// So many times `lead_scale` behind the best one, a place is as good as impossible: its
-/// probability is 1/22 000 of the best one's.
+/// Gap behind the best place, in units of `lead_scale`, at which a place is practically impossible:
+/// its probability is 1/22 000 of the best one's.
 const NEGLIGIBLE: f64 = 10.0;
 
-/// Over a place on another map the best one must lead by so many times as much: maps that were
-/// made by others, in other ways, are not as comparable as places on one.
+/// Factor on the lead that the best place needs over a place on another map: maps made by other
+/// people, in other ways, are less comparable than places on one map.
 const ELSEWHERE: f64 = 2.0;
 
 impl Workspace {
-    /// Reads the places from the votes of a scan and from the scan itself, which
-    /// must be of the same map. Its grid may be finer than that of the votes,
-    /// with the same origin.
+    /// Finds the places from the votes of a scan and from the scan itself, which must be of the
+    /// same map. Its grid may be finer than that of the votes, with the same origin.
     pub fn by_fit(
         &mut self,
         input: &PeakInput<'_>,
@@ -77,7 +75,7 @@ impl Workspace {
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
             (self.margin.needed, self.margin.left_out) = (needed, left_out);
-            // A place on another map may be the best one of all.
+            // The best place of all may be on another map.
             let apart = if input.has_others { ELSEWHERE } else { 1.0 };
             let matters = (apart * needed).max(left_out + NEGLIGIBLE * config.lead_scale);
             for (_, place) in &mut self.refined[scored..] {
@@ -94,9 +92,8 @@ impl Workspace {
 }
 
 impl Places {
-    /// What the scores of the places allow to say, where the best one needs such a
-    /// lead to stand alone, and such a lead may come from what the map leaves out; keeps
-    /// as many as are wanted.
+    /// Derives verdict, alternatives and probabilities from the scores of the places, and keeps as
+    /// many places as requested. `margin` is the lead that the best place needs to be unique.
     pub(super) fn judge_by_fit(
         &mut self,
         (best, margin): (f64, Margin),
@@ -140,27 +137,26 @@ impl Places {
     }
 }
 
-/// By how much the scores of the best place and of one on another map may be off to each other,
-/// because one of the maps was drawn: a drawing has clean walls, which fit a piece of any
-/// building, and leaves out what stands at them. The maps' doubts are those of
-/// [`DistanceField::drawn_doubt`].
+/// Error of the score difference between the best place and one on another map, because one of the
+/// maps was drawn: a drawing has clean walls, which fit a piece of any building, and leaves out
+/// what is next to them. The doubts are those of [`DistanceField::drawn_doubt`].
 pub(crate) fn doubt_between(best: f64, [of_best, of_other]: [f64; 2]) -> f64 {
     of_best.max(of_other.min(lacks(best)))
 }
 
-/// How far a score lies behind the best, against what that lacks of a perfect
-/// one: where the scan fits well, small differences matter.
+/// Gap of a score behind the best, relative to the best's gap from a perfect score: where the scan
+/// fits well, small differences matter.
 pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
 
-/// The best first; of equal ones, that with more votes.
+/// Sorts the best score first; on a tie the place with more votes.
 fn by_score((i, a): &(usize, Place), (j, b): &(usize, Place)) -> Ordering {
     b.score.total_cmp(&a.score).then(i.cmp(j))
 }
 
-/// The best of places that have bounds of their scores. Those whose bounds reach its score
-/// come first then, this many, and have their scores.
+/// Finds the best of places whose scores are upper bounds. Computes the scores of the places whose
+/// bounds reach the best score; these come first afterwards, and their number is returned.
 fn score_best(
     places: &mut [(usize, Place)],
     score: impl Fn(&Place) -> f64,
@@ -178,7 +174,7 @@ fn score_best(
     Some((best.1, scored))
 }
 
-/// Keeps the best of all poses that came to lie at one place.
+/// Keeps the best of all poses that converged to one place.
 fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &PeakConfig) {
     let angle = config.same_place_deg.to_radians();
     for (_, place) in places {
@@ -196,7 +192,7 @@ fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &Peak
     }
 }
 
-/// The refined place of a candidate, with a bound of its score.
+/// Refines a candidate to a place; its score is an upper bound.
 fn place(
     input: &PeakInput<'_>,
     (distance_field, ends): (&DistanceField, &Ends),
@@ -234,12 +230,12 @@ fn place(
     }
 }
 
-/// How far a place may reach along what no beam constrains: metres, and radians.
+/// Standard deviations of a place along directions that no beam constrains, in metres and radians.
 const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
-/// What the curvature of the fit and the walls of the map say about its error, in the
-/// map frame.
+/// Covariance of a refined pose in the map frame, from the curvature of the fit and the errors of
+/// walls.
 fn covariance(
     distance_field: &DistanceField,
     heading_is_known: bool,
@@ -249,7 +245,7 @@ fn covariance(
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
     let mut information = refined.information() + Matrix3::from_diagonal(&prior);
     if heading_is_known {
-        // The heading does not err, and x and y not with it.
+        // The heading has no error, and x and y have none from it.
         information.fill_row(2, 0.0);
         information.fill_column(2, 0.0);
         information[(2, 2)] = 1.0;
@@ -288,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_known_heading_does_not_err_nor_the_position_with_it() {
-        // Turning moves all ends as going 20 cells along y does.
+        // Turning moves all ends like a motion of 20 cells along y.
         let turned = Matrix3::new(50.0, 0.0, 0.0, 0.0, 50.0, 900.0, 0.0, 900.0, 20_000.0);
         let [x, y, yaw] = deviations(false, turned);
         let [known_x, known_y, known_yaw] = deviations(true, turned);

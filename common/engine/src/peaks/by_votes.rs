@@ -1,5 +1,4 @@
-//! Places by their votes alone: a peak is refined by its centre, and its shape
-//! is its covariance.
+//! Places by votes alone: a peak is refined by its centroid, and its shape gives the covariance.
 
 use geometry::{Covariance, wrap_angle};
 use messages::Verdict;
@@ -8,11 +7,11 @@ use nalgebra::{Matrix3, Vector3};
 use super::summits::{self, Reach, Summit};
 use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map};
 
-/// Votes from this share of a peak's height up make up its shape: below, the
-/// flanks of other peaks begin.
+/// Share of a peak's height above which votes belong to its shape: below it, the flanks of other
+/// peaks begin.
 const PEAK_BASE_SHARE: f64 = 0.85;
 
-/// Reads the places from the votes of a scan, see [`Workspace::by_votes`].
+/// Finds the places from the votes of a scan, see [`Workspace::by_votes`].
 #[must_use]
 pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
     let mut workspace = Workspace::default();
@@ -21,7 +20,7 @@ pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
 }
 
 impl Workspace {
-    /// Reads the places from the votes of a scan: the paper's method.
+    /// Finds the places from the votes of a scan, by the paper's method.
     pub fn by_votes(&mut self, input: &PeakInput<'_>, config: &PeakConfig) -> &Places {
         let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
         let (summits, found) = (&mut self.summits, &mut self.places);
@@ -38,7 +37,7 @@ impl Workspace {
 }
 
 impl Places {
-    /// What the votes of the places allow to say.
+    /// Derives verdict, alternatives and confidence from the votes of the places.
     fn judge_by_votes(&mut self, best: Place, input: &PeakInput<'_>, config: &PeakConfig) {
         let rival = f64::from(best.intensity) * config.ambiguous_share;
         let others = self.places[1..].iter();
@@ -60,7 +59,7 @@ impl Places {
     }
 }
 
-/// The place of a summit: the centre and the spread of the votes around it.
+/// Makes the place of a summit: the centroid and the spread of the votes around it.
 fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
     let summit = &summit.vote;
     let base = f64::from(summit.intensity) * PEAK_BASE_SHARE;
@@ -102,10 +101,10 @@ fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
     }
 }
 
-/// A covariance over cells and radians, with that of rounding to the search
-/// grid, in metres along the map's axes.
+/// Adds the covariance of rounding to the search grid to one over cells and radians, and converts
+/// it to metres along the map's axes.
 fn spread_in_map(input: &PeakInput<'_>, in_cells: Matrix3<f64>) -> Covariance {
-    // A value rounded to steps of width w varies by w²/12 around it.
+    // A value rounded to steps of width w has the variance w²/12.
     let step = std::f64::consts::TAU / f64::from(input.headings);
     let heading_rounding = if input.known_heading.is_some() {
         0.0

@@ -1,21 +1,21 @@
-//! What makes poses one place, and a place the answer.
+//! Settings for distinct places and for the verdict.
 
 #[cfg(feature = "clap")]
 use crate::config::{parse_degrees, parse_length, parse_share};
 use crate::fit::FitConfig;
 use crate::votes::{DISTINCT_DEG, DISTINCT_M};
 
-/// By what the places are judged.
+/// Score by which the places are judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Score {
-    /// By how well the scan fits the map at the refined pose.
+    /// Fit of the scan to the map at the refined pose.
     Fit,
-    /// By the votes alone: the paper's method.
+    /// Votes alone, the paper's method.
     Votes,
 }
 
-/// When poses are one place, and when a place stands alone.
+/// Settings for distinct places and for the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct PeakConfig {
@@ -45,7 +45,7 @@ pub struct PeakConfig {
     /// degrees, 0..=180.
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = DISTINCT_DEG, value_parser = parse_degrees))]
     pub candidate_deg: f64,
-    /// How the places' fit is judged.
+    /// Scores of the fit at the places.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub fit: FitConfig,
     /// Minimum lead of the best place: another place closer behind makes the answer
@@ -58,7 +58,7 @@ pub struct PeakConfig {
     /// on the map. This is for a scan that sees six pieces, see `--piece-doubt`.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.74, value_parser = parse_share))]
     pub sure_score: f64,
-    /// How far the sure score falls with the natural logarithm of the number of pieces
+    /// Fall of the sure score with the natural logarithm of the number of pieces
     /// of the world that a scan sees, 0..=1, since many pieces rarely fit together by
     /// chance. A new piece begins where neighbouring readings jump.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share))]
@@ -86,8 +86,8 @@ pub struct PeakConfig {
     /// places found, 0..=1.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.55, value_parser = parse_share))]
     pub even_score: f64,
-    /// Score above that which makes "none of them" less likely by a factor of e,
-    /// 0.001..=1.
+    /// Increase of the score above `--even-score` that makes "none of them" less likely by
+    /// a factor of e, 0.001..=1.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale))]
     pub score_scale: f64,
     /// With `--score votes`: another place with at least this share of the best place's
@@ -100,19 +100,19 @@ pub struct PeakConfig {
     pub poor_fit_share: f64,
 }
 
-/// A scale of scores: something is divided by it.
+/// Parses a scale of scores, which is a divisor.
 #[cfg(feature = "clap")]
 fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
-/// The sure score is that of scans that see this many pieces.
+/// Number of pieces that a scan sees for which the sure score is defined.
 const SURE_PIECES: f64 = 6.0;
 
 impl PeakConfig {
-    /// The lead at which a best place stands alone that has such a score, and where
-    /// such a share of the beams passes through obstacles or ends behind unknown space;
-    /// by this many beams that see this many pieces.
+    /// Returns the lead that the best place needs to be unique, given its score, the share of beams
+    /// that pass through obstacles or end behind unknown space, and the numbers of beams and
+    /// pieces.
     pub(super) fn needed_lead(
         &self,
         (score, unmatched): (f64, f64),
@@ -129,8 +129,8 @@ impl PeakConfig {
 }
 
 impl PeakConfig {
-    /// The settings for each map of several that are searched together: what is left out of
-    /// the places of one map may be among those of all.
+    /// Returns the settings for each single map of several searched together: places that one map
+    /// would drop may be among the best of all.
     #[must_use]
     pub fn of_each_map(&self) -> Self {
         PeakConfig {
@@ -187,10 +187,10 @@ mod tests {
         check((0.74, 0.0), (100.0, 6.0), 0.09);
         check((0.64, 0.0), (100.0, 6.0), 0.19);
         check((0.74, 0.0), (25.0, 6.0), 0.18);
-        // A tenth of what passes through obstacles is spared by a good score.
+        // A share of 0.1 of unmatched beams is offset by a good score.
         check((0.80, 0.1), (100.0, 6.0), 0.09);
         check((0.74, 0.5), (100.0, 6.0), 0.39);
-        // A scan of one piece says less, one of many more.
+        // A scan of one piece is weaker evidence, one of many pieces is stronger.
         let pieces = |pieces: f64| 0.14 * (pieces / 6.0).ln();
         check((0.74, 0.0), (100.0, 1.0), 0.09 - pieces(1.0));
         check((0.64, 0.0), (100.0, 9.0), 0.19 - pieces(9.0));

@@ -1,15 +1,14 @@
-//! How likely the robot is at each place, and at none of them.
+//! Probabilities that the robot is at each place, or at none of them.
 //!
-//! A softmax: weights fall exponentially with the lead of the best place and,
-//! for none of them, with its score. The scales are settings: that of leads was
-//! fitted to real scans with known poses, by the likelihood of what was true;
-//! those of scores lie near where that is highest, a little lower, for those
-//! scans were all taken on their maps.
+//! A softmax: weights fall exponentially with the lead of the best place and, for "none", with its
+//! score. The scales are settings. That of leads was fitted to real scans with known poses by
+//! maximum likelihood; those of scores are a little below that optimum, because all those scans
+//! were taken on their maps.
 
 use super::{PeakConfig, Place};
 
-/// Fills in the probabilities, best place first, from the leads over each; what
-/// they leave of 1 is that the robot is at none.
+/// Fills in the probabilities of the places, best first, from their leads. The rest to 1 is the
+/// probability that the robot is at none of them.
 pub(super) fn assign(places: &mut [Place], leads: &[f64], config: &PeakConfig) {
     let Some(best) = places.first() else { return };
     let none = ((config.even_score - best.score) / config.score_scale).exp();

@@ -1,4 +1,4 @@
-//! Places on several maps, or found by several machines, as one answer.
+//! Merges places on several maps, or found by several machines, into one answer.
 
 use messages::Verdict;
 
@@ -6,33 +6,33 @@ use super::{Judged, Margin, PeakConfig, Place, Places, Score};
 use crate::localizer::Outcome;
 use crate::votes::{VoteShare, is_close};
 
-/// What was found on one map, or on several that somebody else has merged.
+/// Result on one map, or the merged result on several.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Found {
     /// Distinct places, best first, each with the number of its map.
     pub places: Vec<Place>,
-    /// By how much the first of them must lead over others.
+    /// Lead that the first of them needs over others.
     pub margin: Margin,
-    /// Share of the beams that end at an obstacle at the first of them.
+    /// Share of the beams that end at an obstacle at the first place.
     pub inlier_share: f64,
-    /// The map with the most votes among these, by number.
+    /// Number of the map with the most votes among these.
     pub leading_map: u32,
-    /// What its best pose has.
+    /// Votes of its best pose.
     pub lead: VoteShare,
-    /// Share of the possible votes that a pose may have which was not collected, 0..=1.
+    /// Largest share of the possible votes of a pose that was not collected, 0..=1.
     pub unseen: f64,
 }
 
 impl Found {
-    /// What was found on the map of this number.
+    /// Makes the result of a search on the map with this number.
     #[must_use]
     pub fn on(map: u32, outcome: &Outcome, judged: &Judged<'_>) -> Self {
         let certified_floor = outcome.found.certified_floor;
         Found::with((map, outcome.best_share()), certified_floor.into(), judged)
     }
 
-    /// The same where no more is known of the search than the share of its best pose, and down
-    /// to how many votes it is certified.
+    /// Does the same from the vote share of the best pose and the certified floor, if no more of
+    /// the search is known.
     #[must_use]
     pub fn with((map, lead): (u32, VoteShare), certified_floor: u32, judged: &Judged<'_>) -> Self {
         let places = judged.places.places.iter();
@@ -47,32 +47,32 @@ impl Found {
         }
     }
 
-    /// Whether its lead is greater, as a share without rounding, or equal on a map before.
+    /// True if its vote share is larger, compared without rounding, or equal on a map with a
+    /// smaller number.
     fn leads(&self, other: &Found) -> bool {
         let lead = self.lead.compare(other.lead);
         lead.then(other.leading_map.cmp(&self.leading_map)).is_gt()
     }
 }
 
-/// One answer of several.
+/// The merged answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Merged {
-    /// The places and the verdict. What became of the beams at the best place is that of
-    /// the map it is on: the classes are empty.
+    /// Places and verdict. The beam classes are empty; those of the map of the best place apply.
     pub places: Places,
-    /// All that was merged, as it would be merged with others: the places are those above.
+    /// Everything that was merged, in a form that can be merged with further results.
     pub found: Found,
-    /// Which of those that were merged has the best place.
+    /// Index of the merged result that has the best place.
     pub best_of: usize,
 }
 
-/// Brings what was found on several maps, in any order, to one answer, as if one search had
-/// found it: places are ordered by their scores, equal ones by the numbers of their maps, and a
-/// place on another map is an alternative like any other.
+/// Merges the results on several maps, in any order, as if one search had found them: places are
+/// sorted by score, equal ones by the number of their map, and a place on another map is an
+/// alternative like any other.
 ///
-/// Places with less than half of the votes of the best pose count on its map only. Where so the
-/// first place of a part is left out and another one of it is the best of all, nothing is
-/// `Unique`: the part says of its first place alone by how much that must lead.
+/// Places with less than half of the votes of the best pose count on that pose's map only. If this
+/// removes the first place of a result and another place of it is the best of all, nothing is
+/// `Unique`, because the margin of a result holds for its first place only.
 #[must_use]
 pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     let first = all.iter().reduce(|a, b| if b.leads(a) { b } else { a });
@@ -90,10 +90,10 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
             places.map(move |place| (number, *place))
         })
         .collect();
-    // Stable: equal ones of a map stay in their order.
+    // A stable sort keeps equal places of one map in their order.
     places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score).then(a.map.cmp(&b.map)));
     let best_of = places.first().map_or(0, |&(number, _)| number);
-    // Another place of a part may need a larger lead than its first one, and its score may be a
+    // Another place of a result may need a larger lead than its first one, and its score may be a
     // bound.
     let is_first = |&(number, place): &(usize, Place)| all[number].places.first() == Some(&place);
     let may_lack =
@@ -130,14 +130,14 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
 }
 
 impl Places {
-    /// What the shares of the votes allow to say, which are the scores here.
+    /// Derives the verdict from the vote shares, which are the scores here.
     fn judge_by_shares(
         &mut self,
         (best, margin): (Place, Margin),
         unseen: f64,
         config: &PeakConfig,
     ) {
-        // As votes on its own map: there no rounding differs from that of one map.
+        // Votes are compared on the place's own map, where the rounding is that of a single map.
         let best_on = |place: &Place| {
             let votes = f64::from(best.intensity) * f64::from(place.possible);
             votes / f64::from(best.possible.max(1))
@@ -165,7 +165,7 @@ mod tests {
 
     use super::*;
 
-    /// Places on a map of which 100 votes are possible, by their scores and votes.
+    /// Places on a map with 100 possible votes, from their scores and votes.
     fn found(map: u32, lead: u16, needed: f64, places: &[(f64, u16)]) -> Found {
         let place = |&(score, intensity): &(f64, u16)| Place {
             map,
@@ -199,10 +199,10 @@ mod tests {
             assert_eq!((merged.best_of, merged.places.places[0].map), (1, 1));
             merged.places.verdict
         };
-        // What its first place needs is less than what the second one does.
+        // The first place of the result needs less lead than the second.
         let second = verdict(found(1, 40, 0.09, &[(0.9, 20), (0.7, 40)]));
         assert_eq!(second, Verdict::Ambiguous);
-        // So far behind the first one, the second one's score may be a bound.
+        // So far behind the first, the score of the second place may be a bound.
         let bound = verdict(found(1, 40, 0.09, &[(0.99, 20), (0.85, 40)]));
         assert_eq!(bound, Verdict::Ambiguous);
         let first = verdict(found(1, 40, 0.09, &[(0.9, 40), (0.7, 20)]));

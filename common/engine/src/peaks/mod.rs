@@ -1,7 +1,6 @@
-//! From votes to hypotheses: distinct places, refined, with their spread and a
-//! verdict.
+//! From votes to hypotheses: distinct places, refined, with their covariances and a verdict.
 //!
-//! The votes name candidates, the fit of the scan decides between them:
+//! The votes give candidates, and the fit of the scan decides between them:
 //!
 //! ```text
 //! votes ─ summits ─┬─ by_votes ───────────────────────────┬─ places, verdict
@@ -31,32 +30,32 @@ pub use merged::{Found, Merged, merge};
 use sentence::PlaceSummary;
 use summits::Summit;
 
-/// The votes of one scan and what is needed to read them.
+/// Votes of one scan, and the data needed to interpret them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakInput<'a> {
-    /// By falling intensity.
+    /// Votes by falling intensity.
     pub votes: &'a [Vote],
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u32,
-    /// Whether the search ended before it could prove that no other pose comes near the best.
+    /// True if the search ended before it could prove that no other pose comes near the best.
     pub cut: bool,
-    /// What a pose would have if every beam agreed fully.
+    /// Votes of a pose with which every beam agrees fully.
     pub highest_possible: u32,
-    /// The votes of the best pose; where several maps are searched and another one has it,
-    /// the least number that is as good here.
+    /// Votes of the best pose; if another of several maps has it, the smallest number of votes that
+    /// is as good on this map.
     pub lead: u32,
-    /// Whether the map is one of several that are searched together.
+    /// True if the map is one of several that are searched together.
     pub has_others: bool,
-    /// Headings a turn.
+    /// Number of headings per turn.
     pub headings: u32,
-    /// The heading that was given, in the map frame, radians.
+    /// Known heading in the map frame, in radians; `None` if all headings were searched.
     pub known_heading: Option<f64>,
-    /// Where the votes' grid lies in the map.
+    /// Cell size and pose in the map of the votes' grid.
     pub frame: GridFrame,
 }
 
 impl<'a> PeakInput<'a> {
-    /// The input for an outcome on a map that is searched alone.
+    /// Makes the input from an outcome on a map that is searched alone.
     #[must_use]
     pub fn of(outcome: &'a Outcome, frame: GridFrame) -> Self {
         PeakInput {
@@ -72,22 +71,20 @@ impl<'a> PeakInput<'a> {
         }
     }
 
-    /// Whether a pose that the search did not come to may have such a share of the best
-    /// one's votes.
+    /// True if a pose that the search did not reach may have this share of the best one's votes.
     fn may_lack(&self, share: f64) -> bool {
         let unseen = self.certified_floor.saturating_sub(1);
         self.cut && f64::from(unseen) >= f64::from(self.lead) * share
     }
 
-    /// The given heading in the grid's frame, radians.
+    /// Known heading in the grid's frame, in radians.
     fn known_heading_in_grid(&self) -> Option<f64> {
         let heading = self.known_heading?;
         Some(wrap_angle(heading - self.frame.map_from_grid.yaw))
     }
 }
 
-/// A covariance over cells and radians of a grid's frame, in metres along the
-/// map's axes.
+/// Converts a covariance over cells and radians of a grid's frame to metres along the map's axes.
 pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
     let turn = frame.metres_from_cells();
     Covariance(turn * in_cells * turn.transpose())
@@ -96,53 +93,49 @@ pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Number of the map among those that are searched together, from 0.
+    /// Number of the map among those searched together, from 0.
     pub map: u32,
-    /// Pose of the target frame: the laser or, where several are joined,
-    /// the base.
+    /// Pose of the target frame: the laser or, if several are joined, the base.
     pub map_from_laser: Pose,
-    /// The peak's spread, in the map frame.
+    /// Covariance of the pose, in the map frame.
     pub covariance: Covariance,
-    /// How well the scan fits the map there, at most 1; of a place too far behind the best
-    /// one to matter, a bound of that by where the beams end. By votes alone, the share of
-    /// those that the pose could have at most.
+    /// Score of the fit there, at most 1; an upper bound for places too far behind the best to
+    /// matter. By votes alone, its share of the highest possible votes.
     pub score: f64,
-    /// How likely the robot is there, 0..=1; 0 by votes alone.
+    /// Probability that the robot is there, 0..=1; 0 by votes alone.
     pub probability: f64,
-    /// Votes of the best pose that led there.
+    /// Votes of the best pose from which the place was refined.
     pub intensity: u16,
-    /// Votes that a pose of the map can have at most.
+    /// Highest possible votes of a pose on the map.
     pub possible: u16,
-    /// By how much scores on the map may be off because it was drawn, 0..=1; 0 where it was
-    /// measured.
+    /// Error of scores on the map because it was drawn, 0..=1; 0 on a measured map.
     pub drawn_doubt: f64,
-    /// Votes that led there.
+    /// Number of votes that belong to the place.
     pub support: u64,
 }
 
-/// What a scan's votes say.
+/// Places found for a scan, and the verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
     /// Distinct places, best first.
     pub places: Vec<Place>,
-    /// What they allow to say about the pose.
+    /// Verdict on the pose.
     pub verdict: Verdict,
-    /// Other places that fit about as well as the best.
+    /// Number of other places that fit about as well as the best.
     pub alternatives: u32,
-    /// The probability of the best place, 0..=1. By votes alone, how far it
-    /// stands above the next, as a share of its votes; where none was
-    /// collected, above the floor below which none was searched.
+    /// Probability of the best place, 0..=1. By votes alone, the gap from its votes to those of the
+    /// next place, as a share of its votes; if no next place was collected, the gap to the floor of
+    /// the search.
     pub confidence: f64,
-    /// Share of the beams by weight that end at an obstacle at the best place;
-    /// by votes alone, its score.
+    /// Share of the beams, by weight, that end at an obstacle at the best place; by votes alone,
+    /// its score.
     pub inlier_share: f64,
-    /// What became of each beam at the best place, in the order of their
-    /// bearings; empty by votes alone.
+    /// Class of each beam at the best place, in the order of bearings; empty by votes alone.
     pub classes: Vec<BeamClass>,
 }
 
 impl Place {
-    /// As a message says it.
+    /// Converts the place to a message.
     #[must_use]
     pub fn hypothesis(&self, map_id: u64, target: Target) -> Hypothesis {
         let laser = self.of_laser(target);
@@ -159,7 +152,7 @@ impl Place {
     }
 }
 
-/// Whose poses were searched, and how it lies to the first laser and to the base.
+/// The target frame, whose poses are searched, with its relation to the first laser and the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
     target_from_laser: Pose,
@@ -167,8 +160,8 @@ pub struct Target {
 }
 
 impl Target {
-    /// The laser, which may have a known place on the base, or the base of several
-    /// lasers, of which the first has one.
+    /// Makes the target: a laser, whose mount on the base may be known, or the base of several
+    /// lasers, with the mount of the first.
     #[must_use]
     pub fn of(base_from_laser: Option<Pose>, is_base: bool) -> Self {
         let base_from_laser = base_from_laser.unwrap_or(Pose::IDENTITY);
@@ -184,7 +177,7 @@ impl Target {
         }
     }
 
-    /// The first laser's pose where the target frame has this one.
+    /// Converts a pose of the target frame to that of the first laser.
     #[must_use]
     pub fn laser(self, map_from_target: Pose) -> Pose {
         match self.target_from_laser == Pose::IDENTITY {
@@ -193,7 +186,7 @@ impl Target {
         }
     }
 
-    /// The target frame's pose where the first laser has this one.
+    /// Converts a pose of the first laser to that of the target frame.
     #[must_use]
     pub fn from_laser(self, map_from_laser: Pose) -> Pose {
         match self.target_from_laser == Pose::IDENTITY {
@@ -202,13 +195,13 @@ impl Target {
         }
     }
 
-    /// The target frame's pose where the base has this one.
+    /// Converts a pose of the base to that of the target frame.
     #[must_use]
     pub fn from_base(self, map_from_base: Pose) -> Pose {
         map_from_base.then(self.target_from_base.inverse())
     }
 
-    /// The base's pose where the target frame has this one.
+    /// Converts a pose of the target frame to that of the base.
     #[must_use]
     pub fn base(self, map_from_target: Pose) -> Pose {
         map_from_target.then(self.target_from_base)
@@ -216,7 +209,7 @@ impl Target {
 }
 
 impl Place {
-    /// The place of the first laser where this is one of the target frame.
+    /// Converts a place of the target frame to one of the first laser.
     #[must_use]
     pub fn of_laser(&self, target: Target) -> Place {
         let map_from_laser = target.laser(self.map_from_laser);
@@ -229,7 +222,7 @@ impl Place {
 }
 
 impl Places {
-    /// The verdict in words.
+    /// Returns the verdict in words.
     #[must_use]
     pub fn sentence(&self) -> String {
         let reported = self.places.iter().take(1 + self.alternatives as usize);
@@ -244,7 +237,7 @@ impl Places {
         sentence::sentence(self.verdict, &summaries)
     }
 
-    /// Becomes what there is to say of a scan of which nothing voted.
+    /// Resets to the result of a scan without votes.
     fn clear(&mut self) {
         self.places.clear();
         self.verdict = Verdict::NoScan;
@@ -256,7 +249,7 @@ impl Places {
 }
 
 impl Default for Places {
-    /// A scan of which nothing voted.
+    /// Result of a scan without votes.
     fn default() -> Self {
         Places {
             places: Vec::new(),
@@ -269,63 +262,63 @@ impl Default for Places {
     }
 }
 
-/// By how much the best place must lead over others to stand alone.
+/// Lead over others that the best place needs to be unique.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Margin {
-    /// For what its scan says, see [`PeakConfig::least_lead`].
+    /// Lead needed because of the scan, see [`PeakConfig::least_lead`].
     pub needed: f64,
-    /// A lead that may come from what the map leaves out.
+    /// Lead that may be due to things the map leaves out.
     pub left_out: f64,
-    /// Whether a pose that the search did not come to may be as good.
+    /// True if a pose that the search did not reach may be as good.
     pub may_lack: bool,
 }
 
-/// What reading places takes, and the last ones. Kept from scan to scan: once
-/// the buffers are large enough, nothing is allocated any more. It may serve any map.
+/// Buffers for finding places, and the last places. Kept from scan to scan: once the buffers are
+/// large enough, nothing is allocated any more. They may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     summits: Vec<Summit>,
-    /// Places as they come to be refined, with their ranks by votes.
+    /// Places in the order of refinement, with their ranks by votes.
     refined: Vec<(usize, Place)>,
-    /// Of the best place over each.
+    /// Lead of the best place over each place.
     leads: Vec<f64>,
     places: Places,
-    /// What the best of them needs to stand alone.
+    /// Lead that the best place needs to be unique.
     margin: Margin,
-    /// The beams of the last scan that was compared with a map.
+    /// Beams of the last scan that was compared with a map.
     ends: Ends,
 }
 
-/// What votes and the scan say about the pose.
+/// Places that votes and scan give, with the margin of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged<'w> {
-    /// Distinct places, and the verdict.
+    /// Distinct places and verdict.
     pub places: &'w Places,
-    /// The beams that were compared with the map; none where the votes alone decide.
+    /// Beams that were compared with the map; `None` if the votes alone decide.
     pub ends: Option<&'w Ends>,
-    /// By how much the best place must lead over others.
+    /// Lead over others that the best place needs.
     pub margin: Margin,
 }
 
 impl Workspace {
-    /// What became of each beam of the last scan at its best place.
+    /// Class of each beam of the last scan at its best place.
     #[must_use]
     pub fn classes(&self) -> &Vec<BeamClass> {
         &self.places.classes
     }
 
-    /// The beams of the last scan, where places are judged by them.
+    /// Beams of the last scan; `None` if the votes alone decide.
     #[must_use]
     pub fn judged_ends(&self, score: Score) -> Option<&Ends> {
         (score == Score::Fit).then_some(&self.ends)
     }
 
-    /// Reads the places as the settings want it: from the votes alone, or from how well the
-    /// scan fits the map, which is then asked for. The map must be that of the votes; its
-    /// cells may be finer, with the same origin.
+    /// Finds the places by the configured score: from the votes alone, or from the fit of the scan
+    /// to the map. `scan` is called in the latter case, to fill in the beams. The map must be that
+    /// of the votes; its cells may be finer, with the same origin.
     ///
     /// # Errors
-    /// What `scan` says.
+    /// The error of `scan`.
     pub fn judge<E>(
         &mut self,
         input: &PeakInput<'_>,
@@ -344,7 +337,7 @@ impl Workspace {
                 },
             });
         }
-        // Out of the workspace while that is at work.
+        // The ends are taken out of the workspace while it is borrowed.
         let mut ends = std::mem::take(&mut self.ends);
         let found = scan(&mut ends).map(|()| {
             self.by_fit(input, (distance_field, &ends), config);

@@ -1,35 +1,34 @@
-//! The verdict in words, for the operator at the robot.
+//! Verdicts in words, for the operator at the robot.
 
 use std::f64::consts::PI;
 
 use geometry::{Covariance, Pose};
 use messages::Verdict;
 
-/// What is reported of a place.
+/// Data of a place for a sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceSummary {
-    /// Which map it is on: places with other numbers are on other maps.
+    /// Number of its map; places with different numbers are on different maps.
     pub map: u64,
     /// Pose of the laser in the map.
     pub map_from_laser: Pose,
-    /// Its spread.
+    /// Covariance of the pose.
     pub covariance: Covariance,
-    /// How well the scan fits there.
+    /// Score of the fit there.
     pub score: f64,
 }
 
-/// An ellipse that is this many times as long as it is wide lies along a
-/// corridor.
+/// Ratio of length to width from which an ellipse is along a corridor.
 const CORRIDOR: f64 = 5.0;
 
-/// Places in a corridor's direction, give or take, are along it.
+/// Tolerance for places in a corridor's direction, in radians.
 const ALONG_RADIANS: f64 = 0.35;
 
-/// Poses so near each other are the same spot, metres.
+/// Distance within which poses are on the same spot, in metres.
 const SAME_SPOT_M: f64 = 0.5;
 
-/// What a verdict means. Of the places, best first, those after the first fit
-/// about as well where the verdict is [`Verdict::Ambiguous`].
+/// Explains a verdict. The places are best first; for [`Verdict::Ambiguous`] all of them fit about
+/// as well as the first.
 #[must_use]
 pub fn sentence(verdict: Verdict, places: &[PlaceSummary]) -> String {
     match (verdict, places) {
@@ -52,7 +51,7 @@ fn fit(place: &PlaceSummary) -> f64 {
     place.score.clamp(0.0, 1.0)
 }
 
-/// How the others lie to the best place.
+/// Describes the positions of the others relative to the best place.
 fn apart(best: &PlaceSummary, others: &[PlaceSummary]) -> String {
     let elsewhere = others.iter().filter(|other| other.map != best.map).count();
     match elsewhere {
@@ -80,7 +79,7 @@ fn apart(best: &PlaceSummary, others: &[PlaceSummary]) -> String {
     range
 }
 
-/// Whether the way to another place lies along what the scan does not constrain.
+/// True if another place is in the direction that the scan does not constrain.
 fn is_along_corridor(best: &PlaceSummary, other: &PlaceSummary) -> bool {
     let ellipse = best.covariance.ellipse();
     let (from, to) = (best.map_from_laser, other.map_from_laser);

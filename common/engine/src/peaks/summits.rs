@@ -1,7 +1,7 @@
 //! The best vote of each distinct place.
 //!
-//! Votes of neighbouring poses make up one peak. The best vote names a place,
-//! all votes near it are taken for the same place, and so on down the list.
+//! Votes of neighbouring poses make up one peak. The best vote starts a place, all votes near it
+//! belong to the same place, and so on down the list.
 
 use geometry::angle_between;
 use messages::Vote;
@@ -9,19 +9,19 @@ use messages::Vote;
 use super::PeakInput;
 use crate::votes::is_close;
 
-/// A place by its best vote.
+/// A place, given by its best vote.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Summit {
     pub vote: Vote,
-    /// Votes that were taken for the same place.
+    /// Number of votes that belong to the place.
     pub support: u64,
 }
 
-/// How far apart poses of one place are at most.
+/// Largest distance between poses of one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
     cells: f64,
-    /// Radians.
+    /// Angle in radians.
     angle: f64,
 }
 
@@ -49,8 +49,8 @@ impl PeakInput<'_> {
     }
 }
 
-/// Fills in the best vote of each place, best first: this many at most, or up to this many
-/// as long as they are close to the best one.
+/// Fills in the best vote of each place, best first: at most `most`, or up to `most_close` while
+/// they are close to the best one in votes.
 pub(super) fn find(
     input: &PeakInput<'_>,
     reach: Reach,

@@ -109,7 +109,7 @@ fn a_cut_search_is_unique_only_where_no_rival_can_have_been_missed() {
         };
         by_votes(&input, &PeakConfig::default()).verdict
     };
-    // Rivals have 92 votes at least, and poses with one less than the floor may be missing.
+    // Rivals have at least 92 votes, and poses with one less than the floor may be missing.
     assert_eq!(verdict(true, 92), Verdict::Unique);
     assert_eq!(verdict(true, 93), Verdict::Ambiguous);
     assert_eq!(verdict(true, 180), Verdict::Ambiguous);

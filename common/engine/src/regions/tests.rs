@@ -2,8 +2,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::*;
 
-/// A transducer that looks this many degrees from ahead, and reads a wall whose
-/// normal is at `normal` degrees and `depth_m` from the frame's origin.
+/// Echo of a transducer whose axis is this many degrees from ahead, from a wall whose normal is at
+/// `normal` degrees and `depth_m` from the frame's origin.
 fn echo(x: f64, y: f64, axis: f64, (normal, depth_m): (f64, f64)) -> Echo {
     let (sin, cos) = normal.to_radians().sin_cos();
     Echo {
@@ -23,7 +23,7 @@ fn found(echoes: &[Echo]) -> Vec<(i64, f64, Vec<usize>)> {
     found.map(rounded).collect()
 }
 
-/// What one transducer reads of a wall on a metre of way, at ten places.
+/// Echoes of one wall by one transducer at ten positions along a metre.
 fn drive(axis: f64, wall: (f64, f64)) -> Vec<Echo> {
     let places = (0..10).map(|i| f64::from(i) / 9.0);
     places.map(|x| echo(x, 0.0, axis, wall)).collect()
@@ -37,8 +37,8 @@ fn a_wall_that_is_passed_has_its_true_bearing_not_that_of_the_axis() {
         let [(bearing, depth_cm, echoes)] = &found[..] else {
             panic!("{found:?}");
         };
-        // A metre of way distinguishes bearings that differ by 6 cm / 1 m, 3 degrees, and
-        // the depth at one of those is off by that share of half the way.
+        // A metre of path distinguishes bearings that differ by 6 cm / 1 m, 3 degrees, and the
+        // depth at one of those is off by that share of half the path.
         assert!((bearing - normal as i64).abs() <= 2, "{found:?}");
         assert!((depth_cm - 200.0).abs() <= 3.0, "{found:?}");
         assert_eq!(*echoes, all);
@@ -47,7 +47,7 @@ fn a_wall_that_is_passed_has_its_true_bearing_not_that_of_the_axis() {
 
 #[test]
 fn a_robot_that_turns_on_the_spot_sees_a_wall_over_the_width_of_its_cone() {
-    // Every three degrees; the wall ahead answers within 15 degrees.
+    // One echo every three degrees; the wall ahead answers within 15 degrees.
     let axes = (-5..=5).map(|i| f64::from(i) * 3.0);
     let echoes: Vec<Echo> = axes.map(|axis| echo(0.0, 0.0, axis, (0.0, 2.0))).collect();
     assert_eq!(found(&echoes), [(0, 200.0, (0..11).collect())]);
@@ -63,7 +63,7 @@ fn echoes_that_a_robot_repeats_from_one_place_are_no_region() {
 fn two_walls_are_two_regions_and_cross_talk_is_in_none() {
     let mut echoes = drive(90.0, (90.0, 2.0));
     echoes.extend(drive(-90.0, (-90.0, 1.0)).into_iter().take(8));
-    // What cannot be: three that agree with nothing, in the left one's cone.
+    // Three impossible echoes in the left one's cone that agree with nothing.
     for (i, range_m) in [(2, 0.7), (4, 4.1), (6, 3.0)] {
         echoes[i].range_m = range_m;
     }
@@ -86,8 +86,8 @@ fn regions_vote_where_their_walls_were_met() {
     let (sin, cos) = 100f64.to_radians().sin_cos();
     for (bearing, metres) in points {
         let depth_m = metres * (bearing.cos() * cos + bearing.sin() * sin);
-        // Rounding a bearing by half a degree moves the foot of a wall that is
-        // met at up to 25 degrees by 1 cm; the region's own bearing is as good.
+        // Rounding a bearing by half a degree moves the foot of a wall seen at up to 25 degrees by
+        // 1 cm; the region's own bearing is as accurate.
         assert!((depth_m - 2.0).abs() < 0.04, "{bearing}: {depth_m}");
     }
 }
@@ -100,7 +100,7 @@ fn an_echo_is_spread_over_its_cone_and_over_the_turn() {
         range_m,
     };
     let ranges = spread(&[echo(0.0, 2.0), echo(10.0, 1.0), echo(179.0, 3.0)], 0.1);
-    // Five whole degrees to each side; at five, both are equally far off.
+    // Five whole degrees to each side; at five, both are equally far from their axes.
     assert_eq!(at(4, &ranges), 2.0);
     assert_eq!(at(5, &ranges), 1.0);
     assert!(at(-6, &ranges).is_nan() && at(16, &ranges).is_nan());
@@ -123,7 +123,7 @@ fn echoes_of_a_scan_lie_where_it_was_taken() {
     let echoes: Vec<Echo> = Echo::of(&scan, moved).unwrap().collect();
     assert_eq!(echoes.len(), 1);
     let (x, y) = echoes[0].point(echoes[0].scan_from_transducer.yaw);
-    // It looks to the left of a robot that has turned to the left.
+    // The transducer looks to the left of a robot that has turned left.
     assert!((x + 1.0).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
     let unsound = Scan {
         ranges: &[],

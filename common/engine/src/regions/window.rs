@@ -1,8 +1,7 @@
-//! The scans of the last metres of way, read as one.
+//! A window over the scans of the last metres driven, read as one scan.
 //!
-//! Which echoes are kept is decided here, and nothing of what they mean. A scan
-//! whose way is not yet driven has no readings; one without odometry has none to
-//! be asked for.
+//! This module only decides which echoes are kept. A scan whose path is not yet driven has no
+//! readings; scans without odometry must not be added.
 
 use std::collections::VecDeque;
 use std::f64::consts::PI;
@@ -13,17 +12,16 @@ use super::{Echo, RegionConfig, at_regions, regions};
 use crate::EngineError;
 use crate::scan::Scan;
 
-/// Scans of a window at most: those of the longest way, and of turns on the spot.
+/// Largest number of scans in a window, for the longest path and for turns on the spot.
 const MAX_SCANS: usize = 128;
 
-/// Readings of a scan at most. No ring has as many sonars, a laser has more.
+/// Largest number of readings of a scan: rings of sonars have fewer, lasers more.
 const MAX_ECHOES: usize = 64;
 
-/// Of scans that were taken nearer to each other than this, the last stands for
-/// all: metres, radians.
+/// Distances, in metres and radians, within which the last of several scans replaces the others.
 const APART: (f64, f64) = (0.05, PI / 60.0);
 
-/// For the wide beams of sonars.
+/// Settings for the wide beams of sonars.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SonarConfig {
@@ -34,7 +32,7 @@ pub struct SonarConfig {
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", value_parser = way))]
     pub sonar_way: Option<f64>,
 
-    /// The full width of a sonar's cone, degrees, 1..=90.
+    /// Full width of a sonar's cone, degrees, 1..=90.
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = cone))]
     #[cfg_attr(feature = "clap", arg(requires = "sonar_way"))]
     pub sonar_cone: f64,
@@ -51,7 +49,7 @@ fn cone(text: &str) -> Result<f64, String> {
 }
 
 impl SonarConfig {
-    /// The window to read scans through, if any.
+    /// Returns the window for reading scans; `None` without `sonar_way`.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let config = RegionConfig {
@@ -62,7 +60,7 @@ impl SonarConfig {
     }
 }
 
-/// The scans of the last metres of way.
+/// Scans of the last metres driven.
 #[derive(Debug, Clone)]
 pub struct Window {
     way_m: f64,
@@ -75,14 +73,14 @@ pub struct Window {
 struct Taken {
     measured_ns: i64,
     odom_from_laser: Pose,
-    /// Driven to here since the window began, metres.
+    /// Distance driven to here since the window began, in metres.
     way_m: f64,
-    /// In the frame of this scan.
+    /// Echoes in the frame of this scan.
     echoes: Vec<Echo>,
 }
 
 impl Window {
-    /// A window of this many metres, with nothing in it.
+    /// Creates an empty window over this many metres.
     #[must_use]
     pub fn new(way_m: f64, config: RegionConfig) -> Self {
         Window {
@@ -92,12 +90,12 @@ impl Window {
         }
     }
 
-    /// Takes in a scan, and leaves out what is behind the window then. One that was
-    /// measured before the last begins again, as a recording does that is played again.
+    /// Adds a scan, and drops scans that are then behind the window. A scan measured before the
+    /// last one empties the window first, because the recording is played again.
     ///
     /// # Errors
-    /// If [`Scan::check`] refuses the scan, it has more readings than any ring of
-    /// sonars, or the odometry is no number; the window stays as it was.
+    /// If [`Scan::check`] rejects the scan, it has more readings than any ring of sonars, or the
+    /// odometry is not finite; the window stays as it was.
     pub fn add(
         &mut self,
         scan: &Scan<'_>,
@@ -131,8 +129,8 @@ impl Window {
         Ok(())
     }
 
-    /// What the newest scan is read as: at each whole degree from behind on, metres
-    /// to where a region's echo met its wall, NaN where there is none.
+    /// Returns the scan that the newest one is read as: the range in metres at each whole degree,
+    /// starting behind, to the point where a region's echo met its wall; NaN without one.
     #[must_use]
     pub fn ranges(&self) -> Vec<f32> {
         let echoes = if self.is_driven() {
@@ -147,8 +145,8 @@ impl Window {
         self.taken.back().map(|newest| newest.measured_ns)
     }
 
-    /// Leaves out the newest scan if the one before it is near, and this pose, too:
-    /// what is measured here stands for it.
+    /// Drops the newest scan if both it and this pose are near the scan before: the new scan
+    /// replaces it.
     fn leave_out_if_near(&mut self, odom_from_laser: Pose) {
         let mut newest_first = self.taken.iter().rev().map(|taken| taken.odom_from_laser);
         let (Some(newest), Some(before)) = (newest_first.next(), newest_first.next()) else {
@@ -171,7 +169,7 @@ impl Window {
         (self.taken.back()).is_some_and(|newest| newest.way_m >= self.way_m)
     }
 
-    /// All echoes, in the frame of the newest scan.
+    /// Returns all echoes in the frame of the newest scan.
     fn echoes(&self) -> Vec<Echo> {
         let newest = self.taken.back().map(|newest| newest.odom_from_laser);
         let newest_from_odom = newest.unwrap_or(Pose::IDENTITY).inverse();
@@ -191,8 +189,8 @@ mod tests {
     use super::*;
     use crate::regions::scan_of;
 
-    /// A wall along the left, two metres from the line on which the robot drives
-    /// along x, as a sonar reads it that looks to the left.
+    /// Scan of a sonar that looks left at a wall two metres from the line along x on which the
+    /// robot drives.
     fn read(window: &mut Window, measured_ns: i64, x: f64) -> Vec<f32> {
         let scan = Scan {
             angle_min: PI / 2.0,
@@ -216,7 +214,7 @@ mod tests {
         ranges.iter().filter(|range| range.is_finite()).count()
     }
 
-    /// Drives eleven times a tenth of a metre.
+    /// Drives eleven steps of 0.1 m.
     fn driven(window: &mut Window) -> Vec<usize> {
         let steps = (0..=11i32).map(|i| read(window, i.into(), f64::from(i) / 10.0));
         steps.map(|ranges| readings(&ranges)).collect()
@@ -227,11 +225,11 @@ mod tests {
         let mut window = window();
         let readings = driven(&mut window);
         assert_eq!(readings[..10], [0; 10]);
-        // Rounding decides whether ten tenths are a metre; echoes from the far end
-        // of the way lie nearer to each other than a degree.
+        // Rounding decides if ten tenths are a metre; echoes from the far end of the path are
+        // nearer to each other than a degree.
         assert!(readings[11] >= 8, "{readings:?}");
         let ranges = window.ranges();
-        // To the left, in front of it nothing, and behind what was seen from there.
+        // The wall is found to the left and, from earlier echoes, behind; nothing is ahead.
         let at = |degrees: i64| ranges[(degrees + 180) as usize];
         assert!((at(90) - 2.0).abs() < 0.05, "{}", at(90));
         assert!((1..80).all(|degrees| at(degrees).is_nan()));

@@ -1,4 +1,4 @@
-//! Which place is believed, and what speaks against it.
+//! Choice of the believed place, and the evidence against it.
 
 use geometry::Pose;
 use messages::{TrackReason, TrackState};
@@ -11,20 +11,20 @@ use super::places::Places;
 use super::posterior::{is_elsewhere, probability, rivals, spread};
 use super::report::Report;
 
-/// A pose that was unique stays so until the robot is elsewhere so many times as likely as a
-/// start allows.
+/// A unique pose stays unique until the probability of being elsewhere is this many times that
+/// allowed for a start.
 const KEPT: f64 = 2.5;
 
-/// The tracker's belief: which of the places is the robot's, and how sure that is.
+/// The tracker's belief: which of the places is the robot's, and how certain that is.
 #[derive(Debug, Clone)]
 pub(super) struct Belief {
     config: TrackingConfig,
-    /// The place that is believed.
+    /// Id of the believed place.
     place: Option<u32>,
     was_unique: bool,
-    /// Whether the robot is at that place as likely as it has to be.
+    /// True if the believed place is as probable as `--sure` requires.
     is_sure: bool,
-    /// The last search that was needed had no answer.
+    /// True if the last needed search had no answer.
     unchecked: bool,
     /// Probability of the best place, 0..=1.
     probability: f64,
@@ -58,23 +58,23 @@ impl Belief {
         self.place
     }
 
-    /// Whether no place has been believed yet.
+    /// True if no place has been believed yet.
     pub(super) fn knows_nothing(&self) -> bool {
         self.place.is_none() && !self.was_unique
     }
 
-    /// Takes a place for that of the robot.
+    /// Believes a place.
     pub(super) fn believe(&mut self, id: u32) {
         self.place = Some(id);
         (self.was_unique, self.is_sure) = (true, true);
     }
 
-    /// Follows the place that is believed, which may have become one with another.
+    /// Replaces the believed place, which may have merged with another.
     pub(super) fn follow(&mut self, place: Option<u32>) {
         self.place = place;
     }
 
-    /// Goes on to the next scan, to which the robot moved so; whether it is the first.
+    /// Advances to the next scan after a motion of the robot; returns true for the first scan.
     pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) -> bool {
         let is_first = self.since_ns == 0;
         if is_first {
@@ -85,12 +85,12 @@ impl Belief {
         is_first
     }
 
-    /// The place that is believed.
+    /// Returns the believed place.
     pub(super) fn of<'a>(&self, places: &'a Places) -> Option<&'a Place> {
         self.place.and_then(|id| places.get(id))
     }
 
-    /// The reason for which the last scan speaks against the place that is believed.
+    /// Reason why the last scan contradicts the believed place.
     pub(super) fn doubt(&self, places: &Places) -> Option<TrackReason> {
         self.of(places).and_then(|place| place.doubt)
     }
@@ -99,13 +99,13 @@ impl Belief {
         self.state == TrackState::Unique
     }
 
-    /// Sees whether a search that was needed has an answer, or another one has.
+    /// Notes if a search had an answer, and if it was needed.
     pub(super) fn search_ended(&mut self, was_needed: bool, has_answer: bool) {
         self.unchecked = !has_answer && (self.unchecked || was_needed);
     }
 
-    /// The last scan saw nothing, and the robot has gone so since one that did: odometry alone
-    /// carries the pose, until it may be at more than one place.
+    /// Handles a scan without usable beams after a path without such scans: the pose is carried by
+    /// odometry alone, until the robot may be at more than one place.
     pub(super) fn see_nothing(&mut self, places: &Places, since: &DrivenPath) {
         let noise = self.config.odometry_error;
         let place = self.of(places);
@@ -124,7 +124,7 @@ impl Belief {
         }
     }
 
-    /// Sees what became of the places at a scan.
+    /// Updates state and reason after the places were updated by a scan.
     pub(super) fn conclude(&mut self, places: &Places, is_key: bool) {
         self.probability = probability(places);
         if is_key {
@@ -153,7 +153,7 @@ impl Belief {
             let believed = places.get(id);
             let is_followed =
                 believed.is_some_and(|place| !is_elsewhere(place, best) || place.is_across(best));
-            // A hint that leads is tried: the pose stays until that is decided.
+            // A leading hint is under test: the pose stays until that is decided.
             let is_tried = !is_followed && best.is_expected && believed.is_some();
             match () {
                 () if !is_followed && !is_tried => self.lose(TrackReason::AnotherPlace),
@@ -179,7 +179,7 @@ impl Belief {
         self.lost_by = why;
     }
 
-    /// The best place, and those elsewhere that keep it from being unique.
+    /// The best place, and the places elsewhere that keep it from being unique.
     fn rivals<'a>(&self, places: &'a [Place]) -> impl Iterator<Item = &'a Place> {
         rivals(places, self.config.sure)
     }
@@ -196,7 +196,7 @@ impl Belief {
         }
     }
 
-    /// On how many maps the best places lie.
+    /// Number of maps with one of the best places.
     fn maps(&self, places: &[Place]) -> u32 {
         let mut maps: Vec<u32> = self.rivals(places).map(|place| place.map).collect();
         maps.sort_unstable();
@@ -204,9 +204,9 @@ impl Belief {
         maps.len() as u32
     }
 
-    /// The report of the last scan; places that are not believed have gone `since_key` since the
-    /// last key scan, and the one that is believed `unseen` since a scan that saw something,
-    /// where the last one did not.
+    /// Returns the report of the last scan. Places that are not believed have moved by `since_key`
+    /// since the last key scan; the believed one has moved by `unseen` since the last usable scan,
+    /// if the last scan was unusable.
     pub(super) fn report(
         &self,
         places: &Places,

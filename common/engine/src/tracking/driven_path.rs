@@ -1,46 +1,46 @@
-//! The motion that odometry measures, and its error.
+//! Motion measured by odometry, and its error.
 
 use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
 
-/// A robot that turns to and fro takes a key scan after this many times the distance.
+/// A robot that turns back and forth takes a key scan after this many times the key distance.
 const KEY_PATHS: f64 = 2.0;
 
-/// A way of several steps.
+/// A path of several steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct DrivenPath {
-    /// From its start to its end.
+    /// Pose of its end relative to its start.
     pub step: Pose,
-    /// Metres along it.
+    /// Length, in metres.
     pub path_m: f64,
-    /// Radians turned along it, to either side.
+    /// Sum of rotations to either side, in radians.
     pub turned: f64,
-    /// Whether a step is not known; the robot is then taken to have stood.
+    /// True if a step is unknown; the robot is assumed to have stood during it.
     pub is_unknown: bool,
 }
 
-/// Standard deviations of odometry: at rest, for stamps that differ from the scans',
-/// metres and radians; by the metre, metres and radians; by the radian, radians.
-/// About the 95th percentile of what the odometry of eight robots drifted by over
-/// 5 m: 0.01 to 0.30 m/m and 0.2 to 4.9 degrees/m.
+/// Standard deviations of odometry: at rest, for stamps that differ from the scans' (metres,
+/// radians); per metre (metres, radians); per radian (radians). They are about the 95th percentile
+/// of the drift of the odometry of eight robots over 5 m: 0.01 to 0.30 m/m and 0.2 to 4.9
+/// degrees/m.
 const AT_REST_M: f64 = 0.05;
 const AT_REST: f64 = 1.5 * std::f64::consts::PI / 180.0;
 const PER_METRE_M: f64 = 0.15;
 const PER_METRE: f64 = 3.5 * std::f64::consts::PI / 180.0;
 const PER_RADIAN: f64 = 0.15;
 
-/// A robot that stands does not move by more than this in all, metres and radians.
+/// Largest total motion of a standing robot, in metres and radians.
 const REST_M: f64 = 0.005;
 const REST_RADIANS: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
-/// The same where a step is not known: what a robot may move between two scans.
+/// Standard deviations of an unknown step between two scans, in metres and radians.
 const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 impl DrivenPath {
-    /// Goes on by a step, if that is known.
+    /// Appends a step, `None` if it is unknown.
     pub(super) fn add(&mut self, step: Option<Pose>) {
         let Some(step) = step else {
             self.is_unknown = true;
@@ -51,7 +51,7 @@ impl DrivenPath {
         self.turned += step.yaw.abs();
     }
 
-    /// Goes on by another way.
+    /// Appends another path.
     pub(super) fn extend(mut self, by: &DrivenPath) -> Self {
         self.step = self.step.then(by.step);
         self.path_m += by.path_m;
@@ -60,20 +60,20 @@ impl DrivenPath {
         self
     }
 
-    /// Whether it is long enough for the next key scan.
+    /// True if the path is long enough for the next key scan.
     pub(super) fn is_far(&self, config: &TrackingConfig) -> bool {
         self.step.x.hypot(self.step.y) >= config.key_m
             || self.step.yaw.abs() >= config.key_deg.to_radians()
             || self.path_m > KEY_PATHS * config.key_m
     }
 
-    /// Whether the robot stood: odometry moved by less than it rounds to.
+    /// True if the robot stood: odometry moved by less than its rounding.
     pub(super) fn is_rest(&self) -> bool {
         !self.is_unknown && self.path_m < REST_M && self.turned < REST_RADIANS
     }
 
-    /// Where a pose and its covariance, in the map, are after the way, whose standard
-    /// deviations are scaled by `noise`.
+    /// Predicts a pose and its covariance in the map at the end of the path. `noise` scales the
+    /// standard deviations.
     pub(super) fn predict(
         &self,
         (pose, covariance): (Pose, Matrix3<f64>),
@@ -84,8 +84,8 @@ impl DrivenPath {
         (predicted, carried + Matrix3::from_diagonal(&at_rest.into()))
     }
 
-    /// Carries a pose and its covariance on by odometry alone, where no scan is compared: stamps
-    /// that differ add nothing.
+    /// Carries a pose and its covariance by odometry alone, without a scan to compare, so that no
+    /// error of differing stamps is added.
     pub(super) fn carry(
         &self,
         (pose, covariance): (Pose, Matrix3<f64>),

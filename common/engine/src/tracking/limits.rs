@@ -1,18 +1,18 @@
-//! How many places are kept, and how far they lie apart.
+//! Number of places kept, and smallest weights.
 
-/// Most places that are kept, and how many of them may be older than one key scan, and
-/// new: those that a place was distinguished from do not give way to what each search finds again.
+/// Largest number of places kept, and the largest numbers of old and new ones (older than one key
+/// scan or not). Old places keep their slots, so that a search does not evict them and re-create
+/// them as new.
 pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
 pub(super) const MAX_OLD: usize = 20;
 pub(super) const MAX_NEW: usize = 12;
 
-/// Natural logarithm of the odds against what can always happen between two key scans: the
-/// robot is carried away, or a sensor fails.
+/// Log odds against an event that can always happen between two key scans: the robot is carried
+/// away, or a sensor fails.
 pub(super) const SELDOM: f64 = 7.0;
 
-/// Natural logarithm of the odds against an operator who is wrong, or a robot that was moved
-/// while it was switched off.
+/// Log odds against an operator who is wrong, or a robot that was moved while switched off.
 pub(super) const EXPECTED: f64 = 3.5;
 
-/// A place so far behind the best is dropped, natural logarithm of odds.
+/// Log odds behind the best at which a place is dropped.
 pub(super) const FARTHEST_BEHIND: f64 = 12.0;

@@ -1,7 +1,7 @@
-//! How the robot moved without odometry: each scan is matched to one before, which
-//! stays the same until the robot is some way off, so that errors do not add up from
-//! scan to scan (Lu and Milios, "Robot pose estimation in unknown environments by
-//! matching 2D range scans", J. Intelligent and Robotic Systems 18, 1997).
+//! Motion of the robot without odometry. Each scan is matched to a reference scan, which is kept
+//! until the robot is some distance away, so that errors do not add up from scan to scan (Lu and
+//! Milios, "Robot pose estimation in unknown environments by matching 2D range scans", J.
+//! Intelligent and Robotic Systems 18, 1997).
 
 use geometry::Pose;
 use nalgebra::Matrix3;
@@ -13,31 +13,31 @@ use crate::EngineError;
 use crate::fit::{DistanceField, End, Ends, FitConfig};
 use crate::grid::{CellRules, GridFrame};
 
-/// A match with a lower score says nothing: two fifths of the beams see what the scan
-/// before did not, or the robot was carried away.
+/// Smallest score of a usable match. Below it, two fifths of the beams see something that the
+/// reference scan did not, or the robot was carried away.
 const MIN_SCORE: f64 = 0.6;
 
-/// A match with a lower score is tried again from other headings.
+/// Score below which a match is tried again from other headings.
 const SURE_SCORE: f64 = 0.8;
 
-/// Ends of beams farther off are left out, cells: beams lie too far apart there, and a map
-/// as wide takes some milliseconds to prepare.
+/// Largest distance of beam ends that are used, in cells: beyond it beams are too far apart, and a
+/// map of that size takes some milliseconds to prepare.
 const FARTHEST: f64 = 400.0;
 
-/// Matches scans to one before.
+/// Matches scans to an earlier one.
 #[derive(Debug, Clone, Default)]
 pub struct ScanMatcher {
-    /// The scan that others are matched to, as a map in whose origin it was taken.
+    /// The reference scan, as a map whose origin is the pose of that scan.
     reference: Option<DistanceField>,
-    /// From there to the last scan.
+    /// Motion from the reference scan to the last scan.
     gone: Pose,
-    /// How the robot moved to the last scan: it continues as it went.
+    /// Motion of the robot to the last scan, used as the prediction of the next.
     step: Pose,
 }
 
 impl ScanMatcher {
-    /// How the target frame moved since the scan before: as odometry says, or where that
-    /// says nothing, as the two match; `None` where they do not, or there was none.
+    /// Returns the motion of the target frame since the scan before: by odometry or, without it, by
+    /// matching the scans. `None` if they do not match or there was no scan before.
     pub(super) fn moved(
         &mut self,
         seen: &Seen<'_>,
@@ -52,8 +52,9 @@ impl ScanMatcher {
         self.step(seen.ends, (resolution_m, seen.fit), config)
     }
 
-    /// How the target frame moved since the scan before, as the two match; `None` where
-    /// they do not, or there was none. The ends are in cells of this many metres.
+    /// Returns the motion of the target frame since the scan before, by matching the scans; `None`
+    /// if they do not match or there was no scan before. The ends are in cells of `resolution_m`
+    /// metres.
     pub fn step(
         &mut self,
         ends: &Ends,
@@ -84,7 +85,7 @@ impl ScanMatcher {
             ..DrivenPath::default()
         };
         let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
-        // The others end off the map.
+        // The other ends are outside the map.
         let near = near_share(ends);
         let mut fitted = before.settle(predicted);
         if fitted.score < SURE_SCORE * near {
@@ -95,7 +96,7 @@ impl ScanMatcher {
     }
 }
 
-/// The ends of a scan as a map, with cells of this many metres.
+/// Makes a map of the ends of a scan, with cells of this many metres.
 fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> {
     let ends = || near_ends(ends);
     let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
@@ -114,13 +115,13 @@ fn around(ends: &Ends, resolution_m: f64) -> Result<DistanceField, EngineError> 
     DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 
-/// Where beams end that end near, in cells about the target frame.
+/// Positions of the near beam ends, in cells in the target frame.
 fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
     ends.ends.iter().map(point).filter(is_near)
 }
 
-/// Their share of the weights of all, 0.1 at least: a match by a tenth of the beams is not
-/// taken for one by all.
+/// Share of the near ends in the total weight, at least 0.1, so that a match of a tenth of the
+/// beams does not count as one of all.
 fn near_share(ends: &Ends) -> f64 {
     let near = ends.ends.iter().filter(|end| is_near(&point(end)));
     let near: f64 = near.map(|end| end.weight).sum();

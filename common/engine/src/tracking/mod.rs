@@ -1,30 +1,28 @@
-//! A pose that stays: scans and odometry over time, where one scan alone is ambiguous,
-//! or wrong.
+//! Tracking of a pose by scans and odometry over time, for when a single scan is ambiguous or
+//! wrong.
 //!
-//! The tracker keeps a few places where the robot may be. Every scan moves the place
-//! that is believed; at *key scans*, some decimetres apart, all places are predicted by
-//! odometry, fitted to the scan and weighed against each other, and places that a
-//! search found are added:
+//! The tracker keeps a few places where the robot may be. Every scan moves the believed place. At
+//! *key scans*, some decimetres apart, all places are predicted by odometry, fitted to the scan and
+//! weighed against each other, and places found by a search are added:
 //!
 //! ```text
-//! odometry ─ way ─► predict ─┐
+//! odometry ─ path ► predict ─┐
 //! scan ─ ends ───────────────┴─► seen: fit from the prediction ─► places ─► weigh ─► verdict
 //! search ─ candidates ─────────────────────────────────────────────┘
 //! ```
 //!
-//! Beside the places there is "nowhere", a hypothesis like the others. What one key scan says is
-//! capped, for the errors of a map repeat from scan to scan: one place is the only one when
-//! its share of all weight is that of `--sure`, for which several key scans have to agree. It
-//! decides by stamps and the order of calls alone, so that the same calls give the same poses.
+//! "Nowhere" is one more hypothesis. The evidence of one key scan is capped, because the errors of
+//! a map repeat from scan to scan: a place is unique when its share of all weight reaches `--sure`,
+//! which takes several key scans that agree. The tracker decides by stamps and the order of calls
+//! alone, so the same calls give the same poses.
 //!
-//! Several maps are tracked on together: a place is on one of them, and the robot goes from one
-//! to another where a transition is, or where a search finds it there.
+//! Several maps can be tracked at once: a place is on one of them, and the robot changes to another
+//! map at a transition, or when a search finds it there.
 //!
-//! docs/tracking.md explains the method and what each setting is for. The recursive
-//! weighing of hypotheses is that of multi-hypothesis localization (Jensfelt and
-//! Kristensen, "Active global localization for a mobile robot using multiple
-//! hypothesis tracking", IEEE Trans. Robotics and Automation 17(5), 2001), with
-//! evidence that is capped.
+//! docs/tracking.md explains the method and the purpose of each setting. The recursive weighing of
+//! hypotheses is that of multi-hypothesis localization (Jensfelt and Kristensen, "Active global
+//! localization for a mobile robot using multiple hypothesis tracking", IEEE Trans. Robotics and
+//! Automation 17(5), 2001), with capped evidence.
 
 mod belief;
 mod config;
@@ -53,58 +51,59 @@ use place::Place;
 use places::{Hint, Places};
 use transition::other_side;
 
-/// What is needed of a search before a scan is done with.
+/// Search that is needed to finish a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Nothing.
+    /// No search.
     Nothing,
-    /// What a search for this scan finds.
+    /// A search for this scan.
     ThisScan,
-    /// What the search finds that was asked for by [`Tracker::asks_ahead`].
+    /// The search that [`Tracker::asks_ahead`] requested earlier.
     EarlierScan,
 }
 
-/// A pose that is believed is checked by a search every this many key scans.
+/// A believed pose is checked by a search every this many key scans.
 const CHECKED_EVERY: u32 = 10;
 
-/// What such a search finds counts this many scans later: nobody waits for it.
+/// Scans from a request for such a search to the use of its result, so that nothing waits for it.
 const COUNTS_AFTER: u32 = 2;
 
-/// Scans of fewer beams say nothing.
+/// Smallest number of beams of a usable scan.
 pub const MIN_BEAMS: usize = 10;
 
-/// Finds the robot, and keeps its pose.
+/// Finds the robot and tracks its pose.
 #[derive(Debug, Clone)]
 pub struct Tracker {
     config: TrackingConfig,
-    /// Between the maps.
+    /// Transitions between the maps.
     transitions: Vec<Transition>,
     places: Places,
     belief: Belief,
-    /// Where odometry is missing.
+    /// Measures motion by scans if odometry is missing.
     matcher: ScanMatcher,
-    /// Since the last key scan.
+    /// Path since the last key scan.
     since_key: DrivenPath,
-    /// Since the last scan that was looked at.
+    /// Path since the last usable scan.
     since_scan: DrivenPath,
-    /// Since the scan that was asked for ahead, and how many scans are left.
+    /// Path since the scan whose search was requested ahead, and the scans left until its result
+    /// counts.
     ahead: Option<(DrivenPath, u32)>,
     asks_ahead: bool,
     keys_since_search: u32,
     is_key: bool,
     is_blank: bool,
-    /// Whether the place that is believed lies in a transition.
+    /// True if the believed place is in a transition.
     is_in_transition: bool,
     needs_search: bool,
-    /// Where the robot is expected at the next scan.
+    /// Hint for the next scan.
     expected: Option<Hint>,
-    /// A hint that may be right, beside the place that is believed, and the way since it was
-    /// said: the next search decides.
+    /// A hint that competes with the believed place, and the path since it was given; the next
+    /// search decides.
     tried: Option<(Hint, DrivenPath)>,
 }
 
 impl Tracker {
-    /// Nothing is known yet.
+    /// Creates a tracker that knows no place yet.
     #[must_use]
     pub fn new(config: TrackingConfig) -> Self {
         Tracker {
@@ -127,23 +126,23 @@ impl Tracker {
         }
     }
 
-    /// The same on several maps, between which the robot may go where these transitions are.
+    /// Adds the transitions through which the robot may change maps.
     #[must_use]
     pub fn with_transitions(mut self, transitions: Vec<Transition>) -> Self {
         self.transitions = transitions;
         self
     }
 
-    /// Forgets all but the settings and the transitions.
+    /// Forgets everything except the settings and the transitions.
     fn start_over(&mut self) {
         let transitions = std::mem::take(&mut self.transitions);
         *self = Tracker::new(self.config).with_transitions(transitions);
     }
 
-    /// Expects the robot at a pose, on the map of a number, at the next scan: it is believed as
-    /// soon as a scan fits there, and none fits as well within that covariance. Before, a pose
-    /// that is believed stays so; where there is none, all else is forgotten. A hint near the
-    /// pose that is believed, or near the hint that is tried, changes nothing.
+    /// Gives a hint: a pose, on the map with this number, at which to expect the robot at the next
+    /// scan. It is believed as soon as a scan fits there and no other place within that covariance
+    /// fits as well. A believed pose is kept until then; if there is none, everything else is
+    /// forgotten. A hint near the believed pose, or near a hint under test, changes nothing.
     pub fn expect(&mut self, at: (u32, Pose), covariance: Covariance) {
         let hint = Hint::new(at, covariance);
         let is_near = |place: &Place| hint.is_near((place.map, place.pose));
@@ -160,7 +159,7 @@ impl Tracker {
         }
     }
 
-    /// Starts from a pose that is believed, on the map of a number, with its covariance.
+    /// Starts from a trusted pose, on the map with this number, with its covariance.
     pub fn start_at(
         &mut self,
         seen: &[Seen<'_>],
@@ -172,9 +171,9 @@ impl Tracker {
         self.belief.believe(id);
     }
 
-    /// Takes the next scan, as it is seen on each of the maps, by their numbers, and how the
-    /// target frame moved since the one before, if odometry measures; otherwise scans are
-    /// matched. The scan is done with at [`Tracker::finish`].
+    /// Takes the next scan, as seen on each of the maps, by map number, and the motion of the
+    /// target frame since the scan before. If odometry does not measure the motion, scans are
+    /// matched instead. [`Tracker::finish`] ends the work on the scan.
     ///
     /// # Panics
     /// If there is no map.
@@ -197,7 +196,7 @@ impl Tracker {
             false => self.matcher.moved(&seen[0], by_odometry, &self.config),
         };
         let is_first = self.belief.go_on(stamp_ns, moved);
-        // Before the first scan nothing moved.
+        // There is no motion before the first scan.
         let step = moved.or(is_first.then_some(Pose::IDENTITY));
         self.asks_ahead = false;
         self.since_key.add(step);
@@ -255,8 +254,8 @@ impl Tracker {
         self.belief.of(&self.places)
     }
 
-    /// Whether the place that is believed has come to lie in a transition with this scan. The
-    /// robot may stop there, and be on the other map before it drives on.
+    /// True if the believed place has entered a transition with this scan. The robot may stop
+    /// there, and be on the other map before it drives on.
     fn has_entered(&mut self) -> bool {
         let is_in = self.believed().is_some_and(|place| {
             let at = (place.map, place.pose);
@@ -266,24 +265,24 @@ impl Tracker {
         !std::mem::replace(&mut self.is_in_transition, is_in) && is_in
     }
 
-    /// Whether the robot is far enough from the last key scan, by odometry or by where the
-    /// scans fit.
+    /// True if the robot is far enough from the last key scan, by odometry or by the fits of the
+    /// scans.
     fn is_far(&self) -> bool {
         self.places.is_empty()
             || self.since_key.is_far(&self.config)
             || self.believed().is_some_and(|place| place.novelty >= 1.0)
     }
 
-    /// Whether the best place moved so far, by odometry or in a way that is not known, that it
-    /// may be several.
+    /// True if the best place moved so far, or in an unknown way, that more than one place is
+    /// possible.
     fn has_lost_sight(&self, path: &DrivenPath) -> bool {
         let best = self.believed().or(self.places.all().first());
         best.is_some_and(|place| place.is_blind_after(path, self.config.odometry_error))
     }
 
-    /// Is done with the scan, with what the search found that was needed; `None` where none
-    /// was, or where it had no answer: then no place is the only one before a later search
-    /// has one, for the robot may be where nobody looked.
+    /// Finishes the scan with the places found by the search that was needed. `None` if none was
+    /// needed or it had no answer; in the latter case no place is unique until a later search has
+    /// an answer, since the robot may be at a place that was not searched.
     pub fn finish(&mut self, seen: &[Seen<'_>], found: Option<&[Candidate]>) {
         if self.is_blank {
             self.belief.see_nothing(&self.places, &self.since_scan);
@@ -326,20 +325,20 @@ impl Tracker {
         }
     }
 
-    /// The place at which a tracker that knows nothing yet starts by one scan alone.
+    /// Place at which a tracker without knowledge starts by a single scan.
     fn start<'a>(&self, found: &'a [Candidate]) -> Option<&'a Candidate> {
         let may = self.config.start == Start::Believe && self.belief.knows_nothing();
         found.iter().find(|candidate| may && candidate.is_only)
     }
 
-    /// Whether a search for the scan that was done with last is needed a few scans
-    /// later, see [`Need::EarlierScan`].
+    /// True if a search for the scan just finished is needed a few scans later, see
+    /// [`Need::EarlierScan`].
     #[must_use]
     pub fn asks_ahead(&self) -> bool {
         self.asks_ahead
     }
 
-    /// Where the robot is, and how sure that is.
+    /// Returns the pose of the robot and its certainty.
     #[must_use]
     pub fn report(&self) -> Report {
         let unseen = self.is_blank.then_some(&self.since_scan);

@@ -1,4 +1,4 @@
-//! A place where the robot may be, and how much speaks for it.
+//! A place where the robot may be, and its evidence.
 
 use std::cmp::Reverse;
 
@@ -11,23 +11,23 @@ use super::limits::MAX;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::Target;
 
-/// A place that a search found for one scan.
+/// A place found by a search for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Number of the map, among those that are searched together.
+    /// Number of the map, among those searched together.
     pub map: u32,
-    /// Of the target frame.
+    /// Pose of the target frame in the map.
     pub pose: Pose,
-    /// Of that pose.
+    /// Covariance of that pose.
     pub covariance: Covariance,
-    /// Of the pose that led there.
+    /// Votes of the pose from which the place was refined.
     pub votes: u64,
-    /// Whether the verdict on the scan alone is `Unique`, and this is its place.
+    /// True if the verdict on the scan alone is `Unique` and this is its place.
     pub is_only: bool,
 }
 
-/// Along what a scan does not constrain, a candidate is taken to be known as well as this,
-/// metres, or a search would confirm places that lie metres apart.
+/// Largest standard deviation of a candidate's position, in metres. Without it, a candidate that a
+/// scan does not constrain along a corridor would confirm places metres away.
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
@@ -43,9 +43,9 @@ impl Candidate {
         }
     }
 
-    /// Fills in those of the places that a search found, best first as messages say them, each
-    /// with the number of its map, for which the votes speak most: of many places, some fit a
-    /// scan well by chance, and with each there is one more to distinguish from the true one.
+    /// Fills in the candidates with the most votes from the places that a search found, which come
+    /// best first, each with the number of its map. Few are kept because some places fit any scan
+    /// well by chance, and each of them must be distinguished from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
         verdict: Option<Verdict>,
@@ -63,15 +63,15 @@ impl Candidate {
         candidates.retain(|candidate| 2 * candidate.votes >= best);
     }
 
-    /// Its pose and covariance, as places have it.
+    /// Pose and covariance, in the form that places use.
     pub(super) fn at(&self) -> (Pose, Matrix3<f64>) {
-        // What a drawn map errs by in addition is in it.
+        // The covariance already contains the additional error of a drawn map.
         let covariance = with_map_error(self.covariance.0, 0.0);
         (self.pose, tightened(covariance))
     }
 }
 
-/// A covariance whose position has no longer axis than [`LOOSEST_M`].
+/// Shrinks a covariance so that no axis of its position is longer than [`LOOSEST_M`].
 fn tightened(covariance: Matrix3<f64>) -> Matrix3<f64> {
     let position = covariance.fixed_view::<2, 2>(0, 0).into_owned();
     let SymmetricEigen {
@@ -86,55 +86,52 @@ fn tightened(covariance: Matrix3<f64>) -> Matrix3<f64> {
     all * covariance * all.transpose()
 }
 
-/// A place that is kept.
+/// A place that is kept from scan to scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// Which it is; two that meet become one.
+    /// Identity of the place; two places that meet become one.
     pub id: u32,
-    /// Number of the map that it is on.
+    /// Number of its map.
     pub map: u32,
-    /// The map from which the robot may have come there by a transition, while it is not decided
-    /// whether it did.
+    /// Map from which the robot may have come by a transition, while that is undecided.
     pub crossed_from: Option<u32>,
-    /// Whether somebody has said that the robot is there.
+    /// True if a hint expects the robot there.
     pub is_expected: bool,
     pub pose: Pose,
     pub covariance: Matrix3<f64>,
-    /// How much speaks for it, natural logarithm of odds; that of the best is
-    /// subtracted at each key scan.
+    /// Log odds of the place; the value of the best place is subtracted at each key scan.
     pub log_weight: f64,
-    /// Key scans that it has been kept for, the first included.
+    /// Number of key scans for which it has been kept, including the first.
     pub age: u32,
-    /// Of the scores at its last key scans.
+    /// Mean score of its last key scans.
     pub mean: f64,
-    /// The score of the last scan.
+    /// Score of the last scan.
     pub last: f64,
-    /// Prediction for the last scan.
+    /// Prediction of pose and covariance for the last scan.
     pub predicted: (Pose, Matrix3<f64>),
-    /// Squared deviations of the last fit from that prediction.
+    /// Squared deviation of the last fit from that prediction.
     pub off: f64,
-    /// Pose and covariance from which the place is compared with odometry, and the way since.
+    /// Pose and covariance at which the comparison with odometry starts, and the path since.
     pub anchor: (Pose, Matrix3<f64>),
     pub since_anchor: DrivenPath,
-    /// Way from the anchor to the last key scan.
+    /// Path from the anchor to the last key scan.
     pub until_key: DrivenPath,
-    /// Share of the way to the next key scan that the place moved on the map since the
-    /// anchor, 0..=1.
+    /// Motion of the place on the map since the anchor, as a share of the distance between key
+    /// scans, 0..=1.
     pub novelty: f64,
-    /// Log odds of "nowhere" against this place by the last scan alone, and what speaks for it
-    /// where they are positive.
+    /// Log odds of "nowhere" against this place by the last scan alone, and the reason if positive.
     pub nowhere: f64,
     pub doubt: Option<TrackReason>,
 }
 
-/// Novelty of a place that moved.
+/// Novelty from which a place counts as moved.
 const MOVED: f64 = 0.5;
 
-/// Places so near each other are one answer.
+/// Distances within which two places are one answer, in metres and radians.
 const DISTINCT_M: f64 = 1.0;
 const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
-/// A mean is over this many key scans.
+/// Number of key scans in the mean score.
 const MEAN_OVER: u32 = 8;
 
 impl Place {
@@ -161,17 +158,17 @@ impl Place {
         }
     }
 
-    /// Whether a pose of a map is so near, metres and radians.
+    /// True if a pose on a map is within these metres and radians of the place.
     pub(super) fn is_within(&self, (map, pose): (u32, Pose), metres: f64, radians: f64) -> bool {
         self.map == map && self.pose.is_within(pose, metres, radians)
     }
 
-    /// Whether a pose of a map is another answer.
+    /// True if a pose on a map is a different answer.
     pub(super) fn is_apart_from(&self, at: (u32, Pose)) -> bool {
         !self.is_within(at, DISTINCT_M, DISTINCT_RADIANS)
     }
 
-    /// Whether the robot may have gone from one of two places to the other by a transition.
+    /// True if the robot may have gone from one of the places to the other by a transition.
     pub(super) fn is_across(&self, other: &Place) -> bool {
         self.map != other.map
             && (self.crossed_from == Some(other.map) || other.crossed_from == Some(self.map))
@@ -184,12 +181,12 @@ impl Place {
         self.off = fitted.off;
     }
 
-    /// Counts the last score as that of a key scan.
+    /// Adds the last score to the mean, as that of a key scan.
     pub(super) fn grow(&mut self) {
         let before = f64::from(self.age.min(MEAN_OVER));
         self.mean = (self.mean * before + self.last) / (before + 1.0);
         self.age += 1;
-        // A place that did not move goes on being compared from where it was.
+        // A place that did not move keeps its anchor.
         self.until_key = self.since_anchor;
         if self.novelty >= MOVED {
             self.anchor = (self.pose, self.covariance);

@@ -1,4 +1,4 @@
-//! The places that are kept, and how a key scan weighs them.
+//! The places that are kept, and their weighing at a key scan.
 
 mod crossing;
 mod found;
@@ -18,29 +18,30 @@ use crate::peaks::{doubt_between, lead};
 pub(super) use hint::Hint;
 use hint::WeighedHint;
 
-/// A difference of scores, against what the best lacks of a perfect one, is worth a
-/// factor of e: six times that of a single scan (`--lead-scale`), for a map errs at the same
-/// place in each look.
+/// Score difference worth a factor of e, relative to the gap from the best score to a perfect one.
+/// It is six times that of a single scan (`--lead-scale`), because a map has the same errors in
+/// each scan.
 const LEAD_SCALE: f64 = 0.15;
 
-/// Each squared deviation from odometry costs a place so much of its log weight.
+/// Loss of log weight per squared deviation from odometry.
 const BY_DEVIATION: f64 = 0.1;
 
-/// A candidate confirms a place whose prediction lies within four deviations.
+/// Squared deviation within which a candidate confirms a prediction (four standard deviations).
 const GATE: f64 = 16.0;
 
-/// Fits that come so close are of one place: as candidates of a search are distinguished.
+/// Distances within which two fits belong to one place, in metres and radians; the same as for the
+/// candidates of a search.
 const SAME_M: f64 = 0.3;
 const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
 
-/// Places that come so close are one.
+/// Distances within which two places are merged, in metres and radians.
 const MERGED_M: f64 = 0.25;
 const MERGED_RADIANS: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-/// What a key scan is measured by.
+/// Reference values of a key scan.
 #[derive(Clone, Copy)]
 struct Best<'a> {
-    /// The highest score of any place, and the number of the map that it is on.
+    /// Highest score of any place, and the number of its map.
     score: f64,
     map: u32,
     /// The scan on each map.
@@ -48,8 +49,8 @@ struct Best<'a> {
 }
 
 impl Best<'_> {
-    /// What the true place may lack of the score, for a map that was drawn leaves it out: that
-    /// of the best place, or the one of this number on which the true place is.
+    /// Score that the true place, on the map with this number, may lack because a drawn map leaves
+    /// things out. It follows from the map of the best place, and from this one if it differs.
     fn left_out(&self, map: u32) -> f64 {
         let [best, true_one] = [self.map, map].map(|map| &self.seen[map as usize]);
         match map == self.map {
@@ -67,17 +68,17 @@ impl Best<'_> {
 pub(super) struct Places {
     config: TrackingConfig,
     kept: Vec<Place>,
-    /// With the numbers of their maps.
+    /// Each with the number of its map.
     candidates: Vec<(u32, Fitted)>,
-    /// Which of them are at places that are kept.
+    /// True for each candidate that is at a place already kept.
     is_known: Vec<bool>,
     next_id: u32,
     key_scans: u32,
     /// Log weight of "nowhere"; that of the best place is subtracted at each key scan.
     nowhere: f64,
-    /// Whether a search has found something since the last step that is not known.
+    /// True if a search has found a place since the last unknown step.
     was_searched: bool,
-    /// Where the robot is expected at the next key scan.
+    /// Hint for the next key scan.
     expected: Option<WeighedHint>,
 }
 
@@ -100,7 +101,7 @@ impl Places {
         self.kept.is_empty()
     }
 
-    /// Best first.
+    /// All places, best first.
     pub(super) fn all(&self) -> &[Place] {
         &self.kept
     }
@@ -109,7 +110,8 @@ impl Places {
         self.kept.iter().find(|place| place.id == id)
     }
 
-    /// Keeps one place, on the map of a number, at which a scan was taken.
+    /// Keeps a single place, on the map with this number, at which a scan was taken; returns its
+    /// id.
     pub(super) fn start_at(
         &mut self,
         seen: &[Seen<'_>],
@@ -123,7 +125,7 @@ impl Places {
         id
     }
 
-    /// Keeps a place at which the robot is expected, where no other is kept.
+    /// Adds a place at which a hint expects the robot, while no other is kept.
     pub(super) fn expect(&mut self, seen: &[Seen<'_>], hint: Hint) {
         let seen = &seen[hint.map as usize];
         let fitted = seen.settle_turned(hint.at, seen.settle(hint.at));
@@ -133,31 +135,31 @@ impl Places {
             is_expected: true,
             ..Place::born(id, (hint.map, &fitted), 0.0)
         });
-        // What the search finds elsewhere starts as "nowhere" does.
+        // Places that the search finds elsewhere start with the weight of "nowhere".
         self.nowhere = self.nowhere_by(fitted.score) - EXPECTED;
-        // A rival within the ellipse is as likely as the hint itself.
+        // A rival within the hint's ellipse is as likely as the hint itself.
         let log_weight = 0.0;
         self.expected = Some(WeighedHint { hint, log_weight });
     }
 
-    /// The place with the most weight; they need not be in order.
+    /// Returns the place with the largest weight, in any order of the list.
     fn leading(&self) -> Option<&Place> {
         let places = self.kept.iter();
         places.reduce(|a, b| if b.log_weight > a.log_weight { b } else { a })
     }
 
-    /// Log weight of "nowhere", against which the best place has its own.
+    /// Log weight of "nowhere", comparable with that of the best place.
     pub(super) fn nowhere(&self) -> f64 {
         self.nowhere
     }
 
-    /// Takes "nowhere" for as likely as the best place: the robot may have moved anywhere.
+    /// Makes "nowhere" as likely as the best place, since the robot may have moved anywhere.
     pub(super) fn forget(&mut self) {
         self.nowhere = self.kept.first().map_or(0.0, |best| best.log_weight);
         self.was_searched = false;
     }
 
-    /// What the first look at a place says of "nowhere", by its score.
+    /// Log odds of "nowhere" from the first scan at a place with this score.
     fn nowhere_by(&self, score: f64) -> f64 {
         let cap = self.config.scan_cap;
         nowhere_by_score(score, score, &self.config).clamp(-cap, cap)
@@ -168,9 +170,9 @@ impl Places {
         self.next_id
     }
 
-    /// Moves one place by a way, and fits the scan there; `since_key` is the way since the
-    /// last key scan. While the robot stands, scans that agree do not move it: their errors
-    /// are those of the first.
+    /// Moves one place by a path and fits the scan there; `since_key` is the path since the last
+    /// key scan. While the robot stands, scans that agree do not move the place, because their
+    /// errors are those of the first scan.
     pub(super) fn follow(
         &mut self,
         id: u32,
@@ -200,8 +202,9 @@ impl Places {
         place.judge(since_key, &self.config);
     }
 
-    /// Weighs all places by a key scan, and those that were taken with them. All but the one that
-    /// is believed have gone `path` since the last one; that one may meet another, and is it then.
+    /// Weighs all places, and the candidates of the same scan, at a key scan. All places except the
+    /// believed one have moved by `path` since the last key scan. If the believed place merges with
+    /// another, `believed` becomes the other's id.
     pub(super) fn weigh(
         &mut self,
         (seen, transitions): (&[Seen<'_>], &[Transition]),
@@ -231,7 +234,7 @@ impl Places {
         self.tidy(believed);
     }
 
-    /// The highest score of any place, and the map that it is on.
+    /// Returns the highest score of any place, and its map.
     fn best_score(&self) -> (u32, f64) {
         let places = self.kept.iter().map(|place| (place.map, place.last));
         let candidates = self.candidates.iter();
@@ -240,20 +243,20 @@ impl Places {
         places.chain(candidates).fold((0, 0.0), higher)
     }
 
-    /// What a key scan says against a place with a score, on the map of a number. What the maps
-    /// may leave out says nothing.
+    /// Evidence of a key scan against a place with this score on this map. Score that the maps may
+    /// leave out does not count.
     fn against(&self, best: Best<'_>, at: (u32, f64)) -> f64 {
         let explained = explained(best.score).min(self.config.scan_cap);
         self.behind(best, at).min(explained)
     }
 
-    /// The same without the limit of a key scan.
+    /// Does the same without the cap of a key scan.
     fn behind(&self, best: Best<'_>, (map, score): (u32, f64)) -> f64 {
         lead(best.score, score + best.left_out(map)).max(0.0) / LEAD_SCALE
     }
 
     fn count(&mut self, best: Best<'_>) {
-        // They were put in order at the key scan before, and no weight has changed since.
+        // They were sorted at the key scan before, and no weight has changed since.
         let top = self.kept.first().map_or(0.0, |best| best.log_weight);
         let by_odometry = |place: &Place| BY_DEVIATION * place.off.min(GATE);
         for i in 0..self.kept.len() {
@@ -267,16 +270,16 @@ impl Places {
         let first = self.leading().copied();
         self.nowhere -= top;
         if let Some(first) = first {
-            // What odometry says against the best place is in its log odds already.
+            // Odometry's evidence against the best place is already in its log odds.
             self.nowhere += first.nowhere.clamp(-cap, cap) - by_odometry(&first);
             self.nowhere = self.nowhere.max(first.log_weight - SELDOM);
         }
     }
 
-    /// Best first; drops what does not fit, lies too far behind, or has met another
-    /// place, and what there is no room for.
+    /// Sorts the places best first; drops those too far behind or without a free slot, and merges
+    /// those that have met.
     fn tidy(&mut self, believed: &mut Option<u32>) {
-        // Ids grow: of equal places the older comes first.
+        // Ids grow, so that the older of two equal places comes first.
         self.kept.sort_unstable_by(|a, b| {
             let by_weight = b.log_weight.total_cmp(&a.log_weight);
             by_weight.then(a.id.cmp(&b.id))
@@ -289,7 +292,7 @@ impl Places {
             let place = self.kept[i];
             let is_full = match place.age > 1 {
                 true => old == MAX_OLD,
-                // At the first there are no others.
+                // At the first key scan there are no old places.
                 false => new == if self.key_scans > 1 { MAX_NEW } else { MAX },
             };
             if is_full || place.log_weight < top - FARTHEST_BEHIND {

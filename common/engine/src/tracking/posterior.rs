@@ -1,4 +1,4 @@
-//! How likely the robot is at a place: its share of all weight.
+//! Probability that the robot is at a place: its share of all weight.
 
 use geometry::Covariance;
 use nalgebra::Matrix3;
@@ -6,21 +6,20 @@ use nalgebra::Matrix3;
 use super::place::Place;
 use super::places::Places;
 
-/// Looks repeat each other's errors, as the map's are the same in each: all of them together say
-/// half of what they would if they did not.
+/// Factor on the evidence of all scans together: they repeat each other's errors, since the errors
+/// of the map are the same in each.
 const SHARE_OF_LOOKS: f64 = 0.5;
 
-/// Natural logarithm of the odds, where looks say nothing, that the place that leads is the
-/// right one.
+/// Log odds, without evidence, that the leading place is the right one.
 const LEADING: f64 = 0.7;
 
 pub(super) fn is_elsewhere(place: &Place, best: &Place) -> bool {
     place.is_apart_from((best.map, best.pose))
 }
 
-/// Probability that the robot is at the best place, 0..=1: the odds of the weight of all that lie
-/// there against that of all other places and "nowhere", calibrated on drives with faults of each
-/// kind (docs/tracking.md).
+/// Probability that the robot is at the best place, 0..=1: the odds of the weight of all places
+/// there against that of all others and "nowhere", calibrated on drives with faults of each kind
+/// (docs/tracking.md).
 pub(super) fn probability(places: &Places) -> f64 {
     let Some(best) = places.all().first() else {
         return 0.0;
@@ -37,12 +36,12 @@ pub(super) fn probability(places: &Places) -> f64 {
     calibrated((here / others).ln())
 }
 
-/// Probability of a place with these log odds by its weight.
+/// Probability of a place whose weight gives these log odds.
 fn calibrated(log_odds: f64) -> f64 {
     1.0 / (1.0 + (-SHARE_OF_LOOKS * log_odds - LEADING).exp())
 }
 
-/// The best place, and those elsewhere each of which alone keeps its probability below `sure`.
+/// The best place, and the places elsewhere each of which alone keeps its probability below `sure`.
 pub(super) fn rivals(places: &[Place], sure: f64) -> impl Iterator<Item = &Place> {
     let best = places.first();
     places.iter().filter(move |place| {
@@ -53,7 +52,7 @@ pub(super) fn rivals(places: &[Place], sure: f64) -> impl Iterator<Item = &Place
     })
 }
 
-/// The covariance, about one of several places on its map, of a robot that is at any of them.
+/// Covariance, about one of several places on its map, of a robot that may be at any of them.
 pub(super) fn spread(places: &[Place], about: &Place) -> Matrix3<f64> {
     let on_map = || places.iter().filter(|place| place.map == about.map);
     let top = on_map().next().map_or(0.0, |best| best.log_weight);

@@ -7,46 +7,46 @@ use nalgebra::Matrix3;
 use super::driven_path::DrivenPath;
 use super::nowhere::is_blind;
 
-/// Where the robot is, how sure that is, and why.
+/// Pose of the robot, its certainty, and the reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
-    /// What is known.
+    /// State of the tracker.
     pub state: TrackState,
-    /// Why.
+    /// Reason for the state.
     pub reason: TrackReason,
-    /// Number of the map that the pose is on, among those that are searched together.
+    /// Number of the map of the pose, among those searched together.
     pub map: u32,
-    /// Of the target frame, in the map: the place that is believed, else the
-    /// one that leads.
+    /// Pose of the target frame in the map: the believed place, otherwise the leading one.
     pub pose: Option<Pose>,
-    /// Of that pose. Unless the state is `Unique`, it spans all places that are kept on the
-    /// pose's map; of other maps, it can say nothing.
+    /// Covariance of the pose, in m², m·rad and rad². Unless the state is `Unique`, it spans all
+    /// places kept on the pose's map; it cannot express places on other maps.
     pub covariance: Matrix3<f64>,
-    /// How likely the robot is there, 0..=1.
+    /// Probability that the robot is there, 0..=1.
     pub probability: f64,
-    /// How well the last scan fits there, at most 1.
+    /// Score of the last scan there, at most 1.
     pub score: f64,
     /// Natural logarithm of the odds of that probability.
     pub lead: f64,
-    /// Places that come near the best, itself included.
+    /// Number of places close to the best in weight, including it.
     pub rivals: u32,
-    /// On how many maps they are.
+    /// Number of maps with such places.
     pub maps: u32,
-    /// How far the nearest and the farthest of the others on its map lie from it, metres.
+    /// Distances from the best place to the nearest and the farthest of the others on its map, in
+    /// metres.
     pub apart_m: (f64, f64),
-    /// When the state began, nanoseconds.
+    /// Time at which the state began, in nanoseconds.
     pub since_ns: i64,
-    /// Metres gone since.
+    /// Distance driven since then, in metres.
     pub since_m: f64,
 }
 
-/// Places so near each other are one spot, in two headings, metres.
+/// Distance within which places are one spot in two headings, in metres.
 const SAME_SPOT_M: f64 = 1.0;
 
 impl Report {
-    /// The same after odometry moved the robot by this step since the last scan, whose error is
-    /// scaled by `--odometry-error`: the covariance grows, and a unique pose is doubtful once it
-    /// may be at more than one place.
+    /// Returns the report after odometry moved the robot by this step since the last scan, with its
+    /// error scaled by `odometry_error` (`--odometry-error`). The covariance grows, and a unique
+    /// pose becomes doubtful once the robot may be at more than one place.
     #[must_use]
     pub fn carried(&self, step: Pose, odometry_error: f64) -> Self {
         let Some(pose) = self.pose else {
@@ -69,7 +69,7 @@ impl Report {
         }
     }
 
-    /// The reason in words, and what to do.
+    /// Returns the reason in words, and advice if there is any.
     #[must_use]
     pub fn words(&self) -> String {
         let reason = self.reason_in_words();
@@ -79,7 +79,7 @@ impl Report {
         }
     }
 
-    /// The reason and the advice in [`Report::words`]; the latter may be empty.
+    /// Splits the text of [`Report::words`] into reason and advice; the latter may be empty.
     #[must_use]
     pub fn split(words: &str) -> (&str, &str) {
         words.rsplit_once(": ").unwrap_or((words, ""))
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(at.carried(Pose::IDENTITY, 1.0).covariance, at.covariance);
         let near = at.carried(Pose::new(1.0, 0.0, 0.0), 1.0);
         assert_eq!(near.state, TrackState::Unique);
-        // 15 cm a metre, as the study of eight robots' odometry has it.
+        // 15 cm per metre, from the study of eight robots' odometry.
         assert!((near.covariance[(0, 0)].sqrt() - 0.15f64.hypot(0.03)).abs() < 1e-9);
         let far = at.carried(Pose::new(4.0, 0.0, 0.0), 1.0);
         assert_eq!(far.pose, Some(Pose::new(5.0, 2.0, 0.0)));

@@ -42,7 +42,7 @@ fn one_scan_is_never_enough_and_a_few_metres_are() {
     assert!(report.covariance[(0, 0)].sqrt() < 0.1 && report.probability > 0.94);
 }
 
-/// The same without answers to searches.
+/// Handles a scan without answers to searches.
 fn unanswered(
     building: &Building,
     tracker: &mut Tracker,
@@ -62,7 +62,7 @@ fn a_doubt_stays_until_a_search_has_an_answer() {
     let mut tracker = building.believed(START);
     let end = building.drive(&mut tracker, START, 5);
     assert_eq!(tracker.report().state, TrackState::Unique);
-    // Carried off for a scan: a search is needed, and has no answer.
+    // The robot is carried off for one scan: a search is needed, and has no answer.
     let elsewhere = Pose::new(end.x, end.y, end.yaw + PI / 2.0);
     let still = Some(Pose::IDENTITY);
     let need = unanswered(&building, &mut tracker, elsewhere, still);
@@ -70,7 +70,7 @@ fn a_doubt_stays_until_a_search_has_an_answer() {
         (need, tracker.report().state),
         (Need::ThisScan, TrackState::Doubtful)
     );
-    // The scan fits again, but nobody has looked elsewhere.
+    // The scan fits again, but no search has covered other places.
     let step = Pose::new(0.3, 0.0, 0.0);
     let mut pose = end;
     let mut asked = 0;
@@ -118,7 +118,7 @@ fn places_that_look_alike_are_never_distinguished() {
         (TrackState::Searching, TrackReason::SeveralPlaces)
     );
     assert_eq!(report.rivals, 2, "{}", report.words());
-    // Half a turn away, metres apart: the covariance spans both.
+    // The two places are half a turn and metres apart: the covariance spans both.
     assert!(
         report.covariance[(0, 0)].sqrt() > 0.3,
         "{:?}",
@@ -154,7 +154,7 @@ fn where_it_is_not_known_how_the_robot_moved_three_key_scans_have_to_agree_again
     let mut tracker = building.believed(START);
     let end = building.drive(&mut tracker, START, 5);
     assert_eq!(tracker.report().state, TrackState::Unique);
-    // Odometry was restarted while the robot drove on.
+    // Odometry restarts while the robot drives on.
     let mut at = end.then(Pose::new(0.6, -0.1, -0.1));
     let step = Pose::new(0.45, 0.0, 0.0);
     let mut states = Vec::new();
@@ -170,7 +170,7 @@ fn where_it_is_not_known_how_the_robot_moved_three_key_scans_have_to_agree_again
     assert!(is_at(&tracker, at.then(step.inverse())));
 }
 
-/// States at key scans of which so many beams of nine go through walls, after scans that fit.
+/// States at key scans in which `of_nine` of nine beams pass through walls, after scans that fit.
 fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
     let building = building(&UNLIKE);
     let mut tracker = building.believed(START);
@@ -202,7 +202,7 @@ fn what_fits_badly_for_long_is_not_taken_for_good() {
         states.iter().all(|state| *state != TrackState::Unique),
         "{states:?}"
     );
-    // As well as is enough for a place that is new: the building has changed.
+    // This fits well enough for a new place: the building has changed.
     let states = states_where_scans_fit_badly(3);
     let doubtful = states
         .iter()
@@ -223,7 +223,7 @@ fn what_odometry_misses_is_followed() {
     let mut tracker = Tracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let at = building.drive(&mut tracker, START, 8);
-    // A turn of 20° that the wheels do not report.
+    // The robot turns by 20° and the wheels do not report it.
     let turned = at.then(Pose::new(0.3, 0.0, 0.35));
     building.step(&mut tracker, turned, Some(Pose::new(0.3, 0.0, 0.0)));
     let report = tracker.report();
@@ -250,7 +250,7 @@ fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_los
             tracker.report().state
         })
         .collect();
-    // A metre is more than odometry errs by, and what is wrong from there on is wrong for long.
+    // A metre is more than the error of odometry, and the fault lasts.
     assert!(
         states[10..]
             .iter()
@@ -271,7 +271,7 @@ fn a_robot_that_stands_keeps_its_pose() {
     for i in 0..100 {
         let mut ranges = building.ranges(at);
         for (beam, range) in ranges.iter_mut().enumerate() {
-            // Errors of up to 3 cm, other ones at each scan.
+            // Errors of up to 3 cm, different at each scan.
             *range += 0.03 * ((beam * 7 + i * 13) as f32).sin();
         }
         let ends = building.ends_of(&ranges);
@@ -299,7 +299,7 @@ fn without_odometry_scans_show_how_the_robot_moved() {
         let step = matcher.moved(&building.seen(&ends, &fit), None, &config);
         assert_eq!(step.is_none(), i == 0, "{i}");
         found = found.then(step.unwrap_or(Pose::IDENTITY));
-        // A cell, and what a cell is wide at five metres.
+        // Tolerance: a cell, and the angle of a cell at five metres.
         assert!(found.is_within(at, 0.1, 0.02), "{i}: {found:?} at {at:?}");
         at = at.then(Pose::new(0.05, 0.0, turn));
     }
@@ -318,7 +318,7 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
     let mut at = building.drive(&mut tracker, START, 4);
     let step = Pose::new(0.0, 0.0, 0.36);
     let (mut asked, mut due) = (0, 0);
-    // Turns on the spot: each scan is a key scan.
+    // The robot turns on the spot: each scan is a key scan.
     for _ in 0..40 {
         at = at.then(step);
         let (ends, fit) = (building.ends(at), FitConfig::default());

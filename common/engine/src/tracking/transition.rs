@@ -1,15 +1,16 @@
-//! Where a robot may go from one map to another: a lift, stairs, a door between buildings.
+//! Transitions through which a robot may change maps: a lift, stairs, a door between buildings.
 
 use geometry::Pose;
 use messages::Transition;
 use nalgebra::{Matrix3, Vector3};
 
-/// Standard deviations of where the other map has the same place: of regions that people drew.
+/// Standard deviations between the two sides of a transition, in metres and radians; its regions
+/// are drawn by people.
 const ERROR_M: f64 = 0.2;
 const ERROR: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-/// Where a pose on a map lies on the other side of a transition, with its covariance; none
-/// where it is not in the transition's region.
+/// Maps a pose and its covariance to the other side of a transition; `None` if the pose is not in
+/// the transition's region.
 pub(super) fn other_side(
     transition: &Transition,
     (map, pose): (u32, Pose),
@@ -63,7 +64,7 @@ mod tests {
             pose.is_within(Pose::new(-3.4, 1.9, FRAC_PI_2 + 0.1), 1e-12, 1e-12),
             "{pose:?}"
         );
-        // Turned by a quarter, and with what the regions err by.
+        // The covariance is turned by a quarter, and the error of the regions is added.
         assert!((spread[(0, 0)] - 0.08).abs() < 1e-12 && (spread[(1, 1)] - 0.05).abs() < 1e-12);
         let back = other_side(&lift, (map, pose), covariance).unwrap();
         assert_eq!(back.0, 2);

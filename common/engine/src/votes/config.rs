@@ -1,6 +1,6 @@
-//! Options of what is collected.
+//! Settings for collecting poses.
 
-/// What is collected of a search.
+/// Settings for collecting poses in a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CollectConfig {
@@ -32,7 +32,7 @@ fn parse_work(text: &str) -> Result<f64, String> {
 }
 
 impl CollectConfig {
-    /// All that stands above the floor, and no candidates below.
+    /// All poses above the floor, and no candidates below.
     #[cfg(test)]
     pub(crate) fn exact() -> Self {
         CollectConfig {
@@ -41,12 +41,12 @@ impl CollectConfig {
         }
     }
 
-    /// The least intensity that is collected where the best pose has this one.
+    /// Returns the smallest intensity that is collected, given the best one.
     pub(crate) fn floor(&self, best: u16) -> u16 {
         ((f64::from(best) * self.floor_share).ceil() as u16).max(1)
     }
 
-    /// Steps after which a search ends; infinitely many without a limit.
+    /// Number of steps after which a search ends; infinite without a limit.
     pub(crate) fn most_steps(&self) -> f64 {
         let limit = self.work_limit.filter(|&millions| millions > 0.0);
         limit.map_or(f64::INFINITY, |millions| millions * 1e6)

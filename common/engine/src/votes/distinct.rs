@@ -1,25 +1,22 @@
-//! Poses that are candidates of their own.
+//! Selection of distinct candidate poses.
 
 use messages::Vote;
 
 use crate::space::Space;
 
-/// Poses farther apart than this, or than [`DISTINCT_DEG`], are distinct
-/// candidates, metres.
+/// Distance beyond which poses are distinct candidates, in metres; see also [`DISTINCT_DEG`].
 pub const DISTINCT_M: f64 = 0.3;
 
-/// Poses farther apart than this, or than [`DISTINCT_M`], are distinct
-/// candidates, degrees.
+/// Angle beyond which poses are distinct candidates, in degrees; see also [`DISTINCT_M`].
 pub const DISTINCT_DEG: f64 = 6.5;
 
-/// Where many poses have almost as many votes, votes do not decide which are the first:
-/// beyond those that are wanted, poses close to the best are candidates as well, up to
-/// this many times as many.
+/// Factor by which poses close to the best in votes extend the wanted number of candidates. If many
+/// poses have almost as many votes, votes do not decide which are the first.
 const CLOSE_TIMES: usize = 4;
 
-/// Most candidates where this many are wanted: those and the ones that are close. Where
-/// cells are larger than what distinguishes candidates, the close ones are the neighbours
-/// of one place, and are not counted.
+/// Largest number of candidates, including close ones, for a wanted number. If cells are larger
+/// than the distance of distinct candidates, close ones are neighbours of one place and do not
+/// extend the number.
 pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
     match resolution_m <= DISTINCT_M {
         true => CLOSE_TIMES * wanted,
@@ -27,30 +24,29 @@ pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
     }
 }
 
-/// Whether a pose is close to the best one by votes: it has half as many. Of 29 true
-/// places, on three maps, that were among the first 256 and not among 64, 28 were.
+/// True if a pose is close to the best one in votes: it has at least half as many. This holds for
+/// 28 of 29 true places, on three maps, that were among the first 256 but not among the first 64.
 pub(crate) fn is_close(intensity: u16, best: u16) -> bool {
     2 * u32::from(intensity) >= u32::from(best)
 }
 
-/// The least number of votes that is close to the best.
+/// Smallest number of votes that is close to the best.
 pub(crate) fn least_close(best: u16) -> u16 {
     best.div_ceil(2).max(1)
 }
 
-/// Takes poses in order and keeps those that are distinct from all kept before,
-/// at most this many.
+/// Takes poses in order and keeps those distinct from all kept before, up to a maximum number.
 #[derive(Debug)]
 pub(crate) struct Distinct<'a> {
     space: &'a Space,
     wanted: usize,
-    /// The votes of the best pose, where poses close to it are kept beyond those.
+    /// Votes of the best pose, if close poses extend the number.
     best: Option<u16>,
     kept: &'a mut Vec<Vote>,
 }
 
 impl<'a> Distinct<'a> {
-    /// Keeps none so far, of at most `wanted`, in the buffers of others before.
+    /// Keeps at most `wanted` poses, in a reused buffer.
     pub(crate) fn new(space: &'a Space, wanted: usize, kept: &'a mut Vec<Vote>) -> Self {
         kept.clear();
         Distinct {
@@ -61,8 +57,7 @@ impl<'a> Distinct<'a> {
         }
     }
 
-    /// Keeps poses that are close to the best one beyond those that are wanted, see
-    /// [`most_candidates`].
+    /// Extends the number by poses close to the best one, see [`most_candidates`].
     pub(crate) fn and_close(self, best: u16) -> Self {
         Distinct {
             best: Some(best),
@@ -70,7 +65,7 @@ impl<'a> Distinct<'a> {
         }
     }
 
-    /// Whether the pose is kept.
+    /// Takes a pose; returns true if it is kept.
     pub(crate) fn take(&mut self, vote: &Vote) -> bool {
         let near = |kept: &Vote| are_near(vote, kept, self.space);
         let is_new = self.has_room_for(vote) && !self.kept.iter().any(near);
@@ -88,8 +83,8 @@ impl<'a> Distinct<'a> {
     }
 }
 
-/// The distinct ones of poses in their order, at most this many: those that are more than
-/// [`DISTINCT_M`] or [`DISTINCT_DEG`] apart from all that were taken before.
+/// Returns the distinct poses in their order, at most `wanted`: those more than [`DISTINCT_M`] or
+/// [`DISTINCT_DEG`] apart from all before.
 #[must_use]
 pub fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {
     let mut kept = Vec::new();
@@ -100,7 +95,7 @@ pub fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {
     kept
 }
 
-/// Whether two poses are one candidate.
+/// True if two poses are one candidate.
 fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
     let headings = space.directions.count() as u16;
     let turn = a.heading.abs_diff(b.heading);

@@ -5,7 +5,7 @@ use messages::Vote;
 use super::{CollectConfig, Collector, Distinct, VoteSet, order};
 use crate::space::Space;
 
-/// Room for the best poses of intensity images, kept from scan to scan.
+/// Buffers for the best poses of intensity images, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(crate) struct FieldVotes {
     collector: Collector,
@@ -34,7 +34,7 @@ impl FieldVotes {
     }
 }
 
-/// The best poses of an intensity image, row by row, at one heading.
+/// Returns the best poses of an intensity image, row by row, at one heading.
 #[must_use]
 pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
     let (mut collector, mut found) = (Collector::default(), VoteSet::default());
@@ -44,12 +44,11 @@ pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig
     found
 }
 
-/// Cells along the side of the blocks of an image of which the best is a
-/// candidate.
+/// Side, in cells, of the blocks of an image whose best pose is a candidate.
 const BLOCK: usize = 8;
 
-/// The best pose of each block of an intensity image, row by row, at one
-/// heading; none of blocks without votes.
+/// Finds the best pose of each block of an intensity image, row by row, at one heading; none for
+/// blocks without votes.
 fn best_of_blocks(field: &[u16], width: usize, heading: u16, bests: &mut Vec<Vote>) {
     bests.clear();
     for (band, rows) in field.chunks(BLOCK * width).enumerate() {

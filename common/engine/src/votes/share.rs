@@ -1,33 +1,34 @@
-//! Votes of poses on maps with other cells, compared.
+//! Comparison of votes on maps with different cells.
 
 use std::cmp::Ordering;
 
-/// The votes of a pose as a share of the highest possible on its map: a fraction of whole
-/// numbers, so that maps are compared without rounding.
+/// Votes of a pose as a share of the highest possible on its map: a fraction of integers, so that
+/// maps are compared without rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VoteShare {
     /// Votes of the pose.
     pub votes: u16,
-    /// What a pose of the map would have if every beam agreed fully; at least 1.
+    /// Votes of a pose with which every beam agrees fully; at least 1.
     pub possible: u16,
 }
 
 impl VoteShare {
-    /// The share of a pose on a map with such a highest possible.
+    /// Makes the share of a pose on a map with this highest possible number of votes.
     #[must_use]
     pub fn new(votes: u16, possible: u16) -> Self {
         let possible = possible.max(1);
         VoteShare { votes, possible }
     }
 
-    /// Which share is greater.
+    /// Compares two shares exactly.
     #[must_use]
     pub fn compare(self, other: Self) -> Ordering {
         let product = |a: u16, b: u16| u32::from(a) * u32::from(b);
         product(self.votes, other.possible).cmp(&product(other.votes, self.possible))
     }
 
-    /// The least number of votes that is as great a share of another highest possible.
+    /// Returns the smallest number of votes that is at least this share of another highest
+    /// possible.
     #[must_use]
     pub fn on(self, possible: u16) -> u16 {
         let product = u32::from(self.votes) * u32::from(possible);
@@ -37,7 +38,7 @@ impl VoteShare {
 }
 
 impl Default for VoteShare {
-    /// No votes.
+    /// The share without votes.
     fn default() -> Self {
         VoteShare::new(0, 1)
     }

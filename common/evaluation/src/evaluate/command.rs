@@ -1,4 +1,4 @@
-//! The command `backcast evaluate`: reads, asks scan by scan, and prints.
+//! The command `backcast evaluate`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use crate::EvaluationError;
 use crate::sequence::{self, SequenceOptions};
 use crate::trust::Trust;
 
-/// What stands below the options.
+/// Notes below the options in the help text.
 pub const NOTES: &str = "\
 Shares are of the truths: the scans taken that have a true pose. Only those are searched.
 cpu is of one thread from the scan to the verdict, decoding excluded; prepare is of the map.
@@ -31,18 +31,18 @@ Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wr
 /// Options of `backcast evaluate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or
-    /// bags of rosbag2 (their folders, or .db3)
+    /// Recordings with true poses on /ground_truth, evaluated one by one: MCAP files, or bags of
+    /// rosbag2 (their folders, or .db3)
     #[arg(required_unless_present = "stress", value_name = "FILE")]
     bags: Vec<PathBuf>,
 
-    /// Print JSON, an object a file
+    /// Print JSON, one object per file
     #[arg(long)]
     json: bool,
 
-    /// Erase the map around each true pose: cells within this distance become unknown,
-    /// metres, 0..=1000. unique_wrong then shows how often a place that is not on the
-    /// map is mistaken for another
+    /// Erase the map around each true pose: cells within this distance become unknown, metres,
+    /// 0..=1000. unique_wrong then shows how often a place that is missing on the map is mistaken
+    /// for another
     #[arg(long, value_name = "METRES", value_parser = radius)]
     erase_place: Option<f64>,
 
@@ -62,12 +62,11 @@ fn radius(text: &str) -> Result<f64, String> {
     metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is reported on
-/// standard error, and the next one follows.
+/// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
+/// and the next one follows.
 ///
 /// # Errors
-/// The options or the map that is named cannot be used, or output cannot be
-/// written.
+/// The options or the given map cannot be used, or output cannot be written.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
     let mut bags = config.bags.clone();
@@ -120,8 +119,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     Ok(code)
 }
 
-/// Evaluates one file; a damaged one not at all. Adds to what is known of the
-/// trust in all.
+/// Evaluates one file, unless it is damaged, and adds its results to `trust`.
 fn evaluate(
     bag: &Path,
     config: &Config,
@@ -165,8 +163,8 @@ fn evaluate(
     }
 }
 
-/// Searches and judges the scans whose truth is known; returns with that which
-/// were accepted, and how many were taken.
+/// Searches and judges the scans with a true pose. Also returns the counts of accepted and rejected
+/// scans, and the number of scans read.
 fn judge_all(
     session: &mut Session<'_>,
     truths: &BTreeMap<i64, GroundTruth>,

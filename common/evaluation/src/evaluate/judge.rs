@@ -1,4 +1,4 @@
-//! From answers and true poses to the figures of one file. Pure.
+//! Computes the figures of one file from results and true poses. Pure.
 
 use engine::peaks::{Place, Places};
 use geometry::Pose;
@@ -8,20 +8,20 @@ use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
 use crate::trust::{Said, Trust};
 
-/// Collects what is known about one file.
+/// Collects results of one file.
 pub(super) struct Judge {
     accuracy: Accuracy,
     cpu_ms: Distribution,
     error_m: Distribution,
     error_deg: Distribution,
     trust: Trust,
-    /// Truths in the ellipse of an answer with the verdict Unique.
+    /// Number of truths inside the 95 % ellipse of a result with the verdict Unique.
     in_ellipse: u64,
     refused: u64,
     first_refusal: Option<String>,
 }
 
-/// What was evaluated, and at what cost.
+/// Properties and costs of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Effort {
     pub(super) bag: String,
@@ -33,50 +33,47 @@ pub(super) struct Effort {
     pub(super) index_bytes: u64,
 }
 
-/// The figures of one file; shares are 0..=1 of `truths`.
+/// Figures of one file; shares are 0..=1 of `truths`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Evaluation {
-    /// The file, as it was named.
+    /// The file, as given by the user.
     pub(super) bag: String,
-    /// Width times height of the map.
     pub(super) map_cells: u64,
-    /// Scans that were taken.
+    /// Number of scans read.
     pub(super) scans: u64,
-    /// Those of them that have a true pose. Only they are searched and judged.
+    /// Number of scans with a true pose; only these are searched and judged.
     pub(super) truths: u64,
-    /// Best pose within 0.5 m and 10°.
+    /// Share of scans whose best pose is within 0.5 m and 10°.
     pub(super) success_50cm_10deg: Option<f64>,
-    /// Best pose within 0.2 m and 3°.
+    /// Share of scans whose best pose is within 0.2 m and 3°.
     pub(super) success_20cm_3deg: Option<f64>,
-    /// Any of the best 16 poses within 0.5 m and 10°.
+    /// Share of scans with any of the best 16 poses within 0.5 m and 10°.
     pub(super) top16_recall: Option<f64>,
-    /// Answers with the verdict Unique.
+    /// Number of results with the verdict Unique.
     pub(super) unique: u64,
-    /// Those of them beyond 0.5 m or 10°.
+    /// Number of Unique results beyond 0.5 m or 10°.
     pub(super) unique_wrong: u64,
-    /// Milliseconds of this thread from scan to verdict, refused scans left out.
+    /// CPU time of this thread from scan to verdict, in milliseconds, without rejected scans.
     pub(super) cpu_ms: Times,
-    /// Milliseconds of this thread to prepare the map.
+    /// CPU time of this thread to prepare the map, in milliseconds.
     pub(super) prepare_cpu_ms: f64,
-    /// The most memory that the process held, megabytes of 10⁶ bytes.
+    /// Peak memory of the process, in megabytes of 10⁶ bytes.
     pub(super) peak_rss_mb: f64,
-    /// Cells in which poses are searched, as large as they are searched.
+    /// Number of cells in which poses are searched, at the resolution of the search.
     pub(super) searchable_cells: u64,
-    /// Bytes of what a search keeps of the map.
+    /// Size of the search index of the map.
     pub(super) index_bytes: u64,
-    /// Distance of the best pose, metres, of the answers within 0.5 m and 10°:
-    /// how well a place is met once it is found.
+    /// Distance of the best pose from the truth, in metres, over the results within 0.5 m and 10°:
+    /// the accuracy once a place is found.
     pub(super) error_m: Spread,
-    /// Angle to the best pose, degrees, of the same answers.
+    /// Angle between the best pose and the truth, in degrees, over the same results.
     pub(super) error_deg: Spread,
-    /// Of the answers with the verdict Unique, those in whose ellipse of 95 % the
-    /// true position lies.
+    /// Number of Unique results whose 95 % ellipse contains the true position.
     pub(super) unique_in_ellipse: u64,
-    /// The probabilities of the best places, and how many of them were right.
+    /// Probabilities of the best places, and how many of these were right.
     pub(super) probabilities: Vec<Said>,
 }
 
-/// Percentiles of a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Times {
     pub(super) median: Option<f64>,
@@ -85,9 +82,8 @@ pub(super) struct Times {
 }
 
 impl Judge {
-    /// Nothing yet.
     pub(super) fn new() -> Self {
-        // A file is finite, and so is what is kept of it.
+        // Keeps all values, since a file is finite.
         let all = || Distribution::new(usize::MAX);
         Judge {
             accuracy: Accuracy::new(usize::MAX),
@@ -101,7 +97,6 @@ impl Judge {
         }
     }
 
-    /// Judges the answer to a scan.
     pub(super) fn answer(&mut self, truth: Pose, found: &Places, cpu_ms: f64) {
         let poses = found.places.iter().map(|place| place.map_from_laser);
         let judged = statistics::Answer {
@@ -126,7 +121,7 @@ impl Judge {
         }
     }
 
-    /// Judges a scan that was refused: a failure.
+    /// Counts a rejected scan as a failure.
     pub(super) fn refusal(&mut self, truth: Pose, reason: String) {
         self.refused += 1;
         self.first_refusal.get_or_insert(reason);
@@ -137,19 +132,17 @@ impl Judge {
         self.accuracy.add(truth, &nothing);
     }
 
-    /// What the answers said of themselves.
     pub(super) fn trust(&self) -> &Trust {
         &self.trust
     }
 
-    /// What to say about refused scans, if there were any.
+    /// Message about rejected scans, if there were any.
     pub(super) fn complaint(&self) -> Option<String> {
         let reason = self.first_refusal.as_ref()?;
         let refused = self.refused;
         Some(format!("scans rejected: {refused}; the first: {reason}"))
     }
 
-    /// The figures.
     pub(super) fn conclude(&self, effort: Effort) -> Evaluation {
         let figures = self.accuracy.figures();
         let [median, p90, max] = self.cpu_ms.percentiles([50.0, 90.0, 100.0]);
@@ -177,13 +170,12 @@ impl Judge {
 }
 
 impl Evaluation {
-    /// One line, without its end.
     pub(super) fn json(&self) -> String {
         json::object(self)
     }
 }
 
-/// Whether a position lies in the ellipse that is to hold 95 % of the truths.
+/// True if the position is inside the 95 % ellipse.
 fn is_in_ellipse(place: &Place, truth: Pose) -> bool {
     let pose = place.map_from_laser;
     let off = (truth.x - pose.x, truth.y - pose.y);
@@ -220,8 +212,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Five scans: found to 0.1 and to 0.3 m, found at another place twice, and
-    /// refused.
+    /// Five scans: one off by 0.1 m, one by 0.3 m, two at a wrong place, one rejected.
     pub(crate) fn evaluation() -> Evaluation {
         let truth = Pose::new(1.0, 2.0, 0.0);
         let beside = |x: f64| Pose::new(1.0 + x, 2.0, x.to_radians());
@@ -251,7 +242,7 @@ pub(super) mod tests {
         assert_eq!(evaluation.success_20cm_3deg, Some(0.2));
         assert_eq!(evaluation.top16_recall, Some(0.6));
         assert_eq!((evaluation.unique, evaluation.unique_wrong), (3, 1));
-        // 0.1 m off is one deviation, 0.3 m three: 2.4 are 95 %.
+        // Off by 0.1 m is one sigma, by 0.3 m three sigma; the 95 % ellipse ends at 2.4 sigma.
         assert_eq!(evaluation.unique_in_ellipse, 1);
         let Times { median, p90, max } = evaluation.cpu_ms;
         assert_eq!(
@@ -259,7 +250,7 @@ pub(super) mod tests {
             (Some(2.0), Some(4.0), Some(4.0)),
             "of four: the refused scan has none"
         );
-        // Differences of numbers near 1: a few units in the last place.
+        // Differences of numbers near 1 are off by a few units in the last place.
         assert!((evaluation.error_m.median.unwrap() - 0.1).abs() < 1e-12);
         assert!((evaluation.error_m.p90.unwrap() - 0.3).abs() < 1e-12);
         assert!((evaluation.error_deg.p90.unwrap() - 0.3).abs() < 1e-12);
@@ -288,7 +279,7 @@ pub(super) mod tests {
     #[test]
     fn json_has_the_keys_of_the_contract_in_their_order() {
         let mut evaluation = evaluation();
-        // The sums above are rounded; these are not.
+        // The figures computed above are rounded; these values are exact.
         for spread in [&mut evaluation.error_m, &mut evaluation.error_deg] {
             (spread.median, spread.p90) = (Some(0.125), None);
         }

@@ -1,20 +1,20 @@
-//! What the figures of a file must reach, for whoever lets a build fail by them. Pure.
+//! Requirements on the figures of a file, by which a build can fail. Pure.
 
 use super::judge::Evaluation;
 
-/// What each file must reach; nothing by default, and not for whole drives.
+/// Requirements on each file; none by default, and not for sequences.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Requirements: exit code 1 if a file misses one")]
 pub(super) struct Limits {
-    /// Least share of the truths that are found within 0.5 m and 10 degrees, per cent
+    /// Lowest share of the truths that are found within 0.5 m and 10 degrees, per cent
     #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = percent)]
     min_success: Option<f64>,
 
-    /// Most answers that are Unique and wrong
+    /// Highest number of results that are Unique and wrong
     #[arg(long, value_name = "COUNT", conflicts_with = "sequence")]
     max_wrong: Option<u64>,
 
-    /// Longest time of a scan, milliseconds of one thread, at the 90th percentile
+    /// Longest time per scan at the 90th percentile, milliseconds of one thread
     #[arg(long, value_name = "MS", conflicts_with = "sequence", value_parser = above_zero)]
     max_p90_ms: Option<f64>,
 
@@ -37,8 +37,8 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl Limits {
-    /// What the file misses, a sentence each. A figure that there is none of, as no answer
-    /// was right, is missed too.
+    /// Requirements that the file misses, one sentence each. A figure that is not known, because no
+    /// result was right, misses its requirement.
     pub(super) fn missed(&self, found: &Evaluation) -> Vec<String> {
         let success = found.success_50cm_10deg.map(|share| 100.0 * share);
         let error_cm = found.error_m.median.map(|metres| 100.0 * metres);

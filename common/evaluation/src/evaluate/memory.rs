@@ -1,21 +1,21 @@
-//! The most memory that this process has held, as Linux counts it in /proc.
+//! Peak memory of this process, as Linux counts it in /proc.
 
 use std::{fs, io};
 
 use nix::sys::resource::{UsageWho, getrusage};
 
-/// The number that makes the kernel forget the peak, see proc_pid_clear_refs(5).
+/// Value that resets the peak, see proc_pid_clear_refs(5).
 const FORGET_PEAK: &str = "5";
 
-/// The peak counts again from what is held now.
+/// Resets the peak to the memory in use now.
 ///
 /// # Errors
-/// The system does not allow it: the peak stays that of the whole process.
+/// The system does not allow it; the peak then covers the whole process.
 pub(super) fn forget_peak() -> io::Result<()> {
     fs::write("/proc/self/clear_refs", FORGET_PEAK)
 }
 
-/// The most that was resident since, in megabytes of 10⁶ bytes.
+/// Peak of the resident memory since the last reset, in megabytes of 10⁶ bytes.
 ///
 /// # Errors
 /// The system does not report it.
@@ -23,13 +23,13 @@ pub(super) fn peak_mb() -> io::Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kib = match peak_in(&status) {
         Some(kib) => kib,
-        // Kernels without this line report the process's peak here, in KiB too.
+        // Kernels without this line report the process's peak here, also in KiB.
         None => getrusage(UsageWho::RUSAGE_SELF)?.max_rss() as f64,
     };
     Ok(kib * 1024.0 / 1e6)
 }
 
-/// The line `VmHWM:     1968 kB`, where the unit is KiB.
+/// Parses the line `VmHWM:     1968 kB`; its unit is KiB.
 fn peak_in(status: &str) -> Option<f64> {
     let rest = status
         .lines()
@@ -58,8 +58,8 @@ mod tests {
         assert!(peak > 256.0, "{peak}");
         drop(held);
         forget_peak().unwrap();
-        // So much is given back to the system at once, and no other test of
-        // this process holds nearly as much.
+        // The allocator returns a block of this size at once, and no other test of this process
+        // holds nearly as much.
         let after = peak_mb().unwrap();
         assert!(after < peak - 128.0, "{after} of {peak}");
     }

@@ -1,9 +1,9 @@
-//! `backcast evaluate`: how often and how well the place is found, against the
-//! true poses of recordings. A row or a JSON object for each file, and how
-//! far the probabilities of the answers can be believed.
+//! `backcast evaluate`: success rate and accuracy of the search against the true poses of
+//! recordings. Prints a row or a JSON object per file, and how well the probabilities of the
+//! results are calibrated.
 //!
-//! One process and no graph. Scans without a true pose are not searched, and a
-//! file that is damaged or holds no truth is an error and no figure.
+//! One process and no graph. Scans without a true pose are not searched; a file that is damaged or
+//! holds no truth is an error.
 
 mod command;
 mod judge;

@@ -1,11 +1,11 @@
-//! The figures of each file as a row of a table. Pure.
+//! Prints the figures of each file as a row of a table. Pure.
 
 use std::path::PathBuf;
 
 use super::judge::Evaluation;
 use crate::text::{number, percent, share};
 
-/// The columns behind the file's name, and how wide each is.
+/// Names and widths of the columns after the recording's name.
 const COLUMNS: [(&str, usize); 18] = [
     ("cells", 9),
     ("scans", 6),
@@ -29,7 +29,6 @@ const COLUMNS: [(&str, usize); 18] = [
 
 const NAME: &str = "recording";
 
-/// A table whose first column holds these files.
 pub(super) struct Table {
     name_width: usize,
 }
@@ -43,12 +42,12 @@ impl Table {
         }
     }
 
-    /// The names of the columns, without the end of the line.
+    /// Names of the columns, without a line break.
     pub(super) fn header(&self) -> String {
         self.line(NAME, &COLUMNS.map(|(name, _)| name.to_owned()))
     }
 
-    /// A row, without the end of the line.
+    /// A row, without a line break.
     pub(super) fn row(&self, evaluation: &Evaluation) -> String {
         let Evaluation {
             cpu_ms,

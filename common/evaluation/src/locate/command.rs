@@ -1,4 +1,4 @@
-//! The command `backcast locate`: reads, asks scan by scan, and prints.
+//! The command `backcast locate`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,16 +17,16 @@ use crate::EvaluationError;
 /// Options of `backcast locate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
-    /// several files are read as one
+    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3); several files are
+    /// read as one
     #[arg(value_name = "FILE", required_unless_present = "bag")]
     recordings: Vec<PathBuf>,
 
-    /// The same, as an option
+    /// Another way to name a recording
     #[arg(long, value_name = "FILE")]
     bag: Vec<PathBuf>,
 
-    /// Print JSON, an object a line
+    /// Print JSON, one object per line
     #[arg(long)]
     json: bool,
 
@@ -46,12 +46,12 @@ pub struct Config {
     options: Options,
 }
 
-/// Prints a line for each scan. A scan that is refused has one too, with the
-/// reason; one that does not decode is lost, and reported on standard error.
+/// Prints a line for each scan, for a rejected one with the reason. A scan that cannot be decoded
+/// is lost, and is reported on standard error.
 ///
 /// # Errors
-/// Map or recording cannot be used, every scan was rejected, or the recording is
-/// damaged: that is reported after what lies before the damage.
+/// Map or recording cannot be used, every scan was rejected, or the recording is damaged; damage is
+/// reported after the scans before it.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check_settings()?;
     let files = [&config.recordings[..], &config.bag].concat();

@@ -1,7 +1,7 @@
-//! `backcast locate`: where was each scan of a recording taken? One process and
-//! no graph; a line for each scan, as `backcast run` prints it, or JSON.
+//! `backcast locate`: finds the pose of each scan of a recording. One process and no graph; a line
+//! for each scan, in the format of `backcast run`, or JSON.
 //!
-//! It compares with no truth, and remembers nothing from scan to scan.
+//! It does not compare with a truth, and keeps no state from scan to scan.
 
 mod command;
 mod object;

@@ -1,7 +1,7 @@
-//! A scan and its places as JSON. Pure.
+//! A scan and its hypotheses as JSON. Pure.
 //!
-//! Every line has the same keys; what a refused scan does not have is null, and
-//! what only it has, the reason, is null elsewhere.
+//! Every line has the same keys; a rejected scan has null for the results, any other scan has null
+//! for the reason.
 
 use engine::fit::BeamClass;
 use engine::localizer::Outcome;
@@ -13,39 +13,38 @@ use serde::Serialize;
 
 use super::particles::Particles;
 
-/// One line.
 #[derive(Debug, Serialize)]
 pub(super) struct Object {
-    /// When the scan was measured, nanoseconds since 1970.
+    /// Time of measurement, in nanoseconds since 1970.
     stamp_ns: i64,
-    /// The map's id in hexadecimal, as logs show it: a number of 64 bits is not
-    /// safe in JSON.
+    /// The map's id in hexadecimal, as in logs: JSON numbers cannot hold 64 bits safely.
     map_id: String,
-    /// The name of the best place's map, where several are searched; else null.
+    /// Name of the best place's map, if several maps are searched; else null.
     map: Option<String>,
-    /// Its floor, where the set of maps says so.
+    /// Floor of that map, if the map set defines it.
     floor: Option<String>,
     verdict: &'static str,
-    /// Other places that fit about as well.
+    /// Number of other places that fit about as well.
     alternatives: u32,
-    /// The verdict in words; why a scan was refused stands in `refused`.
+    /// The verdict in words; null for a rejected scan.
     says: Option<String>,
-    /// The best place's probability, 0..=1; by votes alone, its lead.
+    /// Probability of the best place, 0..=1; in votes-only mode its relative lead over the next
+    /// place.
     confidence: f64,
-    /// Milliseconds of computing from the scan to the verdict.
+    /// CPU time from the scan to the verdict, in milliseconds.
     cpu_ms: f64,
-    /// Why the scan was refused.
+    /// Reason for the rejection.
     refused: Option<String>,
     votes: Option<Votes>,
-    /// What became of the beams at the best place; null by votes alone.
+    /// Number of beams by class, at the best place; null in votes-only mode.
     beams: Option<Beams>,
     /// Best first.
     hypotheses: Vec<Hypothesis>,
-    /// A start for a particle filter; null where none is asked for.
+    /// Initial particles for a particle filter; null without `--particles`.
     particles: Option<Particles>,
 }
 
-/// What the header of topic `votes` says.
+/// Header of the topic `votes`.
 #[derive(Debug, Serialize)]
 struct Votes {
     best: u16,
@@ -58,18 +57,18 @@ struct Votes {
     beams_silent: u32,
     poses_evaluated: u64,
     headings: u32,
-    /// In the map, radians, where it was given.
+    /// Heading in the map, in radians, if one was given.
     known_heading: Option<f64>,
-    /// Radians.
+    /// In radians.
     bearing_rounding: f64,
 }
 
-/// How many beams that voted ended where.
+/// Number of beams that voted, by their end relative to the map.
 #[derive(Debug, Serialize)]
 struct Beams {
     /// At an obstacle.
     hit: usize,
-    /// In the open.
+    /// In free space.
     short: usize,
     /// Behind an obstacle.
     through: usize,
@@ -77,22 +76,22 @@ struct Beams {
     unknown: usize,
 }
 
-/// `map_from_laser` in metres and radians, and how sure it is.
+/// A pose `map_from_laser` in metres and radians, with its uncertainty.
 #[derive(Debug, Serialize)]
 struct Hypothesis {
-    /// The name of its map, where several are searched; else null.
+    /// Name of its map, if several maps are searched; else null.
     map: Option<String>,
     x: f64,
     y: f64,
     yaw: f64,
-    /// Row by row over x, y and yaw.
+    /// Over x, y and yaw, row by row.
     covariance: [f64; 9],
     score: f64,
-    /// 0..=1; what they leave of 1 is that the robot is at none.
+    /// 0..=1; the rest to a sum of 1 is the probability that none is right.
     probability: f64,
     intensity: u16,
     support: u64,
-    /// Where the laser's mount is known.
+    /// Pose of the base, if the laser's mount is known.
     map_from_base: Option<Pose>,
 }
 
@@ -121,7 +120,7 @@ impl Object {
         object
     }
 
-    /// The same with a start for a particle filter.
+    /// Adds initial particles.
     pub(super) fn with(self, particles: Option<Particles>) -> Self {
         Object { particles, ..self }
     }
@@ -163,7 +162,6 @@ impl Object {
         self.hypotheses = places.places.iter().map(hypothesis).collect();
     }
 
-    /// One line, without its end.
     pub(super) fn json(&self) -> String {
         json::object(self)
     }

@@ -1,4 +1,4 @@
-//! The start of a particle filter: poses around the places of a scan, seeded. Pure.
+//! Initial particles for a particle filter: seeded poses around the hypotheses of a scan. Pure.
 
 use std::fmt::Write as _;
 
@@ -9,15 +9,14 @@ use serde::Serialize;
 
 use crate::EvaluationError;
 
-/// How many, and from which random numbers.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(super) struct ParticlesOptions {
-    /// Draw this many poses around the places of each scan, as a start for a particle
-    /// filter: poses of the base if the laser's mount is known, 1..=1000000
+    /// Draw this many poses around the places of each scan, as a start for a particle filter: poses
+    /// of the base if the laser's mount is known, 1..=1000000
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     particles: Option<u32>,
 
-    /// Seed of their random numbers, the same for each scan
+    /// Seed of the particles' random numbers, the same for each scan
     #[arg(
         long,
         value_name = "NUMBER",
@@ -27,20 +26,20 @@ pub(super) struct ParticlesOptions {
     particles_seed: u64,
 }
 
-/// The particles of a scan; none where the scan has no place.
+/// Particles of a scan; empty if the scan has no place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Particles {
-    /// Whose poses they are: `base`, or `laser` where no mount is known.
+    /// Frame of the poses: `base`, or `laser` if the mount is not known.
     of: &'static str,
-    /// In the map, metres and radians; all weigh the same.
+    /// In the map, metres and radians; all have the same weight.
     poses: Vec<Pose>,
 }
 
 impl Particles {
-    /// Draws what is asked for; `None` where nothing is.
+    /// Draws the requested number of particles; `None` without `--particles`.
     ///
     /// # Errors
-    /// If the places are not finite.
+    /// The hypotheses are not finite.
     pub(super) fn draw(
         options: &ParticlesOptions,
         scan: &TakenScan,
@@ -69,12 +68,12 @@ impl Particles {
         Ok(Some(Particles { of, poses }))
     }
 
-    /// A line for each below the scan's.
+    /// Formats one line per particle, to follow the scan's line.
     pub(super) fn text(&self) -> String {
         let mut text = String::new();
         for pose in &self.poses {
             let degrees = pose.yaw.to_degrees();
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = write!(
                 text,
                 "\n  particle of the {}  {:>10.3} {:>10.3} {degrees:>9.2}",

@@ -1,11 +1,10 @@
-//! A scan and its place as a row of the table that `backcast run` prints. Pure.
+//! Formats a scan and its place as a row of the table that `backcast run` prints. Pure.
 
 use messages::Verdict;
 use offline::Reply;
 use pose_table::Line;
 
-/// The row, without the end of the line; after that of a refused scan stands
-/// the reason.
+/// The row without a line break; for a rejected scan the reason is appended.
 pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
     let mut line = Line {
         stamp_ns,
@@ -16,7 +15,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
         verdict: Verdict::NoScan.as_str(),
         alternatives: 0,
         says: String::new(),
-        // Without a graph there is nothing but computing.
+        // Without a graph, CPU time is the only latency.
         latency_ms: reply.cpu_ms,
         engine_ms: reply.cpu_ms,
     };
@@ -34,7 +33,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
         line.score = Some(best.score as f32);
     }
     match &reply.answer {
-        // What the verdict says stands at the end of the line, and which map before it.
+        // The verdict is the end of the line's text; the name of the map follows.
         Ok(answer) if !answer.map.name.is_empty() && !places.places.is_empty() => {
             format!("{}  on {}", line.text(), answer.map.name)
         }

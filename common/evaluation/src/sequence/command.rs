@@ -1,4 +1,4 @@
-//! Reads drives, evaluates them one by one, and prints.
+//! Reads drives, evaluates them one by one, and prints the figures.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -15,11 +15,11 @@ use super::run::Said;
 use super::{SequenceOptions, course, drive, follow, jumps, names, outages, starts, stress};
 use crate::EvaluationError;
 
-/// Evaluates one file after another. A file that cannot be evaluated is reported on
-/// standard error, and the next one follows.
+/// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
+/// and the next one follows.
 ///
 /// # Errors
-/// A folder cannot be made, or output cannot be written.
+/// A folder cannot be created, or output cannot be written.
 pub(crate) fn evaluate(
     bags: &[PathBuf],
     json: bool,
@@ -27,7 +27,7 @@ pub(crate) fn evaluate(
     (options, sequence): (&Options, &SequenceOptions),
 ) -> Result<ExitCode, EvaluationError> {
     for folder in sequence.trajectories.iter().chain(&sequence.pictures) {
-        // Before the work, of which nothing would be left otherwise.
+        // Before the evaluation, so that a failure costs no work.
         std::fs::create_dir_all(folder).map_err(|source| EvaluationError::File {
             action: "make the folder",
             file: folder.clone(),
@@ -120,7 +120,7 @@ fn one(
     ))
 }
 
-/// Writes what is asked for of the drive from its first scan.
+/// Writes the requested trajectories and picture of the drive from its first scan.
 fn show(
     session: &Session<'_>,
     (moments, said): (&[Moment], &[Said]),

@@ -1,5 +1,5 @@
-//! The whole drive from its first scan, with no guess: what the graph's tracker says of
-//! it, as trajectories and as a picture.
+//! Runs the tracker over the whole drive from its first scan, without an initial pose, and writes
+//! trajectories and a picture.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,10 +14,10 @@ use super::errors::Errors;
 use super::run::{Run, Said};
 use crate::EvaluationError;
 
-/// What the tracker says of each moment.
+/// Results of the tracker for each moment.
 ///
 /// # Errors
-/// The clock fails.
+/// The CPU clock cannot be read.
 pub(super) fn of(
     world: &World,
     moments: &[Moment],
@@ -28,9 +28,9 @@ pub(super) fn of(
     indices.map(|i| run.take(i, moments[i].moved)).collect()
 }
 
-/// Writes two trajectories of the first laser: that of the tracker, of scans where it was
-/// Unique or Doubtful, and the true one. A line a scan: seconds, x, y, z and a
-/// quaternion, as the TUM RGB-D benchmark defines it and evo reads it.
+/// Writes two trajectories of the first laser: the tracker's, for scans where it was Unique or
+/// Doubtful, and the true one. One line per scan: seconds, x, y, z and a quaternion, in the TUM
+/// RGB-D format that evo reads.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -55,7 +55,7 @@ pub(super) fn write(
     save(format!("{name}_truth.tum"), trajectory(truths))
 }
 
-/// Of the poses that [`write`] writes.
+/// Errors of the tracked poses that [`write`] writes.
 pub(super) fn errors(moments: &[Moment], said: &[Said]) -> Errors {
     let both = moments.iter().zip(said);
     let pairs = both.filter_map(|(moment, said)| {
@@ -73,13 +73,12 @@ fn trajectory(poses: impl Iterator<Item = (i64, Pose)>) -> String {
             stamp_ns.rem_euclid(1_000_000_000),
         );
         let (sin, cos) = (0.5 * yaw).sin_cos();
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(lines, "{seconds}.{rest:09} {x} {y} 0 0 0 {sin} {cos}");
     }
     lines
 }
 
-/// As a picture has it.
 pub(super) fn stops(moments: &[Moment], said: &[Said]) -> Vec<Stop> {
     let both = moments.iter().zip(said);
     both.map(|(moment, said)| Stop {
@@ -90,7 +89,7 @@ pub(super) fn stops(moments: &[Moment], said: &[Said]) -> Vec<Stop> {
     .collect()
 }
 
-/// Why it was not Unique, by how many scans, the most first.
+/// Reasons for scans that were not Unique, with their counts, most frequent first.
 pub(super) fn doubts(said: &[Said]) -> String {
     let mut counts: Vec<(String, u32)> = Vec::new();
     for said in said.iter().filter(|said| !said.is_unique()) {

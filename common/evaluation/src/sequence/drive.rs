@@ -1,4 +1,4 @@
-//! A drive: everything the tracker takes of its scans, read and searched once.
+//! A drive: all inputs of the tracker, read and searched once.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -15,23 +15,22 @@ use recording::{GroundTruth, Recording};
 
 use crate::EvaluationError;
 
-/// One scan of a drive. What a search cost to find is shared by copies.
+/// One scan of a drive. Copies share the view and the search results.
 #[derive(Clone)]
 pub(super) struct Moment {
     pub(super) stamp_ns: i64,
-    /// The first laser's true pose in the map, if that is known.
+    /// True pose of the first laser in the map, if known.
     pub(super) truth: Option<Pose>,
-    /// Whether no pose is right, as on another building's map.
+    /// True if no pose is right, as on another building's map.
     pub(super) is_nowhere: bool,
     pub(super) view: Arc<View>,
     pub(super) by_odometry: Option<ByOdometry>,
-    /// How the target frame moved since the moment before.
+    /// Motion of the target frame since the previous moment.
     pub(super) moved: Option<Pose>,
-    /// Metres along the drive until here.
+    /// Distance travelled so far, in metres.
     pub(super) gone_m: f64,
-    /// What a search finds.
     pub(super) found: Arc<[Candidate]>,
-    /// Milliseconds of computing that the search took.
+    /// CPU time of the search, in milliseconds.
     pub(super) search_ms: f64,
 }
 
@@ -40,12 +39,12 @@ impl Moment {
         &self.view.ends
     }
 
-    /// The pose of the first laser where the tracker has the target frame.
+    /// Converts a pose of the tracker's target frame to one of the first laser.
     pub(super) fn laser(&self, map_from_target: Pose) -> Pose {
         self.view.target.laser(map_from_target)
     }
 
-    /// Metres and degrees from the truth, where that is known.
+    /// Metres and degrees from the truth, if known.
     pub(super) fn off(&self, pose: Pose) -> Option<(f64, f64)> {
         if self.is_nowhere {
             return Some((f64::INFINITY, 180.0));
@@ -55,13 +54,13 @@ impl Moment {
     }
 }
 
-/// True poses by their stamps, nanoseconds.
+/// True poses by stamp, in nanoseconds.
 pub(super) type Truths = BTreeMap<i64, GroundTruth>;
 
 /// Opens an undamaged recording that has true poses.
 ///
 /// # Errors
-/// It cannot be read, is damaged, or has no true pose.
+/// The recording cannot be read, is damaged, or has no true pose.
 pub(super) fn open(bag: &Path, options: &Options) -> Result<(Recording, Truths), EvaluationError> {
     let recording = options.open(&[bag.to_owned()])?;
     if let Some(damage) = damage_of(&recording) {
@@ -77,7 +76,7 @@ pub(super) fn open(bag: &Path, options: &Options) -> Result<(Recording, Truths),
 /// Searches all scans of a recording.
 ///
 /// # Errors
-/// The recording cannot be read, or holds no scan that can be used.
+/// The recording cannot be read, or holds no usable scan.
 pub(super) fn read(
     session: &mut Session<'_>,
     truths: &Truths,
@@ -104,10 +103,10 @@ pub(super) fn read(
     Ok(moments)
 }
 
-/// Searches one scan; `None` where it is refused.
+/// Searches one scan; `None` if it is rejected.
 ///
 /// # Errors
-/// The clock fails.
+/// The CPU clock cannot be read.
 pub(super) fn search(
     session: &mut Session<'_>,
     scan: &TakenScan,
@@ -145,14 +144,14 @@ pub(super) fn search(
     }))
 }
 
-/// Places of the first laser stay what they are; as messages, scores have 32 bits, as in
-/// the graph.
+/// Target for hypotheses that stay poses of the first laser. Messages store scores as 32 bits, as
+/// in the graph.
 fn of_laser() -> Target {
     Target::of(None, false)
 }
 
-/// Fills in how the target frame moved from each moment to the next: not at all known
-/// without odometry, else by it, with an error this many times as large.
+/// Fills in the motion of the target frame between moments: from odometry, with its error scaled by
+/// `noise`, or unknown without odometry.
 pub(super) fn connect(moments: &mut [Moment], (without_odometry, noise): (bool, f64)) {
     for i in 1..moments.len() {
         let (by_odometry, truly) = steps(&moments[i - 1], &moments[i]);
@@ -161,7 +160,7 @@ pub(super) fn connect(moments: &mut [Moment], (without_odometry, noise): (bool, 
     }
 }
 
-/// Fills in how far the robot went, by its odometry or else by the truth.
+/// Fills in the distance travelled, from odometry or else from the truth.
 pub(super) fn measure(moments: &mut [Moment]) {
     for i in 1..moments.len() {
         let (by_odometry, truly) = steps(&moments[i - 1], &moments[i]);
@@ -171,7 +170,7 @@ pub(super) fn measure(moments: &mut [Moment]) {
     }
 }
 
-/// From a moment to the next, by the odometry and by the truth.
+/// Motion between two moments, by odometry and by the truth.
 fn steps(before: &Moment, now: &Moment) -> (Option<Pose>, Option<Pose>) {
     let truly = before.truth.zip(now.truth).map(|(a, b)| {
         let target = |laser| now.view.target.from_laser(laser);
@@ -181,7 +180,7 @@ fn steps(before: &Moment, now: &Moment) -> (Option<Pose>, Option<Pose>) {
     (by_odometry, truly)
 }
 
-/// A step whose error is this many times as large.
+/// Returns the step with its error multiplied by `factor`.
 fn worsened(step: Pose, truly: Option<Pose>, factor: f64) -> Pose {
     let Some(truly) = truly else { return step };
     if factor == 1.0 {

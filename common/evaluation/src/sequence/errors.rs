@@ -1,35 +1,34 @@
-//! How far a trajectory is from the true one, as evo defines it: poses of the same stamp
-//! are compared as they are, in the map's frame.
+//! Errors of a trajectory as evo defines them: poses with the same stamp are compared without
+//! alignment, in the map's frame.
 
 use geometry::Pose;
 use serde::Serialize;
 
-/// Of the poses that have a truth; `None` where there are none, or no two in a row.
+/// Errors of the poses with a known truth; `None` for an error without samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Errors {
-    /// How many poses were compared.
+    /// Number of poses compared.
     pub(super) poses: usize,
-    /// The absolute pose error, its translation (`evo_ape -r trans_part`), metres.
+    /// Absolute pose error, translation (`evo_ape -r trans_part`), in metres.
     pub(super) ape_m: Option<Spread>,
-    /// The relative pose error from each pose to the next, its translation
-    /// (`evo_rpe -r trans_part --delta 1 --delta_unit f`), metres.
+    /// Relative pose error from each pose to the next, translation (`evo_rpe -r trans_part --delta
+    /// 1 --delta_unit f`), in metres.
     pub(super) rpe_m: Option<Spread>,
-    /// Its rotation (`-r angle_deg`), degrees.
+    /// Relative pose error, rotation (`-r angle_deg`), in degrees.
     pub(super) rpe_deg: Option<Spread>,
 }
 
-/// Of all errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Spread {
-    /// The root of the mean square.
+    /// Root mean square error.
     pub(super) rmse: f64,
-    /// The mean of the two in the middle where their number is even.
+    /// Mean of the two middle values for an even number.
     pub(super) median: f64,
     pub(super) max: f64,
 }
 
 impl Errors {
-    /// Of found and true poses, in the order of their stamps.
+    /// Errors of pairs of found and true pose, in the order of their stamps.
     pub(super) fn of(pairs: &[(Pose, Pose)]) -> Self {
         let absolute = pairs
             .iter()
@@ -80,7 +79,7 @@ mod tests {
     fn what_stays_off_counts_once_and_what_jumps_counts_in_each_step() {
         assert_eq!(Errors::of(&[]).ape_m, None);
         let at = |x: f64, y: f64| Pose::new(x, y, 0.0);
-        // A tenth to the left from the start on, and 0.3 more at the last.
+        // Off by 0.1 m to the left from the start, and by 0.4 m at the last pose.
         let pairs = [
             (at(0.0, 0.1), at(0.0, 0.0)),
             (at(1.0, 0.1), at(1.0, 0.0)),

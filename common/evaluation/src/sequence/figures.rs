@@ -1,4 +1,4 @@
-//! The figures of one drive.
+//! Figures of one drive.
 
 use serde::Serialize;
 use statistics::Distribution;
@@ -11,7 +11,7 @@ use super::outages::Outages;
 use super::starts::Starts;
 use crate::text::{number, percent, share};
 
-/// Shares are 0..=1; docs/tracking.md explains each.
+/// Figures of one drive. Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Figures {
     pub(super) bag: String,
@@ -32,18 +32,18 @@ pub(super) struct Figures {
     pub(super) kidnaps_noticed_within_2: Option<f64>,
     pub(super) kidnaps_right_after_5_m: Option<f64>,
     pub(super) kidnaps_wrong: u64,
-    /// Times that no data came for a while, and odometry began anew.
+    /// Number of simulated outages: no data for a while, then new odometry.
     pub(super) outages: u64,
     pub(super) outages_right_after_5_m: Option<f64>,
     pub(super) outages_wrong: u64,
-    /// Of the drive from its first scan, with no guess.
+    /// Errors of the drive from its first scan, without an initial pose.
     pub(super) from_first_scan: Errors,
     pub(super) searched_share: Option<f64>,
     pub(super) cpu_ms_tracking: Times,
     pub(super) cpu_ms_searching: Times,
 }
 
-/// Shares of the starts after this many metres.
+/// Shares of the starts, by metres after the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct After {
     #[serde(rename = "1")]
@@ -58,7 +58,7 @@ pub(super) struct After {
     pub(super) twenty: Option<f64>,
 }
 
-/// Milliseconds of one thread a scan.
+/// CPU time per scan, in milliseconds of one thread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Times {
     pub(super) median: Option<f64>,
@@ -121,7 +121,6 @@ impl Figures {
         }
     }
 
-    /// What limits are for.
     pub(super) fn reached(&self) -> Reached {
         Reached {
             wrong_starts: self.wrong_starts,
@@ -131,12 +130,11 @@ impl Figures {
         }
     }
 
-    /// As a line of JSON.
     pub(super) fn json(&self) -> String {
         json::object(self)
     }
 
-    /// As lines to read.
+    /// Formats the figures as text for the terminal.
     pub(super) fn text(&self) -> String {
         let row = |after: &After| {
             let After {

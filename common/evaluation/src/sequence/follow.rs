@@ -1,4 +1,4 @@
-//! The tracker over a whole drive, from the truth.
+//! Runs the tracker over a whole drive, starting at the truth.
 
 use engine::tracking::TrackingConfig;
 use geometry::Covariance;
@@ -8,33 +8,33 @@ use super::drive::Moment;
 use super::run::{Run, Said, Tally};
 use crate::EvaluationError;
 
-/// Off by more than this for this many truths in a row, metres and degrees, the robot is
-/// lost, and put back to the truth.
+/// The robot counts as lost, and is put back to the truth, if it is off by more than this (metres,
+/// degrees) for [`LOSS_TRUTHS`] truths in a row.
 const LOSS: (f64, f64) = (1.0, 20.0);
 const LOSS_TRUTHS: u32 = 3;
 
-/// How a drive was followed.
+/// Results of following a drive.
 #[derive(Debug, Default)]
 pub(super) struct Followed {
-    /// Of each moment from the first truth on.
+    /// Index and result of each moment after the first truth.
     pub(super) said: Vec<(usize, Said)>,
     pub(super) tally: Tally,
-    /// Where it was lost.
+    /// Indices of the moments at which it was lost.
     pub(super) losses: Vec<usize>,
     pub(super) rms_m: Option<f64>,
     pub(super) rms_deg: Option<f64>,
     pub(super) max_m: Option<f64>,
-    /// Truths in the ellipse of 95 %, as a share of those where it was Unique.
+    /// Share of the Unique moments near the truth whose 95 % ellipse contains it.
     pub(super) in_ellipse: Option<f64>,
     pub(super) unique_share: Option<f64>,
-    /// Times that Unique was given up while the pose was right.
+    /// Number of times that Unique was given up although the pose was right.
     pub(super) false_alarms: u64,
     pub(super) hours: f64,
     pub(super) tracking_ms: Vec<f64>,
 }
 
-/// Follows the drive. A robot that is lost is put back to the truth, or is left to find
-/// itself again, and then no loss is counted.
+/// Follows the drive. With `puts_back` a lost robot is put back to the truth; otherwise it must
+/// recover by itself, and no loss is counted.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
@@ -107,7 +107,7 @@ fn sum_up(all: &mut Followed, moments: &[Moment]) {
     all.unique_share = share(unique, all.said.len() as u32);
 }
 
-/// Whether the true position lies in the ellipse that is to hold 95 % of them.
+/// True if the true position is inside the 95 % ellipse.
 fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
     let Some(((target, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
         return false;

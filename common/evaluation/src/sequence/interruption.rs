@@ -1,4 +1,4 @@
-//! A robot that is followed, and of which is then not known how it moved.
+//! A followed robot whose motion is unknown or wrong for one step.
 
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
@@ -8,13 +8,13 @@ use super::drive::Moment;
 use super::run::{Run, Said};
 use crate::EvaluationError;
 
-/// The robot is followed for this many metres before, and for this many after.
+/// Distance for which the robot is followed before and after, in metres.
 pub(super) const BEFORE_M: f64 = 5.0;
 const AFTER_M: f64 = 10.0;
-/// It is to be right after this many.
+/// Distance after which it should be right, in metres.
 pub(super) const RIGHT_AFTER_M: f64 = 5.0;
 
-/// The moments on both sides, and how odometry says that the robot moved between.
+/// The last moment before, the first one after, and the odometry's motion in between.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interruption {
     pub(super) from: usize,
@@ -22,17 +22,17 @@ pub(super) struct Interruption {
     pub(super) moved: Option<Pose>,
 }
 
-/// What the tracker says after it.
+/// Results of the tracker after an interruption.
 #[derive(Debug)]
 pub(super) struct Aftermath {
-    /// Of the moment after it, and those that follow.
+    /// Results from the first moment after the interruption on.
     pub(super) said: Vec<Said>,
     pub(super) is_right: bool,
 }
 
 impl Interruption {
-    /// Follows the robot up to the interruption and on from there; `None` where it was not
-    /// right before.
+    /// Follows the robot up to the interruption and on from there; `None` if it was not right
+    /// before.
     pub(super) fn evaluate(
         &self,
         world: &World,

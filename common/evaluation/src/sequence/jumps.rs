@@ -1,5 +1,4 @@
-//! Kidnapping: a robot that is followed finds itself elsewhere, with odometry that
-//! says that it stood still.
+//! Kidnapped robot: a followed robot is moved elsewhere while its odometry reports no motion.
 
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
@@ -10,29 +9,29 @@ use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
 use super::run::Said;
 use crate::EvaluationError;
 
-/// The robot is put at least so far away, metres.
+/// Shortest distance of a jump, in metres.
 const MIN_M: f64 = 3.0;
 
-/// How robots fared that were put elsewhere.
+/// Results of all jumps.
 #[derive(Debug, Default)]
 pub(super) struct Jumps {
     pub(super) jumps: u64,
-    /// Not Unique any more at one of the first two scans.
+    /// Jumps with a result other than Unique and wrong at one of the first two scans.
     pub(super) noticed: u64,
-    /// Right after 5 m.
+    /// Jumps that were right after 5 m.
     pub(super) right: u64,
-    /// Unique and wrong from the third scan on.
+    /// Jumps, from and to, that were Unique and wrong from the third scan on.
     pub(super) wrong: Vec<(usize, usize)>,
 }
 
-/// From where and to where: spread over the drive, so that each jump is a different one.
+/// Chooses pairs of moments, from and to, spread over the drive so that all jumps differ.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
     let truths: Vec<usize> = (0..moments.len())
         .filter(|&i| moments[i].truth.is_some())
         .collect();
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let at = |share: f64| truths.get((share * truths.len() as f64) as usize).copied();
-    // Multiples of the golden ratio are spread evenly, however many there are.
+    // Multiples of the golden ratio are spread evenly for any count.
     let golden = 0.618_033_988_749_895;
     (0..count * 4)
         .filter_map(|i| {
@@ -49,7 +48,6 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Puts the robot elsewhere this many times.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],

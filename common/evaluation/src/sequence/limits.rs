@@ -4,15 +4,15 @@
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Requirements of sequences: exit code 1 if a drive misses one")]
 pub(crate) struct SequenceLimits {
-    /// Most starts that are Unique and wrong at any time
+    /// Highest number of starts that are Unique and wrong at any time
     #[arg(long, value_name = "COUNT", requires = "sequence")]
     max_wrong_starts: Option<u64>,
 
-    /// Most scans that are Unique and wrong, after all starts and while followed
+    /// Highest number of scans that are Unique and wrong, after all starts and while followed
     #[arg(long, value_name = "COUNT", requires = "sequence")]
     max_wrong_scans: Option<u64>,
 
-    /// Most losses while the drive is followed
+    /// Highest number of losses while the drive is followed
     #[arg(long, value_name = "COUNT", requires = "sequence")]
     max_losses: Option<u64>,
 
@@ -37,8 +37,8 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl SequenceLimits {
-    /// Requirements that the drive misses, a sentence each. An RMS that is needed and not
-    /// known is missed too.
+    /// Requirements that the drive misses, one sentence each. An unknown RMS misses its requirement
+    /// if `needs_rms`.
     pub(super) fn missed(&self, found: &Reached, needs_rms: bool) -> Vec<String> {
         let counts = [
             ("wrong-starts", found.wrong_starts, self.max_wrong_starts),

@@ -1,6 +1,6 @@
-//! `backcast evaluate --sequence`: how the tracker does on a drive whose true poses are
-//! known. It starts at many scans of the drive, follows the whole of it, is put elsewhere,
-//! and sends no data for a while; see docs/tracking.md.
+//! `backcast evaluate --sequence`: evaluates the tracker on a drive with known true poses. It
+//! starts the tracker at many scans, follows the whole drive, and simulates kidnapping and outages;
+//! see docs/tracking.md.
 
 mod command;
 mod course;

@@ -1,9 +1,9 @@
-//! What the files are called that belong to a drive.
+//! Names for the output files of a drive.
 
 use std::path::{Component, Path, PathBuf};
 
-/// A name for each recording: its path from the folder that all of them have in common, without
-/// its ending, and with `_` for `/`; of one alone, that of its file.
+/// Returns a name for each recording: its path relative to the common folder, without extension and
+/// with `_` for `/`; for a single recording, its file name.
 pub(super) fn of(recordings: &[PathBuf]) -> Vec<String> {
     let bare = recordings.iter().map(|path| path.with_extension(""));
     let bare: Vec<PathBuf> = bare.collect();
@@ -20,7 +20,7 @@ pub(super) fn of(recordings: &[PathBuf]) -> Vec<String> {
     names.collect()
 }
 
-/// The names in a path; there is one at least.
+/// Components of a path; at least one.
 fn parts(path: &Path) -> Vec<&str> {
     let names = path.components().filter_map(|component| match component {
         Component::Normal(name) => Some(name.to_str().unwrap_or("drive")),

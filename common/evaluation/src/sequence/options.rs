@@ -7,12 +7,12 @@ use engine::tracking::TrackingConfig;
 use super::limits::SequenceLimits;
 use super::stress::Stress;
 
-/// Further options of `backcast evaluate --sequence`.
+/// Options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sequences")]
 pub(crate) struct SequenceOptions {
-    /// Track the pose over each recording: from many starts, after moving the robot
-    /// elsewhere ("kidnapped"), and over the whole
+    /// Track the pose over each recording: from many starts, after moving the robot elsewhere
+    /// ("kidnapped"), and over the whole drive
     #[arg(long)]
     pub sequence: bool,
 
@@ -20,11 +20,11 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "COUNT", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub starts: u32,
 
-    /// How many times the robot is moved elsewhere, 0..=1000
+    /// Number of times that the robot is moved elsewhere, 0..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kidnaps: u32,
 
-    /// How many times no data come for 0.5 to 4 s and odometry then begins anew, 0..=1000
+    /// Number of outages: no data for 0.5 to 4 s, then odometry that starts again, 0..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub outages: u32,
 
@@ -36,22 +36,22 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
     pub odometry_noise: f64,
 
-    /// True poses that are known to be wrong, by the numbers of their scans from 0
+    /// Numbers of scans, from 0, whose true poses are known to be wrong
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub ignore_truth: Vec<u64>,
 
-    /// Write the drive from its first scan, with no guess, as trajectories to this
-    /// folder, and the true ones beside them (TUM format, which evo reads)
+    /// Write the tracked and the true trajectory of each drive, from its first scan without an
+    /// initial pose, to this folder (TUM format, which evo reads)
     #[arg(long, value_name = "FOLDER", requires = "sequence")]
     pub trajectories: Option<PathBuf>,
 
-    /// Draw it into this folder: the map, the path, and where the pose was not unique
+    /// Draw each drive into this folder: the map, the path, and where the pose was not unique
     #[arg(long, value_name = "FOLDER", requires = "sequence")]
     pub pictures: Option<PathBuf>,
 
-    /// Evaluate variants of each drive in place of the drive: map, scans, odometry or motion
-    /// are changed in memory. Names with commas between them, or of the groups map, laser,
-    /// odometry and motion
+    /// Evaluate variants of each drive in place of the drive: map, scans, odometry or motion are
+    /// changed in memory. A comma-separated list of names, or of the groups map, laser, odometry
+    /// and motion
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = "all", requires = "sequence", conflicts_with_all = ["without_odometry", "odometry_noise"])]
     pub stress: Option<Stress>,
 
@@ -59,8 +59,8 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "stress")]
     pub seed: u64,
 
-    /// The map of another building, a YAML file or a recording, for the variant map-other
-    /// [default: in the next recording]
+    /// The map of another building, a YAML file or a recording, for the variant map-other [default:
+    /// the map of the next recording]
     #[arg(long, value_name = "FILE", requires = "stress")]
     pub other_map: Option<PathBuf>,
 
@@ -72,7 +72,7 @@ pub(crate) struct SequenceOptions {
 }
 
 impl SequenceOptions {
-    /// The recording that stands where the list of `--stress` may stand.
+    /// The recording, if `--stress` took one as its list.
     pub(crate) fn stressed_file(&self) -> Option<PathBuf> {
         match &self.stress {
             Some(Stress::AllOf(file)) => Some(file.clone()),

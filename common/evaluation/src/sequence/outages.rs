@@ -1,5 +1,5 @@
-//! Outages: a robot that is followed drives on while no data come, and counts its odometry
-//! from there.
+//! Outages: a followed robot drives on while no data arrives, and its odometry starts again from
+//! there.
 
 use engine::tracking::TrackingConfig;
 use offline::World;
@@ -8,21 +8,21 @@ use super::drive::Moment;
 use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
 use crate::EvaluationError;
 
-/// How long no data come, in turn, seconds: a restarted driver, a network that fails.
+/// Durations of the outages in turn, in seconds: a restarted driver, a failing network.
 const SECONDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// How robots fared of which no data came for a while.
+/// Results of all outages.
 #[derive(Debug, Default)]
 pub(super) struct Outages {
     pub(super) outages: u64,
-    /// Right after 5 m.
+    /// Outages that were right after 5 m.
     pub(super) right: u64,
-    /// Unique and wrong: the last scan before, the first after, and by how many metres at
-    /// most.
+    /// Unique and wrong outages: the last scan before, the first after, and the largest error in
+    /// metres.
     pub(super) wrong: Vec<(usize, usize, f64)>,
 }
 
-/// The last scan before each and the first one after: spread over the drive.
+/// Chooses the last scan before and the first after each outage, spread over the drive.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - RIGHT_AFTER_M;
@@ -38,7 +38,7 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
     (0..count).filter_map(outage).collect()
 }
 
-/// Leaves out what lies between these scans.
+/// Evaluates the chosen outages, leaving out the scans in between.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],

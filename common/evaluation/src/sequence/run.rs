@@ -1,4 +1,4 @@
-//! The tracker on moments of a drive, one after the other.
+//! Runs the tracker over moments of a drive.
 
 use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
 use geometry::{Covariance, Pose};
@@ -9,33 +9,32 @@ use super::drive::Moment;
 use crate::EvaluationError;
 use crate::trust::Trust;
 
-/// A tracker on the way.
 pub(super) struct Run<'a> {
     world: &'a World,
     moments: &'a [Moment],
     tracker: Tracker,
-    /// Of the moment whose search counts later.
+    /// Moment whose search result is delivered at a later scan.
     asked: Option<usize>,
-    /// Milliseconds of computing for each scan that was tracked without a search.
+    /// CPU time of each scan that was tracked without a search, in milliseconds.
     pub(super) tracking_ms: Vec<f64>,
     pub(super) searches: u64,
 }
 
-/// What the tracker said of a moment.
+/// Result of the tracker for one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Said {
     pub(super) report: Report,
-    /// Of the first laser, where one is known.
+    /// Pose of the first laser, if known.
     pub(super) pose: Option<Pose>,
-    /// Metres and degrees from the truth, where both are known.
+    /// Metres and degrees from the truth, if both are known.
     pub(super) off: Option<(f64, f64)>,
 }
 
-/// Scans whose truth is known.
+/// Counts of the scans with a known truth.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Tally {
     pub(super) scans: u64,
-    /// Those of them that were Unique, and those of these that were wrong.
+    /// Scans that were Unique, and Unique and wrong.
     pub(super) unique: u64,
     pub(super) wrong: u64,
     pub(super) trust: Trust,
@@ -52,7 +51,7 @@ impl Tally {
         }
     }
 
-    /// Of both.
+    /// Sum of both.
     pub(super) fn with(mut self, other: &Self) -> Self {
         self.scans += other.scans;
         self.unique += other.unique;
@@ -62,8 +61,7 @@ impl Tally {
     }
 }
 
-/// Off by more than this, metres and degrees, is wrong; off by less than the other is
-/// right.
+/// Limits in metres and degrees: an error above `WRONG` is wrong, one up to `RIGHT` is right.
 pub(super) const WRONG: (f64, f64) = (1.0, 25.0);
 pub(super) const RIGHT: (f64, f64) = statistics::SUCCESS;
 
@@ -72,7 +70,7 @@ impl Said {
         self.report.state == TrackState::Unique
     }
 
-    /// Unique, and right.
+    /// True if Unique and right.
     pub(super) fn is_right(&self) -> bool {
         self.is_unique()
             && self
@@ -80,7 +78,7 @@ impl Said {
                 .is_some_and(|(m, deg)| m <= RIGHT.0 && deg <= RIGHT.1)
     }
 
-    /// Unique, and wrong.
+    /// True if Unique and wrong.
     pub(super) fn is_wrong(&self) -> bool {
         self.is_unique() && self.is_off()
     }
@@ -111,19 +109,19 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Puts the tracker at the truth of a moment.
+    /// Starts the tracker at the truth of a moment.
     pub(super) fn start_at(&mut self, index: usize, truth: Pose) {
         let moment = &self.moments[index];
         let seen = self.seen(moment);
-        // What the truths at hand err by.
+        // Typical error of the available truths.
         let covariance = Covariance::from_deviations(0.05, 0.05, 1f64.to_radians());
         let pose = moment.view.target.from_laser(truth);
         self.asked = None;
         self.tracker.start_at(&[seen], (0, pose), covariance);
     }
 
-    /// Follows the robot to a moment, from the truth at least so many metres before; whether
-    /// it is right there.
+    /// Follows the robot to a moment, from a truth at least `metres` before it; true if the tracker
+    /// is right there.
     pub(super) fn follow_to(&mut self, last: usize, metres: f64) -> Result<bool, EvaluationError> {
         let moments = self.moments;
         let begin = moments.partition_point(|m| m.gone_m < moments[last].gone_m - metres);
@@ -140,7 +138,7 @@ impl<'a> Run<'a> {
         Ok(is_right)
     }
 
-    /// Gives the tracker a moment, to which it moved so.
+    /// Passes a moment to the tracker, with the motion since the previous one.
     pub(super) fn take(
         &mut self,
         index: usize,

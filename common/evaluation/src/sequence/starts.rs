@@ -1,4 +1,4 @@
-//! The tracker started at many scans of a drive, with no guess.
+//! Starts the tracker at many scans of a drive, without an initial pose.
 
 use engine::tracking::{MIN_BEAMS, TrackingConfig};
 use offline::World;
@@ -7,33 +7,33 @@ use super::drive::Moment;
 use super::run::{Run, Said, Tally};
 use crate::EvaluationError;
 
-/// Metres after which a start is judged.
+/// Distances at which a start is judged, in metres.
 pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
 
-/// A start that ends this much before a distance is not judged there: the last scan
-/// may lie a step before it.
+/// Tolerance in metres: a start is judged at a distance if its drive ends no more than this before
+/// it, since the last scan may be one step short.
 const STEP_M: f64 = 1.2;
 
-/// No start lies so near the end of the drive, metres and as a share of the drive.
+/// Starts keep this distance from the end of the drive: the smaller of metres and share.
 const LEFT: (f64, f64) = (5.0, 0.3);
 
-/// How the starts of a drive went.
+/// Results of the starts of a drive.
 #[derive(Debug, Default)]
 pub(super) struct Starts {
     pub(super) starts: u64,
-    /// By distance: judged, and of those right.
+    /// Counts for each distance of [`AFTER_M`]: judged, right, and not yet Unique.
     pub(super) judged: [u64; 5],
     pub(super) right: [u64; 5],
     pub(super) not_yet: [u64; 5],
-    /// Starts with a pose that was Unique and wrong at any time: the scan of the start,
-    /// that of the first such pose, and how far it was off, metres.
+    /// Starts with a Unique and wrong pose at any time: the scan of the start, the scan of the
+    /// first such pose, and its error in metres.
     pub(super) wrong: Vec<(usize, usize, f64)>,
     pub(super) tally: Tally,
     pub(super) scans: u64,
     pub(super) searches: u64,
 }
 
-/// Indices of this many starts, evenly along the drive, at scans with a truth.
+/// Chooses scans with a truth as starts, evenly spaced along the drive.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - LEFT.0.min(LEFT.1 * total);
@@ -49,7 +49,6 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     chosen
 }
 
-/// Starts the tracker at these scans.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],

@@ -1,4 +1,4 @@
-//! Finds the graph that is meant, asks its launcher and prints the answer.
+//! Finds the requested graph, sends a request to its launcher and prints the answer.
 
 use std::{
     path::PathBuf,
@@ -16,11 +16,10 @@ use super::text;
 use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask};
 
-/// How long a graph may take to stop, and how often is looked meanwhile.
+/// Longest time that a graph may take to stop, and the polling interval.
 const STOPPED_WITHIN: Duration = Duration::from_secs(30);
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Options of `backcast status`.
 #[derive(Debug, Args)]
 pub struct StatusConfig {
     /// Only this graph [default: all that this user runs]
@@ -32,7 +31,6 @@ pub struct StatusConfig {
     json: bool,
 }
 
-/// Options of `backcast stop`.
 #[derive(Debug, Args)]
 pub struct StopConfig {
     /// The graph [default: the only one that this user runs]
@@ -40,7 +38,6 @@ pub struct StopConfig {
     graph: Option<GraphName>,
 }
 
-/// Options of `backcast restart`.
 #[derive(Debug, Args)]
 pub struct RestartConfig {
     /// The node's id in the descriptor
@@ -54,7 +51,7 @@ pub struct RestartConfig {
 /// Prints the state of graphs and of their nodes.
 ///
 /// # Errors
-/// None runs, or the one that is meant does not answer.
+/// No graph is running, or the requested one does not answer.
 pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
     let graphs = match &config.graph {
         Some(graph) => vec![graph.clone()],
@@ -73,10 +70,10 @@ pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Stops a graph in order, and waits until it has ended and its name is free.
+/// Stops a graph in order and waits until it has ended and its name is free.
 ///
 /// # Errors
-/// It does not run, does not answer, or does not end.
+/// The graph is not running, does not answer, or does not end.
 pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
     let graph = the_graph(config.graph.as_ref())?;
     let code = done(&graph, &Question::Stop)?;
@@ -96,14 +93,14 @@ pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
 /// Restarts a node.
 ///
 /// # Errors
-/// The graph does not run, or has no such node.
+/// The graph is not running or has no such node.
 pub fn restart(config: &RestartConfig) -> Result<ExitCode, LauncherError> {
     let graph = the_graph(config.graph.as_ref())?;
     let node = config.node.clone();
     done(&graph, &Question::Restart { node })
 }
 
-/// The graph that is meant: the one that is named, or the only one that runs.
+/// Returns the named graph, or the only one that is running.
 pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, LauncherError> {
     if let Some(graph) = named {
         return Ok(graph.clone());
@@ -147,10 +144,10 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
     }
 }
 
-/// Whether the graph has this node.
+/// Checks that the graph has this node.
 ///
 /// # Errors
-/// It has not; what it has is named.
+/// The graph has no such node; the message lists its nodes.
 pub(super) fn known_node(graph: &GraphName, node: &str) -> Result<(), LauncherError> {
     let ids: Vec<String> = status_of(graph)?
         .nodes

@@ -1,4 +1,4 @@
-//! `backcast logs`: what the nodes of a running graph log, from topic `log`.
+//! `backcast logs`: prints the log lines of the nodes of a running graph, from topic `log`.
 
 use std::{
     process::ExitCode,
@@ -15,13 +15,12 @@ use super::command::{known_node, the_graph};
 use crate::LauncherError;
 use crate::run::console::{LAUNCHER, say};
 
-/// How long the lines that nodes keep for late joiners take to come.
+/// Time to wait for the lines that nodes keep for late subscribers.
 const KEPT_LINES: Duration = Duration::from_millis(700);
 const TICK: Duration = Duration::from_millis(100);
-/// Between two looks whether the graph still runs.
+/// Interval between two checks that the graph is still running.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// Options of `backcast logs`.
 #[derive(Debug, Args)]
 pub struct LogsConfig {
     /// Only this node
@@ -40,10 +39,10 @@ pub struct LogsConfig {
     graph: Option<GraphName>,
 }
 
-/// Prints the last lines of each node, and with `--follow` those that come.
+/// Prints the last lines of each node and, with `--follow`, new lines as they come.
 ///
 /// # Errors
-/// No graph runs, or it cannot be joined.
+/// No graph is running, or it cannot be joined.
 pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
     let name = the_graph(config.graph.as_ref())?;
     let graph = Graph::join_named("logs", &name)?;
@@ -51,7 +50,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
     let begin = Instant::now();
     let mut kept: Vec<LogLine> = Vec::new();
     let (mut all_kept, mut printed) = (false, 0u64);
-    // Nodes can also be started by others, whose end nobody tells.
+    // Without a launcher, the end of the graph cannot be detected.
     let was_launched = is_launched(&name);
     let (mut has_ended, mut looked) = (false, begin);
     graph.run(&[&lines], TICK, |_| {
@@ -65,7 +64,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
                 kept.push(line);
             }
         }
-        // Those of several nodes come node by node at first.
+        // The kept lines arrive node by node, so they are sorted by time first.
         all_kept = all_kept || begin.elapsed() >= KEPT_LINES;
         if all_kept {
             kept.sort_by_key(|line| line.wall_ns);
@@ -85,7 +84,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
         return Ok(ExitCode::SUCCESS);
     }
     match &config.node {
-        // One that is there and has logged nothing is no fault.
+        // A known node that has logged nothing is not an error.
         Some(node) if printed == 0 => known_node(&name, node)?,
         _ => {}
     }
@@ -95,20 +94,19 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
 /// A line of a node's log.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LogLine {
-    /// When it was logged, nanoseconds since 1970.
+    /// Time of logging, in nanoseconds since 1970.
     pub wall_ns: i64,
-    /// The node that logged it.
+    /// Name of the node.
     pub node: String,
-    /// The node's process.
+    /// Process id of the node.
     pub pid: u32,
-    /// How serious it is.
+    /// `DEBUG`, `INFO`, `WARN`, `ERROR` or `?`.
     pub level: &'static str,
-    /// What it says.
     pub text: String,
 }
 
 impl LogLine {
-    /// Reads one message of topic `log`.
+    /// Converts a message of topic `log`.
     pub fn of(header: &LogHeader, text: &[u8]) -> Self {
         let level = match LogLevel::from_code(header.level) {
             Some(LogLevel::Debug) => "DEBUG",
@@ -126,7 +124,7 @@ impl LogLine {
         }
     }
 
-    /// As an object on a line of its own.
+    /// Returns the line as a JSON object with a newline.
     pub fn json(&self) -> String {
         json::object(self) + "\n"
     }

@@ -1,4 +1,4 @@
-//! `backcast status`, `stop`, `restart` and `logs`: a running graph from another terminal.
+//! `backcast status`, `stop`, `restart` and `logs`: control a running graph from another terminal.
 
 mod command;
 mod logs;

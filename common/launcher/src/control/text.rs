@@ -1,10 +1,10 @@
-//! The state of a graph, as text. Pure.
+//! Formats the state of a graph as text. Pure.
 
 use std::fmt::Write;
 
 use crate::run::control::{NodeStatus, Status};
 
-/// A paragraph: the graph, then a line for each node.
+/// Returns a paragraph: a line for the graph, then a line for each node.
 pub(super) fn status(status: &Status) -> String {
     let Status {
         graph,
@@ -18,7 +18,7 @@ pub(super) fn status(status: &Status) -> String {
         duration(*uptime_s)
     );
     for node in &status.nodes {
-        // Writing to a text does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", line(node));
     }
     let failing = status.nodes.iter().filter_map(|node| node.fails.as_ref());
@@ -44,7 +44,7 @@ fn line(node: &NodeStatus) -> String {
     line
 }
 
-/// The two largest units, as `3 d 4 h`.
+/// Formats a duration with its two largest units, e.g. `3 d 4 h`.
 fn duration(seconds: u64) -> String {
     let (minutes, hours, days) = (seconds / 60, seconds / 3600, seconds / 86_400);
     if days > 0 {

@@ -1,8 +1,8 @@
-//! Nodes of ours that are added to a graph, which its descriptor does not name.
+//! Helpers for our nodes that are added to a graph without being in its descriptor.
 
 use dataflow::{Command, Dataflow};
 
-/// Beside the first executable of the graph.
+/// Returns the path of `executable` in the folder of the graph's first executable.
 pub(crate) fn path(dataflow: &Dataflow, executable: &str) -> String {
     let folder = dataflow
         .nodes
@@ -13,9 +13,9 @@ pub(crate) fn path(dataflow: &Dataflow, executable: &str) -> String {
     })
 }
 
-/// As the first node is built, if cargo builds it. It joins the packages that
-/// are built together, for cargo builds what packages share again for each set of
-/// packages that share it differently.
+/// Returns the build command of the first node that cargo builds, extended by `executable`. All
+/// nodes with that command get the extended one, because cargo may rebuild shared dependencies for
+/// each set of packages that is built together.
 pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     let Some(like) = dataflow.nodes.iter().find(|n| n.build.iter().any(is_cargo)) else {
         return Vec::new();
@@ -37,8 +37,8 @@ pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     build
 }
 
-/// As the first node that cargo builds, but alone: for what takes long to build and is
-/// not among the packages that are built together.
+/// Returns the first cargo build command with `executable` as its only package: for an executable
+/// that takes long to build and is not built with the others.
 pub(crate) fn build_alone(dataflow: &Dataflow, executable: &str) -> Vec<Command> {
     let is_build = |command: &&Command| {
         command.program == "cargo" && command.args.first().is_some_and(|first| first == "build")

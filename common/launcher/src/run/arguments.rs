@@ -1,4 +1,4 @@
-//! Arguments of a node in a descriptor: found, read, replaced.
+//! Finds, reads and replaces arguments of nodes in a descriptor.
 
 use std::path::Path;
 
@@ -6,25 +6,24 @@ use dataflow::{Dataflow, Node};
 
 use crate::LauncherError;
 
-/// Plays recordings.
+/// Node that plays recordings.
 pub const REPLAYER: &str = "replayer";
-/// Plays them as a laser.
+/// Node that plays recordings as an emulated laser.
 pub const EMULATOR: &str = "emulator";
-/// Those that take --recording, --rate, --loop and --wait-for.
+/// Nodes that take --recording, --rate, --loop and --wait-for.
 pub const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
-/// Searches each scan.
+/// Node that searches each scan.
 pub const ACCUMULATOR: &str = "accumulator";
-/// Serves the map.
 pub const MAP_SERVER: &str = "map_server";
 
 const MONITOR: &str = "monitor";
 
-/// Takes away what only shows the graph.
+/// Removes the monitors.
 pub fn leave_out_monitors(dataflow: &mut Dataflow) {
     dataflow.nodes.retain(|node| node.executable() != MONITOR);
 }
 
-/// Calls the robot by the graph's name on its page, where the descriptor does not name it.
+/// Sets `--robot` of each monitor to the graph's name, unless the descriptor sets it.
 pub fn name_robot(dataflow: &mut Dataflow, graph: &str) {
     let nodes = dataflow.nodes.iter_mut();
     for monitor in nodes.filter(|node| node.executable() == MONITOR) {
@@ -34,11 +33,10 @@ pub fn name_robot(dataflow: &mut Dataflow, graph: &str) {
     }
 }
 
-/// The first node with one of these executables, for which an option is meant.
-/// `file` is named in errors.
+/// Returns the first node with one of these executables. `option` and `file` are named in errors.
 ///
 /// # Errors
-/// The graph has none.
+/// The graph has no such node.
 pub fn find<'d>(
     dataflow: &'d mut Dataflow,
     executables: &[&'static str],
@@ -62,10 +60,10 @@ pub fn find<'d>(
         })
 }
 
-/// Gives a node an option, in place of what it has.
+/// Sets an option of a node, replacing earlier values.
 pub fn set(node: &mut Node, option: &str, value: Option<&str>) {
     unset(node, option, value.is_some());
-    // With `=`, a negative number is not taken for an option.
+    // With `=`, a negative number is not parsed as an option.
     let argument = value.map_or(option.to_owned(), |value| format!("{option}={value}"));
     node.args.push(argument);
 }
@@ -87,8 +85,8 @@ pub fn unset(node: &mut Node, option: &str, takes_value: bool) {
     node.args = kept;
 }
 
-/// The value of an option, as `--option value` or `--option=value`; the last one
-/// where there are several.
+/// Returns the value of an option, given as `--option value` or `--option=value`. The last one
+/// counts.
 pub fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
     let after = |words: &'n [String]| (words[0] == option).then_some(words.get(1)).flatten();
     let joined = |word: &'n String| word.strip_prefix(option)?.strip_prefix('=');
@@ -99,7 +97,7 @@ pub fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
     found.next_back()
 }
 
-/// Adds a word to an option that takes a list with commas, unless it is there.
+/// Adds a word to an option with a comma-separated list, unless the list has it.
 pub fn add_to_list(node: &mut Node, option: &str, word: &str) {
     let list = match value(node, option) {
         Some(list) if list.split(',').any(|other| other == word) => return,

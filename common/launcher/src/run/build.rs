@@ -13,13 +13,12 @@ use dataflow::{Dataflow, Node};
 use super::{console::note, process::executable};
 use crate::LauncherError;
 
-/// Builds every node, in the order of the descriptor and in its `folder`. Two
-/// nodes with the same commands and environment are built once. What builds
-/// say goes to our standard error. Where a program that builds is not installed, nodes
-/// that were built elsewhere are run as they are.
+/// Builds every node, in the order of the descriptor and in its `folder`. Two nodes with the same
+/// commands and environment are built once. Output of the builds goes to our standard error. If the
+/// build program is not installed, existing executables are used as they are.
 ///
 /// # Errors
-/// A command cannot be started, or failed.
+/// A command cannot be started or failed.
 pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError> {
     let with_build = || dataflow.nodes.iter().filter(|n| !n.build.is_empty());
     let ids: Vec<&str> = with_build().map(|n| n.id.as_str()).collect();
@@ -51,7 +50,7 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
     Ok(())
 }
 
-/// The nodes that have no executable.
+/// Returns the ids of the nodes without an executable.
 fn missing<'a>(nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> Vec<&'a str> {
     let without = nodes.filter(|node| !executable(node, folder).is_file());
     without.map(|node| node.id.as_str()).collect()

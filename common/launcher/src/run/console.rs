@@ -1,6 +1,6 @@
-//! Standard error: our own remarks and the output of the nodes, each line whole
-//! and marked with who said it. Standard output is left to the poses. What the
-//! launcher remarks while it is in the graph is sent there, too, on topic `log`.
+//! Writes our own remarks and the output of the nodes to standard error, each line whole and marked
+//! with its source. Standard output carries only poses. While the launcher is in the graph, its
+//! remarks are also published on topic `log`.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -11,33 +11,33 @@ use std::{
 use messages::LogLevel;
 use transport::log_in_graph;
 
-/// Longer lines are broken, so that a node which never ends its line cannot
+/// Longest line in bytes. Longer lines are broken, so that a node that never ends its line cannot
 /// fill our memory.
 const MAX_LINE_BYTES: u64 = 1 << 16;
 
-/// As whom the launcher speaks.
+/// Name of the launcher on the console.
 pub const LAUNCHER: &str = "backcast";
 
-/// What the launcher does, on the console and in the graph's log.
+/// Logs a remark at level info, on the console and in the graph.
 pub fn note(line: &str) {
     say(LAUNCHER, line);
     log_in_graph(LogLevel::Info, line);
 }
 
-/// What the launcher does not like, on the console and in the graph's log.
+/// Logs a warning, on the console and in the graph.
 pub fn warn(line: &str) {
     say(LAUNCHER, line);
     log_in_graph(LogLevel::Warn, line);
 }
 
-/// Writes a line. A standard error that is closed is nobody's loss but its own.
+/// Writes a line. A closed standard error is ignored.
 pub fn say(who: &str, line: &str) {
     let text = format!("{who:>18} | {line}\n");
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Passes on what `stream` says, on a thread of its own, until its end, to `also`, too; drops
-/// `open` then.
+/// Copies `stream` line by line to the console and to `also` until its end, on a new thread. Then
+/// it drops `open`.
 ///
 /// # Errors
 /// The thread cannot be started.
@@ -49,7 +49,7 @@ pub fn forward(
 ) -> io::Result<()> {
     let who = who.to_owned();
     let body = move || {
-        // A pipe that cannot be read is at its end for us.
+        // A read error counts as the end of the stream.
         let _ = for_each_line(stream, |line| {
             say(&who, line);
             also(line);
@@ -62,7 +62,7 @@ pub fn forward(
         .map(drop)
 }
 
-/// Calls for each line without its end; bytes that are not UTF-8 are replaced.
+/// Calls `call` for each line without its newline; bytes that are not UTF-8 are replaced.
 fn for_each_line(stream: impl Read, mut call: impl FnMut(&str)) -> io::Result<()> {
     let mut reader = BufReader::new(stream);
     let mut line = Vec::new();

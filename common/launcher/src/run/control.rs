@@ -1,8 +1,7 @@
-//! What is asked of a running launcher from another terminal, and its answers.
+//! Control requests to a running launcher from another terminal, and its answers.
 //!
-//! A line of JSON each over a socket in this user's folder: only this user can open it.
-//! A thread takes the questions; the launcher answers them between two looks at its
-//! processes.
+//! Each is a line of JSON over a socket in this user's folder, which only this user can open. A
+//! thread receives the requests; the launcher answers them once per tick.
 
 use std::{
     fs::remove_file,
@@ -19,90 +18,84 @@ use transport::Waker;
 
 use crate::LauncherError;
 
-/// The longest question, bytes.
+/// Longest request, in bytes.
 const MAX_QUESTION: u64 = 4096;
-/// How long a question may take to come, and its answer to be given and taken.
+/// Timeout for a request to arrive, and for its answer to be given and sent.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// What can be asked.
+/// Control request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
-    /// The state of the graph.
+    /// Get the state of the graph.
     Status,
-    /// That it stop in order.
+    /// Stop the graph in order.
     Stop,
-    /// That one node be ended in order and started again.
+    /// End one node in order and start it again.
     Restart {
-        /// Its id.
+        /// Id of the node.
         node: String,
     },
 }
 
-/// What is answered.
+/// Answer to a control request.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
-    /// The state of the graph.
     Status(Status),
-    /// It is being done.
+    /// The request is being carried out.
     Done,
-    /// It cannot be done.
+    /// The request is rejected, for this reason.
     Refused(String),
 }
 
-/// The state of a graph.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Status {
-    /// The graph's name.
     pub graph: String,
-    /// Of the launcher.
+    /// Process id of the launcher.
     pub pid: u32,
-    /// The descriptor's file.
+    /// Path of the descriptor.
     pub descriptor: String,
-    /// How long it runs, seconds.
+    /// Time since the launcher started, in seconds.
     pub uptime_s: u64,
-    /// A sentence on each node that the graph continues without.
+    /// A sentence for each failed node that the graph continues without.
     pub given_up: Vec<String>,
-    /// Its nodes, as the descriptor has them.
+    /// Nodes in the order of the descriptor.
     pub nodes: Vec<NodeStatus>,
 }
 
-/// The state of a node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NodeStatus {
-    /// Its name in the descriptor.
+    /// Id in the descriptor.
     pub id: String,
     /// `running`, `waiting to start` or `ended`.
     pub state: String,
-    /// Its process, while it runs.
+    /// Process id while the node runs.
     pub pid: Option<i32>,
-    /// How long the process runs, seconds.
+    /// Time since the process started, in seconds.
     pub uptime_s: Option<u64>,
-    /// Age of the last report of the process on itself, seconds.
+    /// Age of the last health message of the process, in seconds.
     pub reported_s: Option<u64>,
-    /// Since the graph was started.
+    /// Number of restarts since the graph was started.
     pub restarts: u64,
-    /// How its last process ended.
+    /// Exit status of the last process that ended.
     pub last_end: Option<String>,
-    /// A sentence where the node fails again and again.
+    /// A sentence if the node fails again and again.
     pub fails: Option<String>,
 }
 
-/// A question, and where its answer goes.
+/// Control request with the channel for its answer.
 pub struct Asked {
-    /// What is asked.
     pub question: Question,
-    /// Where the answer goes.
     pub answer: Sender<Answer>,
 }
 
-/// Takes questions at `path`; whoever waits is woken with `waker`.
+/// Receives requests on a socket at `path`; `waker` wakes the launcher for each.
 ///
 /// # Errors
-/// The socket cannot be made.
+/// The socket cannot be created.
 pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherError> {
-    // What a launcher has left that was killed; a living one holds the graph's name.
+    // Removes the socket of a killed launcher; a living one would hold the graph's name.
     let _ = remove_file(path);
     let failed = |source| LauncherError::File {
         action: "listen on",
@@ -113,7 +106,7 @@ pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherErro
     let (asked, questions) = channel();
     let body = move || {
         for stream in listener.incoming().flatten() {
-            // One that hangs up, or asks nonsense, is nobody's loss but its own.
+            // A client that hangs up or sends an invalid request is ignored.
             let _ = serve(&stream, &asked, &waker);
         }
     };
@@ -146,10 +139,10 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
     stream.write_all(text.as_bytes())
 }
 
-/// Asks the launcher that listens at `path`.
+/// Sends a request to the launcher that listens at `path`.
 ///
 /// # Errors
-/// Nobody listens, or the answer is invalid.
+/// No launcher listens, or the answer is invalid.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
     stream.set_read_timeout(Some(2 * TIMEOUT))?;

@@ -1,6 +1,6 @@
-//! The processes of the graph: started, watched, started again, stopped.
+//! Starts, watches, restarts and stops the processes of the graph.
 //!
-//! A node that fails for good ends the run if the graph needs it; else the rest continues
+//! A node that fails for good ends the run if it is essential; otherwise the graph continues
 //! without it, and [`Crew::problems`] says so.
 
 mod member;
@@ -27,34 +27,31 @@ use super::{
 };
 use crate::LauncherError;
 
-/// What a process has to end in order once it is asked to. Those that send
-/// nothing and then all others have as long; each of the two stays below a
-/// second.
+/// Time for processes to end in order once they are asked to. It applies twice: first to nodes
+/// without outputs, then to all others. Each of the two stays below a second.
 const GRACE: Duration = Duration::from_millis(700);
-/// What the last lines of ended processes may take to reach the console: only a
-/// process that left its group still holds a pipe open then.
+/// Time for the last lines of ended processes to reach the console. After that, only a process that
+/// left its group can still hold a pipe open.
 const LAST_LINES: Duration = Duration::from_millis(100);
-/// Between two looks at processes that are ending.
+/// Polling interval while processes are ending.
 const STOP_POLL: Duration = Duration::from_millis(5);
 
-/// All processes of a graph.
 pub struct Crew {
     members: Vec<Member>,
     folder: PathBuf,
     graph: GraphName,
-    /// Every thread that forwards output holds a copy.
+    /// Each thread that forwards output holds a copy.
     output_open: Option<Sender<()>>,
     output_closed: Receiver<()>,
-    /// A sentence on each node that the graph continues without.
+    /// A sentence for each failed node that the graph continues without.
     given_up: Vec<String>,
 }
 
 impl Crew {
-    /// The crew of `nodes`, in `folder`; nothing runs before the first
-    /// [`Crew::tick`].
+    /// Creates the crew of `nodes`, in `folder`. Nothing runs before the first [`Crew::tick`].
     ///
     /// # Errors
-    /// A node does not say as it should whether the graph needs it.
+    /// A node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
     pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> Result<Self, LauncherError> {
         let now = Instant::now();
         let (output_open, output_closed) = channel();
@@ -69,12 +66,12 @@ impl Crew {
         })
     }
 
-    /// Starts what is due and looks after what has ended. Returns whether any
-    /// process has ended since the last time. While shared memory is full, no process could
-    /// report, and none is to blame for its end.
+    /// Starts nodes that are due and handles processes that have ended. Returns true if any process
+    /// has ended since the last tick. Without `has_room`, shared memory is full: no process can
+    /// report, and failures do not count against it.
     ///
     /// # Errors
-    /// A node that the graph needs cannot be started at first, or failed for good.
+    /// An essential node cannot be started for the first time, or failed for good.
     pub fn tick(&mut self, now: Instant, has_room: bool) -> Result<bool, LauncherError> {
         let Some(open) = &self.output_open else {
             return Ok(false);
@@ -101,7 +98,7 @@ impl Crew {
         Ok(any_ended)
     }
 
-    /// A process reported on itself.
+    /// Records a health message of a process.
     pub fn received(&mut self, report: &HealthHeader, now: Instant) {
         let is_it = |member: &&mut Member| match &member.state {
             State::Running(process) => process.pid().cast_unsigned() == report.pid,
@@ -114,7 +111,7 @@ impl Crew {
         }
     }
 
-    /// The state of each node at `now`.
+    /// Returns the state of each node at `now`.
     pub fn status(&self, now: Instant) -> Vec<NodeStatus> {
         self.members
             .iter()
@@ -122,11 +119,11 @@ impl Crew {
             .collect()
     }
 
-    /// Ends a node in order, as its process is asked to, and starts it again: now, whatever
-    /// its policy says. One that has ended is started. Returns whether there is such a node.
+    /// Ends a node in order and starts it again at once, regardless of its restart policy. A node
+    /// that has ended is started. Returns true if there is such a node.
     ///
     /// # Errors
-    /// Its process cannot be signalled.
+    /// The process cannot be signalled.
     pub fn restart(&mut self, id: &str, now: Instant) -> Result<bool, LauncherError> {
         let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
             return Ok(false);
@@ -142,18 +139,18 @@ impl Crew {
         Ok(true)
     }
 
-    /// A sentence on each node that failed for good and that the graph continues without.
+    /// A sentence for each node that failed for good and that the graph continues without.
     pub fn given_up(&self) -> &[String] {
         &self.given_up
     }
 
-    /// The same, and a sentence on each node that fails again and again.
+    /// Returns [`Crew::given_up`] and a sentence for each node that fails again and again.
     pub fn problems(&self, now: Instant) -> Vec<String> {
         let failing = self.members.iter().filter_map(|member| member.fails(now));
         self.given_up.iter().cloned().chain(failing).collect()
     }
 
-    /// Whether nothing more can come of it.
+    /// True if the run is over: all sources or all nodes are done.
     pub fn is_over(&self) -> bool {
         is_over(self.members.iter().map(|member| {
             let done = matches!(member.state, State::Done);
@@ -161,11 +158,11 @@ impl Crew {
         }))
     }
 
-    /// Ends every process: in order if it does so within the grace, else at
-    /// once. What it said last has reached the console then.
+    /// Ends every process, by SIGTERM and 0.7 s later by SIGKILL, and waits for its last output
+    /// to reach the console.
     ///
-    /// Those that send nothing go first: a sender takes along what nobody has
-    /// taken yet.
+    /// Nodes without outputs go first: when a publisher ends, samples that are not yet received are
+    /// lost.
     ///
     /// # Errors
     /// A process cannot be signalled or waited for.
@@ -178,8 +175,7 @@ impl Crew {
         Ok(())
     }
 
-    /// The nodes that said with their exit code that they lost data, by themselves
-    /// or when they were ended.
+    /// Ids of the nodes whose exit code said that they lost data.
     pub fn nodes_with_data_loss(&self) -> Vec<String> {
         let nodes_with_data_loss = self.members.iter().filter(|member| member.lost_data);
         nodes_with_data_loss
@@ -187,11 +183,10 @@ impl Crew {
             .collect()
     }
 
-    /// Sends `signal` to the processes of one executable; returns how many there
-    /// are.
+    /// Sends `signal` to all processes of one executable and returns their number.
     ///
     /// # Errors
-    /// One cannot be signalled.
+    /// A process cannot be signalled.
     pub fn signal(&mut self, executable: &str, signal: Signal) -> Result<usize, LauncherError> {
         let mut signalled = 0;
         let meant = |node: &Node| node.executable() == executable;
@@ -215,7 +210,7 @@ impl Crew {
         Ok(())
     }
 
-    /// The number of processes that have not ended.
+    /// Returns the number of processes that have not ended.
     fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> Result<usize, LauncherError> {
         let mut running = 0;
         for member in self.members.iter_mut().filter(|member| meant(&member.node)) {

@@ -1,5 +1,5 @@
-//! Options of `run` that are meant for a node: they become arguments of the
-//! node with that executable, in place of what the descriptor gives there.
+//! Applies options of `run` to nodes: they become arguments of the node with that executable and
+//! replace those of the descriptor.
 
 use std::path::{Path, PathBuf};
 
@@ -15,20 +15,19 @@ use super::options::{Options, Rate};
 use super::{lasers, replay};
 use crate::LauncherError;
 
-/// The recording whose own map `map_server` prefers.
+/// Option of `map_server`: recording whose own map is preferred.
 const RECORDED_MAP: &str = "--recorded";
-/// The recording that is played on another map than its own.
+/// Option of `map_server`: recording that is played on another map than its own.
 const PLAYED: &str = "--played";
-/// The set that `map_server` serves, and which of its maps and floors count.
+/// Options of `map_server`: the set to serve, and which of its maps and floors to use.
 const MAPS: &str = "--maps";
 const ON: &str = "--on";
 const MAX_AGE: &str = "--heading-max-age-s";
 
-/// Puts the options into the arguments of their nodes. `file` is named in
-/// errors.
+/// Puts the options into the arguments of their nodes. `file` is named in errors.
 ///
 /// # Errors
-/// An option is for a node, or needs an input, that the graph does not have.
+/// An option needs a node or an input that the graph does not have.
 pub(crate) fn apply(
     options: &Options,
     dataflow: &mut Dataflow,
@@ -52,7 +51,7 @@ pub(crate) fn apply(
     if let Some(maps) = &options.maps {
         let maps = std::path::absolute(maps).map_err(LauncherError::Folder)?;
         let node = find(dataflow, &[MAP_SERVER], MAPS, file)?;
-        // Names of maps and floors are those of the set that was there.
+        // `--on` names maps and floors of the old set.
         for option in ["--map", RECORDED_MAP, PLAYED, ON] {
             unset(node, option, true);
         }
@@ -75,7 +74,7 @@ pub(crate) fn apply(
     forward_heading(&options.heading, dataflow, file)
 }
 
-/// The recordings, and which of their topics are meant.
+/// Applies `--replay` and the topic options that go with it.
 fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), LauncherError> {
     if let Some(topic) = &options.map_topic {
         return Err(LauncherError::Usage(format!(
@@ -89,7 +88,7 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
         .map_err(LauncherError::Folder)?;
     let is_map_server = |node: &&mut Node| node.executable() == MAP_SERVER;
     if let (Some(node), [recording]) = (dataflow.nodes.iter_mut().find(is_map_server), &*recordings)
-        // A set stays, and is not the one map of a recording.
+        // A set stays: the recording has only one map.
         && (value(node, MAPS).is_none() || options.map.is_some())
     {
         set(node, RECORDED_MAP, Some(&recording.to_string_lossy()));
@@ -111,8 +110,9 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
     Ok(())
 }
 
-/// The options exclude or complete each other: a new source replaces all that
-/// was said about the one before. How old odometry may be stays if it is used.
+/// Applies the heading options. They exclude or complete each other, so a new source replaces all
+/// that the descriptor says about the heading; only the maximum age of odometry stays if odometry
+/// is used.
 fn forward_heading(
     heading: &HeadingConfig,
     dataflow: &mut Dataflow,
@@ -157,8 +157,8 @@ fn forward_heading(
     Ok(())
 }
 
-/// Whether the graph is played as fast as it answers, so that nothing may be
-/// lost: the option says so, or the descriptor does.
+/// True if the graph is played at `--rate max`, by the option or by the descriptor, so that no data
+/// may be lost.
 pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
     let max = Rate::Max.to_string();
     let mut nodes = dataflow.nodes.iter();

@@ -1,7 +1,7 @@
 //! `--foxglove`: adds a server for viewers to a graph.
 //!
-//! It lies where the graph's other executables do. It takes every topic by itself and
-//! needs no wires; nobody waits for it.
+//! Its executable is next to those of the graph. It subscribes to every topic by itself and needs
+//! no wires; no node waits for it.
 
 use dataflow::{Dataflow, Node, Place, Restart};
 
@@ -10,10 +10,10 @@ use crate::LauncherError;
 
 const SERVER: &str = "foxglove_server";
 
-/// Adds the server.
+/// Adds the server to the graph.
 ///
 /// # Errors
-/// The graph has one.
+/// The graph has such a server already.
 pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), LauncherError> {
     let is_server = |node: &Node| node.id == SERVER || node.executable() == SERVER;
     if dataflow.nodes.iter().any(is_server) {
@@ -30,7 +30,7 @@ pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), LauncherError> {
         inputs: Vec::new(),
         outputs: Vec::new(),
         streams: Vec::new(),
-        // Viewers come back by themselves.
+        // Viewers reconnect by themselves.
         restart: Restart::ON_FAILURE,
     };
     dataflow.nodes.push(node);

@@ -1,5 +1,4 @@
-//! What the user gets to see of a run: a line for each answer as it comes, and
-//! the figures of all of them at the end.
+//! Prints a run for the user: a line for each answer as it comes, and summary figures at the end.
 
 use std::time::Duration;
 
@@ -16,21 +15,19 @@ use super::{
 };
 use crate::{LauncherError, control::LogLine};
 
-/// The lines and the figures behind them.
 pub(crate) struct Journal {
     pub report: Report,
-    /// Where the graph has a tracker: what waits for its poses.
+    /// Rows that wait for the tracker's pose; `None` without a tracker.
     rows: Option<Rows>,
     output: Output,
     json: bool,
     begun: bool,
-    /// Where the nodes' log goes, if it is wanted.
+    /// Log files of the nodes, with `--log-folder`.
     logs: Option<LogFiles>,
 }
 
 impl Journal {
-    /// Opens it on `output`, as a table or in JSON, for a graph that has a tracker or
-    /// none.
+    /// Creates a journal on `output`, as a table or in JSON, for a graph with or without a tracker.
     pub(crate) fn new(output: Output, json: bool, is_tracked: bool) -> Self {
         Journal {
             report: Report::new(is_tracked),
@@ -42,25 +39,25 @@ impl Journal {
         }
     }
 
-    /// Also writes what the nodes log to files.
+    /// Also writes the nodes' log to files.
     pub(crate) fn with_logs(mut self, logs: Option<LogFiles>) -> Self {
         self.logs = logs;
         self
     }
 
-    /// Whether it takes what the nodes log.
+    /// True if the nodes' log is written to files.
     pub(crate) fn has_logs(&self) -> bool {
         self.logs.is_some()
     }
 
-    /// Enters a line of a node's log.
+    /// Writes a line of a node's log to its file.
     pub(crate) fn log(&mut self, header: &LogHeader, text: &[u8]) {
         if let Some(logs) = &mut self.logs {
             logs.write(&LogLine::of(header, text));
         }
     }
 
-    /// Prints what stands above the lines, once.
+    /// Prints the table header, once; none for JSON.
     pub(crate) fn begin(&mut self) {
         if !std::mem::replace(&mut self.begun, true) && !self.json {
             let header = match self.rows {
@@ -71,7 +68,7 @@ impl Journal {
         }
     }
 
-    /// Enters an answer and prints it; where there is a tracker, beside its pose.
+    /// Records an answer and prints it; with a tracker, it is printed together with the pose.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let line = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
@@ -86,7 +83,7 @@ impl Journal {
         self.print(&due)
     }
 
-    /// Enters the tracker's pose of a scan and prints it. Those between scans have no row.
+    /// Records the tracker's pose of a scan and prints it. Poses between scans have no row.
     pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> Reader {
         let (Some(rows), 1) = (&mut self.rows, header.from_scan) else {
             return Reader::Reads;
@@ -109,8 +106,8 @@ impl Journal {
         reader
     }
 
-    /// Prints the figures where `wanted`, and waits until all is printed, at
-    /// most for `patience` where there is one.
+    /// Prints the summary if `wanted`, and waits until all is printed, at most for `patience` if it
+    /// is given.
     ///
     /// # Errors
     /// Standard output cannot be written.

@@ -1,7 +1,7 @@
-//! Several lasers in one graph: who sends which scans, and which the accumulator joins.
+//! Several lasers in one graph: names the senders of scans and tells the accumulator which to join.
 //!
-//! Each `lms_reader` gets its name, and the accumulator in which order the lasers
-//! are wired to it. What the descriptor says itself stays.
+//! Each `lms_reader` gets its name, and the accumulator the lasers in the order of its inputs.
+//! Arguments in the descriptor have priority.
 
 use dataflow::{Dataflow, Input};
 use messages::{Topic, topic};
@@ -12,7 +12,7 @@ const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
 
-/// Connects readers and accumulators if a graph has several lasers.
+/// Names readers and configures accumulators if a graph has several lasers.
 pub(crate) fn name(dataflow: &mut Dataflow) {
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);
@@ -38,7 +38,7 @@ pub(crate) fn name(dataflow: &mut Dataflow) {
     }
 }
 
-/// Has the accumulators join these lasers, whatever was wired to them.
+/// Makes the accumulators join these lasers, regardless of their inputs.
 pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
     let nodes = dataflow.nodes.iter_mut();
     for node in nodes.filter(|node| node.executable() == ACCUMULATOR) {
@@ -46,7 +46,7 @@ pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
     }
 }
 
-/// The laser whose new scan asks for an answer, where the graph has several.
+/// Returns the laser whose scans trigger answers, if the graph has several lasers.
 pub(crate) fn first(dataflow: &Dataflow) -> Option<String> {
     let mut nodes = dataflow.nodes.iter();
     let accumulator = nodes.find(|node| node.executable() == ACCUMULATOR)?;

@@ -44,44 +44,42 @@ use crate::{
     descriptor::{self, Builds, Descriptor},
 };
 
-/// Between two looks at the processes.
+/// Interval between two looks at the processes.
 const TICK: Duration = Duration::from_millis(20);
-/// Between two looks for what dead processes have left.
+/// Interval between two cleanups of what dead processes left in shared memory.
 const CLEANUP_PERIOD: Duration = Duration::from_secs(1);
-/// How long the last scans may go without an answer once the sources are done.
-/// A scan takes seconds on a large map and a busy machine.
+/// Longest wait for the answers to the last scans once the sources are done. A scan takes seconds
+/// on a large map and a busy machine.
 const LAST_ANSWERS: Duration = Duration::from_secs(20);
-/// How long nodes of an earlier launcher may take to end.
+/// Longest wait for nodes of an earlier launcher to end.
 const LAST_OF_BEFORE: Duration = Duration::from_secs(3);
-/// What a slow reader of our output has left, unless the run ended by itself.
+/// Longest wait for a slow reader of our output, unless the run ended by itself.
 const LAST_OUTPUT: Duration = Duration::from_millis(100);
 
-/// How a run ended in order.
 #[derive(Debug)]
 struct Course {
     end: End,
-    /// Nodes that lost data, by their own account.
+    /// Nodes whose exit code said that they lost data.
     nodes_with_data_loss: Vec<String>,
 }
 
-/// Why a run has ended in order.
+/// Reason for an orderly end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
-    /// The sources are done, and so are the answers.
+    /// The sources are done and all scans are answered.
     Finished,
-    /// A signal came, or nobody reads the poses any more.
+    /// By a signal or request, or because the poses are no longer read.
     Interrupted,
 }
 
-/// Runs the graph until it ends, or is ended by a signal.
+/// Runs the graph until it ends or is ended by a signal.
 ///
-/// The exit code is 0, or 3 where the graph played as fast as it answers and
-/// something was lost all the same, or a node said so when it was ended. At the
-/// pace of the recording a slow machine may drop scans; the summary counts them.
+/// The exit code is 0, or 3 if a node's exit code said that it lost data, or if something was lost
+/// at `--rate max`. At the pace of the recording, a slow machine may drop scans; the summary counts
+/// them.
 ///
 /// # Errors
-/// Anything that keeps the graph from running as described. Every process has
-/// ended then.
+/// Any error that keeps the graph from running as described. All processes have ended then.
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
     let graph = config.options.graph_name()?;
@@ -127,7 +125,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         let Err(LauncherError::Transport(TransportError::Vanished { .. })) = &outcome else {
             break outcome;
         };
-        // Nobody of the graph runs any more: all of it can begin again.
+        // No process of the graph is running any more, so it can start from the beginning.
         if let Err(error) = clear(&graph) {
             break Err(error.into());
         }
@@ -139,7 +137,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         .is_ok_and(|course| course.end == End::Finished);
     let summary_wanted = outcome.is_ok() || journal.report.any_answer();
     let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
-    // What came first says most.
+    // The first error says most.
     let nodes_with_data_loss = outcome?.nodes_with_data_loss;
     cleared?;
     let summary = summary?;
@@ -157,8 +155,8 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Joins the graph, starts its processes and stays until the end; all of them
-/// have ended when it returns.
+/// Joins the graph, starts its processes and stays until the end. All processes have ended when it
+/// returns.
 fn launch(
     descriptor: &Descriptor,
     name: &GraphName,
@@ -189,14 +187,14 @@ fn launch(
         journal,
     );
     if let Err(error) = &end {
-        // The console shows it when all have ended, a recorder has to before.
+        // The console prints the error after all nodes have ended; a recorder needs it before.
         log_in_graph(LogLevel::Error, &with_causes(error));
         graph.send_log();
     }
-    // That we stop is seen all the same where it cannot be notified.
+    // A failed notification is ignored: the service manager sees the process end.
     let _ = sd_notify::notify(&[NotifyState::Stopping]);
     let stopped = crew.stop();
-    // Nodes that are stopped send a last report on their health.
+    // Nodes send a last health message when they are stopped.
     let received = watch.take(journal, |_| {});
     let end = end?;
     stopped?;
@@ -208,8 +206,8 @@ fn launch(
     })
 }
 
-/// Supervises the crew and records what is received, until the end. Recorders are asked
-/// to save where `save` is set.
+/// Supervises the crew and records the received messages until the end. If `save` is set, recorders
+/// are asked to save.
 fn stay(
     graph: &Graph,
     (watch, save, control_port): (&Watch, &AtomicBool, &ControlPort),
@@ -223,7 +221,7 @@ fn stay(
     let mut reported = Vec::new();
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
-        // What a source has sent may be received after its end has been seen.
+        // Checked before receiving: messages of a source may arrive after its end was seen.
         let over = crew.is_over();
         let received = watch.take(journal, |health| crew.received(health, now))?;
         if received.reader == Reader::Gone {
@@ -232,7 +230,7 @@ fn stay(
         if received.answers || !over {
             last_progress = now;
         }
-        // A player that waits for us goes on.
+        // Lets a player continue that waits for us.
         health.count_received_to(received.taken)?;
         let may_wait = now - last_progress < LAST_ANSWERS;
         if over && (journal.report.all_answered() || !may_wait) {
@@ -249,7 +247,7 @@ fn stay(
             graph.ensure_intact()?;
             graph.cleanup_dead_nodes();
             last_cleanup = now;
-            // If a service manager has started us, it is notified that we run.
+            // Tells the service manager, if there is one, that we run.
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
             sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
         }
@@ -274,7 +272,7 @@ fn stay(
     Ok(end)
 }
 
-/// Where other terminals ask the launcher.
+/// Control socket of the launcher.
 struct ControlPort {
     questions: Receiver<Asked>,
     graph: GraphName,
@@ -283,7 +281,7 @@ struct ControlPort {
 }
 
 impl ControlPort {
-    /// Answers what was asked; says to stop where that was wanted.
+    /// Answers pending requests; returns `Flow::Stop` if one asked to stop.
     fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, LauncherError> {
         let mut flow = Flow::Continue;
         while let Ok(asked) = self.questions.try_recv() {
@@ -316,15 +314,15 @@ impl ControlPort {
                     }
                 }
             };
-            // Who asked may have gone.
+            // The client may have hung up.
             let _ = asked.answer.send(answer);
         }
         Ok(flow)
     }
 }
 
-/// Removes what a graph of this name has left. Nodes of a launcher that was killed just
-/// now are ending, and are waited for.
+/// Removes leftovers of a graph of this name. Nodes of a launcher that was just killed are still
+/// ending, so it waits for them.
 fn make_way(graph: &GraphName) -> Result<(), TransportError> {
     let begin = Instant::now();
     loop {
@@ -342,7 +340,7 @@ fn make_way(graph: &GraphName) -> Result<(), TransportError> {
     }
 }
 
-/// Names the user whose file is in the way.
+/// Turns an error into one that names the owner of the file, if that is another user.
 fn foreign(path: PathBuf, source: io::Error) -> TransportError {
     let user = nix::unistd::geteuid().as_raw();
     match path.symlink_metadata() {
@@ -359,8 +357,8 @@ fn foreign(path: PathBuf, source: io::Error) -> TransportError {
     }
 }
 
-/// Removes what the graph has left in shared memory. Tools that joined it by
-/// its name may still be there; it is theirs then.
+/// Removes what the graph has left in shared memory. If tools that joined the graph by name are
+/// still running, it stays for them.
 fn clear(graph: &GraphName) -> Result<(), TransportError> {
     match remove_leftovers(graph) {
         Err(error @ TransportError::StillRunning { .. }) => {

@@ -1,5 +1,5 @@
-//! What the nodes log, as files: JSON lines, a file for each node, begun again when one is
-//! full. A disk that takes no more costs lines, never the graph.
+//! Writes the nodes' log to files: JSON lines, one file for each node, rotated when full. A write
+//! error, such as a full disk, costs lines but never ends the graph.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, create_dir_all, rename};
@@ -10,18 +10,18 @@ use super::console::{LAUNCHER, say};
 use crate::LauncherError;
 use crate::control::LogLine;
 
-/// Bytes after which a file is followed by another.
+/// Size at which a file is rotated, in bytes.
 const MAX_BYTES: u64 = 10_000_000;
-/// Full files that are kept of each node.
+/// Number of full files kept for each node.
 const KEPT: usize = 4;
 
-/// The files of all nodes, in one folder.
+/// The log files of all nodes, in one folder.
 #[derive(Debug)]
 pub(crate) struct LogFiles {
     folder: PathBuf,
     max_bytes: u64,
     open: BTreeMap<String, LogFile>,
-    /// Whether the last line could not be written.
+    /// True if the last line could not be written.
     failed: bool,
 }
 
@@ -32,10 +32,10 @@ struct LogFile {
 }
 
 impl LogFiles {
-    /// In `folder`, which is made where there is none.
+    /// Writes to `folder`, which is created if missing.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The folder cannot be created.
     pub(crate) fn create(folder: &Path) -> Result<Self, LauncherError> {
         create_dir_all(folder).map_err(|source| LauncherError::File {
             action: "create the folder",
@@ -50,7 +50,7 @@ impl LogFiles {
         })
     }
 
-    /// Appends a line to the file of its node; that it cannot is said once.
+    /// Appends a line to the file of its node. The first of several write errors is reported.
     pub(crate) fn write(&mut self, line: &LogLine) {
         let failed = self.try_write(line).err();
         if let (Some(error), false) = (&failed, self.failed) {
@@ -82,7 +82,7 @@ impl LogFiles {
         Ok(())
     }
 
-    /// The oldest one is replaced.
+    /// Renames the files of a node to the next number; the oldest one is overwritten.
     fn rotate(&self, node: &str) -> io::Result<()> {
         for number in (0..KEPT).rev() {
             match rename(self.path(node, number), self.path(node, number + 1)) {
@@ -101,7 +101,7 @@ impl LogFiles {
     }
 }
 
-/// A node's name without what leads elsewhere: any member of the graph may log.
+/// Makes a node's name safe as a file name: any member of the graph may log.
 fn file_name(node: &str) -> String {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() || c == '-' {
@@ -131,7 +131,7 @@ mod tests {
     fn full_files_are_followed_by_others_and_the_oldest_ones_go() {
         let folder = tempfile::tempdir().unwrap();
         let mut files = LogFiles::create(&folder.path().join("logs")).unwrap();
-        // Each file takes one line.
+        // One line fills a file.
         files.max_bytes = 100;
         for number in 0..8 {
             files.write(&line("tracker", &format!("line {number}")));

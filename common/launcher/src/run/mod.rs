@@ -1,9 +1,9 @@
-//! `backcast run`: builds the graph's nodes, starts and supervises their
-//! processes, and prints a pose for each scan.
+//! `backcast run`: builds the graph's nodes, starts and supervises their processes, and prints a
+//! pose for each scan.
 //!
-//! Joined to the graph, it only listens: it localizes nothing, and the graph
-//! runs without it. What is decided (restarts, the end of the run, figures and
-//! lines) is decided in pure files; `launch` does the work.
+//! In the graph, the launcher only subscribes: it localizes nothing, and the graph runs without it.
+//! Decisions (restarts, the end of the run, figures and lines) are in pure files; `launch` does the
+//! I/O.
 
 mod added;
 pub mod arguments;

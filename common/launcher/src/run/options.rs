@@ -12,26 +12,24 @@ use transport::{GRAPH_VARIABLE, GraphName, TransportError};
 
 use crate::descriptor::DEFAULT_FILE;
 
-/// Options of `backcast run`.
 #[derive(Debug, Args)]
 pub struct Config {
     /// The graph's descriptor
     #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
     pub dataflow: PathBuf,
-    /// All other options.
     #[command(flatten)]
     pub options: Options,
 }
 
 impl Config {
-    /// These options with the descriptor of the current directory.
+    /// Combines the options with the descriptor of the current directory.
     pub fn with(options: Options) -> Self {
         let dataflow = DEFAULT_FILE.into();
         Config { dataflow, options }
     }
 }
 
-/// The options of `run`, which may also stand without the command.
+/// Options of `run`, which also work without the subcommand.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Options {
     /// Replay this recording in place of the graph's laser, on its own map if it holds one;
@@ -40,7 +38,7 @@ pub struct Options {
     pub replay: Vec<PathBuf>,
 
     /// With --replay: the topic of the scans [default: the only one, or /scan];
-    /// several lasers, named one by one, are joined
+    /// several are joined
     #[arg(long, value_name = "TOPIC", requires = "replay")]
     pub scan_topic: Vec<String>,
 
@@ -56,27 +54,25 @@ pub struct Options {
     #[arg(long = "loop")]
     pub repeat: bool,
 
-    /// Serve this map in place of the one that the descriptor names
+    /// Serve this map instead of the one in the descriptor
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
 
-    /// Serve the maps of this folder, or of this file that names them, and search all of them
+    /// Serve the maps of this folder, or of this file that lists them, and search all of them
     #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
     pub maps: Option<PathBuf>,
 
-    /// Not for a graph, whose map is map_server's: --map says which one
+    /// Not for a graph: its map comes from map_server, see --map
     #[arg(long, value_name = "TOPIC", requires = "replay", hide = true)]
     pub map_topic: Option<String>,
 
-    /// Where the heading comes from.
     #[command(flatten)]
     pub heading: HeadingConfig,
 
-    /// What is recorded.
     #[command(flatten)]
     pub record: RecordOptions,
 
-    /// Run no build command of the descriptor: start the executables that are there
+    /// Skip the build commands of the descriptor, and start the existing executables
     #[arg(long)]
     pub no_build: bool,
 
@@ -103,19 +99,18 @@ pub struct Options {
     pub json: bool,
 }
 
-/// What is recorded, and how.
 #[derive(Debug, Clone, Default, Args)]
 pub struct RecordOptions {
     /// Record the graph to this MCAP file
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
 
-    /// With --record: keep only this much time in memory, as 10m, and save it when the
+    /// With --record: keep only this much time in memory, e.g. 10m, and save it when the
     /// pose is lost or the recorder gets SIGUSR1
     #[arg(long, value_name = "TIME", requires = "record")]
     pub keep: Option<String>,
 
-    /// With --record: start a new file after this much time, as 10m
+    /// With --record: start a new file after this much time, e.g. 10m
     #[arg(
         long,
         value_name = "TIME",
@@ -134,11 +129,11 @@ pub struct RecordOptions {
 }
 
 impl Options {
-    /// The graph to start: as the option says, or the environment, or one that no other
-    /// launcher has, also none in another container that shares this machine's memory.
+    /// Returns the name of the graph to start: from the option, from the environment, or a random
+    /// one. A random name is unique even among containers that share the memory of this machine.
     ///
     /// # Errors
-    /// The environment holds no valid name.
+    /// The environment variable is not a valid name.
     pub fn graph_name(&self) -> Result<GraphName, TransportError> {
         match &self.graph {
             Some(name) => Ok(name.clone()),
@@ -148,17 +143,17 @@ impl Options {
     }
 }
 
-/// Numbers of processes repeat from container to container; this does not.
+/// Returns a random number. Process ids would repeat from container to container.
 fn random() -> u32 {
     let hasher = RandomState::new().build_hasher();
     // The upper half is as random as the lower one.
     (hasher.finish() >> 32) as u32
 }
 
-/// How fast a recording is played.
+/// Playback speed of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
-    /// This many times as fast as it was recorded.
+    /// Factor of the recorded speed.
     Times(f64),
     /// As fast as answers come.
     Max,

@@ -1,5 +1,5 @@
-//! Standard output. A reader that does not read, as a pager, must not keep the
-//! launcher from supervising, so lines go through a thread of their own.
+//! Standard output on a thread of its own: a reader that stops reading, such as a pager, must not
+//! block supervision.
 
 use std::{
     io::{self, ErrorKind, Write},
@@ -12,17 +12,16 @@ use command_line::OutputError;
 
 use crate::LauncherError;
 
-/// Lines that wait for a slow reader; the next ones are lost to it, and counted.
+/// Number of lines queued for a slow reader; further lines are dropped and counted.
 const CAPACITY: usize = 4096;
 
-/// Lines on their way to standard output.
 pub(crate) struct Output {
     lines: SyncSender<String>,
     ended: Receiver<io::Result<()>>,
     lost: u64,
 }
 
-/// Whether somebody still reads.
+/// State of the reader of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reader {
     Reads,
@@ -30,7 +29,7 @@ pub(crate) enum Reader {
 }
 
 impl Output {
-    /// Opens it on `writer`.
+    /// Starts the thread that writes to `writer`.
     ///
     /// # Errors
     /// The thread cannot be started.
@@ -42,7 +41,7 @@ impl Output {
                 writer.write_all(line.as_bytes())?;
                 writer.flush()
             });
-            // Nobody may wait for it any more.
+            // The receiver may be gone.
             let _ = end.send(written);
         };
         thread::Builder::new()
@@ -56,7 +55,7 @@ impl Output {
         })
     }
 
-    /// Hands over a line.
+    /// Queues a line.
     pub(crate) fn line(&mut self, mut line: String) -> Reader {
         line.push('\n');
         match self.lines.try_send(line) {
@@ -69,11 +68,11 @@ impl Output {
         }
     }
 
-    /// Waits until all is written, at most for `patience` where there is one;
-    /// returns the number of lines that the reader was too slow for.
+    /// Waits until all is written, at most for `patience` if it is given. Returns the number of
+    /// dropped lines.
     ///
     /// # Errors
-    /// Writing failed, other than by a reader that went away.
+    /// Writing failed for another reason than a reader that went away.
     pub(crate) fn finish(self, patience: Option<Duration>) -> Result<u64, LauncherError> {
         drop(self.lines);
         let ended = match patience {
@@ -84,7 +83,7 @@ impl Output {
             Ok(Err(error)) if error.kind() != ErrorKind::BrokenPipe => {
                 Err(OutputError(error).into())
             }
-            // Written, read no more, or not in time: that is the reader's choice.
+            // Written, reader gone, or timeout: none of them is an error.
             _ => Ok(self.lost),
         }
     }
@@ -103,7 +102,7 @@ mod tests {
         for i in 0..100 {
             assert_eq!(output.line(i.to_string()), Reader::Reads);
         }
-        // Lines that came before the thread did may have been too many.
+        // The number of lines is below the capacity of the queue, so none is dropped.
         assert!(output.finish(None).is_ok());
         let mut text = String::new();
         reader.read_to_string(&mut text).unwrap();
@@ -115,7 +114,7 @@ mod tests {
     fn a_reader_that_stops_reading_blocks_nobody() {
         let (reader, writer) = io::pipe().unwrap();
         let mut output = Output::start(writer).unwrap();
-        // More than the pipe, the queue and the line under way hold together.
+        // More than the pipe, the queue and the line being written hold together.
         for _ in 0..3 * CAPACITY {
             assert_eq!(output.line("x".repeat(1000)), Reader::Reads);
         }
@@ -132,7 +131,6 @@ mod tests {
         while output.line("x".into()) == Reader::Reads {
             thread::yield_now();
         }
-        // Lines that came before the thread did may have been too many.
         assert!(output.finish(None).is_ok());
     }
 

@@ -1,12 +1,12 @@
-//! Finds for each answer the truth of the same scan, whichever comes first.
+//! Pairs each answer with the ground truth of the same scan; either may come first.
 
 use std::collections::VecDeque;
 
-/// The most that wait for their counterpart, on each side. One that never comes
-/// (no truth in the recording, a scan that was dropped) is forgotten then.
+/// Largest number of waiting entries on each side. The oldest is dropped beyond it, since its
+/// counterpart may never come (no truth in the recording, a dropped scan).
 const CAPACITY: usize = 256;
 
-/// Those that wait for their counterpart, by the time of measurement.
+/// Answers and truths that wait for their counterpart, by time of measurement.
 #[derive(Debug)]
 pub(crate) struct Pairs<A, B> {
     answers: VecDeque<(i64, A)>,
@@ -14,7 +14,6 @@ pub(crate) struct Pairs<A, B> {
 }
 
 impl<A, B> Pairs<A, B> {
-    /// None.
     pub(crate) fn new() -> Self {
         Pairs {
             answers: VecDeque::new(),
@@ -22,7 +21,7 @@ impl<A, B> Pairs<A, B> {
         }
     }
 
-    /// An answer came: gives it back with its truth if that is there.
+    /// Adds an answer; returns the pair if its truth is known.
     pub(crate) fn answer(&mut self, measured_ns: i64, answer: A) -> Option<(A, B)> {
         match take(&mut self.truths, measured_ns) {
             Some(truth) => Some((answer, truth)),
@@ -33,7 +32,7 @@ impl<A, B> Pairs<A, B> {
         }
     }
 
-    /// A truth came: gives it back with its answer if that is there.
+    /// Adds a truth; returns the pair if its answer is known.
     pub(crate) fn truth(&mut self, measured_ns: i64, truth: B) -> Option<(A, B)> {
         match take(&mut self.answers, measured_ns) {
             Some(answer) => Some((answer, truth)),
@@ -50,7 +49,7 @@ fn take<T>(waiting: &mut VecDeque<(i64, T)>, at: i64) -> Option<T> {
     waiting.remove(index).map(|(_, item)| item)
 }
 
-/// A recording that is played in a loop repeats its times: the newest counts.
+/// Adds an entry. It replaces one of the same time, as a looped recording repeats its times.
 fn keep<T>(waiting: &mut VecDeque<(i64, T)>, at: i64, item: T) {
     take(waiting, at);
     if waiting.len() == CAPACITY {

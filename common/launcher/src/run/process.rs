@@ -1,7 +1,7 @@
-//! One process of a node, in a process group of its own.
+//! The process of a node, in a process group of its own.
 //!
-//! Signals go to the group, so that what a node starts ends with it. If the
-//! launcher dies, in whatever way, the kernel ends the process.
+//! Signals go to the group, so that children of a node end with it. If the launcher dies for any
+//! reason, the kernel ends the process.
 
 use std::{
     io::{self, IsTerminal},
@@ -25,23 +25,23 @@ use transport::{GRAPH_VARIABLE, GraphName, node::LOG_FORMAT_VARIABLE};
 
 use super::console;
 
-/// A started process. It must be started on the thread that ends last: the
-/// kernel takes the end of that thread for the end of the launcher.
+/// A started process. It must be started on the thread that lives longest: for the kernel, the end
+/// of that thread is the end of the launcher.
 #[derive(Debug)]
 pub(crate) struct Process {
     child: Child,
     pid: Pid,
 }
 
-/// Where a node's executable is.
+/// Returns the path of a node's executable.
 pub(crate) fn executable(node: &Node, folder: &Path) -> PathBuf {
     folder.join(&node.path)
 }
 
 impl Process {
-    /// Starts `node` in `folder` as a member of `graph`. What it says goes to
-    /// our standard error, the last line of its own to `last_line`, too; `open` is dropped when
-    /// it has said all.
+    /// Starts `node` in `folder` as a member of `graph`. Its output goes to our standard error, and
+    /// the last line of its standard error also to `last_line`. `open` is dropped when both streams
+    /// have ended.
     ///
     /// # Errors
     /// The executable cannot be started.
@@ -52,7 +52,7 @@ impl Process {
         (open, last_line): (&Sender<()>, &Arc<Mutex<String>>),
     ) -> io::Result<Self> {
         let mut command = Command::new(executable(node, folder));
-        // Lines on a terminal are short, of nodes too, whose standard error is a pipe.
+        // On a terminal, log lines are short; nodes cannot tell, as their standard error is a pipe.
         if io::stderr().is_terminal() && std::env::var_os(LOG_FORMAT_VARIABLE).is_none() {
             command.env(LOG_FORMAT_VARIABLE, "short");
         }
@@ -69,7 +69,7 @@ impl Process {
         let mut child = command.spawn()?;
         let pid = i32::try_from(child.id()).map_err(io::Error::other)?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-        // From here on the process is owned: whatever fails, it is ended.
+        // From here on, `Drop` ends the process on any error.
         let process = Process {
             child,
             pid: Pid::from_raw(pid),
@@ -80,7 +80,7 @@ impl Process {
         if let Some(stream) = stderr {
             let last_line = Arc::clone(last_line);
             let keep = move |line: &str| {
-                // The address of a page with its token is for the console alone.
+                // An address with a token must only appear on the console.
                 if !line.contains("#token=")
                     && let Ok(mut last_line) = last_line.lock()
                 {
@@ -92,18 +92,16 @@ impl Process {
         Ok(process)
     }
 
-    /// Its number.
     pub(crate) fn pid(&self) -> i32 {
         self.pid.as_raw()
     }
 
-    /// How it ended, if it did; then what it has started is ended too.
+    /// Returns the exit status if the process has ended; then its whole group is killed.
     ///
     /// # Errors
-    /// The process is not ours to wait for.
+    /// The process cannot be waited for.
     pub(crate) fn poll(&mut self) -> io::Result<Option<ExitStatus>> {
-        // While it is not waited for, its number cannot come to mean another
-        // process, so the group is still its group.
+        // Until the process is waited for, its id is not reused, so the group is still its group.
         let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
         if waitid(Id::Pid(self.pid), flags)? == WaitStatus::StillAlive {
             return Ok(None);
@@ -115,19 +113,19 @@ impl Process {
     /// Sends `signal` to the whole group.
     ///
     /// # Errors
-    /// The group is not ours.
+    /// The group cannot be signalled.
     pub(crate) fn signal(&self, signal: Signal) -> io::Result<()> {
         match killpg(self.pid, signal) {
-            // All of it has ended.
+            // All processes of the group have ended.
             Err(Errno::ESRCH) => Ok(()),
             other => Ok(other?),
         }
     }
 
-    /// Ends the group at once and waits for the process.
+    /// Kills the group and waits for the process.
     ///
     /// # Errors
-    /// As [`Process::signal`] and [`Process::poll`].
+    /// See [`Process::signal`] and [`Process::poll`].
     pub(crate) fn kill(&mut self) -> io::Result<()> {
         self.signal(Signal::SIGKILL)?;
         self.child.wait().map(drop)
@@ -135,25 +133,24 @@ impl Process {
 }
 
 impl Drop for Process {
-    /// Nothing that was started stays behind, whatever failed.
+    /// Kills the group if the process is still running.
     fn drop(&mut self) {
-        // A process that was waited for is known to its handle, and its number
-        // may be another's by now.
+        // A process that was waited for is known to its handle; its id may be reused by now.
         if matches!(self.child.try_wait(), Ok(None)) {
             let _ = self.kill();
         }
     }
 }
 
-/// Asks for SIGTERM when we die; and SIGUSR1, which we pass on, does no harm before
-/// the program that is started has said what it means.
+/// Requests SIGTERM for the child when we die. The child ignores SIGUSR1, which we pass on, until
+/// its program sets a handler.
 fn prepare_signals(command: &mut Command) {
     let parent = getpid();
     let ask = move || {
         prctl::set_pdeathsig(Signal::SIGTERM)?;
-        // SAFETY: to ignore a signal calls nothing.
+        // SAFETY: ignoring a signal installs no handler.
         unsafe { signal(Signal::SIGUSR1, SigHandler::SigIgn) }?;
-        // A parent that died before the request is not signalled.
+        // If the parent died before the request, no signal comes.
         if getppid() != parent {
             return Err(Errno::ESRCH.into());
         }

@@ -1,8 +1,7 @@
 //! `--record`: adds a recorder to a graph.
 //!
-//! The recorder lies where the graph's other executables do and is built with
-//! them. It takes every topic by itself and needs no wires; sources wait for it,
-//! so that nothing is missed.
+//! Its executable is next to those of the graph and is built with them. It subscribes to every
+//! topic by itself and needs no wires; sources wait for it, so that nothing is missed.
 
 use std::path::{Path, PathBuf};
 
@@ -15,11 +14,10 @@ use crate::LauncherError;
 
 pub(super) const RECORDER: &str = "recorder";
 
-/// Adds a recorder where the options want one, to the graph of the descriptor
-/// `file` in `folder`.
+/// Adds a recorder if the options ask for one. `file` and `folder` are those of the descriptor.
 ///
 /// # Errors
-/// The file exists already, or the graph has a recorder.
+/// The output file exists already, or the graph has a recorder.
 pub(crate) fn add(
     options: &RecordOptions,
     dataflow: &mut Dataflow,
@@ -60,7 +58,7 @@ pub(crate) fn add(
         inputs: Vec::new(),
         outputs: Vec::new(),
         streams: Vec::new(),
-        // It continues in another file.
+        // A restarted recorder continues in another file.
         restart: Restart::ON_FAILURE,
     };
     for source in &mut dataflow.nodes {
@@ -89,8 +87,8 @@ fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<
     Ok(())
 }
 
-/// The descriptor, and the map that is served with its image, as far as they are
-/// there: the map server itself complains of a map that is not.
+/// Returns the files to attach to the recording: the descriptor, the served map and its image.
+/// Missing files are left out; the map server reports a missing map.
 fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
     let server = dataflow
         .nodes

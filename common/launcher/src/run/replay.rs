@@ -1,5 +1,5 @@
-//! A replayer in place of whatever feeds a graph: a laser, an emulated one, or
-//! another replayer. So a recording can be replayed exactly through any graph.
+//! Puts a replayer in place of the sources of a graph (laser, emulator or other replayer), so that
+//! a recording can be replayed exactly through any graph.
 
 use std::path::PathBuf;
 
@@ -10,8 +10,8 @@ use super::added;
 use super::arguments::{REPLAYER, add_to_list, unset};
 use super::supervision::{MEASUREMENTS, is_source};
 
-/// Lets the graph's replayer play these recordings as one; a graph that is fed by
-/// others gets a replayer instead of them.
+/// Makes the graph's replayer play these recordings as one. If the graph has none, a replayer
+/// replaces its sources.
 pub fn play<'d>(dataflow: &'d mut Dataflow, recordings: &[PathBuf]) -> &'d mut Node {
     let at = dataflow
         .nodes
@@ -27,7 +27,7 @@ pub fn play<'d>(dataflow: &'d mut Dataflow, recordings: &[PathBuf]) -> &'d mut N
     replayer
 }
 
-/// Lets the graph's replayers wait, at `--rate max`, until a node that looks on has each answer.
+/// Makes the replayers wait at `--rate max` until `node`, which only listens, has each answer.
 pub fn keep_in_step(dataflow: &mut Dataflow, node: &str) {
     let nodes = dataflow.nodes.iter_mut();
     for replayer in nodes.filter(|node| node.executable() == REPLAYER) {
@@ -35,7 +35,7 @@ pub fn keep_in_step(dataflow: &mut Dataflow, node: &str) {
     }
 }
 
-/// Takes the sources out and puts a replayer first.
+/// Removes the sources and inserts a replayer as the first node; returns its index.
 fn replace_sources(dataflow: &mut Dataflow) -> usize {
     let replayer = replayer(dataflow);
     dataflow.nodes.retain(|node| !is_source(node));
@@ -60,7 +60,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         stream: String::new(),
     });
     let inputs = answers.into_iter().collect();
-    // Those that only look on need not be waited for.
+    // Nodes that only display need not be waited for.
     let steps = [
         topic::Votes::NAME,
         topic::Hypotheses::NAME,
@@ -87,7 +87,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         inputs,
         outputs: MEASUREMENTS.map(str::to_owned).into(),
         streams: Vec::new(),
-        // Started again it would begin again.
+        // A restarted replayer would start from the beginning.
         restart: Restart::DEFAULT,
     }
 }

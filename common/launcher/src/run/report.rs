@@ -1,5 +1,5 @@
-//! Collects what the graph says during a run. Pure: fed with messages, in the
-//! order of their arrival.
+//! Collects the messages of a run into figures. Pure: fed with messages in the order of their
+//! arrival.
 
 use std::collections::HashMap;
 
@@ -12,18 +12,17 @@ use statistics::{Accuracy, Answer, Distribution};
 
 use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 
-/// The newest scans that percentiles look at, so that a run may go on for
-/// months: some hours.
+/// Number of newest scans for percentiles: some hours, so that memory stays bounded in a run of
+/// months.
 const WINDOW: usize = 200_000;
 
-/// What was received so far.
 pub(crate) struct Report {
-    /// Of publishers that have ended since, and their restarts.
+    /// Scans of publishers that were restarted since.
     earlier_scans: u64,
     newest_scan: Option<Stamp>,
     newest_answer: Option<Stamp>,
     newest_pose: Option<Stamp>,
-    /// Whether the graph has a tracker, whose poses are awaited then.
+    /// True if the graph has a tracker; then each scan waits for its pose.
     is_tracked: bool,
     answered: u64,
     tracking: Tracking,
@@ -32,12 +31,12 @@ pub(crate) struct Report {
     latency_ms: Distribution,
     engine_ms: Distribution,
     graph_ms: Distribution,
-    /// Dropped and refused, by process.
+    /// Dropped and refused samples, by process id.
     losses: HashMap<u32, (u64, u64)>,
 }
 
 impl Report {
-    /// Nothing received, of a graph that has a tracker or none.
+    /// Creates an empty report, for a graph with or without a tracker.
     pub(crate) fn new(is_tracked: bool) -> Self {
         Report {
             earlier_scans: 0,
@@ -56,21 +55,20 @@ impl Report {
         }
     }
 
-    /// A scan entered the graph. Those before it need not be shown: their
-    /// number is in the counter.
+    /// Records a scan. Scans before it may be missing here, as its counter includes them.
     pub(crate) fn scan(&mut self, stamp: Stamp) {
         if let Some(last) = self.newest_scan
             && stamp.counter <= last.counter
             && stamp != last
         {
-            // The sender was started again and counts again.
+            // The sender was restarted and counts from 0 again.
             let sent = last.counter.saturating_add(1);
             self.earlier_scans = self.earlier_scans.saturating_add(sent);
         }
         self.newest_scan = Some(stamp);
     }
 
-    /// A scan was answered.
+    /// Records the answer to a scan.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Line {
         let line = Line::new(header, found);
         self.newest_answer = Some(header.stamp);
@@ -93,7 +91,7 @@ impl Report {
         line
     }
 
-    /// The tracker said where the robot is, by a scan.
+    /// Records the tracker's pose of a scan.
     pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> PoseLine {
         let line = PoseLine::new(header, words);
         self.newest_pose = Some(header.stamp);
@@ -101,7 +99,7 @@ impl Report {
         line
     }
 
-    /// The true pose of a scan.
+    /// Records the true pose of a scan.
     pub(crate) fn truth(&mut self, truth: &GroundTruth) {
         let pose = truth.map_from_laser.into();
         self.tracking.truth(truth.stamp.measured_ns, pose);
@@ -110,19 +108,19 @@ impl Report {
         }
     }
 
-    /// A node's health; its counters include what it reported before.
+    /// Records a node's health message; its counters are cumulative.
     pub(crate) fn health(&mut self, health: &HealthHeader) {
         let losses = (health.dropped, health.refused);
         self.losses.insert(health.pid, losses);
     }
 
-    /// Whether any scan was answered.
+    /// True if any scan was answered.
     pub(crate) fn any_answer(&self) -> bool {
         self.answered > 0
     }
 
-    /// Whether the newest scan has its answer: of the tracker, where there is one, for
-    /// not every scan is searched then.
+    /// True if the newest scan has its answer. With a tracker, this is its pose, as not every scan
+    /// is searched then.
     pub(crate) fn all_answered(&self) -> bool {
         let newest = match self.is_tracked {
             true => self.newest_pose,
@@ -132,7 +130,6 @@ impl Report {
         self.newest_scan.is_none_or(answers)
     }
 
-    /// The figures of the run so far.
     pub(crate) fn summary(&self) -> Summary {
         let newest = self.newest_scan.map_or(0, |s| s.counter.saturating_add(1));
         let sum = |pick: fn(&(u64, u64)) -> u64| {
@@ -146,7 +143,7 @@ impl Report {
         };
         let scans = self.earlier_scans.saturating_add(newest);
         Summary {
-            // An answer proves its scan, should the scan itself not be received.
+            // An answer counts as a scan if the scan itself was not received.
             scans: scans.max(self.answered).max(tracked),
             answered,
             searched: self.answered,

@@ -1,4 +1,4 @@
-//! What is printed when a run is over. Pure.
+//! Summary that is printed when a run is over. Pure.
 
 use messages::TrackState;
 use pose_table::number;
@@ -7,7 +7,7 @@ use statistics::{CLOSE_SUCCESS, Figures, SUCCESS, Tail};
 
 use super::tracking::TrackingFigures;
 
-/// As they are shown, the one that is wanted first.
+/// Tracker states in the order of display, best first.
 const STATES: [TrackState; 4] = [
     TrackState::Unique,
     TrackState::Doubtful,
@@ -15,40 +15,40 @@ const STATES: [TrackState; 4] = [
     TrackState::Lost,
 ];
 
-/// The figures of a run. Times are milliseconds.
+/// Figures of a run. Times are in milliseconds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Summary {
     /// Scans that entered the graph.
     pub scans: u64,
-    /// Scans that were answered, be it with NoScan: by the tracker, where there is one.
+    /// Scans that were answered, even with NoScan; with a tracker, the scans that it answered.
     pub answered: u64,
-    /// Scans that were searched by themselves.
+    /// Scans that were searched one by one, without the tracker.
     pub searched: u64,
-    /// Samples that nodes were too slow for, on any topic.
+    /// Samples dropped on any topic because a node was too slow.
     pub dropped: u64,
-    /// Samples that nodes refused as unusable.
+    /// Samples that nodes rejected as unusable.
     pub refused: u64,
-    /// The tracker's figures, where there is one.
+    /// The tracker's figures, if there is one.
     #[serde(rename = "pose", skip_serializing_if = "Option::is_none")]
     pub tracking: Option<TrackingFigures>,
-    /// Answers to scans alone against the truth, where the recording holds it.
+    /// Answers to single scans compared with the truth, if the recording holds it.
     #[serde(flatten)]
     pub accuracy: Figures,
-    /// From the scan's entry into the graph to the pose.
+    /// Time from the scan's entry into the graph to the pose.
     pub latency_ms: Tail,
-    /// Of that, computing.
+    /// Part of the latency that is computing.
     pub engine_ms: Tail,
-    /// Of that, everything else: what the graph adds.
+    /// Rest of the latency: the overhead of the graph.
     pub graph_ms: Tail,
 }
 
 impl Summary {
-    /// Whether anything was lost between scan and pose.
+    /// True if anything was lost between scan and pose.
     pub(crate) fn lost_data(&self) -> bool {
         self.dropped > 0 || self.answered < self.scans
     }
 
-    /// A few lines for people, without the end of the last one.
+    /// Returns a few lines for people, without a final newline.
     pub(crate) fn text(&self) -> String {
         let counts = format!(
             "scans      {}, answered {}, dropped samples {}, refused {}",
@@ -73,7 +73,7 @@ impl Summary {
     }
 }
 
-/// What the tracker made of all scans.
+/// Returns the lines on the tracker's poses.
 fn tracking_lines(tracking: &TrackingFigures) -> Vec<String> {
     let shares = STATES.map(|state| {
         let share = tracking.states.get(state.as_str()).copied();

@@ -1,5 +1,4 @@
-//! What happens when a process ends, and when the run is over. Pure: no clock,
-//! no process.
+//! Decides what follows when a process ends, and when the run is over. Pure: no clock, no process.
 
 use std::{
     collections::VecDeque,
@@ -11,13 +10,13 @@ use messages::{NodeState, Topic, topic};
 
 use crate::LauncherError;
 
-/// The variable of a node's `env` that returns whether the graph ends with it.
+/// Variable in a node's `env` that says if the graph ends when the node fails.
 const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
-/// Those without which a robot is localized just as well.
+/// Executables that are not needed for localization.
 const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 
-/// Whether the graph ends when this node has failed for good: the descriptor says so
-/// with `BACKCAST_ESSENTIAL` in the node's `env`, or else its executable decides.
+/// True if the graph ends when this node has failed for good: `BACKCAST_ESSENTIAL` in the node's
+/// `env` decides, or else its executable.
 ///
 /// # Errors
 /// The variable is neither `true` nor `false`.
@@ -32,23 +31,23 @@ pub fn is_essential(node: &Node) -> Result<bool, LauncherError> {
     }
 }
 
-/// How a process ended.
+/// Way in which a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// It has done all that it could.
+    /// It succeeded.
     Well,
-    /// It failed, which may go better another time.
+    /// It failed; a restart may help.
     Badly,
-    /// It failed while shared memory was full, which says nothing of it.
+    /// It failed while shared memory was full, which is not its fault.
     Starved,
-    /// It was started wrongly, which goes no better another time.
+    /// It was started with wrong arguments; a restart does not help.
     Misused,
 }
 
-/// What follows when a process has ended by itself.
+/// Decision after a process has ended by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AfterEnd {
-    /// It is started again, this much later.
+    /// It is restarted after this delay.
     Restart(Duration),
     /// It has done its work.
     Done,
@@ -60,19 +59,18 @@ pub enum AfterEnd {
 #[derive(Debug, Clone)]
 pub struct Restarts {
     rules: Restart,
-    /// When they were decided on, within the window.
+    /// Times of the restarts within the window.
     recent: VecDeque<Instant>,
-    /// How often it was started again since it last worked for a while.
+    /// Number of restarts since it last worked for a while.
     in_a_row: u32,
 }
 
 impl Restarts {
-    /// A process that worked for so long has recovered: the next failure is a new one.
+    /// A process that worked for this long has recovered: the next failure starts a new row.
     pub const RECOVERED_AFTER: Duration = Duration::from_secs(2);
-    /// Doublings of the delay after which it stays, whatever the longest one is.
+    /// Largest exponent of the delay's backoff, which keeps the shift in range.
     const MAX_DOUBLINGS: u32 = 16;
 
-    /// None used yet.
     pub fn new(rules: Restart) -> Self {
         Restarts {
             rules,
@@ -81,24 +79,24 @@ impl Restarts {
         }
     }
 
-    /// How often the node was started again within the window.
+    /// Number of restarts within the window.
     pub fn recent(&self) -> u32 {
         u32::try_from(self.recent.len()).unwrap_or(u32::MAX)
     }
 
-    /// How often it was started again since it last worked for a while.
+    /// Number of restarts since the node last worked for a while.
     pub fn in_a_row(&self) -> u32 {
         self.in_a_row
     }
 
-    /// How many restarts count against the limit where it failed: those within the window, or those
-    /// since it last worked.
+    /// Number of restarts that count against the limit after a failure: the larger of those within
+    /// the window and those since it last worked.
     pub fn used(&self) -> u32 {
         self.recent().max(self.in_a_row)
     }
 
-    /// Decides at `now`, after an end of a process that did its work for `worked`, and counts
-    /// the restart.
+    /// Decides at `now`, after the end of a process that was at work for `worked`, and counts the
+    /// restart.
     pub fn after_end(&mut self, ended: Ended, worked: Duration, now: Instant) -> AfterEnd {
         let wanted = match (self.rules.policy, ended) {
             (RestartPolicy::Never, _) | (_, Ended::Misused) => false,
@@ -123,7 +121,7 @@ impl Restarts {
         if wanted && (limit == 0 || used < limit) {
             let doublings = self.in_a_row.min(Self::MAX_DOUBLINGS);
             self.in_a_row = self.in_a_row.saturating_add(1);
-            // Without a limit nobody asks how many there were.
+            // Without a limit, the number is not needed.
             if limit > 0 {
                 self.recent.push_back(now);
             }
@@ -137,28 +135,27 @@ impl Restarts {
     }
 }
 
-/// When a node gave its last sign of life, and whether it is missed.
+/// Tracks a node's health messages and detects when they are overdue.
 #[derive(Debug, Clone, Copy)]
 pub struct Pulse {
     timeout: Duration,
-    /// Whether it has to report: it runs one of our programs, or has reported before.
+    /// True if the node has to report: it is one of ours, or has reported before.
     is_expected: bool,
-    /// The last report of its process.
+    /// Time of the last report of its process.
     reported: Option<Instant>,
-    /// Since when its silence counts: the last report, or what excuses that there is none.
+    /// Start of the current silence: the last report, or an event that excuses a missing one.
     silent_since: Option<Instant>,
-    /// When its process first said that it works.
+    /// Time at which its process first reported `Ready` or `Degraded`.
     at_work_since: Option<Instant>,
-    /// It said that it is at work on something long.
+    /// True if its last report was `Busy`.
     is_busy: bool,
 }
 
 impl Pulse {
-    /// So much longer may a node be silent that is at work on something long: five minutes, where
-    /// others have 15 s.
+    /// Factor on the timeout for a busy node: five minutes instead of 15 s.
     const BUSY: u32 = 20;
 
-    /// Nothing received yet from a program that has to report, or need not.
+    /// Creates the state before the first report.
     pub fn new(timeout: Duration, is_expected: bool) -> Self {
         Pulse {
             timeout,
@@ -170,7 +167,7 @@ impl Pulse {
         }
     }
 
-    /// Its process was started.
+    /// Resets it for a new process.
     pub fn started(&mut self, now: Instant) {
         *self = Pulse {
             silent_since: self.is_expected.then_some(now),
@@ -178,7 +175,7 @@ impl Pulse {
         };
     }
 
-    /// It reported.
+    /// Records a report.
     pub fn received(&mut self, state: Option<NodeState>, now: Instant) {
         self.is_expected = true;
         (self.reported, self.silent_since) = (Some(now), Some(now));
@@ -188,14 +185,14 @@ impl Pulse {
         }
     }
 
-    /// It could not have reported.
+    /// Restarts the timeout, as the node could not have reported until now.
     pub fn restart_timeout(&mut self, now: Instant) {
         if self.silent_since.is_some() {
             self.silent_since = Some(now);
         }
     }
 
-    /// For how long nothing was received, if that is too long.
+    /// Returns the length of the silence if it exceeds the timeout.
     pub fn missed_for(&self, now: Instant) -> Option<Duration> {
         let silent = now.saturating_duration_since(self.silent_since?);
         let most = match self.is_busy {
@@ -205,12 +202,12 @@ impl Pulse {
         (silent > most).then_some(silent)
     }
 
-    /// The age of its process's last report.
+    /// Returns the age of the last report of the process.
     pub fn age(&self, now: Instant) -> Option<Duration> {
         Some(now.saturating_duration_since(self.reported?))
     }
 
-    /// For how long its process has done its work; `None` where it does not say.
+    /// Returns how long the process has been at work; `None` if the node does not report.
     pub fn at_work_for(&self, now: Instant) -> Option<Duration> {
         let since = |at: Instant| now.saturating_duration_since(at);
         self.is_expected
@@ -218,22 +215,21 @@ impl Pulse {
     }
 }
 
-/// What is measured enters the graph with these; all else follows from them.
+/// Topics of measurements, the inputs of the graph.
 pub const MEASUREMENTS: [&str; 3] = [
     topic::Scan::NAME,
     topic::OdometryTopic::NAME,
     topic::GroundTruthTopic::NAME,
 ];
 
-/// Whether a node feeds the graph.
+/// True if a node publishes measurements.
 pub fn is_source(node: &Node) -> bool {
     node.outputs
         .iter()
         .any(|o| MEASUREMENTS.contains(&o.as_str()))
 }
 
-/// Whether nothing more can come: every source is done, or every node is.
-/// Takes for each node whether it is a source and whether it is done.
+/// True if every source is done, or every node. Takes a pair for each node: is a source, is done.
 pub fn is_over(nodes: impl Iterator<Item = (bool, bool)>) -> bool {
     let (mut sources, mut sources_done, mut all_done) = (0, 0, true);
     for (source, done) in nodes {
@@ -249,7 +245,7 @@ mod tests {
     use super::*;
     use crate::run::testing::parsed;
 
-    /// The restarts of a node, and a clock.
+    /// Restarts of a node, with a clock.
     struct Course {
         restarts: Restarts,
         now: Instant,
@@ -269,7 +265,7 @@ mod tests {
             }
         }
 
-        /// The process ends after this many seconds.
+        /// Ends the process after this many seconds of work.
         fn end_after(&mut self, seconds: u64, ended: Ended) -> AfterEnd {
             let worked = Duration::from_secs(seconds);
             self.now += worked;

@@ -1,8 +1,8 @@
-//! What the tests of several files need.
+//! Helper shared by the tests of several files.
 
 use dataflow::Dataflow;
 
-/// A descriptor whose topics are those of the graph.
+/// Parses a descriptor with the topics of the graph.
 pub(super) fn parsed(text: &str) -> Dataflow {
     let topics = dataflow::Topics {
         names: messages::topic::NAMES,

@@ -1,5 +1,5 @@
-//! What the tracker takes over from the nodes before it: it judges scans as they do, and where
-//! it is wired to ask for searches, the accumulator waits to be asked.
+//! Copies settings to the tracker, so that it judges scans as the nodes before it do. If it is
+//! wired to request searches, the accumulator waits for its requests.
 
 use dataflow::{Dataflow, Node};
 use messages::{Topic, topic};
@@ -10,7 +10,7 @@ use super::forward::plays_at_max;
 const TRACKER: &str = "tracker";
 const SEARCH: &str = "--search";
 
-/// Options that a tracker shares with other nodes, and with which.
+/// Options that a tracker shares with other nodes, by executable.
 const SHARED: [(&str, &[&str]); 2] = [
     (
         ACCUMULATOR,
@@ -35,14 +35,14 @@ const SHARED: [(&str, &[&str]); 2] = [
     ),
 ];
 
-/// Whether anybody sends where the robot is, from scan to scan.
+/// True if a node publishes tracked poses.
 pub fn has_tracker(dataflow: &Dataflow) -> bool {
     let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
     outputs.any(|output| output == topic::Tracked::NAME)
 }
 
-/// Gives trackers the settings of others that they do not have, and has accumulators search
-/// what is asked for alone, unless nothing is to be lost.
+/// Copies missing options from accumulator and peak_extractor to trackers. Sets `--search asked`
+/// for accumulators that take `attention`, unless `--rate max` is used.
 pub fn settle(dataflow: &mut Dataflow) {
     for (executable, options) in SHARED {
         for option in options {
@@ -69,7 +69,7 @@ pub fn settle(dataflow: &mut Dataflow) {
     }
 }
 
-/// What the first node with an executable has for an option.
+/// Returns the value of an option of the first node with an executable.
 fn setting(dataflow: &Dataflow, executable: &str, option: &str) -> Option<String> {
     let mut nodes = dataflow.nodes.iter();
     let node = nodes.find(|node| node.executable() == executable)?;

@@ -1,4 +1,4 @@
-//! What the tracker said of the scans of a run, and how near the truth it was. Pure.
+//! Figures on the tracker's poses of a run: states, latency and accuracy. Pure.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,6 @@ use statistics::{Accuracy, Answer, Distribution, Figures, Tail};
 
 use super::pairs::Pairs;
 
-/// Counts the poses of scans.
 #[derive(Debug)]
 pub(crate) struct Tracking {
     states: BTreeMap<&'static str, u64>,
@@ -22,19 +21,19 @@ pub(crate) struct Tracking {
 /// The tracker's figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct TrackingFigures {
-    /// Scans of which the tracker said where the robot is, or that it does not know.
+    /// Scans that the tracker answered, including those without a pose.
     pub scans: u64,
-    /// Of those, the share of each state, 0..=1.
+    /// Share of each state in the scans, 0..=1.
     pub states: BTreeMap<&'static str, f64>,
-    /// Poses against the truth, where the recording holds it.
+    /// Poses compared with the truth, if the recording holds it.
     #[serde(flatten)]
     pub accuracy: Figures,
-    /// From the scan's entry into the graph to the tracker's pose.
+    /// Time from the scan's entry into the graph to the tracker's pose.
     pub latency_ms: Tail,
 }
 
 impl Tracking {
-    /// Nothing received. Errors and times keep the newest `window` values.
+    /// Creates empty figures. Errors and times keep the newest `window` values.
     pub(crate) fn new(window: usize) -> Self {
         Tracking {
             states: BTreeMap::new(),
@@ -45,7 +44,7 @@ impl Tracking {
         }
     }
 
-    /// Takes the pose of a scan, sent this many milliseconds after it.
+    /// Records the pose of a scan, published `latency_ms` after it.
     pub(crate) fn pose(&mut self, header: &PoseHeader, latency_ms: f64) {
         let state = TrackState::from_code(header.state);
         self.scans += 1;
@@ -54,7 +53,7 @@ impl Tracking {
         let pose = header.laser().map(Into::into);
         let answer = Answer {
             poses: pose.into_iter().collect(),
-            // The statistics count who claims to be sure, and is wrong.
+            // The statistics count confident poses that are wrong.
             verdict: (state == Some(TrackState::Unique)).then_some(Verdict::Unique),
         };
         if let Some((answer, truth)) = self.pairs.answer(header.stamp.measured_ns, answer) {
@@ -62,14 +61,14 @@ impl Tracking {
         }
     }
 
-    /// Takes the true pose of a scan.
+    /// Records the true pose of a scan.
     pub(crate) fn truth(&mut self, measured_ns: i64, truth: Pose) {
         if let Some((answer, truth)) = self.pairs.truth(measured_ns, truth) {
             self.accuracy.add(truth, &answer);
         }
     }
 
-    /// The figures so far; none if there is no tracker.
+    /// Returns the figures so far; `None` without poses.
     pub(crate) fn figures(&self) -> Option<TrackingFigures> {
         let share = |count: u64| count as f64 / self.scans as f64;
         let states = self.states.iter();
@@ -111,7 +110,7 @@ mod tests {
         assert_eq!(figures.states, shares);
         assert_eq!((figures.accuracy.truths, figures.accuracy.unique), (3, 2));
         assert_eq!(figures.accuracy.unique_wrong, 1);
-        // A difference of two coordinates.
+        // The tolerance covers the difference of two coordinates.
         assert!((figures.accuracy.error_m.median.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!(figures.latency_ms.p50, Some(10.0));
     }

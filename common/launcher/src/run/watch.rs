@@ -1,11 +1,10 @@
-//! Listens to the graph: takes what has come and enters it in the journal.
+//! Receives messages of the graph and enters them in the journal.
 
 use messages::{HealthHeader, topic};
 use transport::{Graph, Input, Subscriber, TransportError};
 
 use super::{journal::Journal, output::Reader};
 
-/// The topics that the launcher subscribes to.
 pub(crate) struct Watch {
     first_laser: Option<String>,
     scans: Subscriber<topic::Scan>,
@@ -13,29 +12,27 @@ pub(crate) struct Watch {
     hypotheses: Subscriber<topic::Hypotheses>,
     poses: Subscriber<topic::Tracked>,
     health: Subscriber<topic::Health>,
-    /// Where what the nodes log is wanted.
+    /// Subscriber to the nodes' log, if it is written to files.
     logs: Option<Subscriber<topic::Log>>,
 }
 
-/// What came of one look at the topics.
+/// Result of receiving all pending messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Received {
-    /// Any answer.
+    /// True if any answer or pose came.
     pub answers: bool,
-    /// Scans of which the answer came, as their player counts them; 0 where none came now.
+    /// Number of scans answered so far, by the counter of their player; 0 if no answer came now.
     pub taken: u64,
-    /// Whether somebody reads them.
+    /// State of the reader of standard output.
     pub reader: Reader,
 }
 
 impl Watch {
-    /// Subscribes; to be called before any node sends.
+    /// Subscribes; to be called before any node publishes. With several lasers, answers are for the
+    /// scans of `first_laser`. `logs` also subscribes to the nodes' log.
     ///
     /// # Errors
-    /// The graph refuses.
-    ///
-    /// `first_laser` is the one whose scans are answered, where there are several; what the
-    /// nodes log is received where `logs` says so.
+    /// A topic cannot be subscribed.
     pub(crate) fn new(
         graph: &Graph,
         first_laser: Option<String>,
@@ -52,12 +49,12 @@ impl Watch {
         })
     }
 
-    /// What should wake the launcher. Scans need not: their answers will.
+    /// Inputs that wake the launcher. Scans need not, as their answers do.
     pub(crate) fn inputs(&self) -> [&dyn Input; 4] {
         [&self.truths, &self.hypotheses, &self.poses, &self.health]
     }
 
-    /// Takes all that has come, and calls for each report of a node on itself.
+    /// Receives all pending messages; calls `on_health` for each health message.
     ///
     /// # Errors
     /// A topic cannot be read.
@@ -93,7 +90,7 @@ impl Watch {
             received.taken = found.header().stamp.counter.saturating_add(1);
             received.reader = journal.answer(found.header(), found.items());
         }
-        // A pose follows the answer that it was made of.
+        // Poses come after the answers that they are based on.
         while let Some(pose) = self.poses.receive()? {
             received.answers = true;
             let reader = journal.pose(pose.header(), pose.items());

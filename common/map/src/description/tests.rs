@@ -7,7 +7,7 @@ fn parse(text: &str) -> Result<Description, MapError> {
     Description::parse(text, Path::new("maps/floor.yaml"))
 }
 
-/// The message for `GOOD` with one piece changed.
+/// Returns the error for `GOOD` with one piece replaced.
 fn refusal(piece: &str, by: &str) -> String {
     assert!(GOOD.contains(piece));
     parse(&GOOD.replace(piece, by)).unwrap_err().to_string()
@@ -202,7 +202,7 @@ proptest::proptest! {
     #[test]
     fn no_text_makes_it_panic(text in "\\PC{0,200}", cut in 0..GOOD.len(), byte in 0u8..128) {
         let _ = parse(&text);
-        // One damaged character of a sound description.
+        // One damaged character of a valid description.
         let mut bytes = GOOD.as_bytes().to_vec();
         bytes[cut] = byte;
         let _ = parse(std::str::from_utf8(&bytes).unwrap());

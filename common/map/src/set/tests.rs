@@ -51,7 +51,7 @@ fn what_names_no_image_is_no_map_of_a_folder() {
     assert!(error.contains("of 3 YAML files, as "), "{error}");
     assert!(lines.is_empty());
 
-    // One that is being written, or is broken, is still one.
+    // A file that is being written or is broken still counts as a map.
     let maps = [
         ("a.yaml", "\u{feff}image: a.pgm\n"),
         ("b.yaml", ""),
@@ -142,7 +142,7 @@ fn transitions_are_between_each_two_of_their_maps() {
     let quarter = std::f64::consts::FRAC_PI_2;
     assert_eq!(down.map_from_region[0], Pose::new(1.0, 2.0, -quarter));
     assert_eq!(up.map_from_region[0], Pose::new(-1.5, 3.0, quarter));
-    // Of some maps, those between them, by their new numbers.
+    // A selection keeps the transitions between its maps, with the new indices.
     let on = ["ground".to_owned(), "first".to_owned()];
     let some = set.select(&on).unwrap();
     assert_eq!(names(&some.maps), ["ground", "first"]);

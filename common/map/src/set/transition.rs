@@ -1,4 +1,4 @@
-//! Where a robot goes from one map of a set to another.
+//! Transitions of a robot between maps of a set.
 
 use std::collections::BTreeMap;
 
@@ -8,20 +8,20 @@ use serde::Deserialize;
 use super::{MapFile, all_names};
 use crate::keys::Scalar;
 
-/// The longest side of a transition, metres.
+/// Largest side of a transition in metres.
 const MAX_TRANSITION_M: f64 = 100.0;
 
-/// A rectangle that two maps have, as a lift, stairs, or a door between two buildings. A robot
-/// that is somewhere in it on one map is at the same place of it on the other.
+/// A rectangle that is on two maps, such as a lift, stairs, or a door between two buildings. A
+/// robot in it has the same pose relative to the rectangle on both maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transition {
-    /// What it is called.
+    /// Name of the transition.
     pub name: String,
-    /// The numbers of the two maps in their set, from 0.
+    /// Indices of the two maps in their set, from 0.
     pub maps: [usize; 2],
-    /// The rectangle's centre and its x axis on each of them.
+    /// Centre and x axis of the rectangle on each map.
     pub map_from_region: [Pose; 2],
-    /// Its sides along its x and y, metres.
+    /// Sides of the rectangle along its x and y, in metres.
     pub size_m: [f64; 2],
 }
 
@@ -38,7 +38,7 @@ impl TransitionEntry {
         self.name.text()
     }
 
-    /// One for each two of its maps.
+    /// Returns a transition for each pair of its maps.
     pub(super) fn transitions(&self, maps: &[MapFile]) -> Result<Vec<Transition>, String> {
         let number = |scalar: &Scalar| scalar.number().filter(|number| number.is_finite());
         let side = |scalar: &Scalar| number(scalar).filter(|m| *m > 0.0 && *m <= MAX_TRANSITION_M);

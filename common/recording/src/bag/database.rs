@@ -1,12 +1,11 @@
-//! How a database is opened that somebody else made: for reading, also where
-//! nothing can be written, and so that nothing is left beside it.
+//! Opens a foreign database for reading, also in a read-only folder, and leaves no files next to
+//! it.
 //!
-//! SQLite writes beside a database even to read it where it is in WAL mode (bytes
-//! 18 and 19 of its header are 2): there the last messages may stand in a log of
-//! their own, `FILE-wal`, and readers agree in another, `FILE-shm`. So where there
-//! is a log with content, both are copied to a temporary folder and opened there;
-//! where there is none, the file is all there is, and SQLite is set up to assume that nobody
-//! changes it. The same holds for the journal of a writer that was cut off.
+//! SQLite writes files next to a database in WAL mode (bytes 18 and 19 of its header are 2) even to
+//! read it: the last messages may be in a log, `FILE-wal`, and readers coordinate in another file,
+//! `FILE-shm`. So if there is a log with content, database and log are copied to a temporary folder
+//! and opened there. Without a log, the file is complete, and SQLite is told to assume that it does
+//! not change. The same holds for the journal of a writer that was killed.
 //! (<https://www.sqlite.org/wal.html>, section 5, and `immutable` in
 //! <https://www.sqlite.org/uri.html>.)
 
@@ -22,16 +21,15 @@ use tempfile::TempDir;
 use super::{damaged, refused};
 use crate::RecordingError;
 
-/// An open database.
 pub(super) struct Database {
     pub(super) connection: Connection,
-    /// Whether it is in WAL mode, and there is no log.
+    /// True if it is in WAL mode, but there is no log.
     pub(super) lacks_log: bool,
-    /// Where it lies if it had to be copied; goes with it.
+    /// Folder of the copy, if one was needed; deleted with this value.
     _copy: Option<TempDir>,
 }
 
-/// The log of a database in WAL mode.
+/// Path of the log of a database in WAL mode.
 pub(super) fn log_of(path: &Path) -> PathBuf {
     beside(path, "-wal")
 }
@@ -43,8 +41,7 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 }
 
 impl Database {
-    /// Opens the database at `place`, which errors call `path`, and checks its
-    /// structure.
+    /// Opens the database at `place`, which errors call `path`, and checks its structure.
     pub(super) fn open(path: &Path, place: &Path) -> Result<Self, RecordingError> {
         let failed = |error: rusqlite::Error| refused(path, error.to_string());
         let has_content =
@@ -94,7 +91,7 @@ impl Database {
             // Its last page may be in the log.
             return Ok(());
         }
-        // SQLite takes what a last page lacks for zeros.
+        // SQLite reads the missing bytes of a truncated last page as zeros.
         let page: u32 = self
             .connection
             .query_row("PRAGMA page_size", (), |row| row.get(0))
@@ -106,7 +103,7 @@ impl Database {
         }
     }
 
-    /// Refuses views and virtual tables in the place of a bag's tables: a query of theirs may
+    /// Rejects views and virtual tables in place of a bag's tables, because a query of them may
     /// never end.
     fn check_tables(&self, path: &Path) -> Result<(), RecordingError> {
         let failed = |error: rusqlite::Error| refused(path, error.to_string());
@@ -122,10 +119,10 @@ impl Database {
     }
 }
 
-/// What a copy is called.
+/// File name of the copy.
 const COPY: &str = "bag.db3";
 
-/// A folder with the database and what stands beside it.
+/// Copies the database and its logs to a temporary folder.
 fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, RecordingError> {
     let no_room = |error: std::io::Error| {
         let folder = std::env::temp_dir();
@@ -149,19 +146,19 @@ fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, Rec
     Ok(folder)
 }
 
-/// A copy has the permissions of what was copied.
+/// Makes a copy writable; it inherits the permissions of the original.
 fn writable(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600))
 }
 
-/// A copy may be changed, as SQLite does where a log is to be applied.
+/// Opens a copy for writing, because SQLite changes it to apply a log.
 fn open_copy(copy: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     Connection::open_with_flags(copy, flags)
 }
 
-/// `unchanged` says that the file is all there is.
+/// Opens the file in place; `unchanged` says that no process changes it and that it has no log.
 fn open_alone(place: &Path, unchanged: bool) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     match unchanged {
@@ -170,8 +167,7 @@ fn open_alone(place: &Path, unchanged: bool) -> rusqlite::Result<Connection> {
     }
 }
 
-/// A file's name as SQLite takes one with options: all but plain letters written
-/// as `%` and two digits.
+/// SQLite URI of a file, with all bytes except plain letters, digits and `/._-` percent-encoded.
 fn immutable(place: &Path) -> String {
     let place = std::path::absolute(place).unwrap_or_else(|_| place.to_owned());
     let mut name = "file:".to_owned();
@@ -187,8 +183,7 @@ fn immutable(place: &Path) -> String {
     name + "?immutable=1"
 }
 
-/// Versions of the format for writing and for reading, which say that there is a
-/// log.
+/// Write and read version of the file format that stand for WAL mode.
 const WAL_VERSIONS: [u8; 2] = [2, 2];
 
 fn is_in_wal_mode(path: &Path, place: &Path) -> Result<bool, RecordingError> {
@@ -230,8 +225,7 @@ mod tests {
         names
     }
 
-    /// A database in WAL mode whose rows are in its log, as a recorder that was cut
-    /// off leaves it.
+    /// Creates a database in WAL mode whose rows are in its log, as a killed recorder leaves it.
     fn cut_off(folder: &Path) -> PathBuf {
         let (open, path) = (folder.join("open.db3"), folder.join("r ü.db3"));
         let writer = Connection::open(&open).unwrap();

@@ -34,7 +34,7 @@ fn a_sample_gives_its_map_truths_and_mount() {
     assert_eq!(truths.len(), sample::SCANS);
     let first = &truths[&sample::stamp_ns(0)];
     assert_eq!(first.frame, "map");
-    // Through a quaternion and back: a few units in the last place.
+    // Tolerance: a conversion to a quaternion and back costs a few units in the last place.
     assert!(first.pose.is_within(sample::truth(0), 1e-12, 1e-12));
     let mount = recording.base_from_laser("laser").unwrap().unwrap();
     assert_eq!(mount.base_frame, "base_link");
@@ -192,7 +192,7 @@ fn odometry_names_the_base_on_its_topic_and_on_tf() {
     );
 }
 
-/// A recording with these transforms on /tf, each with odometry's own.
+/// A recording with these transforms on `/tf`, each next to that of odometry.
 fn on_tf(lasers: &[TransformStamped]) -> Recording {
     on_tf_of("base_link", lasers)
 }

@@ -25,7 +25,7 @@ fn tree(transforms: &[TransformStamped]) -> TransformTree {
 }
 
 fn assert_near(found: Pose, expected: Pose) {
-    // A few rotations of numbers near 1: a few units in the last place.
+    // Tolerance: a few rotations of numbers near 1 cost a few units in the last place.
     assert!(
         found.is_within(expected, 1e-12, 1e-12),
         "{found:?} {expected:?}"
@@ -87,7 +87,7 @@ fn the_base_is_what_odometry_moves_if_that_bears_the_laser() {
     assert!(named.on_odometry("/chassis") && !named.on_odometry("chassis"));
     assert_eq!(base(&named).base_frame, "chassis");
     assert_near(base(&named).base_from_laser, Pose::new(-1.0, 0.0, PI));
-    // A laser is no base, and what the transforms do not name is none either.
+    // A laser is not a base, and neither is a frame that the transforms do not have.
     for other in ["laser", "rear", "robot", ""] {
         named.on_odometry(other);
         assert_eq!(base(&named).base_frame, "base_link", "{other}");
@@ -121,7 +121,7 @@ fn the_latest_transform_counts_and_a_circle_ends() {
     assert_near(itself.base_from_laser, Pose::IDENTITY);
 }
 
-/// A turn by angles about x, then y, then z, radians.
+/// Rotation by angles about x, then y, then z, in radians.
 fn turned(roll: f64, pitch: f64, yaw: f64) -> ros::Quaternion {
     let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
     ros::Quaternion {
@@ -156,7 +156,7 @@ fn a_laser_upside_down_keeps_the_heading_of_its_x_axis() {
             with_rotation(laser, turned(roll, pitch, about_z)),
         ]);
         let mount = tree.base_from("laser").unwrap();
-        // 1e-9 is far above what a few rotations round, and far below a degree.
+        // 1e-9 is far above the rounding of a few rotations, and far below a degree.
         assert!((mount.tilt_degrees - tilt).abs() < 1e-9, "{mount:?}");
         if tilt < MAX_TILT_DEGREES {
             assert_eq!(mount.upside_down, upside_down, "{mount:?}");

@@ -1,8 +1,7 @@
-//! The messages of a recording as they stand in its files, in the order of their
-//! log times.
+//! Undecoded messages of a recording, in the order of their log times.
 //!
-//! A block (a chunk, or a run of messages outside of chunks) is unpacked when
-//! its first message is next; of its messages, those that are wanted are kept.
+//! A block (a chunk, or a run of messages outside of chunks) is unpacked when its first message is
+//! next; only its wanted messages are kept.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,24 +17,22 @@ use crate::{Channel, Damage, RecordingError};
 /// A message that is not decoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawRecord<'a> {
-    /// Its channel, with the messages that its file has of it.
+    /// Its channel, with the number of messages that its file has on it.
     pub channel: &'a Channel,
-    /// When it was recorded, nanoseconds since 1970.
+    /// Time of recording, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// When it was published, nanoseconds since 1970.
+    /// Time of publication, in nanoseconds since 1970.
     pub publish_time_ns: u64,
-    /// What it says, encoded as the channel says.
+    /// Content, in the encoding of the channel.
     pub body: Vec<u8>,
 }
 
-/// Iterates over a recording's messages by log time; where times are equal, in
-/// the order of the files and then of the places there. Damage is the last item.
+/// Iterator over a recording's messages by log time; messages with equal times come in the order of
+/// the files, then of their positions there. Damage is the last item.
 pub struct RawRecords<'a> {
     recording: &'a Recording,
-    /// Which channels are wanted.
     is_wanted: Box<dyn Fn(&Channel) -> bool + 'a>,
-    /// Blocks that are not unpacked yet and the number of their file, the next one
-    /// last.
+    /// Blocks that are not unpacked yet, each with the number of its file; the next one is last.
     blocks: Vec<(usize, &'a Block)>,
     next: BinaryHeap<Reverse<Pending>>,
     damage: Option<RecordingError>,
@@ -43,7 +40,7 @@ pub struct RawRecords<'a> {
 
 /// A message that waits for its turn.
 struct Pending {
-    /// Log time, then place: the file, the block, and within it.
+    /// Sort key: log time, file, block, index within the block.
     order: (i64, usize, usize, usize),
     publish_time_ns: u64,
     channel: u16,
@@ -51,8 +48,7 @@ struct Pending {
 }
 
 impl<'a> RawRecords<'a> {
-    /// The messages of the channels that are wanted, and at the end what is
-    /// damaged.
+    /// Iterates over the messages of the wanted channels; `damage` is the last item.
     pub(crate) fn new(
         recording: &'a Recording,
         is_wanted: impl Fn(&Channel) -> bool + 'a,
@@ -124,7 +120,7 @@ impl<'a> RawRecords<'a> {
             };
             let channel = header.channel_id;
             if registry.channel(channel).is_some_and(is_wanted) {
-                // The survey has seen that the time fits.
+                // The survey has checked that the time fits.
                 let log_time = i64::try_from(header.log_time).unwrap_or(i64::MAX);
                 next.push(Reverse(Pending {
                     order: (log_time, index, block.at, place),
@@ -137,7 +133,7 @@ impl<'a> RawRecords<'a> {
         })
     }
 
-    /// Ends the iteration.
+    /// Ends the iteration after this error.
     fn end(&mut self, error: RecordingError) -> RecordingError {
         self.blocks.clear();
         self.next.clear();

@@ -1,12 +1,11 @@
-//! The messages of a recording that are read, decoded, in the order of their log
-//! times.
+//! Decoded messages of a recording, in the order of their log times.
 
 use super::Recording;
 use super::raw::{RawRecord, RawRecords};
 use crate::{Channel, Kind, Message, Record, RecordingError, unpack};
 
-/// Iterates over a recording's messages by log time; where times are equal, in
-/// the order of the file.
+/// Iterator over a recording's decoded messages by log time; messages with equal times come in the
+/// order of the file.
 ///
 /// A message that does not decode is an error in its place, and the next one
 /// follows. Damage of the file is the last item.
@@ -15,7 +14,7 @@ pub struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    /// The messages of some kinds, and at the end what is damaged.
+    /// Iterates over the messages of some kinds; `damage` is the last item.
     pub(crate) fn new(
         recording: &'a Recording,
         kinds: &[Kind],
@@ -99,7 +98,7 @@ mod tests {
     fn equal_times_keep_the_order_of_the_file() {
         for packing in PACKINGS {
             let mut writer = RecordingWriter::in_memory(packing).unwrap();
-            // Two chunks that overlap in time; the topics name the places.
+            // Two chunks that overlap in time; the topics show the order in the file.
             let pose = &sample::records().pop().unwrap().message;
             for (topic, time) in [("/a", 5), ("/b", 3), ("/c", 5)] {
                 writer.write(topic, time, pose).unwrap();

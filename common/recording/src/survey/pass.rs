@@ -1,8 +1,7 @@
 //! One pass over a recording's records, from start to end.
 //!
-//! The library finds the records and compares the checksums; here is what must
-//! stand where, and what is damaged and at which byte if it does not. What lies
-//! after the first damage is not looked at.
+//! The library finds the records and compares the checksums; this module checks the order of the
+//! records, and reports damage with its position. Nothing after the first damage is read.
 
 use std::ops::Range;
 
@@ -19,32 +18,30 @@ use crate::parse::{name, parse, reason};
 use crate::registry::Registry;
 use crate::{Damage, MAX_CHUNK_BYTES};
 
-/// How far the pass is.
 pub(crate) struct Pass<'a> {
     bytes: &'a [u8],
     survey: Survey,
     part: Part,
     /// Messages outside of chunks since the last chunk.
     loose: Option<Block>,
-    /// How many blocks lie before the first record that no chunk's checksum
-    /// covers.
+    /// Number of blocks before the first record that no chunk checksum covers.
     unchecked_from: Option<usize>,
 }
 
-/// Where in the file the pass is.
+/// Section of the file that the pass is in.
 #[derive(Debug, Clone, Copy)]
 enum Part {
     Start,
     Data,
     Summary {
-        /// Its first byte.
+        /// Offset of its first byte.
         from: usize,
     },
 }
 
 impl<'a> Pass<'a> {
-    /// Looks at a file that starts as a recording does; gives what it holds, and
-    /// what ends the sound part if it is not the end.
+    /// Surveys a file that starts with the magic; returns its content and the damage that ends the
+    /// sound part, if any.
     pub(crate) fn over(bytes: &'a [u8]) -> (Survey, Option<Damage>) {
         let mut pass = Pass {
             bytes,
@@ -54,7 +51,7 @@ impl<'a> Pass<'a> {
             unchecked_from: None,
         };
         let damage = pass.run().err();
-        // Also before damage: what was read until then is sound.
+        // Also before damage: everything read so far is sound.
         pass.close_loose();
         if let Some(Damage::DataChecksum { .. }) = damage {
             pass.drop_unchecked();
@@ -75,8 +72,8 @@ impl<'a> Pass<'a> {
             match event {
                 Ok(LinearReadEvent::ReadRequest(wanted)) => feed(&mut reader, wanted, &mut rest),
                 Ok(LinearReadEvent::Record { opcode, data }) => {
-                    // The reader asks for the bytes of one record at a time, so
-                    // what it has been given ends where this one does.
+                    // The reader requests the bytes of one record at a time, so the bytes it was
+                    // given end where this record ends.
                     let end = self.bytes.len() - rest.len();
                     self.record(opcode, data, at..end)?;
                     at = end;
@@ -118,8 +115,7 @@ impl<'a> Pass<'a> {
             }
             (Part::Summary { .. }, op::STATISTICS) => self.check_count(body, at)?,
             (Part::Summary { .. }, op::DATA_END) => return misplaced("behind the data"),
-            // Indexes hold no messages, and later versions may add what this one
-            // does not know.
+            // Indexes hold no messages, and later versions of the format may add record types.
             _ => {}
         }
         Ok(())
@@ -168,9 +164,8 @@ impl<'a> Pass<'a> {
         self.unchecked_from.get_or_insert(blocks);
     }
 
-    /// Where the data's checksum is wrong, messages are believed only as far as
-    /// a chunk's own checksum covers them, and nothing uncovered lies before
-    /// them.
+    /// Drops messages after a wrong data checksum: only chunks with their own checksum, and with
+    /// nothing unchecked before them, are trusted.
     fn drop_unchecked(&mut self) {
         if let Some(checked) = self.unchecked_from {
             self.survey.blocks.truncate(checked);
@@ -189,8 +184,8 @@ impl<'a> Pass<'a> {
         Err(Damage::MessageCount { claimed, found })
     }
 
-    /// What it means that the reader stopped at the record at byte `at`, with
-    /// `left` bytes that it was not given.
+    /// Converts an error of the reader at the record at byte `at`; `left` is the number of bytes
+    /// that it was not given.
     fn damage(&self, error: &McapError, at: usize, left: usize) -> Damage {
         let bytes = self.bytes;
         let from = |at| shown(bytes.get(at..).unwrap_or_default());
@@ -226,7 +221,7 @@ impl<'a> Pass<'a> {
                 at: at as u64,
                 found: from(at + MAGIC.len()),
             },
-            // The reader itself looks into the data end and the footer.
+            // The reader parses the data end and the footer itself.
             (other, _) => Damage::Record {
                 at: at as u64,
                 kind: bytes.get(at).map_or("missing", |&opcode| name(opcode)),

@@ -1,4 +1,4 @@
-//! A message as it will stand in a file: made on one thread, written on another.
+//! An encoded message: made on one thread, written on another.
 
 use std::borrow::Cow;
 
@@ -9,18 +9,16 @@ use crate::RecordingError;
 /// A message that is encoded but not yet written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoded {
-    /// The channel.
     pub topic: Cow<'static, str>,
-    /// The schema's name.
+    /// Name of the schema.
     pub schema: &'static str,
-    /// The schema's text.
+    /// Text of the schema.
     pub definition: &'static str,
-    /// Whether late joiners get the newest message, as of `/map`: it stands at
-    /// the head of each part of a recording that is split.
+    /// True if late joiners get the newest message, as on `/map`: it is repeated at the start of
+    /// each part of a split recording.
     pub latched: bool,
-    /// When it was recorded, nanoseconds since 1970.
+    /// Time of recording, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// The message in CDR.
     pub body: Vec<u8>,
 }
 
@@ -28,7 +26,7 @@ impl Encoded {
     /// Encodes a message of a topic that is not latched.
     ///
     /// # Errors
-    /// If a text or a list of it is longer than CDR can say.
+    /// If a string or a sequence in it is longer than CDR allows.
     pub fn new<M: RosMessage>(
         topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,
@@ -48,10 +46,10 @@ impl Encoded {
         })
     }
 
-    /// As [`Encoded::new`], of a latched topic.
+    /// Same as [`Encoded::new`], for a latched topic.
     ///
     /// # Errors
-    /// As [`Encoded::new`].
+    /// Same as [`Encoded::new`].
     pub fn latched<M: RosMessage>(
         topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,

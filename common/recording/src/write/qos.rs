@@ -1,14 +1,13 @@
-//! Quality of service, as rosbag2 keeps it with each channel.
+//! Quality of service, as rosbag2 stores it with each channel.
 
-/// The longest time, by which ROS 2 says "no limit".
+/// The longest duration, which means "no limit" in ROS 2.
 const NO_LIMIT: &str = "sec: 9223372036\n    nsec: 854775807";
 
-/// The key of a channel's metadata.
+/// Metadata key of a channel.
 pub(crate) const KEY: &str = "offered_qos_profiles";
 
-/// The value of that key: one profile, reliable and keeping the last messages;
-/// transient local where the topic is latched, else volatile. The numbers are
-/// those of `rmw_qos_profile_t`.
+/// Value of that key: one profile, reliable, with history "keep last"; transient local if the topic
+/// is latched, else volatile. The numbers are those of `rmw_qos_profile_t`.
 pub(crate) fn offered(latched: bool) -> String {
     let (depth, durability) = if latched { (1, 1) } else { (10, 2) };
     format!(

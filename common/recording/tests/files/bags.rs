@@ -1,5 +1,5 @@
-//! Bags of rosbag2 as they lie on disks: folders with several parts, packed or
-//! not, made of the recording of the corridor.
+//! Tests of rosbag2 bags: folders with several parts, compressed or not, made from the recording of
+//! the corridor.
 
 #![allow(
     clippy::unwrap_used,
@@ -22,8 +22,8 @@ fn records(recording: &Recording) -> Vec<Record> {
     recording.records().map(Result::unwrap).collect()
 }
 
-/// Writes the corridor in parts that overlap in time: every `parts`-th message is
-/// in the same one; the map and the mount, which come first, in the first alone.
+/// Splits the corridor into parts that overlap in time: message i goes to part i modulo `parts`;
+/// the map and the mount, which come first, only go to the first part.
 fn split(folder: &Path, parts: usize, pack: fn(&[u8]) -> Vec<u8>) -> Vec<PathBuf> {
     let corridor = Recording::open(CORRIDOR).unwrap();
     let mut writers: Vec<_> = (0..parts)
@@ -58,7 +58,7 @@ fn packed(body: &[u8]) -> Vec<u8> {
     zstd::encode_all(body, 3).unwrap()
 }
 
-/// All messages, in order of their times, the map and the mount.
+/// Asserts that all messages are there in time order, and the map and the mount.
 fn assert_is_corridor(found: &Recording) {
     let corridor = Recording::open(CORRIDOR).unwrap();
     let (all, expected) = (records(found), records(&corridor));
@@ -94,7 +94,7 @@ fn the_parts_of_a_folder_are_one_recording() {
     );
     assert_is_corridor(&Recording::open(folder.path()).unwrap());
     assert_is_corridor(&Recording::open(folder.path().join("metadata.yaml")).unwrap());
-    // As a shell writes out `drive/*`.
+    // Like the expansion of `drive/*` by a shell.
     let all: Vec<PathBuf> = std::fs::read_dir(folder.path())
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -112,7 +112,7 @@ fn packed_messages_and_packed_files_are_unpacked() {
         std::fs::remove_file(path).unwrap();
     }
     assert_is_corridor(&Recording::open(folder.path()).unwrap());
-    // Whether or not the description names them as they are called now.
+    // The names in the description may have the extension of compression or not.
     describe(folder.path(), &["drive_0.mcap", "drive_1.mcap.zstd"]);
     assert_is_corridor(&Recording::open(folder.path()).unwrap());
     let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();

@@ -1,5 +1,5 @@
-//! What files that claim absurd lengths make this process reserve: next to
-//! nothing, and never more than a chunk may have.
+//! Tests that files with absurd claimed lengths make this process allocate next to nothing, and
+//! never more than the limit for a chunk.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,7 +8,7 @@ use mcap::MAGIC;
 use mcap::records::op;
 use recording::{MAX_CHUNK_BYTES, Recording};
 
-/// The system's allocator, which notes the largest request.
+/// The system's allocator, recording the largest request.
 struct Noting;
 
 static LARGEST: AtomicUsize = AtomicUsize::new(0);
@@ -17,7 +17,7 @@ static LARGEST: AtomicUsize = AtomicUsize::new(0);
 unsafe impl GlobalAlloc for Noting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are those that it asks for.
+        // SAFETY: the caller upholds the contract, which is the same.
         unsafe { System.alloc(layout) }
     }
 
@@ -57,8 +57,7 @@ fn chunk(claimed: u64, checksum: u32, packing: &str, packed: &[u8]) -> Vec<u8> {
     whole(op::CHUNK, &body.concat())
 }
 
-/// The largest request while a file with this record is opened and read, which
-/// must find it damaged.
+/// Largest request while a file with this record is opened and read; asserts that it is damaged.
 fn largest(record: &[u8]) -> usize {
     let header = whole(op::HEADER, &[0; 8]);
     let file = [MAGIC, &header, record].concat();
@@ -69,7 +68,7 @@ fn largest(record: &[u8]) -> usize {
     LARGEST.load(Ordering::Relaxed)
 }
 
-/// One test, because the note is one for the whole process.
+/// One test, because the record is global to the process.
 #[test]
 fn claims_reserve_nothing_that_is_not_there() {
     // Room for the small file itself, the decompressors and the error's text.
@@ -108,7 +107,7 @@ fn claims_reserve_nothing_that_is_not_there() {
         for checksum in [0, 1] {
             let absurd = largest(&chunk(MAX_CHUNK_BYTES + 1, checksum, packing, b"..."));
             assert!(absurd < LITTLE, "{packing}: {absurd}");
-            // What may be there is believed, but no more than that.
+            // A claim within the limit is trusted, but no more than that.
             let claimed = 8 * LITTLE;
             let noted = largest(&chunk(claimed as u64, checksum, packing, b"..."));
             assert!(noted <= claimed, "{packing}: {noted}");

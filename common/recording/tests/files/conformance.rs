@@ -1,5 +1,5 @@
-//! The published suite of the MCAP format: every file opens as sound, and holds the messages, attachments and metadata that the suite says it
-//! does, byte for byte.
+//! Runs the published conformance suite of MCAP: every file opens as sound and holds exactly the
+//! messages, attachments and metadata that the suite lists.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -11,7 +11,7 @@ use std::process::Command;
 use recording::Recording;
 use serde_json::{Map, Value};
 
-/// From https://github.com/foxglove/mcap, `tests/conformance/data`, MIT licence.
+/// From <https://github.com/foxglove/mcap>, `tests/conformance/data`, MIT licence.
 const SUITE: &str = "tests/conformance/data.tar.gz";
 const FILES: usize = 416;
 
@@ -39,7 +39,7 @@ fn every_file_of_the_suite_is_read_as_the_suite_says() {
     assert_eq!(compared, ALL);
 }
 
-/// What was compared in all files.
+/// Numbers of items compared in all files.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Compared {
     messages: usize,
@@ -47,7 +47,7 @@ struct Compared {
     metadata: usize,
 }
 
-/// What the suite holds.
+/// Expected numbers for the suite.
 const ALL: Compared = Compared {
     messages: 1768,
     attachments: 14,
@@ -59,8 +59,7 @@ fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
     let recording = Recording::open(file).unwrap();
     assert_eq!(recording.damage(), None, "{name}");
 
-    // The suite's messages stand in the order of their times, equal ones in that
-    // of the file.
+    // The suite lists messages in time order; equal times in the order of the file.
     let mut messages = of_type(expected, "Message");
     messages.sort_by_key(|message| number(&message["log_time"]));
     assert_eq!(recording.messages(), messages.len() as u64, "{name}");
@@ -128,14 +127,14 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The fields of all records of a type, in the order of the file.
+/// Fields of all records of a type, in the order of the file.
 fn of_type(expected: &Value, kind: &str) -> Vec<Map<String, Value>> {
     let records = expected["records"].as_array().expect("a list of records");
     let of_kind = records.iter().filter(|record| record["type"] == kind);
     of_kind.map(fields).collect()
 }
 
-/// Fields are pairs of a name and a value.
+/// Converts name-value pairs to a map.
 fn fields(record: &Value) -> Map<String, Value> {
     let fields = record["fields"].as_array().expect("a list of fields");
     let pair = |field: &Value| {
@@ -145,7 +144,7 @@ fn fields(record: &Value) -> Map<String, Value> {
     fields.iter().map(pair).collect()
 }
 
-/// Numbers are texts.
+/// Parses a number, which the suite writes as a string.
 fn number(value: &Value) -> i64 {
     let text = value.as_str().expect("a number as text");
     text.parse().expect("a number")

@@ -1,4 +1,4 @@
-//! Recordings as files: of others, of robots, damaged ones.
+//! Tests with recordings as files: of other writers, of robots, and damaged ones.
 
 mod bags;
 mod claims;

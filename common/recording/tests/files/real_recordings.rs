@@ -1,5 +1,5 @@
-//! The recordings in the repository, against what another reader says of them
-//! and against the map files beside them.
+//! Compares the recordings of the repository with the output of another reader and with the map
+//! files next to them.
 
 use std::path::PathBuf;
 
@@ -81,8 +81,8 @@ fn the_first_scan_of_the_corridor_is_as_recorded() {
 
     let truth = &recording.ground_truths().unwrap()[&stamp_ns];
     assert_eq!(truth.frame, "map");
-    // The recorded quaternion is (0, 0, z, w): its half angle in another way,
-    // and so another rounding.
+    // The recorded quaternion is (0, 0, z, w); computing its half angle another way rounds
+    // differently.
     let yaw = 2.0 * (-0.248_332_621_893_838_5f64).atan2(0.968_674_821_033_009);
     let expected = Pose::new(4.190_621_611_538_742, -10.590_667_857_545_004, yaw);
     assert!(truth.pose.is_within(expected, 0.0, 1e-12), "{truth:?}");

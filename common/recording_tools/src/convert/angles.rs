@@ -1,27 +1,25 @@
-//! At which angles a laser's beams point.
+//! Bearings of a laser's beams.
 //!
-//! New lines say it. Of old ones the field of view follows from the log's
-//! parameters, or from how many beams there are: CARMEN's driver set SICK's lasers to
-//! 180° or 100° and 1°, 0.5° or 0.25° (`laser/laser_main.c`), with the last beam
-//! missing in older versions of it.
+//! New lines contain them. For old ones the field of view follows from the log's parameters, or
+//! from the number of beams: CARMEN's driver set SICK's lasers to 180° or 100° and 1°, 0.5° or
+//! 0.25° (`laser/laser_main.c`), with the last beam missing in older versions of it.
 
 use std::f64::consts::{PI, TAU};
 
 use super::carmen::{Angles, Kind, Laser};
 use super::parameters::Mounting;
 
-/// What old lines cover where nothing else is known.
+/// Field of view of old lines if nothing else is known.
 pub(super) const HALF_TURN: f64 = PI;
 
-/// Steps agree where they differ by less than this share: parameters have three
-/// digits.
+/// Steps agree if they differ by less than this share: parameters have three digits.
 const SAME_STEP: f64 = 0.02;
 
-/// The first beam and the step from beam to beam, radians. The step is negative
-/// where the line says so.
+/// Returns the bearing of the first beam and the step between beams, in radians. The step is
+/// negative if the line says so.
 ///
 /// # Errors
-/// The line's angles span more than a turn.
+/// If the line's angles span more than a full turn.
 pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), String> {
     let beams = laser.ranges.len();
     if let Some(angles) = laser.angles {
@@ -43,7 +41,7 @@ pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), Strin
         step_over(view, beams)
     };
     let start = -view / 2.0;
-    // Where the laser looks back and its pose does not say so, its beams do.
+    // If the laser looks back but its pose does not say so, its beams are turned instead.
     let is_turned = laser.poses.is_some_and(|poses| {
         geometry::wrap_angle(poses.laser.yaw - poses.robot.yaw).abs() < PI / 4.0
     });
@@ -55,8 +53,8 @@ pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), Strin
     Ok((start + turned, step))
 }
 
-/// The step of this many beams over a field of view: an odd number of them has one at
-/// either end, of an even number the last one is missing.
+/// Step of this many beams over a field of view: an odd number of beams includes both ends, an even
+/// number lacks the last one.
 pub(super) fn step_over(view: f64, beams: usize) -> f64 {
     match beams {
         0 | 1 => view,
@@ -69,7 +67,7 @@ fn gaps(beams: usize) -> usize {
     beams.saturating_sub(1).max(1)
 }
 
-/// What old lines cover whose log does not say it.
+/// Field of view of old lines if the log does not have it.
 fn usual_view(beams: usize, step_known: f64) -> f64 {
     let narrow = 100f64.to_radians();
     let is_narrow = match beams {
@@ -86,7 +84,7 @@ fn stated(angles: &Angles, beams: usize) -> Result<(f64, f64), String> {
     if angles.step != 0.0 && spanned <= allowed {
         return Ok((angles.start, angles.step));
     }
-    // A step that is left at zero follows from the field of view.
+    // A step of zero, or one that spans too much, is replaced by one from the field of view.
     let view = angles.field_of_view;
     if view > 0.0 && view <= allowed {
         return Ok((angles.start, step_over(view, beams)));
@@ -119,7 +117,7 @@ mod tests {
         }
     }
 
-    /// In degrees, of an old line.
+    /// Angles of an old line, in degrees.
     fn angles(beams: usize, view_deg: Option<f64>, step_deg: Option<f64>) -> (f64, f64) {
         let mounting = Mounting {
             field_of_view: view_deg.map(f64::to_radians),
@@ -131,7 +129,7 @@ mod tests {
     }
 
     fn check(found: (f64, f64), (start, step): (f64, f64)) {
-        // Sums and quotients of a few terms.
+        // Tolerance for sums and quotients of a few terms.
         let is_near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         assert!(
             is_near(found.0, start) && is_near(found.1, step),
@@ -158,7 +156,7 @@ mod tests {
         check(angles(200, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(1081, Some(270.0), None), (-135.0, 0.25));
         check(angles(360, Some(360.0), None), (-180.0, 1.0));
-        // The step shows whether the last beam is missing.
+        // The step shows that the last beam is missing.
         check(angles(360, Some(179.5), Some(0.5)), (-89.75, 0.5));
         check(angles(1, Some(100.0), None), (-50.0, 100.0));
         check(angles(0, Some(100.0), None), (-50.0, 100.0));

@@ -1,5 +1,4 @@
-//! Lines of CARMEN's laser logs, as far as they are understood: what they are called
-//! and what they hold.
+//! Names and contents of the supported lines of CARMEN's laser logs.
 //!
 //! | line | words after its name |
 //! |---|---|
@@ -10,54 +9,52 @@
 //! | `ODOM` | x y θ, velocities (2), acceleration, time, host, time in the log |
 //! | `PARAM` | name, value, and then no further words, or time, host, time in the log |
 //!
-//! Metres, radians and seconds; laser 1 is the front one, 2 the rear one. The old
-//! lines have no angles. (CARMEN, `logger/readlog.c` and the notes that its logger
-//! writes at the head of each log.)
+//! Units are metres, radians and seconds; laser 1 is the front one, 2 the rear one. The old lines
+//! have no angles. (CARMEN, `logger/readlog.c` and the notes that its logger writes at the head of
+//! each log.)
 
 use geometry::Pose;
 
-/// A line that is understood.
+/// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Line {
     Laser(Laser),
     Odometry(Odometry),
     Parameter(Parameter),
-    /// Nothing that matters: a comment, a mark, an empty line.
+    /// A line without data: a comment, a marker, an empty line.
     Nothing,
-    /// Of another kind, with the kind's name.
+    /// A line of another kind, with the name of the kind.
     Other(String),
 }
 
-/// A scan as its line has it.
+/// A scan as given in its line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Laser {
     pub(super) kind: Kind,
-    /// From 1, the front laser.
+    /// Number of the laser; 1 is the front one.
     pub(super) number: u8,
-    /// If the line has them.
     pub(super) angles: Option<Angles>,
-    /// Readings of this much and more are no returns, if the line has it.
+    /// Ranges of this value or more are no returns, if the line has it.
     pub(super) range_max_m: Option<f64>,
-    /// One that is no number is NaN.
+    /// Ranges in metres; NaN if not a number.
     pub(super) ranges: Vec<f32>,
-    /// If the line has them.
     pub(super) poses: Option<Poses>,
-    /// As the line says it, nanoseconds.
+    /// Time given in the line, in nanoseconds.
     pub(super) time_ns: i64,
 }
 
-/// What a line has besides its readings; kinds with more are greater.
+/// Format of a laser line, in increasing order of data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
-    /// `RAWLASER1`: angles, and no poses.
+    /// `RAWLASER1`: angles, but no poses.
     Raw,
-    /// `FLASER` or `LASER3`: no angles, and poses of the first two.
+    /// `FLASER` or `LASER3`: no angles; poses for the first two lasers only.
     Old,
-    /// `ROBOTLASER1`: both.
+    /// `ROBOTLASER1`: angles and poses.
     Robot,
 }
 
-/// Radians; the step is negative where beams run clockwise.
+/// Angles in radians; the step is negative if beams run clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Angles {
     pub(super) start: f64,
@@ -65,7 +62,7 @@ pub(super) struct Angles {
     pub(super) step: f64,
 }
 
-/// In the frame of the odometry, or of the map where they were corrected.
+/// Poses in the frame of the odometry, or of the map if they were corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Poses {
     pub(super) laser: Pose,
@@ -75,9 +72,9 @@ pub(super) struct Poses {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Odometry {
     pub(super) robot: Pose,
-    /// Forward m/s and rad/s.
+    /// Forward velocity in m/s, and turn rate in rad/s.
     pub(super) velocities: (f64, f64),
-    /// As the line says it, nanoseconds.
+    /// Time given in the line, in nanoseconds.
     pub(super) time_ns: i64,
 }
 
@@ -91,11 +88,10 @@ pub(super) struct Parameter {
 /// A line of a known kind that cannot be read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Broken {
-    /// Its name.
     pub(super) name: String,
-    /// What is wrong, in words that suit many such lines.
+    /// Kind of fault, for counting.
     pub(super) fault: Fault,
-    /// What was found, and what is allowed.
+    /// Value found, and values allowed.
     pub(super) reason: String,
 }
 
@@ -109,13 +105,13 @@ pub(super) enum Fault {
 }
 
 impl Laser {
-    /// The name that its line has, as [`name_of`] finds it.
+    /// Name of its line, by [`name_of`].
     pub(super) fn name(&self) -> String {
         name_of(self.kind, self.number)
     }
 }
 
-/// How lines of a kind begin.
+/// Name of the lines of a kind and laser.
 pub(super) fn name_of(kind: Kind, number: u8) -> String {
     match (kind, number) {
         (Kind::Robot, number) => format!("ROBOTLASER{number}"),
@@ -126,13 +122,12 @@ pub(super) fn name_of(kind: Kind, number: u8) -> String {
     }
 }
 
-/// Whether a line of this name is of a kind that logs of CARMEN have; used to distinguish
-/// such a log from other text.
+/// True if logs of CARMEN have lines of this name; used to distinguish a log from other text.
 pub(super) fn is_known(name: &str) -> bool {
     matches!(name, "ODOM" | "PARAM" | "SYNC" | "TRUEPOS") || laser_named(name).is_some()
 }
 
-/// The laser whose scans a line of this name holds.
+/// Kind and laser number of a line with this name.
 pub(super) fn laser_named(name: &str) -> Option<(Kind, u8)> {
     match name {
         "FLASER" => return Some((Kind::Old, 1)),

@@ -15,7 +15,7 @@ use super::report::Report;
 use super::to_recording::{self, Rules};
 use crate::RecordingToolsError;
 
-/// What stands below the options.
+/// Text below the options in the help.
 pub const NOTES: &str = "\
 .log, .clf and .txt are CARMEN's laser logs, which may be packed with gzip (.log.gz); .mcap is a
 recording with ROS 2 messages, .db3 (or a folder of such) a bag of rosbag2 in SQLite, of which all
@@ -35,11 +35,11 @@ pub struct Config {
     #[arg(value_name = "TO")]
     to: PathBuf,
 
-    /// The log's laser poses were corrected: make them /ground_truth
+    /// The log's laser poses are corrected: write them as /ground_truth
     #[arg(long)]
     truth: bool,
 
-    /// Readings from this range on are no returns, metres, if the log does not say
+    /// Ranges from this value on are no returns, metres, if the log does not say
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = range)]
     range_max: f32,
 }
@@ -54,8 +54,8 @@ fn range(text: &str) -> Result<f32, String> {
 /// Converts one file.
 ///
 /// # Errors
-/// The files' kinds do not go together, one cannot be read or written, the one to
-/// write exists, or nothing could be converted.
+/// If the formats of the two files are no valid pair, a file cannot be read or written, the output
+/// exists, or nothing could be converted.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let none = || no_conversion(&ending(&config.from), &config.to);
     if ending(&config.to) != "mcap" || ends_packed(&config.to) {
@@ -147,7 +147,7 @@ fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let messages = recording::write_bag(&config.from, &mut writer)?;
     finish(writer, config)?;
-    // Read again, which also checks whether it can be.
+    // Reading it again also checks that it is readable.
     let recording = Recording::open(&config.to)?;
     let of = |kind| {
         let channels = recording.channels().filter(|c| c.kind == Some(kind));
@@ -169,7 +169,7 @@ fn finish(
     flushed.map_err(failed("write", &config.to))
 }
 
-/// A file that goes again unless it is kept.
+/// A file that is deleted on drop unless it is kept.
 struct Unfinished(Option<PathBuf>);
 
 impl Unfinished {
@@ -181,7 +181,7 @@ impl Unfinished {
 impl Drop for Unfinished {
     fn drop(&mut self) {
         if let Some(path) = &self.0 {
-            // What made the conversion fail is reported; this may fail for the same reason.
+            // The failure of the conversion is reported; this may fail for the same reason.
             let _ = std::fs::remove_file(path);
         }
     }

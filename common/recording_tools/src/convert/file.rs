@@ -1,7 +1,7 @@
-//! Which kind of file something is, and the lines of a log.
+//! Detects the format of a file, and reads the lines of a log.
 //!
-//! Content decides if the ending does not, and whether a log is packed with
-//! gzip is detected from the content alone.
+//! The content decides if the extension does not; compression with gzip is detected from the
+//! content alone.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -11,10 +11,10 @@ use flate2::bufread::MultiGzDecoder;
 
 use super::carmen;
 
-/// What files packed with gzip begin with.
+/// Magic of gzip.
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// What recordings and bags begin with; what becomes of them is not decided here.
+/// Magic of recordings and bags; whether they can be read is checked elsewhere.
 const RECORDINGS: [&[u8]; 4] = [
     b"\x89MCAP0\r\n",
     b"SQLite format 3\0",
@@ -22,33 +22,33 @@ const RECORDINGS: [&[u8]; 4] = [
     b"\x28\xb5\x2f\xfd",
 ];
 
-/// How much of a file is read to detect its kind.
+/// Number of bytes that are read to detect the format.
 const HEAD_BYTES: u64 = 64 << 10;
 
-/// Longest line: 36000 readings and as many remissions of twelve digits come to less.
+/// Longest line: 36000 ranges and as many remissions of twelve digits need less.
 const MAX_LINE_BYTES: u64 = 1 << 20;
 
-/// What a file is taken for.
+/// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A laser log of CARMEN.
     Log,
     /// A recording or bag, or a folder of such.
     Recording,
-    /// Neither by its name nor by what is in it.
+    /// Unknown by name and content.
     Unknown,
 }
 
-/// Looks at a file.
+/// Detects the format of a file.
 ///
 /// # Errors
-/// It is not there or cannot be read.
+/// If it does not exist or cannot be read.
 pub(super) fn kind(path: &Path) -> io::Result<Kind> {
     if path.is_dir() {
         return Ok(Kind::Recording);
     }
     let mut head = Vec::new();
-    // A file that is cut within its head is still detected by what is there.
+    // A file that is cut within its head is still detected by the rest.
     let read = open(path)?.take(HEAD_BYTES).read_to_end(&mut head);
     if head.is_empty() {
         read?;
@@ -64,7 +64,7 @@ pub(super) fn kind(path: &Path) -> io::Result<Kind> {
     })
 }
 
-/// The ending of a name in small letters, without that of gzip.
+/// Extension of a file in lower case, without that of gzip.
 pub(super) fn ending(path: &Path) -> String {
     let lower = |path: &Path| {
         let ending = path.extension().unwrap_or_default();
@@ -76,10 +76,10 @@ pub(super) fn ending(path: &Path) -> String {
     }
 }
 
-/// Opens a log, unpacked if it is packed.
+/// Opens a log, decompressed if necessary.
 ///
 /// # Errors
-/// It is not there or cannot be read.
+/// If it does not exist or cannot be read.
 pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     let mut file = BufReader::new(File::open(path)?);
     if file.fill_buf()?.starts_with(GZIP) {
@@ -89,11 +89,11 @@ pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     }
 }
 
-/// Hands over each line with its number, from 1; one that is too long is cut. Inside
-/// is whether the log could be read to its end.
+/// Passes each line to `on_line` with its number, from 1; a line that is too long is cut. The inner
+/// result is the error if the log cannot be read to its end.
 ///
 /// # Errors
-/// Those of `on_line`.
+/// The first error of `on_line`.
 pub(super) fn for_each_line<E>(
     mut log: impl BufRead,
     mut on_line: impl FnMut(u64, &str) -> Result<(), E>,
@@ -105,7 +105,7 @@ pub(super) fn for_each_line<E>(
             Ok(_) => {}
             Err(error) => return Ok(Err(error)),
         }
-        // Logs are ASCII; what is not is in comments and names of hosts.
+        // Logs are ASCII, except for comments and host names.
         let text = String::from_utf8_lossy(&line);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         on_line(number, text)?;
@@ -201,7 +201,7 @@ mod tests {
     fn a_packed_log_is_unpacked_and_one_that_is_cut_ends_in_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.log.gz");
-        // Two packed files after one another are one.
+        // Concatenated gzip files count as one.
         let whole = [packed(b"one\n"), packed(b"two\n")].concat();
         let read = |bytes: &[u8]| {
             std::fs::write(&path, bytes).unwrap();

@@ -1,10 +1,9 @@
-//! What a log's parameters say of its lasers.
+//! Settings of the lasers from a log's parameters.
 //!
-//! CARMEN's own names are `laser_front_laser_fov`, `laser_rear_laser_fov`,
-//! `laser_laser3_fov`, and so on with `_flipped` and `_resolution`, and
-//! `robot_frontlaser_offset`, `_side_offset` and `_angular_offset`
-//! (`laser/laser_main.c`, `robot/robot_main.c`); spellings near to these occur and are
-//! taken as well. Angles were radians in some versions and degrees in others.
+//! CARMEN's own names are `laser_front_laser_fov`, `laser_rear_laser_fov`, `laser_laser3_fov`, and
+//! so on with `_flipped` and `_resolution`, and `robot_frontlaser_offset`, `_side_offset` and
+//! `_angular_offset` (`laser/laser_main.c`, `robot/robot_main.c`); similar spellings occur and are
+//! accepted as well. Angles were radians in some versions and degrees in others.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,25 +11,25 @@ use geometry::Pose;
 
 use super::carmen::Parameter;
 
-/// Field of view of this much and more is degrees: it is no turn's radians.
+/// A field of view above this is in degrees, because it exceeds a full turn in radians.
 const MAX_RADIANS: f64 = TAU + 0.01;
 
-/// Steps of this much and more are degrees: 0.05 rad is three of them.
+/// A step above this is in degrees: 0.05 rad is three of them.
 const MAX_STEP_RADIANS: f64 = 0.05;
 
-/// What is said of one laser; angles in radians.
+/// Settings of one laser; angles in radians.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Mounting {
     pub(super) field_of_view: Option<f64>,
     pub(super) step: Option<f64>,
-    /// The parameter by which it is mounted upside down.
+    /// Parameter that marks it as upside down.
     pub(super) flipped: Option<String>,
     pub(super) forward_m: Option<f64>,
     pub(super) left_m: Option<f64>,
     pub(super) turned: Option<f64>,
 }
 
-/// All parameters that matter, by laser from 1 to 5.
+/// Settings of lasers 1 to 5.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Parameters([Mounting; 5]);
 
@@ -41,7 +40,7 @@ impl Parameters {
         &self.0[index.min(self.0.len() - 1)]
     }
 
-    /// Notes a parameter; of one that comes again the first value counts.
+    /// Adds a parameter; if it is repeated, the first value counts.
     pub(super) fn note(&mut self, parameter: &Parameter) {
         let name = parameter.name.to_ascii_lowercase();
         let Some(number) = laser_of(&name) else {
@@ -85,8 +84,8 @@ impl Parameters {
 }
 
 impl Mounting {
-    /// Where laser `number` sits on the robot, if anything is said of it. A rear one
-    /// looks back unless something else is said.
+    /// Mount of laser `number` on the robot, if any part of it is given. A rear laser looks back by
+    /// default.
     pub(super) fn base_from_laser(&self, number: u8) -> Option<Pose> {
         self.forward_m.or(self.left_m).or(self.turned)?;
         let usual = if number == 2 { PI } else { 0.0 };
@@ -98,7 +97,7 @@ impl Mounting {
     }
 }
 
-/// The laser that a parameter is about.
+/// Number of the laser in the name of a parameter.
 fn laser_of(name: &str) -> Option<u8> {
     if !(name.starts_with("laser_") || name.starts_with("robot_")) {
         return None;
@@ -158,7 +157,7 @@ mod tests {
         ] {
             let parameters = parameters(&[(name, value)]);
             let view = parameters.of(number).field_of_view.unwrap().to_degrees();
-            // Radians of sixteen digits, to degrees and back.
+            // Tolerance for radians of sixteen digits, converted to degrees and back.
             assert!((view - degrees).abs() < 1e-9, "{name} {value} is {view}");
         }
         for (name, value) in [

@@ -1,4 +1,4 @@
-//! Reads lines of CARMEN's laser logs; `carmen` has the table of their words.
+//! Reads lines of CARMEN's laser logs; the format is described in `carmen`.
 
 use std::str::SplitAsciiWhitespace;
 
@@ -8,13 +8,13 @@ use super::carmen::{
     Angles, Broken, Fault, Kind, Laser, Line, Odometry, Parameter, Poses, laser_named,
 };
 
-/// Most readings of a line: a turn in steps of a hundredth of a degree.
+/// Largest number of ranges in a line: a full turn in steps of a hundredth of a degree.
 const MAX_READINGS: usize = 36_000;
 
 /// Reads a line.
 ///
 /// # Errors
-/// Says what a line of a known kind lacks.
+/// If a line of a known kind is invalid.
 pub(super) fn parse(line: &str) -> Result<Line, Broken> {
     let mut words = Words {
         words: line.split_ascii_whitespace(),
@@ -54,8 +54,8 @@ impl<'a> Words<'a> {
         };
         let ranges = self.list("readings")?;
         let has_poses = kind == Kind::Robot || (kind == Kind::Old && number <= 2);
-        // CARMEN's own notes on the format leave the remissions out, and so do some
-        // programs that were written by them.
+        // CARMEN's own notes on the format omit the remissions, and so do some programs that follow
+        // them.
         let mut without = self.clone();
         let with = match kind {
             Kind::Old => Ok(Vec::new()),
@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// What follows readings and remissions.
+    /// Reads the fields after ranges and remissions.
     fn rest(&mut self, kind: Kind, has_poses: bool) -> Result<(Option<Poses>, i64), Refusal> {
         let poses = match has_poses {
             true => Some(Poses {
@@ -120,7 +120,7 @@ impl<'a> Words<'a> {
                 name: name.to_owned(),
                 value: value.to_owned(),
             }),
-            // One without a value says nothing.
+            // A parameter without a value is ignored.
             _ => Line::Nothing,
         }
     }
@@ -148,8 +148,8 @@ impl<'a> Words<'a> {
         Ok(values)
     }
 
-    /// A time in decimals, which a number of 64 bits would round to a quarter of a
-    /// microsecond.
+    /// Reads a time in nanoseconds from its decimals; a 64-bit float would round it to a quarter of
+    /// a microsecond.
     fn time(&mut self) -> Result<i64, Refusal> {
         let word = self.next("time")?;
         exact_ns(word).ok_or_else(|| {
@@ -176,8 +176,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// A reading, or NaN for a beam that is missing; infinite where nothing returned,
-/// which C on Windows writes with a number sign.
+/// A range: NaN for a missing beam, infinite if nothing returned, which C on Windows writes as
+/// `1.#INF`.
 fn reading(word: &str) -> f32 {
     match word.parse() {
         Ok(range) => range,
@@ -186,7 +186,7 @@ fn reading(word: &str) -> f32 {
     }
 }
 
-/// Seconds as nanoseconds; digits beyond are cut.
+/// Converts seconds to nanoseconds; further digits are cut off.
 fn exact_ns(text: &str) -> Option<i64> {
     let (seconds, fraction) = text.split_once('.').unwrap_or((text, ""));
     let is_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());

@@ -1,26 +1,24 @@
-//! What came of a conversion.
-
 use super::tally::Tally;
 
-/// What was converted.
+/// Result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Report {
     pub(super) scans: u64,
     pub(super) odometry: u64,
-    /// Messages of a bag, whatever they are.
+    /// Number of messages of a bag, of any type.
     pub(super) messages: u64,
-    /// How lasers were understood, a line each.
+    /// Descriptions of the lasers, one line each.
     pub(super) remarks: Vec<String>,
     /// Lines of a log that were left out.
     pub(super) tally: Tally,
-    /// Why the file could not be read to its end.
+    /// Reason why the file could not be read to its end.
     pub(super) damage: Option<String>,
-    /// Scans whose laser sits elsewhere than that of the first one.
+    /// Number of scans with another mount than the first one of their laser.
     pub(super) moved_mounts: u64,
 }
 
 impl Report {
-    /// What could not be read, a line each.
+    /// Describes data that could not be read, one line each.
     pub(super) fn losses(&self) -> Vec<String> {
         let mut losses = Vec::new();
         if let Some(first) = &self.tally.first_broken {
@@ -37,7 +35,7 @@ impl Report {
         losses
     }
 
-    /// Why there is nothing, in words.
+    /// Describes why nothing was converted.
     pub(super) fn why_nothing(&self) -> String {
         let mut reasons = Vec::new();
         if self.odometry > 0 {

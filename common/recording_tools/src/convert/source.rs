@@ -6,24 +6,24 @@ use ros::{Header, LaserScan, Time};
 use super::carmen::{Kind, Laser, name_of};
 use super::survey::Survey;
 
-/// Where the scans of one laser come from and go to.
+/// Source and destination of the scans of one laser.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Source {
     number: u8,
     kind: Kind,
     pub(super) topic: String,
     pub(super) frame: String,
-    /// The parameter by which the laser is mounted upside down.
+    /// Parameter that marks the laser as upside down.
     flipped: Option<String>,
-    /// Whether its beams run the other way, as far as the scans show.
+    /// True if the scans show that its beams run the other way.
     is_mirrored: Option<bool>,
     scans: u64,
-    /// Beams of the first scan, and where its first and last one point, radians.
+    /// Number of beams of the first scan, and bearings of its first and last beam in radians.
     first: Option<(usize, f32, f32)>,
 }
 
 impl Source {
-    /// All lasers of a log; the first one is `/scan`.
+    /// Returns all lasers of a log; the first one gets the topic `/scan`.
     pub(super) fn all(survey: &Survey) -> Vec<Source> {
         let mut sources: Vec<Source> = Vec::new();
         for number in survey.lasers() {
@@ -53,12 +53,12 @@ impl Source {
         sources
     }
 
-    /// Whether the scan stands in a line that is taken.
+    /// True if the scans of this laser are taken from such lines.
     pub(super) fn is_of(&self, laser: &Laser) -> bool {
         (self.number, self.kind) == (laser.number, laser.kind)
     }
 
-    /// The scan as a message, with its beams counter-clockwise.
+    /// Converts a scan to a message with its beams counter-clockwise.
     pub(super) fn scan(
         &mut self,
         laser: &Laser,
@@ -91,13 +91,13 @@ impl Source {
         scan
     }
 
-    /// A laser that is said to be mounted upside down is believed, unless its scans
-    /// show that its readings were reversed before they were logged.
+    /// A laser that is marked as upside down is mirrored, unless its scans show that its readings
+    /// were reversed before they were logged.
     fn mirrors(&self) -> bool {
         self.flipped.is_some() && self.is_mirrored.unwrap_or(true)
     }
 
-    /// What became of it, in words.
+    /// Describes the result in words.
     pub(super) fn text(&self) -> String {
         let name = name_of(self.kind, self.number);
         let (topic, scans) = (&self.topic, self.scans);

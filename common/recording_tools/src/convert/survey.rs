@@ -1,5 +1,4 @@
-//! The first reading of a log: what has to be known before its first scan can be
-//! written.
+//! First pass over a log: gathers what must be known before the first scan is written.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
@@ -11,18 +10,18 @@ use super::parameters::Parameters;
 use super::read;
 use super::turning::Turning;
 
-/// What a log says of its lasers.
+/// Data about the lasers of a log.
 #[derive(Debug, Default)]
 pub(super) struct Survey {
     pub(super) parameters: Parameters,
-    /// Scans that can be read.
+    /// Number of readable scans, by laser and kind of line.
     scans: BTreeMap<(u8, Kind), u64>,
-    /// Of lasers that are said to be mounted upside down.
+    /// Beam directions of lasers that are marked as upside down.
     turnings: BTreeMap<(u8, Kind), Turning>,
 }
 
 impl Survey {
-    /// Reads a log to its end, or to where it is damaged.
+    /// Reads a log to its end, or to its damage.
     pub(super) fn of(log: impl BufRead) -> Survey {
         let mut survey = Survey::default();
         let mut heading = None;
@@ -35,7 +34,7 @@ impl Survey {
             }
             Ok::<_, std::convert::Infallible>(())
         });
-        // What cannot be read is reported by the second pass.
+        // Damage is reported by the second pass.
         drop(read);
         survey
     }
@@ -53,16 +52,16 @@ impl Survey {
         }
     }
 
-    /// The numbers of all lasers, from the front one.
+    /// Numbers of all lasers in increasing order; 1 is the front one.
     pub(super) fn lasers(&self) -> Vec<u8> {
         let mut numbers: Vec<u8> = self.scans.keys().map(|(number, _)| *number).collect();
         numbers.dedup();
         numbers
     }
 
-    /// The kind of line that a laser's scans are taken from. CARMEN logs the same scan
-    /// as it comes and again with poses; the lines with more data are taken, unless
-    /// they are the fewer by far.
+    /// Kind of line that the scans of a laser are taken from. CARMEN logs a scan when it arrives
+    /// and again with poses; lines with more data are preferred, unless there are less than half as
+    /// many of them.
     pub(super) fn kind_of(&self, number: u8) -> Option<Kind> {
         let of = |kind| self.scans.get(&(number, kind)).copied().unwrap_or_default();
         let kinds = [Kind::Robot, Kind::Old, Kind::Raw];
@@ -72,8 +71,8 @@ impl Survey {
             .find(|kind| of(*kind) > 0 && 2 * of(*kind) >= most)
     }
 
-    /// For a laser that is said to be mounted upside down: whether its beams run the
-    /// other way than the line says, or `None` if the scans do not show it.
+    /// For a laser that is marked as upside down: true if its beams run opposite to the order in
+    /// the line; `None` if the scans do not show it.
     pub(super) fn is_mirrored(&self, number: u8, kind: Kind) -> Option<bool> {
         self.turnings.get(&(number, kind))?.is_mirrored()
     }

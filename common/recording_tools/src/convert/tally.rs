@@ -1,33 +1,32 @@
-//! What of a log was not converted, counted by kind.
+//! Counts the lines of a log that are not converted, by kind.
 
 use std::collections::BTreeMap;
 
 use super::carmen::{Broken, Fault};
 
-/// Names of other kinds that are kept apart; a file that is no log at all has as
-/// many as it has lines.
+/// Largest number of names of other kinds; a file that is no log has as many as it has lines.
 const MAX_NAMES: usize = 100;
 
-/// Names of other kinds that are listed, those with most lines first.
+/// Number of other kinds that are listed, those with most lines first.
 const SHOWN: usize = 6;
 
-/// Longest name that a kind may have.
+/// Longest name of a kind.
 const MAX_NAME: usize = 32;
 
-/// Lines and readings that were left out.
+/// Lines and ranges that are left out.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Tally {
-    /// Of known kinds, by name and what is wrong.
+    /// Broken lines of known kinds, by name and fault.
     broken: BTreeMap<(String, Fault), u64>,
-    /// The first of them, by its line and in full.
+    /// Description of the first broken line.
     pub(super) first_broken: Option<String>,
-    /// Of other kinds, by name.
+    /// Lines of other kinds, by name.
     others: BTreeMap<String, u64>,
-    /// Lines that do not begin as any line of a log does.
+    /// Lines that do not start like any line of a log.
     not_lines: u64,
-    /// Of kinds whose scans stand in other lines, too.
+    /// Lines of kinds that repeat scans of other lines.
     repeated: BTreeMap<String, u64>,
-    /// Readings that are no numbers.
+    /// Ranges that are no numbers.
     pub(super) missing_readings: u64,
 }
 
@@ -57,12 +56,12 @@ impl Tally {
         *self.repeated.entry(name).or_default() += 1;
     }
 
-    /// Lines of known kinds that could not be read.
+    /// Number of lines of known kinds that could not be read.
     pub(super) fn broken_lines(&self) -> u64 {
         self.broken.values().sum()
     }
 
-    /// All of it in words, or `None` where nothing was left out.
+    /// Describes all of it in words; `None` if nothing is left out.
     pub(super) fn text(&self) -> Option<String> {
         let mut parts = Vec::new();
         for ((name, fault), count) in &self.broken {
@@ -95,7 +94,7 @@ impl Tally {
 
     fn others_text(&self) -> String {
         let mut others: Vec<_> = self.others.iter().collect();
-        // Stable: equal counts stay in the order of their names.
+        // The sort is stable: equal counts stay in the order of their names.
         others.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
         let total = others.iter().map(|(_, count)| **count).sum();
         let shown = others.iter().take(SHOWN);

@@ -1,4 +1,4 @@
-//! From a log to a recording.
+//! Converts a log to a recording.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, Seek, Write};
@@ -20,22 +20,22 @@ use super::source::Source;
 use super::survey::Survey;
 use crate::RecordingToolsError;
 
-/// Two mounts are the same if they differ by less: logs have six digits.
+/// Largest difference of two equal mounts, in metres and radians: logs have six digits.
 const SAME_MOUNT: f64 = 1e-3;
 
-/// How a log is understood.
+/// Settings of the conversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rules {
-    /// Whether laser poses are true ones.
+    /// True if laser poses are true poses.
     pub(super) truth: bool,
     pub(super) range_max_m: f32,
 }
 
-/// Writes what the lines say. `open` opens the log, which is read twice. What cannot
-/// be read is counted.
+/// Converts a log, which `open` opens for each of two passes. Lines that cannot be read are
+/// counted.
 ///
 /// # Errors
-/// The log cannot be opened, or the recording not written.
+/// If the log cannot be opened, or the recording cannot be written.
 pub(super) fn convert<W: Write + Seek, L: BufRead>(
     open: impl Fn() -> Result<L, RecordingToolsError>,
     rules: &Rules,
@@ -62,9 +62,9 @@ struct Conversion<'a, W: Write + Seek> {
     writer: &'a mut RecordingWriter<W>,
     survey: &'a Survey,
     sources: Vec<Source>,
-    /// Where each laser sits on the robot, by its frame.
+    /// Mount of each laser, by its frame.
     mounts: Vec<(String, geometry::Pose)>,
-    /// Stamps of odometry that stands in the recording.
+    /// Stamps of odometry that has been written.
     odometry_ns: BTreeSet<i64>,
     report: Report,
 }
@@ -117,7 +117,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         self.write(&topic, ns, &Message::Scan(message))
     }
 
-    /// Notes where the laser was, or where it sits on the robot.
+    /// Writes the true pose of the laser, or its mount.
     fn place(
         &mut self,
         laser: &Laser,
@@ -190,7 +190,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         self.write(ODOM, ns, &Message::Odometry(Box::new(message)))
     }
 
-    /// Notes where a laser sits, by the first line that has it.
+    /// Writes the mount of a laser from the first line that has it.
     fn mount(
         &mut self,
         ns: i64,
@@ -244,7 +244,7 @@ fn late(name: String, time_ns: i64) -> Broken {
     }
 }
 
-/// A time, if a recording can say it.
+/// Converts a time, if a recording can represent it.
 fn moment(ns: i64) -> Option<(i64, Time)> {
     Some((ns, Time::from_ns(ns)?))
 }

@@ -1,26 +1,26 @@
-//! Whether the beams of a laser that is said to be mounted upside down run the way
-//! that its line says, or the other way.
+//! Finds out if the beams of a laser that is marked as upside down run as its line says, or the
+//! other way.
 //!
-//! CARMEN's own driver reverses the readings of such a laser before anybody logs
-//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans show it:
-//! as the robot turns left, what it sees moves to the right.
+//! CARMEN's own driver reverses the readings of such a laser before they are logged
+//! (`laser/laser_ipc.c`); other programs log them as measured. The scans show it: if the robot
+//! turns left, the surroundings move to the right.
 
 use super::carmen::Laser;
 
-/// Turns from scan to scan that are looked at, radians: smaller ones move too few
-/// beams, in larger ones too little is seen twice.
+/// Turns between scans that are evaluated, in radians: smaller ones move too few beams, and after
+/// larger ones the scans overlap too little.
 const TURNS: std::ops::RangeInclusive<f64> = 0.03..=0.5;
 
-/// Fewest beams that both scans have of the same directions.
+/// Smallest number of beams in the overlap of two scans.
 const MIN_BEAMS: usize = 20;
 
-/// Differences count as at most this, metres, so that a few edges do not decide.
+/// Upper limit of a difference, in metres, so that a few edges do not decide.
 const MAX_DIFFERENCE_M: f32 = 0.5;
 
-/// One way fits where its mean difference is at most this share of the other's.
+/// A direction fits if its mean difference is at most this share of the other's.
 const CLEAR: f32 = 0.8;
 
-/// The scans of one laser, one after the other.
+/// Votes of successive scans of one laser.
 #[derive(Debug, Default)]
 pub(super) struct Turning {
     last: Option<(f64, Vec<f32>)>,
@@ -29,14 +29,14 @@ pub(super) struct Turning {
 }
 
 impl Turning {
-    /// Notes a scan with the heading at which it was taken and the step of its beams.
+    /// Adds a scan with its heading and the step between its beams.
     pub(super) fn note(&mut self, laser: &Laser, yaw: f64, step: f64) {
         if let Some((last_yaw, last)) = &self.last
             && last.len() == laser.ranges.len()
         {
             let turn = geometry::wrap_angle(yaw - last_yaw);
             if turn.abs() < *TURNS.start() {
-                // The next one is compared with the last that differs enough.
+                // The next scan is compared with the same last one, until the turn is large enough.
                 return;
             }
             if TURNS.contains(&turn.abs()) && step != 0.0 {
@@ -52,7 +52,7 @@ impl Turning {
         self.last = Some((yaw, laser.ranges.clone()));
     }
 
-    /// Whether the beams run the other way; `None` if the scans do not show it.
+    /// True if the beams run the other way; `None` if the scans do not show it.
     pub(super) fn is_mirrored(&self) -> Option<bool> {
         if self.mirrored > 2 * self.as_logged {
             Some(true)
@@ -64,8 +64,8 @@ impl Turning {
     }
 }
 
-/// How much `new` differs from `old` if what was at a beam is now `shift` beams
-/// before it.
+/// Mean difference between `new` and `old` if the content of a beam has moved by `shift` beams
+/// towards the first one.
 fn difference(old: &[f32], new: &[f32], shift: i64) -> Option<f32> {
     let skip = |by: i64| usize::try_from(by.max(0)).unwrap_or(usize::MAX);
     let pairs = old
@@ -84,7 +84,7 @@ mod tests {
     use super::super::carmen::{Kind, Laser};
     use super::*;
 
-    /// A scan of a room of 6 by 4 m from its middle, one beam a degree.
+    /// A scan of a room of 6 by 4 m from its middle, one beam per degree.
     fn scan(yaw: f64, is_mirrored: bool) -> Laser {
         let range = |degree: i32| {
             let sign = if is_mirrored { -1.0 } else { 1.0 };

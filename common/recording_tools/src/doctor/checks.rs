@@ -1,4 +1,4 @@
-//! What is asked of a recording, one function a question.
+//! The checks of a recording, one function each.
 
 use std::collections::BTreeSet;
 
@@ -18,19 +18,19 @@ use super::map_fit;
 use super::sensors;
 use super::survey::{Farthest, Seen, Survey};
 
-/// A gap is worth a note from this many usual distances on.
+/// A gap is worth a note if it is at least this many usual steps long.
 const GAP_FACTOR: i64 = 5;
 
-/// Share of readings at exactly one value from which it is no distance.
+/// Share of ranges with exactly the same value from which that value stands for "no return".
 const PILED_UP: f64 = 0.02;
 
-/// Share of silent readings from which a laser seems to look into nothing.
+/// Share of silent readings from which a laser seems to see nothing.
 const MOSTLY_SILENT: f64 = 0.9;
 
-/// A scan cannot take longer than so many of the steps to the next one.
+/// Largest duration of a scan, in steps to the next scan.
 const MAX_STEPS: f64 = 2.0;
 
-/// Everything that is found, the worst first.
+/// Returns the findings of all checks, the worst first.
 pub(super) fn all(
     recording: &Recording,
     survey: &Survey,
@@ -71,7 +71,7 @@ fn damage(recording: &Recording) -> Vec<Finding> {
         let found = format!("{damage}; {messages} messages before that are readable");
         Finding::lost(match (recording.file_count(), recording.damage_error()) {
             (1, _) | (_, None) => found,
-            // Of several files, the error names the one.
+            // If there are several files, the error names the damaged one.
             (_, Some(error)) => error.to_string(),
         })
     });
@@ -89,7 +89,7 @@ fn undecodable(survey: &Survey) -> Vec<Finding> {
     survey.channels.iter().filter_map(finding).collect()
 }
 
-/// Whether it is clear what is meant, and all is there that localizing needs.
+/// Checks that topics are unambiguous, and that there are scans and a map.
 fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding> {
     let kinds = [Kind::Scan, Kind::Map, Kind::Odometry];
     let unclear = kinds
@@ -109,15 +109,15 @@ fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding>
     found
 }
 
-/// Whether the maps can be searched, and are those that the metadata names.
+/// Checks that the maps can be searched, and that the metadata names the newest one.
 fn map(recording: &Recording) -> Vec<Finding> {
     let maps = match recording.maps() {
         Ok(maps) => maps,
-        // It is said with the topics.
+        // The check of topics reports it.
         Err(_) => return Vec::new(),
     };
     let (mut seen, mut refused, mut newest) = (0, Vec::new(), None);
-    // Those that do not decode are reported with the other messages.
+    // Maps that do not decode are reported with the other messages.
     for (_, map) in maps.flatten() {
         seen += 1;
         match usable(&map) {
@@ -139,7 +139,7 @@ fn map(recording: &Recording) -> Vec<Finding> {
     found
 }
 
-/// The map in a message, if the engine takes it.
+/// Converts the map of a message, if the engine accepts it.
 fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
     let grid = map.to_grid().map_err(|error| with_causes(&error))?;
     check_map(&grid, CellRules::default()).map_err(|error| with_causes(&error))?;
@@ -152,13 +152,13 @@ fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Fi
         let is_map = record.name == "backcast/map";
         is_map.then(|| record.entries.get("map_id")).flatten()
     });
-    // A map that was changed while recording is named, too.
+    // If the map has changed during the recording, the metadata names both.
     let other = named.find(|id| **id != found)?;
     (maps == 1)
         .then(|| Finding::problem(format!("the map is {found}, but the metadata says {other}")))
 }
 
-/// Whether the place of each laser on the robot is known.
+/// Checks that the mount of each laser is known.
 fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let lasers: BTreeSet<&String> = survey
         .of_kind(Kind::Scan)
@@ -196,7 +196,8 @@ fn far_mount(laser: &str, mount: &Mount) -> Option<Finding> {
     })
 }
 
-/// Whether frames are named, one to a channel, and poses share the map's.
+/// Checks that messages have frames, the same for a whole channel, and that true poses are in the
+/// frame of the map.
 fn frames(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
     for (topic, seen) in &survey.channels {
@@ -244,7 +245,7 @@ fn frames(survey: &Survey) -> Vec<Finding> {
     found
 }
 
-/// Whether stamps rise from message to message.
+/// Checks that stamps increase from message to message.
 fn stamps(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
     for (topic, seen) in &survey.channels {
@@ -307,7 +308,7 @@ fn scans(survey: &Survey) -> Vec<Finding> {
     found
 }
 
-/// Whether a scan ends before the next ones come.
+/// Checks that a scan ends before the next ones begin.
 fn durations(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let (longest, step_s) = (seen.longest?, seen.usual_step_s()?);
@@ -323,7 +324,7 @@ fn durations(survey: &Survey) -> Vec<Finding> {
     survey.of_kind(Kind::Scan).filter_map(finding).collect()
 }
 
-/// Whether readings are in metres.
+/// Checks that ranges are in metres.
 fn units(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let middle_m = seen.first_middle_m?;
@@ -338,8 +339,8 @@ fn units(survey: &Survey) -> Vec<Finding> {
     survey.of_kind(Kind::Scan).filter_map(finding).collect()
 }
 
-/// Whether many readings are exactly the farthest one: so some drivers say that
-/// nothing came back.
+/// Checks for many ranges with exactly the largest value, by which some drivers report that nothing
+/// returned.
 fn pile(topic: &str, seen: &Seen) -> Option<Finding> {
     let Farthest {
         range_m,
@@ -360,7 +361,7 @@ fn pile(topic: &str, seen: &Seen) -> Option<Finding> {
     (share >= PILED_UP).then(|| Finding::note(format!("{what}, {reason}")))
 }
 
-/// What had to be mended to be used.
+/// Reports orientations that had to be corrected.
 fn mended(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let first = seen.first_mend?;
@@ -372,7 +373,7 @@ fn mended(survey: &Survey) -> Vec<Finding> {
     survey.channels.iter().filter_map(finding).collect()
 }
 
-/// Whether true poses are sound and belong to scans.
+/// Checks that true poses are valid and belong to scans.
 fn truths(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let truths = match recording.ground_truths() {
         Ok(truths) => truths,

@@ -16,20 +16,19 @@ use super::survey::Survey;
 use crate::RecordingToolsError;
 use crate::each::each;
 
-/// What stands below the options.
+/// Text below the options in the help.
 pub const NOTES: &str = "\
 Exit codes: 0 nothing but notes, 1 there are problems, 2 wrong use, 3 data was lost";
 
 /// Options of `backcast doctor`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
-    /// folders, or .db3)
+    /// The recordings to check: MCAP files, or bags of rosbag2 (their folders, or .db3)
     #[arg(required_unless_present = "ros2", value_name = "FILE")]
     recordings: Vec<PathBuf>,
 
-    /// Check a live ROS 2 robot: its scans, odometry and map are recorded for so many seconds from
-    /// the first scan on
+    /// Check a live ROS 2 robot: record its scans, odometry and map for this many seconds from the
+    /// first scan on
     #[arg(
         long,
         value_name = "SECONDS",
@@ -40,25 +39,25 @@ pub struct Config {
     )]
     ros2: Option<u16>,
 
-    /// With --ros2: the robot's router of Zenoh, as tcp/192.168.0.5:7447 [default: the robot
-    /// is looked for on DDS and Zenoh]
+    /// With --ros2: address of the robot's Zenoh router, such as tcp/192.168.0.5:7447 [default: the
+    /// robot is searched for on DDS and Zenoh]
     #[arg(long, value_name = "ROUTER", requires = "ros2")]
     connect: Option<String>,
 
-    /// The map to compare scans with, a YAML file as map_server reads it, or another
-    /// recording that holds one [default: in the recording]
+    /// The map to compare scans with: a YAML file in the format of map_server, or another recording
+    /// that contains one [default: in the recording]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
     #[command(flatten)]
     topics: TopicOptions,
 
-    /// Print JSON, an object a file
+    /// Print JSON, one object per file
     #[arg(long)]
     json: bool,
 }
 
-/// What was found in a file.
+/// Findings for one file.
 #[derive(Debug, Serialize)]
 struct Report {
     recording: String,
@@ -66,7 +65,7 @@ struct Report {
 }
 
 impl Config {
-    /// The router of a live robot that is to be recorded, if one is known, and for how long.
+    /// Router of a live robot to record, if given, and the duration of the recording.
     #[must_use]
     pub fn live(&self) -> Option<(Option<&str>, Duration)> {
         let seconds = u64::from(self.ros2?);
@@ -74,19 +73,19 @@ impl Config {
     }
 }
 
-/// Examines one file after another.
+/// Checks the given recordings one after another.
 ///
 /// # Errors
-/// The only file cannot be read, or is no recording.
+/// If the only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     examine(config, &config.recordings, &[])
 }
 
-/// Examines the recording of a live robot, whose faults that it does not show are in
-/// `warnings`.
+/// Checks the recording of a live robot; `warnings` are known faults that the recording does not
+/// show.
 ///
 /// # Errors
-/// As [`run`].
+/// Same as [`run`].
 pub fn run_on<'a>(
     config: &Config,
     recording: &Path,

@@ -1,5 +1,5 @@
-//! Whether the clocks of odometry and laser agree: scans are located, and how the laser
-//! moved is compared with what the odometry says.
+//! Checks that the clocks of odometry and laser agree: scans are located on the map, and the motion
+//! of the laser is compared with the odometry.
 
 use engine::motion::{Motion, Sighting};
 use geometry::Pose;
@@ -11,11 +11,11 @@ use super::located::{Located, LocatedScan};
 use super::survey::{Seen, Survey};
 use crate::RecordingToolsError;
 
-/// A difference is worth a note from here on, seconds: a robot that turns by a radian a
-/// second is off by a degree then.
+/// Smallest delay that is worth a note, in seconds: a robot that turns by a radian per second is
+/// then off by a degree.
 const WORTH_A_NOTE_S: f64 = 0.02;
 
-/// Whether the odometry's stamps fit those of the scans.
+/// Checks that the odometry's stamps fit those of the scans.
 pub(super) fn odometry_delay(
     recording: &Recording,
     survey: &Survey,
@@ -41,12 +41,12 @@ pub(super) fn odometry_delay(
     note.into_iter().collect()
 }
 
-/// What is to be added to the odometry's stamps, seconds, if the scans show it and it is
-/// worth a note. A scan that does not say how long it takes may be stamped at its start or
-/// at its end: from one scan to the next is then nothing unusual.
+/// Estimates the time to add to the odometry's stamps, in seconds; `None` if the scans do not show
+/// it or it is too small for a note. A scan without a time increment may be stamped at its start or
+/// its end, so that a delay of one scan period is nothing unusual.
 ///
 /// # Errors
-/// The recording has no map, or cannot be read: that is said elsewhere.
+/// If the recording has no map, or cannot be read; other checks report that.
 fn estimate(
     recording: &Recording,
     located: &Located,
@@ -64,7 +64,7 @@ fn estimate(
         true => WORTH_A_NOTE_S,
         false => usual_period_s,
     };
-    // A scan in a wrong place is outvoted by the others.
+    // A scan at a wrong place is outvoted by the others.
     let sightings = located.scans.iter().map(|found| Sighting {
         at_ns: found.scan.stamp_ns,
         map_from_laser: found.map_from_laser,

@@ -1,5 +1,4 @@
-//! A drive by its odometry and by its scans, each of which is matched to the one before
-//! without a map.
+//! A drive by its odometry and by its scans, each matched to the previous one without a map.
 
 use engine::beams::BeamConfig;
 use engine::fit::{Ends, FitConfig};
@@ -11,62 +10,62 @@ use geometry::Pose;
 use offline::each_odometry;
 use recording::{Kind, Message, Recording};
 
-/// Scans that are matched at most: minutes of a laser of 10 Hz, seconds of computing.
+/// Largest number of scans that are matched: minutes of a laser of 10 Hz, seconds of computing.
 const MAX_MATCHED: usize = 2000;
 
-/// Cells of a scan that others are matched to, metres, and how many a beam may cross
-/// along each axis.
+/// Side of a cell of a scan that others are matched to, in metres, and number of cells that a beam
+/// may cross along each axis.
 const CELL_M: f64 = 0.05;
 const CELLS: usize = 400;
 
-/// Bearings of beams are not rounded here: any number will do.
+/// Bearings of beams are not rounded here, so any number works.
 const HEADINGS: u32 = 360;
 
-/// Fewest readings of a scan that does not come twice by chance.
+/// Fewest ranges of a scan that does not repeat by chance.
 const MIN_READINGS: usize = 30;
 
-/// A covered laser reads one range, give or take so many metres, in this share of its
-/// beams; in a field of so many radians at least, for a narrow one may see a flat wall.
+/// A covered laser reads one range, within `COVER_M` metres, for this share of its beams. They must
+/// span at least `COVER_FIELD` radians, because a narrow laser may see a flat wall.
 const COVER_M: f32 = 0.03;
 const COVER_SHARE: f64 = 0.95;
 const COVER_FIELD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// No laser sits farther from the base of its robot, metres.
+/// Largest plausible distance of a laser from the base of its robot, in metres.
 const FAR_MOUNT_M: f64 = 10.0;
 
-/// Whether a laser sits farther from the base than any does.
+/// True if a laser is implausibly far from the base.
 pub(super) fn is_far(base_from_laser: Pose) -> bool {
     base_from_laser.distance_to(Pose::IDENTITY) > FAR_MOUNT_M
 }
 
-/// What is kept of a scan.
+/// Observations of one scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
     pub(super) stamp_ns: i64,
-    /// How the laser moved since the scan before, as the two match.
+    /// Motion of the laser since the previous scan, if the two match.
     pub(super) step: Option<Pose>,
-    /// Whether all readings are those of the scan before, to the last bit.
+    /// True if all ranges equal those of the previous scan, to the last bit.
     pub(super) is_repeated: bool,
-    /// The range that all beams read, metres, if they do.
+    /// Range of nearly all beams in metres, if they agree.
     pub(super) only_range_m: Option<f32>,
 }
 
-/// The scans of a laser, and how the robot moved by the odometry.
+/// The scans of a laser, and the motion of the robot by odometry.
 #[derive(Debug)]
 pub(super) struct Drive {
     pub(super) looks: Vec<Look>,
-    /// Stamps of the odometry, nanoseconds.
+    /// Stamps of the odometry, in nanoseconds.
     pub(super) odometry_ns: Vec<i64>,
     pub(super) motion: Motion,
-    /// Where the laser sits on what the odometry moves.
+    /// Pose of the laser in the child frame of the odometry.
     child_from_laser: Pose,
     matcher: ScanMatcher,
     space: Space,
-    /// Readings of the last scan.
+    /// Ranges of the last scan.
     readings: Vec<Option<u64>>,
 }
 
-/// A way along which both the scans and the odometry say how the laser moved.
+/// A section of the drive for which both scans and odometry give the motion of the laser.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretch {
     pub(super) by_scans: Pose,
@@ -86,8 +85,8 @@ impl Drive {
         })
     }
 
-    /// Reads the scans of the first laser and the odometry; `None` where one is missing or
-    /// cannot be read, which other checks say.
+    /// Reads the scans of the first laser and the odometry; `None` if one is missing or cannot be
+    /// read, which other checks report.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
         let scans = recording.topic(Kind::Scan).ok()??;
         let odometry = recording.topic(Kind::Odometry).ok()??;
@@ -134,7 +133,7 @@ impl Drive {
         Some(drive)
     }
 
-    /// Whether the laser sits so far away that the smallest turn moves it sideways.
+    /// True if the laser is so far away that the smallest turn moves it sideways.
     pub(super) fn has_far_mount(&self) -> bool {
         is_far(self.child_from_laser)
     }
@@ -167,7 +166,7 @@ impl Drive {
         self.matcher.step(&ends, how, &TrackingConfig::default())
     }
 
-    /// How the laser moved from one scan to another by the odometry.
+    /// Motion of the laser from one scan to another by odometry.
     pub(super) fn moved(&self, from: &Look, to: &Look) -> Option<Pose> {
         let at = |look: &Look| {
             let odom_from_child = self.motion.until(look.stamp_ns)?;
@@ -176,8 +175,8 @@ impl Drive {
         Some(at(from)?.inverse().then(at(to)?))
     }
 
-    /// Ways along which the laser moved so far, metres, or turned so far, radians, by the
-    /// odometry.
+    /// Splits the drive into sections in which the laser moved by at least this distance in metres
+    /// or this angle in radians, by odometry.
     pub(super) fn stretches(&self, (metres, radians): (f64, f64)) -> Vec<Stretch> {
         let mut found = Vec::new();
         let Some(mut start) = self.looks.first() else {
@@ -201,7 +200,7 @@ impl Drive {
     }
 }
 
-/// The range that nearly all readings have; from one beam to the next are so many radians.
+/// Range of nearly all beams, if they agree; `increment` is the angle between beams in radians.
 fn only_range(read: &mut [f32], increment: f64) -> Option<f32> {
     read.sort_unstable_by(f32::total_cmp);
     let middle = *read.get(read.len() / 2)?;

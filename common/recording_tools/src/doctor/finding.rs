@@ -2,23 +2,22 @@
 
 use serde::Serialize;
 
-/// How bad it is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Severity {
     /// Worth knowing; everything works.
     Note,
-    /// Something will not work as one would expect.
+    /// Something will not work as expected.
     Problem,
-    /// Something that was recorded is not there any more.
+    /// Recorded data is lost.
     Lost,
 }
 
-/// One finding.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct Finding {
     pub severity: Severity,
-    /// What was found, and what would be right.
+    /// Description of the fault, and of the remedy.
     pub finding: String,
 }
 

@@ -1,4 +1,4 @@
-//! The scans of a recording, located on its map one by one.
+//! Scans of a recording, located on its map one by one.
 
 use clap::Parser;
 use geometry::Pose;
@@ -9,42 +9,42 @@ use recording::Recording;
 
 use crate::RecordingToolsError;
 
-/// Scans that are located at most: a minute of a laser of 8 Hz, seconds of computing.
+/// Largest number of scans that are located: a minute of a laser of 8 Hz, seconds of computing.
 const MAX_SCANS: usize = 500;
 
-/// Scans that are compared with the map at several scales, spread over the others.
+/// Number of scans that are compared with the map at several scales, spread over the others.
 const SCALED_SCANS: usize = 12;
 
-/// Factors by which the readings of a scan are changed.
+/// Factors by which the ranges of a scan are scaled.
 pub(super) const SCALES: [f32; 11] = [
     0.9, 0.92, 0.94, 0.96, 0.98, 1.0, 1.02, 1.04, 1.06, 1.08, 1.1,
 ];
 
-/// Index of the readings as they are in [`SCALES`].
+/// Index of the scale 1 in [`SCALES`].
 pub(super) const AS_MEASURED: usize = 5;
 
-/// Scans are taken as they are, for the motion within them is not known yet.
+/// Scans are not deskewed, because the motion within them is not known yet.
 #[derive(Debug, Parser)]
 struct Line {
     #[command(flatten)]
     options: Options,
 }
 
-/// The options of tools with their defaults, but for [`Line`].
+/// Default options of the tools, without deskewing.
 pub(super) fn options() -> Options {
     Line::parse_from(["doctor", "--deskew", "false"]).options
 }
 
-/// The scans of a recording that have a place on its map.
+/// Scans of a recording that have a pose on its map.
 pub(super) struct Located {
     pub(super) scans: Vec<LocatedScan>,
-    /// Scores of the best places of some scans at each of [`SCALES`].
+    /// Scores of the best poses of some scans at each of [`SCALES`].
     pub(super) by_scale: Vec<[f64; SCALES.len()]>,
-    /// The map of the last scan.
+    /// Map of the last scan.
     pub(super) map: OccupancyGrid,
 }
 
-/// A scan with its best place.
+/// A scan with its best pose.
 pub(super) struct LocatedScan {
     pub(super) scan: TakenScan,
     pub(super) map_from_laser: Pose,
@@ -54,7 +54,7 @@ pub(super) struct LocatedScan {
 
 impl Located {
     /// # Errors
-    /// The recording has no map, or cannot be read: that is said elsewhere.
+    /// If the recording has no map, or cannot be read; other checks report that.
     pub(super) fn of(
         recording: &Recording,
         map: Option<&OccupancyGrid>,
@@ -99,7 +99,7 @@ fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedSc
     }))
 }
 
-/// How well a scan fits at each scale.
+/// Score of a scan at each scale.
 fn scores(
     session: &mut Session<'_>,
     found: &LocatedScan,

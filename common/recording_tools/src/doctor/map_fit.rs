@@ -1,4 +1,4 @@
-//! Whether the map is as large as what the laser reads, and the robot stands on it.
+//! Checks that the map has the scale of the scans, and that the robot's base is on free cells.
 
 use engine::grid::CellRules;
 use geometry::Pose;
@@ -7,30 +7,30 @@ use super::drive::is_far;
 use super::finding::Finding;
 use super::located::{AS_MEASURED, Located, LocatedScan, SCALES};
 
-/// Fewest scans that distinguish a fault from chance.
+/// Smallest number of scans that distinguish a fault from chance.
 const MIN_SCANS: usize = 5;
 
-/// How much better scans fit at another scale before the map is taken to have it, as a mean
-/// of scores: on maps of the right size, measured and drawn, it is 0.01 at most, and 0.1 or
-/// more on those that are 2 % too large.
+/// Smallest gain of the mean score at another scale that shows that the map has that scale: it is
+/// at most 0.01 on maps of the right size, both measured and drawn, and 0.1 or more on those that
+/// are 2 % too large.
 const BETTER_FIT: f64 = 0.03;
 
-/// Share of the places that must show the same fault.
+/// Share of the poses that must show the same fault.
 const MIN_SHARE: f64 = 0.5;
 
-/// On a map of another place, scans fit no better than this, and hardly better at one scale
-/// than at others: by 0.4 to 0.65 and within 0.05 for five pairs of drives and maps.
+/// On a map of another place, scans have at most this mean score, and scores at different scales
+/// differ by at most this: scores of 0.4 to 0.65, within 0.05, for five pairs of drives and maps.
 const NOWHERE_FIT: f64 = 0.7;
 const NOWHERE_SPREAD: f64 = 0.1;
 
-/// Everything that is found. What follows from a fault that is found is not said too.
+/// Returns the first finding, without its consequences.
 pub(super) fn all(located: &Located) -> Vec<Finding> {
     let checks = [elsewhere, scale, base_in_wall];
     let found = checks.into_iter().find_map(|check| check(located));
     found.into_iter().collect()
 }
 
-/// How well scans fit at each of [`SCALES`] on average; `None` of too few scans.
+/// Mean score of scans at each of [`SCALES`]; `None` if there are too few scans.
 fn means(located: &Located) -> Option<[f64; SCALES.len()]> {
     let count = located.by_scale.len();
     let mean = |i: usize| {
@@ -40,7 +40,7 @@ fn means(located: &Located) -> Option<[f64; SCALES.len()]> {
     (count >= MIN_SCANS).then(|| std::array::from_fn(mean))
 }
 
-/// Whether the map is of another place.
+/// Checks that the map is of the place of the recording.
 fn elsewhere(located: &Located) -> Option<Finding> {
     let means = means(located)?;
     let (least, most) = means.iter().fold((1.0f64, 0.0f64), |(least, most), &mean| {
@@ -58,7 +58,7 @@ fn elsewhere(located: &Located) -> Option<Finding> {
     })
 }
 
-/// Whether scans fit better with other readings than those that were measured.
+/// Checks that scans do not fit better with scaled ranges.
 fn scale(located: &Located) -> Option<Finding> {
     let means = means(located)?;
     let best = (0..SCALES.len()).max_by(|&a, &b| means[a].total_cmp(&means[b]))?;
@@ -78,7 +78,7 @@ fn scale(located: &Located) -> Option<Finding> {
     })
 }
 
-/// The scale at the top of a gable through the best mean and those beside it.
+/// Scale at the top of a gable through the best mean and its two neighbours.
 fn top(means: &[f64; SCALES.len()], best: usize) -> f64 {
     let step = f64::from(SCALES[1] - SCALES[0]);
     let beside = best
@@ -91,7 +91,8 @@ fn top(means: &[f64; SCALES.len()], best: usize) -> f64 {
     f64::from(SCALES[best]) + steps * step
 }
 
-/// Whether the mount puts the base into walls or off the map where the laser is known.
+/// Checks that the mount does not put the base into walls or off the map where the laser's pose is
+/// known.
 fn base_in_wall(located: &Located) -> Option<Finding> {
     let base = |found: &LocatedScan| {
         let mount = found.scan.base_from_laser.filter(|&mount| !is_far(mount));

@@ -1,9 +1,9 @@
-//! `backcast doctor`: what is wrong with a recording.
+//! `backcast doctor`: finds the faults of a recording.
 //!
-//! `finding` is what can be said, `survey` gathers what is looked at in one
-//! pass over the messages, and `checks` judges it; `drive` matches scans without a map,
-//! and `sensors` compares that with the odometry; `located` locates scans on the map, and
-//! `map_fit` and `delay` compare that with the map and the odometry. Nothing is repaired.
+//! `finding` is the type of a result. `survey` gathers data in one pass over the messages, and
+//! `checks` judges it. `drive` matches scans without a map, and `sensors` compares the result with
+//! the odometry. `located` locates scans on the map, and `map_fit` and `delay` compare the result
+//! with the map and the odometry. Nothing is repaired.
 
 mod checks;
 mod command;

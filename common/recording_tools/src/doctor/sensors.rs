@@ -1,37 +1,38 @@
-//! Whether laser and odometry agree on how the robot moves, and whether each is alive.
-//! Neither a map nor a search is needed.
+//! Checks that laser and odometry agree on the motion of the robot, and that both work, without a
+//! map or a search.
 
 use geometry::{Pose, wrap_angle};
 
 use super::drive::{Drive, Look, Stretch};
 use super::finding::Finding;
 
-/// Fewest scans or straight stretches that distinguish a fault from chance.
+/// Smallest number of scans or straight sections that distinguish a fault from chance.
 const MIN_COUNT: usize = 5;
 
-/// Fewest turns that do, and how far they turn together, radians: one of a thousand is
-/// matched the wrong way.
+/// Smallest number of turns that distinguish a fault from chance, and their smallest total angle in
+/// radians: one turn in a thousand is matched the wrong way.
 const MIN_TURNS: usize = 2;
 const MIN_TURNED: f64 = 0.25;
 
-/// Share of the turns or stretches that must show the same fault.
+/// Share of the turns or sections that must show the same fault.
 const MIN_SHARE: f64 = 0.8;
 
-/// Stretches that are compared, metres and radians: shorter ones are lost in noise, and on
+/// Length of the sections to compare, in metres and radians: shorter ones are lost in noise, and on
 /// longer ones odometry drifts.
 const STRETCH: (f64, f64) = (0.3, 0.25);
 
-/// A stretch is a turn from here on, radians, and straight below.
+/// Angle from which a section is a turn, in radians; it is straight below.
 const TURN: f64 = 0.08;
 
-/// A robot that moved, metres and radians: scans that are matched while it stands err by less.
+/// Motion that shows that a robot has moved, in metres and radians: matching scans of a standing
+/// robot has a smaller error.
 const MOVED: (f64, f64) = (1.0, 0.5);
 
-/// The direction of driving by the scans differs from that by odometry, radians: a robot
-/// that skids differs by less.
+/// Angle between the directions of motion by scans and by odometry that shows a wrong mount, in
+/// radians: it is smaller for a robot that skids.
 const TURNED_MOUNT: f64 = 0.5;
 
-/// Everything that is found. What follows from a fault that is found is not said too.
+/// Returns all findings, without the consequences of a fault that is found.
 pub(super) fn all(drive: &Drive) -> Vec<Finding> {
     if drive.looks.len() < MIN_COUNT || drive.odometry_ns.is_empty() {
         return Vec::new();
@@ -46,7 +47,7 @@ pub(super) fn all(drive: &Drive) -> Vec<Finding> {
         .collect()
 }
 
-/// Whether scans and odometry are of different times.
+/// Checks that scans and odometry are of the same time.
 fn clocks(drive: &Drive) -> Option<Finding> {
     let stamps = || drive.looks.iter().map(|look| look.stamp_ns);
     let (first, last) = (stamps().min()?, stamps().max()?);
@@ -66,7 +67,7 @@ fn clocks(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Whether odometry ends long before the scans do.
+/// Checks that odometry does not end long before the scans do.
 fn ended(drive: &Drive) -> Option<Finding> {
     let end = *drive.odometry_ns.iter().max()?;
     let last = drive.looks.iter().map(|look| look.stamp_ns).max()?;
@@ -74,7 +75,7 @@ fn ended(drive: &Drive) -> Option<Finding> {
     let after = drive.looks.iter().filter(|look| look.stamp_ns > end);
     let silent_s = last.saturating_sub(end) as f64 / 1e9;
     let is_over = after.count() >= MIN_COUNT && drive.motion.until(last).is_none();
-    // Else the clocks differ.
+    // Otherwise the clocks differ.
     (is_over && end >= first).then(|| {
         let messages = drive.odometry_ns.len();
         Finding::problem(format!(
@@ -84,7 +85,7 @@ fn ended(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Whether odometry never changes while scans do.
+/// Checks that odometry changes if the scans do.
 fn never_moves(drive: &Drive) -> Option<Finding> {
     let end = *drive.odometry_ns.iter().max()?;
     let during = drive.looks.iter().filter(|look| look.stamp_ns <= end);
@@ -105,7 +106,7 @@ fn never_moves(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Whether the same scan comes again and again while the robot moves.
+/// Checks that scans do not repeat while the robot moves.
 fn frozen(drive: &Drive) -> Option<Finding> {
     let (scans, moved) = moved_while(drive, |_, now| now.is_repeated)?;
     Some(Finding::problem(format!(
@@ -114,7 +115,7 @@ fn frozen(drive: &Drive) -> Option<Finding> {
     )))
 }
 
-/// Whether the laser reads one range in all directions while the robot moves.
+/// Checks that the laser does not read one range in all directions while the robot moves.
 fn covered(drive: &Drive) -> Option<Finding> {
     let (scans, moved) = moved_while(drive, |before, now| {
         before.only_range_m.is_some() && now.only_range_m.is_some()
@@ -126,8 +127,8 @@ fn covered(drive: &Drive) -> Option<Finding> {
     )))
 }
 
-/// The first run of scans that go on so while odometry moves: how many, and by how much
-/// it moves.
+/// Returns the first long run of scans, all linked by `goes_on`, during which odometry moves: the
+/// number of scans, and the motion in words.
 fn moved_while(drive: &Drive, goes_on: fn(&Look, &Look) -> bool) -> Option<(usize, String)> {
     let mut runs = drive.looks.chunk_by(goes_on);
     runs.find_map(|run| {
@@ -141,7 +142,7 @@ fn moved_while(drive: &Drive, goes_on: fn(&Look, &Look) -> bool) -> Option<(usiz
     })
 }
 
-/// Whether scans turn the other way than odometry does.
+/// Checks that scans turn the same way as odometry.
 fn mirrored(drive: &Drive) -> Option<Finding> {
     let stretches = drive.stretches(STRETCH).into_iter();
     let is_turn = |stretch: &Stretch| stretch.by_odometry.yaw.abs() >= TURN;
@@ -170,7 +171,7 @@ fn mirrored(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Whether the laser is turned on the robot by another angle than is known.
+/// Checks that the laser has the direction on the robot that its mount gives.
 fn mount(drive: &Drive) -> Option<Finding> {
     if drive.has_far_mount() {
         return None;
@@ -207,7 +208,7 @@ mod tests {
 
     const SECOND: i64 = 1_000_000_000;
 
-    /// What a laser reads in a room of 7 × 5 m.
+    /// Ranges of a laser in a room of 7 × 5 m.
     fn ranges(laser: Pose) -> Vec<f32> {
         let range = |beam: u32| {
             let (sin, cos) = (laser.yaw + f64::from(beam).to_radians()).sin_cos();
@@ -219,7 +220,7 @@ mod tests {
         (0..360).map(range).collect()
     }
 
-    /// A robot drives round a square of 2 m.
+    /// Poses of a robot that drives along a square of 2 m.
     fn poses() -> Vec<Pose> {
         let mut at = Pose::new(2.0, 1.0, 0.0);
         let side = [
@@ -235,7 +236,7 @@ mod tests {
             .collect()
     }
 
-    /// What its laser reads that sits there on it.
+    /// Scans of its laser with this mount.
     fn scans(mount: Pose) -> Vec<Vec<f32>> {
         poses()
             .iter()

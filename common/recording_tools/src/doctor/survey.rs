@@ -1,4 +1,4 @@
-//! What is looked at: one pass over all messages that are read.
+//! Gathers the data for the checks in one pass over all decodable messages.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,61 +6,61 @@ use engine::scan::Scan;
 use recording::{Kind, Message, Record, Recording, RecordingError};
 use ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 
-/// What was seen on one channel.
+/// Observations on one channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Seen {
     pub(super) kind: Option<Kind>,
     /// Stamps of the headers, in the order of the log times.
     pub(super) stamps_ns: Vec<i64>,
-    /// Frames of the headers, and where there are some of their children.
+    /// Frames of the headers and, if there are any, child frames.
     pub(super) frames: BTreeSet<String>,
     pub(super) children: BTreeSet<String>,
-    /// Messages that do not decode, and why the first does not.
+    /// Number of messages that do not decode, and the reason for the first.
     pub(super) undecodable: u64,
     pub(super) first_reason: Option<String>,
-    /// Scans whose numbers contradict each other, and what the first says.
+    /// Number of scans with contradictory values, and the fault of the first.
     pub(super) odd_scans: u64,
     pub(super) first_oddity: Option<String>,
-    /// Readings, and those that say nothing.
+    /// Number of ranges, and of those that are no return.
     pub(super) readings: u64,
     pub(super) silent: u64,
     pub(super) farthest: Option<Farthest>,
-    /// Scans most of whose readings no laser reaches, and the middle one of the first.
+    /// Number of scans with a median range that no laser reaches, and the median of the first.
     pub(super) unreachable: u64,
     pub(super) first_middle_m: Option<f32>,
-    /// The longest time from the first beam of a scan to its last.
+    /// Longest time from the first beam of a scan to its last.
     pub(super) longest: Option<Duration>,
-    /// Orientations that were mended, and what was wrong with the first.
+    /// Number of corrected orientations, and the correction of the first.
     pub(super) mended: u64,
     pub(super) first_mend: Option<Mend>,
 }
 
-/// The farthest reading of all scans.
+/// Largest range of all scans.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Farthest {
     pub(super) range_m: f32,
-    /// Readings of exactly this value.
+    /// Number of ranges with exactly this value.
     pub(super) count: u64,
-    /// Of the first scan that has it.
+    /// `range_max` of the first scan that has it.
     pub(super) range_max_m: f32,
 }
 
-/// How long a scan takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Duration {
     pub(super) scan_s: f64,
-    /// From one beam to the next.
+    /// Time from one beam to the next.
     pub(super) time_increment_s: f32,
 }
 
-/// Lasers that scan seldom see half of their surroundings farther off than this, metres.
+/// Largest plausible median range of a scan, in metres: lasers seldom see half of their
+/// surroundings at a larger distance.
 const REACHABLE_M: f32 = 200.0;
 
-/// Fewest different readings of which the middle one says something: some drivers say by
-/// one large value that nothing came back.
+/// Smallest number of distinct ranges for a meaningful median: some drivers report with one large
+/// value that nothing returned.
 const MIN_READINGS: usize = 30;
 
-/// What was seen on all channels.
+/// Observations on all channels, by topic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Survey {
     pub(super) channels: BTreeMap<String, Seen>,
@@ -80,14 +80,13 @@ impl Survey {
                     seen.undecodable += 1;
                     seen.first_reason.get_or_insert_with(|| error.to_string());
                 }
-                // The damage is known from the recording itself.
+                // The damage is reported by the recording itself.
                 Err(_) => {}
             }
         }
         survey
     }
 
-    /// The channels of a kind.
     pub(super) fn of_kind(&self, kind: Kind) -> impl Iterator<Item = (&String, &Seen)> {
         let is_meant = move |(_, seen): &(&String, &Seen)| seen.kind == Some(kind);
         self.channels.iter().filter(is_meant)
@@ -117,7 +116,7 @@ impl Survey {
 }
 
 impl Seen {
-    /// Steps from one stamp to the next that rise, nanoseconds, the shortest first.
+    /// Positive steps between stamps, in nanoseconds, in increasing order.
     pub(super) fn steps_ns(&self) -> Vec<i64> {
         let pairs = self.stamps_ns.windows(2);
         let steps = pairs.map(|pair| pair[1].saturating_sub(pair[0]));
@@ -126,7 +125,7 @@ impl Seen {
         steps
     }
 
-    /// The usual step, seconds.
+    /// Median step, in seconds.
     pub(super) fn usual_step_s(&self) -> Option<f64> {
         let steps = self.steps_ns();
         Some(*steps.get(steps.len() / 2)? as f64 * 1e-9)
@@ -200,7 +199,7 @@ impl Seen {
     }
 }
 
-/// The middle one of the different readings of a scan.
+/// Median of the distinct ranges of a scan.
 fn middle(ranges: &[f32]) -> Option<f32> {
     let mut read: Vec<f32> = ranges.iter().copied().filter(|r| r.is_finite()).collect();
     read.sort_unstable_by(f32::total_cmp);
@@ -209,7 +208,7 @@ fn middle(ranges: &[f32]) -> Option<f32> {
     (read.len() >= MIN_READINGS).then_some(middle)
 }
 
-/// As the engine takes it.
+/// Converts to the engine's type.
 fn as_taken(scan: &LaserScan) -> Scan<'_> {
     Scan {
         angle_min: scan.angle_min.into(),
@@ -220,7 +219,7 @@ fn as_taken(scan: &LaserScan) -> Scan<'_> {
     }
 }
 
-/// Why the engine refuses a scan, or what about its numbers does not fit together.
+/// Reason why the engine rejects a scan, or a contradiction between its values.
 fn oddity(scan: &LaserScan) -> Option<String> {
     if let Err(refusal) = as_taken(scan).check() {
         return Some(refusal.to_string());
@@ -241,8 +240,8 @@ fn oddity(scan: &LaserScan) -> Option<String> {
     }
     let beams = ranges.len();
     let last = angle_min + beams.saturating_sub(1) as f32 * angle_increment;
-    // Some drivers say where the beam behind the last one would point. One that is
-    // no number is never far off, and nobody needs it.
+    // Some drivers set it to the bearing after the last beam. NaN passes this check, because the
+    // field is not used.
     if (last - angle_max).abs() > 1.5 * angle_increment.abs() {
         return Some(format!(
             "its {beams} beams from {angle_min} by {angle_increment} rad end at {last:.4}, not at \

@@ -1,4 +1,4 @@
-//! What is said of the corridor's recording with something wrong in it.
+//! Findings for the recording of the corridor after something in it has been changed.
 
 use std::path::Path;
 

@@ -15,23 +15,22 @@ use crate::each::each;
 /// Options of `backcast info`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
-    /// folders, or .db3)
+    /// The recordings to describe: MCAP files, or bags of rosbag2 (their folders, or .db3)
     #[arg(required = true, value_name = "FILE")]
     recordings: Vec<PathBuf>,
 
     #[command(flatten)]
     topics: TopicOptions,
 
-    /// Print JSON, an object a file
+    /// Print JSON, one object per file
     #[arg(long)]
     json: bool,
 }
 
-/// Describes one file after another, a damaged one as far as it is sound.
+/// Describes the given recordings one after another; a damaged one up to its damage.
 ///
 /// # Errors
-/// The only file cannot be read, or is no recording.
+/// If the only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let mut code = ExitCode::SUCCESS;
     let any_failed = each(&config.recordings, |path| {

@@ -1,11 +1,11 @@
-//! What there is to say about a recording.
+//! Contents of a recording.
 
 use std::collections::BTreeMap;
 
 use recording::{Kind, Recording};
 use serde::Serialize;
 
-/// A recording in figures. Stamps are nanoseconds since 1970.
+/// Statistics of a recording. Stamps are nanoseconds since 1970.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Contents {
     pub recording: String,
@@ -15,13 +15,13 @@ pub(crate) struct Contents {
     pub last_ns: Option<i64>,
     pub chunks: usize,
     pub channels: Vec<Channel>,
-    /// Which of them the commands take, by what they hold.
+    /// Topics that the commands use, by content.
     pub taken: BTreeMap<&'static str, String>,
-    /// Why it is not clear which one is taken.
+    /// Reasons why the choice of a topic is ambiguous.
     pub unclear: Vec<String>,
     pub metadata: Vec<Metadata>,
     pub attachments: Vec<Attachment>,
-    /// What is wrong with the file; all else is of what lies before.
+    /// Damage of the file; everything else describes the part before it.
     pub damage: Option<String>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Channel {
     pub schema: String,
     pub encoding: String,
     pub messages: u64,
-    /// Messages a second over the whole recording; none below two messages.
+    /// Messages per second over the whole recording; `None` for fewer than two messages.
     pub hz: Option<f64>,
 }
 
@@ -70,7 +70,7 @@ impl Contents {
         }
     }
 
-    /// As an object on one line.
+    /// Formats them as a JSON object on one line.
     pub(crate) fn json(&self) -> String {
         json::object(self) + "\n"
     }
@@ -93,7 +93,7 @@ fn unclear(recording: &Recording) -> Vec<String> {
     errors.map(|error| error.to_string()).collect()
 }
 
-/// What is wrong; of several files, with the name of the one.
+/// Describes the damage; if there are several files, names the damaged one.
 fn damage(recording: &Recording) -> Option<String> {
     match recording.file_count() {
         1 => recording.damage().map(ToString::to_string),
@@ -101,7 +101,7 @@ fn damage(recording: &Recording) -> Option<String> {
     }
 }
 
-/// By topic; one that is defined several times is listed once for each.
+/// Channels sorted by topic; a topic that is defined several times is listed several times.
 fn channels(recording: &Recording, seconds: f64) -> Vec<Channel> {
     let channel = |channel: &recording::Channel| Channel {
         topic: channel.topic.to_string(),

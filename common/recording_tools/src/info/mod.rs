@@ -1,7 +1,6 @@
-//! `backcast info`: what a recording holds.
+//! `backcast info`: lists the contents of a recording.
 //!
-//! `contents` gathers it, `text` and its JSON show it. Nothing is judged here;
-//! that is `doctor`'s.
+//! `contents` gathers them, `text` and JSON print them. Faults are left to `doctor`.
 
 mod command;
 mod contents;

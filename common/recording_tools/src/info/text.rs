@@ -1,10 +1,10 @@
-//! A recording's contents for people.
+//! Formats a recording's contents for people.
 
 use std::fmt::Write as _;
 
 use super::contents::Contents;
 
-/// Paragraphs: the file, its channels, what is said of it, what it has inside.
+/// Paragraphs: the file, its channels, metadata, attachments, damage.
 pub(crate) fn of(contents: &Contents) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -61,7 +61,7 @@ fn write(contents: &Contents, text: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Columns stand under each other as long as no topic is longer.
+/// Largest width of the column of topics; longer topics break the alignment.
 const MAX_WIDTH: usize = 80;
 
 fn channels(contents: &Contents, text: &mut String) -> std::fmt::Result {

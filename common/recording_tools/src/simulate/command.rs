@@ -1,4 +1,4 @@
-//! The command `backcast simulate`: reads the map, drives, and records.
+//! The command `backcast simulate`: loads the map, simulates the drive, and records it.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,11 +18,11 @@ const SECOND_NS: i64 = 1_000_000_000;
 /// Options of `backcast simulate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// The map, a YAML file as map_server reads it
+    /// The map, a YAML file in the format of map_server
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
 
-    /// The path of the robot's base, corners in metres in the map: "X,Y X,Y …"
+    /// Path of the robot's base, as corners in metres in the map: "X,Y X,Y …"
     #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
     path: Path,
 
@@ -34,7 +34,7 @@ pub struct Config {
     #[arg(long)]
     force: bool,
 
-    /// When the drive starts, whole seconds since 1970
+    /// Start time of the drive, whole seconds since 1970
     #[arg(long, value_name = "SECONDS", default_value_t = 1_700_000_000, value_parser = clap::value_parser!(i64).range(0..=2_000_000_000))]
     start_time: i64,
 
@@ -42,11 +42,11 @@ pub struct Config {
     drive: DriveConfig,
 }
 
-/// Writes the recording, and says what is in it.
+/// Writes the recording, and prints a summary.
 ///
 /// # Errors
-/// The map cannot be used, the path cannot be driven, or the file cannot be
-/// written. What cannot be driven is refused before the file is touched.
+/// If the map cannot be used, the path cannot be driven, or the file cannot be written. An
+/// impossible drive is rejected before the file is touched.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     if config.out.exists() && !config.force {
         let file = config.out.display();
@@ -73,7 +73,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         };
         writer.write(ODOM, stamp_ns, &messages.odometry(&wheels, stamp))?;
         writer.write(GROUND_TRUTH, stamp_ns, &messages.truth(&snapshot, stamp))?;
-        // A scan is there once its last beam is.
+        // A scan is recorded when its last beam is.
         let mut end_ns = stamp_ns;
         if let Some(wheels) = &snapshot.after {
             end_ns = start_ns + wheels.time_ns;
@@ -93,7 +93,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A stamp; the latest start and the longest drive fit its 32 bits.
+/// Converts to a stamp; the latest start and the longest drive fit its 32 bits.
 fn time(ns: i64) -> Time {
     Time::from_ns(ns).unwrap_or_default()
 }

@@ -1,5 +1,5 @@
-//! Snapshots of a drive as ROS 2 messages, with the frames that robots use:
-//! `map`, `odom`, `base_link` and `laser`, or `front_laser` of a laser called front.
+//! Converts snapshots of a drive to ROS 2 messages with the usual frames of robots: `map`, `odom`,
+//! `base_link` and `laser`, or `front_laser` for a laser named front.
 
 use map::OccupancyGrid;
 use recording::Message;
@@ -9,7 +9,7 @@ use ros::{
 };
 use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
 
-/// What all messages of a recording share.
+/// Data that all messages of a recording share.
 pub(super) struct Messages {
     bearings: Bearings,
     lasers: Vec<NamedMount>,
@@ -70,7 +70,7 @@ impl Messages {
         })
     }
 
-    /// The scan of each laser, with its topic.
+    /// Scans of all lasers, with their topics.
     pub(super) fn scans(
         &self,
         snapshot: Snapshot,
@@ -99,7 +99,6 @@ impl Messages {
     }
 }
 
-/// The frame of a laser.
 fn frame(laser: &str) -> String {
     match laser {
         "" => "laser".to_owned(),

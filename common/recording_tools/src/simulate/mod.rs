@@ -1,8 +1,7 @@
-//! `backcast simulate`: a recording of a drive through a map that no robot
-//! drove, with the truth in it.
+//! `backcast simulate`: records a simulated drive through a map, with the ground truth.
 //!
-//! What is true and what a sensor makes of it comes from crate `simulation`; here
-//! it becomes messages and a file. It searches nothing.
+//! The crate `simulation` generates the true poses and the sensor data; this module converts them
+//! to messages and a file. It searches nothing.
 
 mod command;
 mod messages;

@@ -6,38 +6,38 @@ use super::Pose2D;
 use crate::definition::definition;
 use crate::{Header, RosMessage};
 
-/// What became of each beam of a scan: topic `beams` of the graph.
+/// Result of each beam of a scan: topic `beams` of the graph.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Beams {
-    /// When the scan was measured, and the frame of the map.
+    /// Time of the scan, and the frame of the map.
     pub header: Header,
     /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
     pub entered_ns: i64,
-    /// Counts the scans.
+    /// Number of the scan.
     pub counter: u64,
-    /// The map that the beams were compared with; 0 where there was none.
+    /// Id of the map that the beams were compared with; 0 if there was none.
     pub map_id: u64,
-    /// The pose of the laser at which they were.
+    /// Pose of the laser in the map at which they were compared.
     pub map_from_laser: Pose2D,
-    /// Those that voted by bearing, then those of which nothing returned.
+    /// Beams that voted, by bearing, followed by beams without a return.
     pub beams: Vec<Beam>,
 }
 
 /// `backcast_msgs/msg/Beam`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Beam {
-    /// Counter-clockwise from ahead, radians.
+    /// Counter-clockwise from ahead, in radians.
     pub bearing: f32,
-    /// Metres; infinity where nothing returned.
+    /// Metres; infinity if nothing returned.
     pub range_m: f32,
-    /// How much it counted.
+    /// Weight of its vote.
     pub weight: f32,
-    /// What became of it.
+    /// A `messages::BeamFate`.
     pub fate: u32,
 }
 
 impl Beams {
-    /// The beams of a scan as the graph has them, without loss.
+    /// Converts the beams of a scan of the graph, without loss.
     #[must_use]
     pub fn of(header: Header, from: &messages::BeamsHeader, items: &[messages::Beam]) -> Self {
         let beam = |beam: &messages::Beam| Beam {

@@ -6,38 +6,37 @@ use super::Pose2D;
 use crate::definition::definition;
 use crate::{Header, RosMessage};
 
-/// Where the robot may be: topic `hypotheses` of the graph.
+/// Possible poses of the robot by one scan: topic `hypotheses` of the graph.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Hypotheses {
-    /// When the scan was measured, and the frame of the map.
+    /// Time of the scan, and the frame of the map.
     pub header: Header,
     /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
     pub entered_ns: i64,
-    /// Counts the scans.
+    /// Number of the scan.
     pub counter: u64,
-    /// The map that was searched; 0 where there was none.
+    /// Id of the map that was searched; 0 if there was none.
     pub map_id: u64,
     /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
     pub sent_ns: i64,
-    /// Nanoseconds of computing, from scan to votes.
+    /// Computing time from scan to votes, in nanoseconds.
     pub search_ns: u64,
-    /// Nanoseconds of computing, from votes to hypotheses.
+    /// Computing time from votes to hypotheses, in nanoseconds.
     pub extract_ns: u64,
-    /// What the scan allows to say.
+    /// A `messages::Verdict`.
     pub verdict: u32,
-    /// Other places that fit about as well as the best.
+    /// Number of other places that fit about as well as the best.
     pub alternatives: u32,
-    /// The probability of the best pose, 0..=1.
+    /// Probability of the best pose, 0..=1.
     pub confidence: f32,
     /// Share of the beams' weight that agrees with the best pose, 0..=1.
     pub inlier_share: f32,
-    /// The highest intensity of any pose.
+    /// Highest intensity of any pose.
     pub best: u32,
-    /// What a pose would have if every beam agreed fully.
+    /// Intensity of a pose that every beam agrees with fully.
     pub highest_possible: u32,
-    /// Whether the laser's mount was given.
+    /// True if the laser's mount was given.
     pub mount_known: bool,
-    /// Best first.
     pub hypotheses: Vec<Hypothesis>,
 }
 
@@ -48,21 +47,21 @@ pub struct Hypothesis {
     pub map_from_laser: Pose2D,
     /// Pose of the robot's base in the map.
     pub map_from_base: Pose2D,
-    /// Of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
-    /// How well the scan fits the map there, at most 1.
+    /// Fit of the scan to the map at this pose, at most 1.
     pub score: f32,
-    /// How likely the robot is there, 0..=1.
+    /// Probability that the robot is there, 0..=1.
     pub probability: f32,
-    /// Votes of the best pose that led there.
+    /// Intensity of the best search pose that led to this hypothesis.
     pub intensity: u64,
-    /// Votes that led there.
+    /// Number of search poses that led to this hypothesis.
     pub support: u64,
 }
 
 impl Hypotheses {
-    /// The places of a scan as the graph has them; where several maps were searched, those on the
-    /// map of the best one.
+    /// Converts the hypotheses of a scan of the graph; if several maps were searched, only those on
+    /// the map of the best one.
     #[must_use]
     pub fn of(
         header: Header,

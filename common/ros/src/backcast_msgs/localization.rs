@@ -6,36 +6,36 @@ use serde::{Deserialize, Serialize};
 use crate::definition::definition;
 use crate::{Header, PoseWithCovariance, RosMessage, Time, planar};
 
-/// Where the robot is, and how sure that is, for programs of a robot: what of the tracker's
-/// verdict on a scan they decide by.
+/// Pose of the robot and its certainty, for programs of a robot: the part of the tracker's verdict
+/// on a scan that they base decisions on.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Localization {
-    /// When the scan was measured, and the frame of the map.
+    /// Time of the scan, and the frame of the map.
     pub header: Header,
-    /// What the tracker knows: a `messages::TrackState`.
+    /// State of the tracker: a `messages::TrackState`.
     pub state: u8,
-    /// How likely the robot is at `pose`, 0..=1.
+    /// Probability that the robot is at `pose`, 0..=1.
     pub probability: f64,
-    /// When the state began.
+    /// Start of the state.
     pub since: Time,
-    /// Other places that are possible.
+    /// Number of other possible places.
     pub alternatives: u32,
-    /// The map, 16 hexadecimal digits; empty where there is none.
+    /// Id of the map, 16 hexadecimal digits; empty if there is none.
     pub map_id: String,
-    /// Whether there is a pose.
+    /// True if there is a pose.
     pub pose_known: bool,
-    /// Of the robot's base in the map: of the place that is believed, else of the one that
-    /// leads.
+    /// Pose of the robot's base in the map: at the place that the tracker believes, otherwise at
+    /// the leading one.
     pub pose: PoseWithCovariance,
-    /// Why it is in that state, and what to do, in words.
+    /// Reason for the state and advice, in words.
     pub reason: String,
 }
 
 impl Localization {
-    /// What the tracker says of a scan, with its words.
+    /// Converts the tracker's result for a scan, with its text.
     #[must_use]
     pub fn of(header: Header, from: &PoseHeader, words: &[u8]) -> Self {
-        // The pose of a laser is not the robot's.
+        // Without a mount only the laser's pose is known, which is not the robot's.
         let pose = from
             .base()
             .map(|base| planar::estimate(base.into(), from.base_covariance));
@@ -54,7 +54,7 @@ impl Localization {
     }
 }
 
-/// The map's id as texts have it; empty where there is no map.
+/// Id of the map as 16 hexadecimal digits; empty if there is no map.
 #[must_use]
 pub fn map_id(from: &PoseHeader) -> String {
     match from.map_id {

@@ -1,12 +1,11 @@
-//! Messages of our own, for what no message of ROS holds without loss: the
-//! graph's `votes`, `hypotheses`, `beams` and `pose` with every field of their headers, and
-//! the verdict as a robot's programs need it.
+//! Messages for data that no message of ROS holds without loss: the graph's `votes`, `hypotheses`,
+//! `beams` and `pose` with every field of their headers, and the tracker's verdict in the form that
+//! a robot's programs need.
 //!
-//! They are plain `ros2msg` and CDR, so a generic reader decodes them. Numbers
-//! that name a state stand as in the graph, with their names as constants in
-//! the definition; sequences stand last, since readers differ in how they align
-//! what follows an empty one. A field that is added makes another message, under
-//! another name.
+//! They are plain `ros2msg` and CDR, so any generic reader decodes them. Numbers that stand for a
+//! state are the same as in the graph, and the definition names them as constants. Sequences are
+//! the last fields, since readers differ in how they align fields after an empty one. A message
+//! with an additional field is a new message with a new name.
 
 mod beams;
 mod hypotheses;
@@ -22,14 +21,14 @@ pub use votes::{Vote, Votes};
 
 use serde::{Deserialize, Serialize};
 
-/// `geometry_msgs/msg/Pose2D` as ROS 2 has had it: metres and radians.
+/// `geometry_msgs/msg/Pose2D` of ROS 2.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose2D {
-    /// Metres.
+    /// X, in metres.
     pub x: f64,
-    /// Metres.
+    /// Y, in metres.
     pub y: f64,
-    /// Radians, counter-clockwise.
+    /// Heading, in radians counter-clockwise.
     pub theta: f64,
 }
 

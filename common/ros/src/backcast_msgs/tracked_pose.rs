@@ -6,60 +6,59 @@ use super::Pose2D;
 use crate::definition::definition;
 use crate::{Header, RosMessage};
 
-/// Where the tracker has the robot at a scan, and how sure it is: topic `pose` of the
-/// graph.
+/// Pose of the tracker at a scan and its certainty: topic `pose` of the graph.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TrackedPose {
-    /// When the scan was measured, and the frame of the map.
+    /// Time of the scan, and the frame of the map.
     pub header: Header,
     /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
     pub entered_ns: i64,
-    /// Counts the scans.
+    /// Number of the scan.
     pub counter: u64,
-    /// The map that the pose is about; 0 where there was none.
+    /// Id of the map of the pose; 0 if there is none.
     pub map_id: u64,
     /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
     pub sent_ns: i64,
-    /// Nanoseconds of computing, the search not included.
+    /// Computing time without the search, in nanoseconds.
     pub tracking_ns: u64,
-    /// When the state began, as the stamps of scans count: nanoseconds since 1970.
+    /// Start of the state by the stamps of scans, in nanoseconds since 1970.
     pub since_ns: i64,
-    /// Metres that the robot has gone since.
+    /// Distance that the robot has travelled since then, in metres.
     pub since_m: f64,
-    /// Pose of the laser in the map, where one is known.
+    /// Pose of the laser in the map, if one is known.
     pub map_from_laser: Pose2D,
-    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    /// Pose of the robot's base in the map; the laser's if no mount is known.
     pub map_from_base: Pose2D,
-    /// Where the odometry's frame lies in the map, where odometry is known.
+    /// Pose of the odometry frame in the map, if odometry is known.
     pub map_from_odom: Pose2D,
-    /// Of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
+    /// Covariance of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
     pub laser_covariance: [f64; 9],
-    /// Of the base's pose, as the laser's.
+    /// Covariance of the base's pose, in the same form.
     pub base_covariance: [f64; 9],
-    /// How likely the robot is there, 0..=1.
+    /// Probability that the robot is there, 0..=1.
     pub probability: f64,
-    /// By how much the place leads over the next, natural logarithm of odds.
+    /// Natural logarithm of the odds of `probability`.
     pub lead: f64,
-    /// How well the scan fits the map there, at most 1.
+    /// Fit of the scan to the map at this pose, at most 1.
     pub score: f64,
-    /// What the tracker knows.
+    /// A `messages::TrackState`.
     pub state: u32,
-    /// Why.
+    /// A `messages::TrackReason`.
     pub reason: u32,
-    /// Places that are kept as possible, the best included.
+    /// Number of places that are still possible, including the best.
     pub places: u32,
-    /// Whether there is a pose.
+    /// True if there is a pose.
     pub pose_known: bool,
-    /// Whether the laser's mount was given.
+    /// True if the laser's mount was given.
     pub mount_known: bool,
-    /// Whether odometry was.
+    /// True if odometry was given.
     pub odom_known: bool,
-    /// The reason in words, and what to do.
+    /// Reason and advice, in words.
     pub words: String,
 }
 
 impl TrackedPose {
-    /// The pose of the tracker as the graph has it, with its words, without loss.
+    /// Converts the tracker's pose of the graph, with its text.
     #[must_use]
     pub fn of(header: Header, from: &messages::PoseHeader, words: &[u8]) -> Self {
         TrackedPose {

@@ -6,71 +6,72 @@ use super::Pose2D;
 use crate::definition::definition;
 use crate::{Header, RosMessage};
 
-/// The outcome of one search: topic `votes` of the graph.
+/// Result of one search: topic `votes` of the graph.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Votes {
-    /// When the scan was measured, and the frame of the map.
+    /// Time of the scan, and the frame of the map.
     pub header: Header,
     /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
     pub entered_ns: i64,
-    /// Counts the scans.
+    /// Number of the scan.
     pub counter: u64,
-    /// The map that was searched; 0 where there was none.
+    /// Id of the map that was searched; 0 if there was none.
     pub map_id: u64,
-    /// How many votes there are.
+    /// Number of votes.
     pub total: u64,
-    /// Nanoseconds of computing.
+    /// Computing time, in nanoseconds.
     pub engine_ns: u64,
-    /// Poses whose intensity was computed one by one.
+    /// Number of poses whose intensity was computed individually.
     pub poses_evaluated: u64,
-    /// How the search ended.
+    /// A `messages::SearchOutcome`.
     pub outcome: u32,
-    /// Headings a turn.
+    /// Number of headings in a full turn.
     pub headings: u32,
-    /// The least intensity among the votes.
+    /// Lowest intensity among the votes.
     pub floor: u32,
-    /// At and above it the votes are all that there are.
+    /// Intensity from which the votes are complete.
     pub certified_floor: u32,
-    /// The highest intensity of any pose.
+    /// Highest intensity of any pose.
     pub best: u32,
-    /// What a pose would have if every beam agreed fully.
+    /// Intensity of a pose that every beam agrees with fully.
     pub highest_possible: u32,
-    /// Whether the floor was raised so that the votes fit.
+    /// True if the floor was raised to limit the number of votes, or the search was cut off by its
+    /// limit of work.
     pub truncated: bool,
-    /// Whether the heading was given.
+    /// True if the heading was given.
     pub heading_known: bool,
-    /// Whether the laser's mount was given.
+    /// True if the laser's mount was given.
     pub mount_known: bool,
-    /// Beams that voted.
+    /// Number of beams that voted.
     pub beams_used: u32,
-    /// Beams whose reading says nothing.
+    /// Number of beams without a usable range.
     pub beams_silent: u32,
-    /// The given heading in the map frame, radians.
+    /// Given heading in the map frame, in radians.
     pub known_heading: f64,
-    /// The largest rounding of a bearing, radians.
+    /// Largest rounding of a bearing to the heading grid, in radians.
     pub bearing_rounding: f64,
-    /// Where the laser sits on the robot.
+    /// Pose of the laser on the robot.
     pub base_from_laser: Pose2D,
-    /// Occupancy from which a cell was taken as occupied, per cent.
+    /// Occupancy from which a cell counts as occupied, in percent.
     pub occupied_from: u32,
-    /// Occupancy up to which a cell was taken as free, per cent.
+    /// Occupancy up to which a cell counts as free, in percent.
     pub free_to: u32,
-    /// Most beams of a scan that vote.
+    /// Largest number of beams of a scan that vote.
     pub max_beams: u32,
-    /// Cells of the map along the side of a cell that was searched.
+    /// Downsampling factor: map cells per search cell and axis.
     pub pooling: u32,
-    /// Arc at the reading from which a beam counts fully, metres.
+    /// Arc at the measured range from which a beam has full weight, in metres.
     pub beam_arc_m: f64,
-    /// Most votes first.
+    /// Votes by falling intensity.
     pub votes: Vec<Vote>,
 }
 
 /// `backcast_msgs/msg/Vote`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Vote {
-    /// Cells that were searched along x from the grid's origin.
+    /// Index of the search cell along x from the grid's origin.
     pub x: u16,
-    /// Cells that were searched along y from the grid's origin.
+    /// Index of the search cell along y from the grid's origin.
     pub y: u16,
     /// Index of the heading.
     pub heading: u16,
@@ -79,7 +80,7 @@ pub struct Vote {
 }
 
 impl Votes {
-    /// The votes of a scan as the graph has them, without loss.
+    /// Converts the votes of a scan of the graph; `map` gives the thresholds of occupancy.
     #[must_use]
     pub fn of(
         header: Header,

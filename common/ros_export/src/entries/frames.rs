@@ -1,5 +1,4 @@
-//! The tree of frames: how the map, the odometry, the robot and its lasers lie to
-//! each other.
+//! The tree of frames: transforms between the map, the odometry, the robot and its lasers.
 //!
 //! ```text
 //! map ──► odom ──► base_link ──► laser      with odometry and a known mount
@@ -7,10 +6,9 @@
 //! map ──► laser                             without a known mount
 //! ```
 //!
-//! Transforms that are made of others are made of them as they are recorded, so
-//! that they come out the same when the recording is played and recorded again.
-//! A frame has one parent, so the robot hangs below the odometry as soon as
-//! there is one. The map's transform is given only where the verdict is Unique.
+//! Transforms that are computed from others use their recorded values, so that they are the same
+//! when the recording is replayed and recorded again. A frame has one parent, so the robot is below
+//! the odometry once there is odometry. The map's transform is only given if the verdict is Unique.
 
 use std::collections::VecDeque;
 
@@ -20,24 +18,24 @@ use ros::{Header, TfMessage, Time, TransformStamped, planar, poses};
 
 use super::transforms;
 
-/// Odometry that is kept until the hypotheses of its scan come.
+/// Number of odometry samples that are kept for the hypotheses of a scan.
 const KEPT: usize = 256;
 
 #[derive(Debug)]
 pub(super) struct Frames {
     map: String,
     base: String,
-    /// The laser whose scan came last, and how it sits.
+    /// Laser of the last scan.
     laser: Option<Laser>,
     mounts: Vec<TransformStamped>,
     odometry: VecDeque<Odometry>,
 }
 
-/// A laser, and how it sits.
+/// A laser and its mount.
 #[derive(Debug, Clone, PartialEq)]
 struct Laser {
     frame: String,
-    /// On the base, if that is known.
+    /// Pose on the base, if known.
     mount: Option<Pose>,
     is_upside_down: bool,
 }
@@ -53,7 +51,7 @@ impl Frames {
         }
     }
 
-    /// Takes a scan's header; gives all mounts where its own is new.
+    /// Evaluates the header of a scan; returns all mounts if its own is new.
     pub(super) fn on_scan(&mut self, scan: &ScanHeader, stamp: Time) -> Option<TfMessage> {
         let frame = scan.frame.as_str();
         let mount =
@@ -78,7 +76,7 @@ impl Frames {
         Some(transforms(self.mounts.clone()))
     }
 
-    /// Takes odometry; gives the robot's place in its frame.
+    /// Stores odometry; returns the transform of the robot in its frame.
     pub(super) fn on_odometry(&mut self, odometry: &Odometry, stamp: Time) -> TfMessage {
         if self.odometry.len() == KEPT {
             self.odometry.pop_front();
@@ -89,7 +87,7 @@ impl Frames {
         transforms(vec![stamped(stamp, parent, &child, odom_from_robot)])
     }
 
-    /// Where the map's frame lies, by the best hypothesis of a scan.
+    /// Transform below the map's frame, by the best hypothesis of a scan.
     pub(super) fn localized(
         &self,
         header: &HypothesesHeader,
@@ -104,7 +102,7 @@ impl Frames {
         let map_from_robot = poses::robot(header, best);
         let odometry = self.odometry_at(header.stamp.measured_ns);
         let transform = match odometry {
-            // Its frame is the laser's, or the mount relates the two.
+            // The odometry moves the laser's frame, or the mount relates the two.
             Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser.frame => {
                 let (_, odom_from_robot) = self.robot_in(odometry);
                 let map_from_odom = map_from_robot.then(odom_from_robot.inverse());
@@ -117,13 +115,13 @@ impl Frames {
         Some(transforms(vec![transform]))
     }
 
-    /// Where the map's frame lies, by the tracker: as long as it believes a place.
+    /// Transform below the map's frame by the tracker, if it believes a place.
     pub(super) fn tracked(&self, header: &PoseHeader, stamp: Time) -> Option<TfMessage> {
         if !header.is_believed() {
             return None;
         }
         let transform = match (header.odom_known, header.mount_known) {
-            // The odometry says where its frame has the robot, which has one parent.
+            // The robot is already below the odometry, and a frame has one parent.
             (0, _) if !self.odometry.is_empty() => return None,
             (1, _) => {
                 let odom = header.odom_frame.as_str();
@@ -138,8 +136,8 @@ impl Frames {
         Some(transforms(vec![transform]))
     }
 
-    /// The robot's frame and its place in the odometry's: where the odometry is
-    /// of a laser whose mount is known, that of the base.
+    /// Frame of the robot and its pose in the odometry's frame: that of the base if the odometry
+    /// moves a laser with a known mount.
     fn robot_in(&self, odometry: &Odometry) -> (String, Pose) {
         let child = odometry.child_frame.as_str();
         let odom_from_child = planar::as_recorded(odometry.odom_from_child.into());
@@ -156,7 +154,7 @@ impl Frames {
         }
     }
 
-    /// The newest odometry up to this time, else the first.
+    /// Newest odometry up to this time, otherwise the first.
     fn odometry_at(&self, measured_ns: i64) -> Option<&Odometry> {
         let by_then = |odometry: &&Odometry| odometry.stamp.measured_ns <= measured_ns;
         let newest = self.odometry.iter().rev().find(by_then);
@@ -165,7 +163,7 @@ impl Frames {
 }
 
 impl Laser {
-    /// Where the laser's frame is, seen from above.
+    /// Transform of the laser's frame, by its pose seen from above.
     fn stamped(&self, stamp: Time, parent: &str, parent_from_laser: Pose) -> TransformStamped {
         let mut stamped = stamped(stamp, parent, &self.frame, parent_from_laser);
         if self.is_upside_down {
@@ -222,7 +220,7 @@ mod tests {
         }
     }
 
-    /// `parent->child x` of the only transform.
+    /// Formats the transforms as `parent->child x`.
     fn shown(message: Option<TfMessage>) -> String {
         let transforms = message
             .map(|message| message.transforms)
@@ -234,7 +232,7 @@ mod tests {
         transforms.iter().map(show).collect::<Vec<_>>().join(", ")
     }
 
-    /// The laser is at 10, the base half a metre behind.
+    /// Transform for a laser at 10 whose base is half a metre behind it.
     fn localized(frames: &Frames, mount_known: bool, verdict: Verdict) -> String {
         let header = HypothesesHeader {
             verdict: verdict as u32,
@@ -272,7 +270,7 @@ mod tests {
         let base = frames.on_odometry(&odometry("base_link", 2.0), Time::default());
         assert_eq!(shown(Some(base)), "odom->base_link 2");
         assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 7.5");
-        // The laser of the odometry hangs below the base already.
+        // The laser that the odometry moves is below the base already.
         let laser = frames.on_odometry(&odometry("laser", 2.0), Time::default());
         assert_eq!(shown(Some(laser)), "odom->base_link 1.5");
         assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 8");

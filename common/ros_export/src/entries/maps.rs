@@ -1,4 +1,4 @@
-//! The map and the intensity image, where their headers and items agree.
+//! Converts maps and intensity images after a check that their headers and items agree.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use ros::{Header, OccupancyGridMsg};
 
 use crate::TranscriptError;
 
-/// The map; its header and load time are filled in by the caller.
+/// Converts a map; the caller fills in its header and load time.
 pub(super) fn occupancy_grid(
     map: &MapHeader,
     cells: &[u8],
@@ -17,7 +17,8 @@ pub(super) fn occupancy_grid(
     Ok(OccupancyGridMsg::of_map(map, cells))
 }
 
-/// The intensities, as per cent of what a pose would have if every beam agreed.
+/// Converts intensities to percentages of the intensity that a pose would have if every beam
+/// agreed.
 pub(super) fn field(
     header: Header,
     field: &FieldHeader,
@@ -28,7 +29,7 @@ pub(super) fn field(
     Ok(OccupancyGridMsg::of_field(header, field, items, map))
 }
 
-/// What the recording says about its map.
+/// Metadata of the recording about its map.
 pub(super) fn metadata(map: &MapHeader) -> BTreeMap<String, String> {
     let entry = |key: &str, value: String| (key.to_owned(), value);
     BTreeMap::from([

@@ -1,9 +1,9 @@
-//! From samples of the graph to messages of ROS, each with its time.
+//! Converts samples of the graph to messages of ROS with their times, without I/O.
 //!
-//! Pure. Times are those of the measurements, not of their arrival: of a scan,
-//! its votes and its hypotheses alike, so that a recording that is played and
-//! recorded again has the same times. What has no measurement (the map, the
-//! mount, health) waits for the first one, and then stands at its time.
+//! The times are those of the measurements, not of their arrival: a scan, its votes and its
+//! hypotheses have the same time, so that a recording that is replayed and recorded again has the
+//! same times. Samples without a measurement (the map, the mount, health) wait for the first one
+//! and get its time.
 
 mod frames;
 mod maps;
@@ -26,38 +26,36 @@ use ros::{
 
 use crate::{Options, TranscriptError, topics};
 
-/// Reports, and lines, that wait for the first measurement at most; the newest are
-/// kept.
+/// Largest number of health reports, and of log lines, that wait for the first measurement; the
+/// newest are kept.
 const MAX_WAITING: usize = 256;
 
-/// What goes into a transcript.
+/// Entry of a transcript.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Entry {
-    /// A message.
     Message(Encoded),
-    /// What holds from now on, under a name.
+    /// Metadata that is valid from now on, with its name.
     Metadata(&'static str, BTreeMap<String, String>),
 }
 
-/// Makes entries of samples.
+/// Converts samples to entries.
 #[derive(Debug)]
 pub struct Entries {
     frames: Frames,
     map_frame: String,
-    /// The newest measurement: where the clock of measurements meets the host's.
+    /// The newest measurement; relates the clock of measurements to the host's clock.
     newest: Option<Stamp>,
-    /// The map that was recorded last, or is to be.
+    /// The map that was recorded last, or is waiting.
     map: Option<MapHeader>,
     waiting_map: Option<OccupancyGridMsg>,
     waiting_health: VecDeque<(HealthHeader, String)>,
     waiting_log: VecDeque<(LogHeader, String)>,
-    /// Whether there is a tracker.
+    /// True if there is a tracker.
     is_tracked: bool,
     made: Vec<Entry>,
 }
 
 impl Entries {
-    /// Nothing yet.
     #[must_use]
     pub fn new(options: &Options) -> Self {
         Entries {
@@ -73,15 +71,15 @@ impl Entries {
         }
     }
 
-    /// What was made since the last call.
+    /// Takes the entries made since the last call.
     pub fn take(&mut self) -> Vec<Entry> {
         std::mem::take(&mut self.made)
     }
 
-    /// Takes a scan.
+    /// Adds a scan.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), TranscriptError> {
         let at = self.measured(scan.stamp, topic::Scan::NAME)?;
         if let Some(mounts) = self.frames.on_scan(scan, at.stamp) {
@@ -94,10 +92,10 @@ impl Entries {
         }
     }
 
-    /// Takes odometry.
+    /// Adds odometry.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn odometry(&mut self, odometry: &Odometry) -> Result<(), TranscriptError> {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
         let transform = self.frames.on_odometry(odometry, at.stamp);
@@ -106,20 +104,20 @@ impl Entries {
         self.message(topics::ODOM, at.ns, &message)
     }
 
-    /// Takes where the robot truly was.
+    /// Adds a true pose.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), TranscriptError> {
         let at = self.measured(truth.stamp, topic::GroundTruthTopic::NAME)?;
         let message = PoseStamped::of(at.stamp, truth);
         self.message(topics::GROUND_TRUTH, at.ns, &message)
     }
 
-    /// Takes the votes of a scan.
+    /// Adds the votes of a scan.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn votes(&mut self, votes: &VotesHeader, items: &[Vote]) -> Result<(), TranscriptError> {
         let at = self.measured(votes.stamp, topic::Votes::NAME)?;
         let map = self.map.as_ref();
@@ -128,10 +126,10 @@ impl Entries {
         self.message(topics::OWN_VOTES, at.ns, &message)
     }
 
-    /// Takes the places of a scan.
+    /// Adds the hypotheses of a scan, and the best pose if there is no tracker.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn hypotheses(
         &mut self,
         header: &HypothesesHeader,
@@ -143,7 +141,7 @@ impl Entries {
         self.message(topics::OWN_HYPOTHESES, at.ns, &own)?;
         let array = poses::array(in_map.clone(), header, items);
         self.message(topics::HYPOTHESES, at.ns, &array)?;
-        // Where there is a tracker, it says where the robot is.
+        // If there is a tracker, it gives the pose of the robot.
         if self.is_tracked {
             return Ok(());
         }
@@ -157,10 +155,10 @@ impl Entries {
         Ok(())
     }
 
-    /// Takes a start for particle filters.
+    /// Adds initial particles for particle filters.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn particles(
         &mut self,
         header: &ParticlesHeader,
@@ -171,16 +169,17 @@ impl Entries {
         self.message(topics::PARTICLES, at.ns, &array)
     }
 
-    /// There is a tracker: answers to single scans are no poses, before its first one either.
+    /// Notes that there is a tracker: from now on the results of single scans are no poses, even
+    /// before its first pose.
     pub fn expect_tracker(&mut self) {
         self.is_tracked = true;
     }
 
-    /// Takes where the tracker has the robot at a scan; what odometry carries on between
-    /// scans is left out, for the odometry is there itself.
+    /// Adds the tracker's pose at a scan. Its poses between scans, which come from odometry, are
+    /// left out, because the odometry is recorded itself.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn tracked(&mut self, header: &PoseHeader, words: &[u8]) -> Result<(), TranscriptError> {
         self.expect_tracker();
         if header.from_scan != 1 {
@@ -198,22 +197,21 @@ impl Entries {
         Ok(())
     }
 
-    /// Takes how the beams of a scan fare at its best place.
+    /// Adds the results of the beams of a scan at its best pose.
     ///
     /// # Errors
-    /// If its stamp is no time of ROS, or CDR cannot say it.
+    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn beams(&mut self, beams: &BeamsHeader, items: &[Beam]) -> Result<(), TranscriptError> {
         let at = self.measured(beams.stamp, topic::Beams::NAME)?;
         let message = own::Beams::of(self.in_map(at.stamp), beams, items);
         self.message(topics::OWN_BEAMS, at.ns, &message)
     }
 
-    /// Takes a map, unless it is the one that was taken last: a server that was
-    /// started again sends it again.
+    /// Adds a map, unless it is the same as the last one: a restarted server sends it again.
     ///
     /// # Errors
-    /// If its header and items contradict each other, its stamp is no time of ROS, or
-    /// CDR cannot say it.
+    /// If its header and items contradict each other, its stamp is outside the times of ROS, or it
+    /// cannot be encoded in CDR.
     pub fn map(
         &mut self,
         map: &MapHeader,
@@ -232,11 +230,11 @@ impl Entries {
         }
     }
 
-    /// Takes an intensity image; one of a map that is not known is left out.
+    /// Adds an intensity image; one of an unknown map is left out.
     ///
     /// # Errors
-    /// If its header and items contradict each other, its stamp is no time of ROS, or
-    /// CDR cannot say it.
+    /// If its header and items contradict each other, its stamp is outside the times of ROS, or it
+    /// cannot be encoded in CDR.
     pub fn field(&mut self, field: &FieldHeader, items: &[u16]) -> Result<(), TranscriptError> {
         let at = self.measured(field.stamp, topic::Field::NAME)?;
         let Some(map) = self.map.filter(|map| map.map_id == field.map_id) else {
@@ -246,10 +244,10 @@ impl Entries {
         self.message(topics::FIELD, at.ns, &message)
     }
 
-    /// Takes a node's report, at the host's time `now_ns`.
+    /// Adds the health report of a node, at the host's time `now_ns`.
     ///
     /// # Errors
-    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
+    /// If the time of the measurements is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn health(
         &mut self,
         report: &HealthHeader,
@@ -263,10 +261,10 @@ impl Entries {
         }
     }
 
-    /// Takes a line of a node's log, which stands at the time when it was written.
+    /// Adds a line of a node's log, at the time when it was written.
     ///
     /// # Errors
-    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
+    /// If the time of the measurements is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_log, *line, text);
         match self.clock_ns(line.written_ns) {
@@ -275,23 +273,23 @@ impl Entries {
         }
     }
 
-    /// Makes entries of what still waits, where nothing was ever measured: at
-    /// `wall_ns`, nanoseconds since 1970.
+    /// Converts all waiting samples at `wall_ns`, in nanoseconds since 1970, if there was no
+    /// measurement.
     ///
     /// # Errors
-    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
+    /// If the time is outside the times of ROS, or a sample cannot be encoded in CDR.
     pub fn finish(&mut self, wall_ns: i64) -> Result<(), TranscriptError> {
         self.release(wall_ns)
     }
 
-    /// The clock of the measurements now.
+    /// Converts the host's time to the clock of the measurements.
     fn clock_ns(&self, now_ns: i64) -> Option<i64> {
         let newest = self.newest?;
         let since_ns = now_ns.saturating_sub(newest.entered_ns).max(0);
         Some(newest.measured_ns.saturating_add(since_ns))
     }
 
-    /// Checks a measurement's stamp, and drops what waited for it.
+    /// Checks the stamp of a measurement; the first one releases the waiting samples.
     fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, TranscriptError> {
         let at = Moment::of(stamp.measured_ns, topic)?;
         let first = self.newest.is_none();
@@ -354,7 +352,7 @@ impl Entries {
     }
 }
 
-/// Adds what waits; the oldest makes room.
+/// Adds a waiting sample; drops the oldest if there are too many.
 fn wait<H>(waiting: &mut VecDeque<(H, String)>, header: H, text: &[u8]) {
     if waiting.len() == MAX_WAITING {
         waiting.pop_front();
@@ -362,7 +360,7 @@ fn wait<H>(waiting: &mut VecDeque<(H, String)>, header: H, text: &[u8]) {
     waiting.push_back((header, String::from_utf8_lossy(text).into_owned()));
 }
 
-/// A time that a message of ROS can say.
+/// A time that is valid in ROS.
 #[derive(Debug, Clone, Copy)]
 struct Moment {
     ns: i64,

@@ -37,7 +37,7 @@ fn map(cells: &[u8]) -> MapHeader {
     header
 }
 
-/// Topics and times of what was made, metadata by its name at time 0.
+/// Topics and times of the entries; metadata by name, at time 0.
 fn made(entries: &mut Entries) -> Vec<(&'static str, i64)> {
     let show = |entry| match entry {
         Entry::Message(message) => match message.topic {
@@ -65,7 +65,7 @@ fn what_has_no_measurement_waits_for_the_first_one() {
         ("/scan", 1000),
     ];
     assert_eq!(made(&mut entries), expected);
-    // From then on the host's clock measures how much later it is.
+    // From then on the host's clock gives the time since the measurement.
     entries.health(&HealthHeader::zeroed(), b"", 40).unwrap();
     entries.map(&map(&[0, 100]), &[0, 100], 50).unwrap();
     entries.map(&map(&[0, 0]), &[0, 0], 60).unwrap();
@@ -161,7 +161,7 @@ fn hypotheses_stand_in_several_forms_and_no_hypothesis_has_no_pose() {
         .unwrap();
     let one = [&empty[..], &[("/pose", 1000), ("/tf", 1000)]].concat();
     assert_eq!(made(&mut entries), one);
-    // The tracker says which of them is the pose, once it says something.
+    // Once there is a tracker, hypotheses give no pose.
     entries.expect_tracker();
     entries
         .hypotheses(&header, &[Hypothesis::zeroed()])

@@ -1,25 +1,25 @@
-//! How a device counts its angles, and what that means seen from ahead.
+//! Conversion of a device's own angles to bearings from straight ahead.
 
 use super::Channel;
 
-/// Which of a device's angles points ahead, and which way its angles grow.
+/// Zero point and direction of a device's angle scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleConvention {
-    /// The device's own angle that points ahead, degrees.
+    /// Device angle that points straight ahead, degrees.
     pub ahead_deg: f64,
-    /// Whether the device's angles grow clockwise, seen from above.
+    /// True if the device's angles grow clockwise, seen from above.
     pub clockwise: bool,
 }
 
 impl AngleConvention {
-    /// Of most of SICK's devices: 0° is to the right, and angles grow
-    /// counter-clockwise, so that 90° is ahead.
+    /// Convention of most SICK devices: 0° is to the right, and angles grow counter-clockwise, so
+    /// 90° is ahead.
     pub const USUAL: AngleConvention = AngleConvention {
         ahead_deg: 90.0,
         clockwise: false,
     };
 
-    /// The bearing of a device's angle: degrees counter-clockwise from ahead.
+    /// Returns the bearing of a device angle: degrees counter-clockwise from ahead.
     #[must_use]
     pub fn bearing_deg(self, device_deg: f64) -> f64 {
         match self.clockwise {
@@ -28,9 +28,8 @@ impl AngleConvention {
         }
     }
 
-    /// The bearing of the beam that is farthest to the right, from which the others
-    /// follow counter-clockwise; whole turns are taken off so that the middle of the
-    /// field is within half a turn of ahead.
+    /// Returns the bearing of the rightmost beam, from which the others follow counter-clockwise.
+    /// Whole turns are removed so that the middle of the field is within 180° of ahead.
     #[must_use]
     pub fn rightmost_bearing_deg(self, field: Field) -> f64 {
         let rightmost_deg = self.bearing_deg(match self.clockwise {
@@ -55,18 +54,17 @@ impl std::fmt::Display for AngleConvention {
     }
 }
 
-/// The angles that a scan covers, in the device's own degrees; the first is the
-/// smaller one.
+/// Angles that a scan covers, in device degrees, the smaller one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field {
-    /// Of the first beam.
+    /// Angle of the first beam.
     pub first_deg: f64,
-    /// Of the last beam.
+    /// Angle of the last beam.
     pub last_deg: f64,
 }
 
 impl Field {
-    /// Of the values of a channel.
+    /// Returns the field that a channel's values cover.
     #[must_use]
     pub fn of(channel: &Channel<'_>) -> Self {
         let first_deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4;
@@ -77,7 +75,7 @@ impl Field {
         }
     }
 
-    /// Between two angles in 1/10000°, as settings say them.
+    /// Converts two angles in 1/10000°, the unit of the settings.
     #[must_use]
     pub fn between(start_raw_1e4_deg: i32, stop_raw_1e4_deg: i32) -> Self {
         Field {
@@ -86,7 +84,7 @@ impl Field {
         }
     }
 
-    /// Half way from the first beam to the last, degrees.
+    /// Returns the angle halfway between the first and the last beam, degrees.
     #[must_use]
     pub fn middle_deg(self) -> f64 {
         0.5 * (self.first_deg + self.last_deg)
@@ -101,8 +99,8 @@ impl std::fmt::Display for Field {
     }
 }
 
-/// How long a device takes from the first value of a scan to the last,
-/// microseconds; 0 where it does not say how fast its mirror turns.
+/// Returns the time that a device takes from the first value of a scan to the last, microseconds; 0
+/// if it does not report its scan frequency.
 #[must_use]
 pub fn sweep_us(channel: &Channel<'_>, scan_frequency_raw_1e2_hz: u32) -> i64 {
     if scan_frequency_raw_1e2_hz == 0 {
@@ -131,7 +129,7 @@ mod tests {
 
     #[test]
     fn left_and_right_in_each_convention() {
-        // Device angle and bearing; 90° is to the left.
+        // Pairs of device angle and bearing; a bearing of 90° is to the left.
         for (convention, pairs) in [
             (AngleConvention::USUAL, [(0.0, -90.0), (180.0, 90.0)]),
             (CLOCKWISE, [(90.0, 90.0), (270.0, -90.0)]),
@@ -149,7 +147,7 @@ mod tests {
         assert_eq!(usual.rightmost_bearing_deg(field(0.0, 90.0)), -90.0);
         assert_eq!(CLOCKWISE.rightmost_bearing_deg(field(0.0, 359.75)), -179.75);
         assert_eq!(CLOCKWISE.rightmost_bearing_deg(field(30.0, 330.0)), -150.0);
-        // The same world where the device counts from half a turn before.
+        // The same geometry on a device that starts counting half a turn earlier.
         let other = AngleConvention {
             ahead_deg: 180.0,
             clockwise: false,

@@ -1,41 +1,39 @@
-//! What a device answers.
+//! Answers of a device to commands.
 
 use super::cursor::Cursor;
 use super::writer::Writer;
 use super::{Encoding, Fault, ScanConfig, Value, Variable, lmd_scan_data};
 use crate::SickError;
 
-/// An answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer<'a> {
-    /// `sRA`: what a variable holds.
+    /// `sRA`: value of a variable.
     Value(Value<'a>),
     /// `sWA`: a variable was written.
     Written(Variable),
-    /// `sAN SetAccessMode`: whether the login succeeded.
+    /// `sAN SetAccessMode`: true if the login succeeded.
     AccessMode(bool),
-    /// `sAN mLMPsetscancfg`: u8, 0 where the device now scans as this says.
+    /// `sAN mLMPsetscancfg`: u8 status, 0 if the device now scans with `config`.
     ScanConfigSet {
-        /// 0 done, 1 wrong frequency, 2 wrong resolution, 3 both it and the
-        /// field are wrong, 4 wrong field, 5 other error.
+        /// 0 done, 1 wrong frequency, 2 wrong resolution, 3 wrong resolution and field, 4 wrong
+        /// field, 5 other error.
         status: u8,
-        /// How the device scans now.
         config: ScanConfig,
     },
-    /// `sAN mEEwriteall`: whether the settings were kept.
+    /// `sAN mEEwriteall`: true if the settings were stored.
     ParametersStored(bool),
-    /// `sAN LMCstartmeas`: u8, 0 where it was done, 1 where it is not allowed.
+    /// `sAN LMCstartmeas`: u8, 0 if measuring started, 1 if that is not allowed.
     MeasurementStarted(u8),
-    /// `sAN Run`: whether the device runs.
+    /// `sAN Run`: true if the device is running.
     Running(bool),
-    /// `sEA LMDscandata`: whether it sends every scan.
+    /// `sEA LMDscandata`: true if the device now sends every scan.
     ScansSubscribed(bool),
-    /// `sFA`: the device refuses.
+    /// `sFA`: the device rejects the command.
     Fault(Fault),
 }
 
 impl<'a> Answer<'a> {
-    /// Reads the parameters of an answer; `None` where it is not understood.
+    /// Parses the parameters of an answer; `None` for an unsupported answer.
     pub(super) fn read(
         letters: &[u8; 3],
         name: &[u8],
@@ -72,8 +70,7 @@ impl<'a> Answer<'a> {
         }))
     }
 
-    /// Reads what follows `sFA`: in CoLa B two bytes with or without a space
-    /// before them.
+    /// Parses the error code after `sFA`: in CoLa B two bytes, with or without a leading space.
     pub(super) fn read_fault(encoding: Encoding, rest: &[u8]) -> Result<Self, SickError> {
         let code = match rest {
             [b' ', code @ ..] if encoding == Encoding::Text || rest.len() == 3 => code,
@@ -85,7 +82,7 @@ impl<'a> Answer<'a> {
         Ok(Answer::Fault(Fault(fault)))
     }
 
-    /// Appends the content.
+    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Answer::Value(value) => {

@@ -18,17 +18,17 @@ use crate::SickError;
 /// | count · width | values | u16 or u8 |
 #[derive(Debug, Clone, Copy)]
 pub struct Channel<'a> {
-    /// What the values are.
+    /// Kind of the values.
     pub name: [u8; 5],
-    /// Times the raw value: millimetres for distances.
+    /// Factor for the raw value; distances are then in millimetres.
     pub scale_factor: f32,
-    /// Added after scaling.
+    /// Offset added after scaling.
     pub scale_offset: f32,
-    /// Of the first value, in the device's convention.
+    /// Angle of the first value, in the device's convention.
     pub start_angle_raw_1e4_deg: i32,
-    /// From one value to the next.
+    /// Angle between consecutive values.
     pub step_raw_1e4_deg: u16,
-    /// First angle first; at most 65535 can be sent.
+    /// Values by increasing angle; at most 65535 can be sent.
     pub values: Values<'a>,
 }
 
@@ -68,20 +68,18 @@ impl<'a> Channel<'a> {
         self.values.write(writer, width);
     }
 
-    /// Number of values.
     #[must_use]
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
-    /// Whether there is no value.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Equal where all fields and values are, however they are encoded.
+/// Compares fields and decoded values, regardless of the encoding.
 impl PartialEq for Channel<'_> {
     fn eq(&self, other: &Self) -> bool {
         let fields = |c: &Self| {
@@ -108,18 +106,18 @@ pub struct Channels<'a>(Place<'a>);
 
 #[derive(Debug, Clone)]
 enum Place<'a> {
-    /// In a telegram.
+    /// Encoded in a telegram.
     Read {
         left: u16,
         width: usize,
         cursor: Cursor<'a>,
     },
-    /// In memory.
+    /// A slice in memory.
     Listed(&'a [Channel<'a>]),
 }
 
 impl<'a> Channels<'a> {
-    /// Reads the block once to check it; `width` is the bytes of a value.
+    /// Parses the block once to validate it; `width` is the number of bytes per value.
     pub(super) fn read(
         cursor: &mut Cursor<'a>,
         field: &'static str,
@@ -144,7 +142,7 @@ impl<'a> Channels<'a> {
         }
     }
 
-    /// The channel of this name.
+    /// Returns the channel with this name.
     #[must_use]
     pub fn named(&self, name: &[u8; 5]) -> Option<Channel<'a>> {
         self.clone().find(|channel| &channel.name == name)

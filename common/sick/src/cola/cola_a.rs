@@ -1,25 +1,24 @@
 //! CoLa A frames.
 //!
-//! | bytes | what |
+//! | bytes | field |
 //! |---|---|
 //! | 1 | start: `02` |
 //! | n | content: printable characters |
 //! | 1 | end: `03` |
 //!
-//! There is no checksum: a changed digit goes unseen. What is noticed is a
-//! telegram that is cut off or whose words cannot be read.
+//! There is no checksum, so a changed digit goes unnoticed. Only truncated telegrams and words that
+//! cannot be parsed are detected.
 
 use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
-/// The longest content that is believed: each byte of the longest CoLa B
-/// telegram may take three characters.
+/// Longest content accepted: each byte of the longest CoLa B telegram may take three characters.
 pub const MAX_CONTENT: usize = 3 * super::cola_b::MAX_CONTENT;
 
 const START: u8 = 2;
 const END: u8 = 3;
 
-/// Appends a telegram around what `write` appends.
+/// Appends a telegram; `write` appends its content.
 pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
     out.push(START);
     write(out);

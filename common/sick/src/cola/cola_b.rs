@@ -1,29 +1,29 @@
 //! CoLa B frames.
 //!
-//! | bytes | what |
+//! | bytes | field |
 //! |---|---|
 //! | 4 | start: `02 02 02 02` |
 //! | 4 | length of the content, u32 |
 //! | n | content: a command of three letters, a space, a name, parameters |
 //! | 1 | XOR of the content |
 //!
-//! The checksum alone is weak: a length that is too large by two takes in the
-//! checksum and a byte of the next start, whose XOR equals the byte after.
+//! The checksum alone is weak: a length that is too large by two includes the checksum and one byte
+//! of the next start, and the XOR of these equals the byte that follows.
 
 use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
 /// Bytes that start every telegram.
 const START: [u8; 4] = [2; 4];
-/// The shortest content: a command of three letters.
+/// Length of the shortest content: a command of three letters.
 pub const MIN_CONTENT: usize = 3;
-/// The longest content that is believed. Five echoes with distance and
-/// remission at the finest resolution of the LMS5xx take about 23 kB.
+/// Longest content accepted. Five echoes with distance and remission at the finest resolution of
+/// the LMS5xx take about 23 kB.
 pub const MAX_CONTENT: usize = 1 << 17;
-/// Bytes before the content: start and length.
+/// Number of bytes before the content: start and length.
 const PREFIX: usize = 8;
 
-/// Appends a telegram around what `write` appends.
+/// Appends a telegram; `write` appends its content.
 pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
     let start = out.len();
     out.extend_from_slice(&START);
@@ -38,15 +38,14 @@ pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
     out.push(checksum);
 }
 
-/// XOR of the buffered bytes up to and including the same index, and of an
-/// arbitrary constant that drops out of every difference: it gives the
-/// checksum of any stretch at once, so that even a stream of nothing but
-/// false starts costs linear time.
+/// Running XOR up to and including each buffered byte, combined with an arbitrary constant that
+/// cancels in every difference. It gives the checksum of any range in constant time, so that even a
+/// stream full of false starts costs linear time.
 #[derive(Debug, Default)]
 pub(super) struct Parity(Vec<u8>);
 
 impl Parity {
-    /// Of bytes that follow those that are buffered.
+    /// Appends the running XOR of newly buffered bytes.
     pub(super) fn extend(&mut self, piece: &[u8]) {
         let mut parity = self.0.last().copied().unwrap_or(0);
         self.0.extend(piece.iter().map(|byte| {
@@ -55,12 +54,12 @@ impl Parity {
         }));
     }
 
-    /// Forgets the first `count` bytes.
+    /// Drops the first `count` bytes.
     pub(super) fn release(&mut self, count: usize) {
         self.0.drain(..count);
     }
 
-    /// XOR of `length` buffered bytes from `start` on, of which one is before.
+    /// Returns the XOR of `length` buffered bytes from `start` on; at least one byte precedes them.
     fn of(&self, start: usize, length: usize) -> u8 {
         let upto = |end: usize| self.0.get(end - 1).copied().unwrap_or(0);
         upto(start + length) ^ upto(start)
@@ -137,7 +136,7 @@ mod tests {
 
     #[test]
     fn garbage_between_telegrams_costs_none_of_them() {
-        // The stray 02 is the nastiest: it looks like the start of the next start.
+        // A stray 02 is the worst case: it looks like the beginning of the next start.
         let stream = [telegrams(&["sAN one"]), vec![9, 2], telegrams(&["sAN two"])].concat();
         let seen = read(&[&stream]);
         assert_eq!(seen.len(), 3, "{seen:?}");
@@ -160,7 +159,7 @@ mod tests {
         stream[7] += 16;
         let seen = read(&[&stream]);
         assert_eq!(seen[1..], ["sAN two@16", "sAN three@32"]);
-        // The same where the claim reaches beyond the end of the stream.
+        // The same when the claimed length exceeds the rest of the stream.
         stream[6] = 0x10;
         let seen = read(&[&stream]);
         assert!(seen[0].contains("ends 50 bytes into"), "{seen:?}");
@@ -239,7 +238,7 @@ mod tests {
         #[test]
         fn no_bytes_panic(bytes in proptest::collection::vec(proptest::num::u8::ANY, 0..400)) {
             let _ = read(&[&bytes]);
-            // Mostly starts, so that the rules behind them are reached as well.
+            // Mostly start bytes, so that the later checks are reached as well.
             let starts: Vec<u8> = bytes.iter().map(|b| if *b < 200 { 2 } else { b & 3 }).collect();
             let _ = read(&[&starts]);
         }

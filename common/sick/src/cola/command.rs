@@ -1,17 +1,16 @@
-//! What a host sends.
+//! Commands that a host sends.
 
 use super::cursor::Cursor;
 use super::writer::Writer;
 use super::{Encoding, ScanConfig, Value, Variable, lmd_scan_data};
 use crate::SickError;
 
-/// The user level that may change settings.
+/// User level that may change settings.
 pub const AUTHORIZED_CLIENT: u8 = 3;
 
-/// The hash of that level's password, `client`, as every device is delivered.
+/// Password hash of that level in the factory settings (`client`).
 pub const PASSWORD_AUTHORIZED_CLIENT: u32 = 0xf472_4744;
 
-/// A command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command<'a> {
     /// `sRN`: read a variable.
@@ -22,7 +21,7 @@ pub enum Command<'a> {
     Write(Value<'a>),
     /// `sMN`: call a method.
     Call(Method),
-    /// `sEN LMDscandata`: send every scan, or no more.
+    /// `sEN LMDscandata`: start or stop sending every scan.
     SubscribeScans(bool),
 }
 
@@ -40,9 +39,9 @@ pub enum Method {
     SetScanConfig(ScanConfig),
     /// `mEEwriteall`: keep the settings over a power cycle.
     StoreParameters,
-    /// `LMCstartmeas`: start to measure.
+    /// `LMCstartmeas`: start measuring.
     StartMeasurement,
-    /// `Run`: end the set-up and log out.
+    /// `Run`: leave set-up and log out.
     Run,
 }
 
@@ -92,7 +91,7 @@ impl Method {
 }
 
 impl<'a> Command<'a> {
-    /// Reads the parameters of a command; `None` where it is not understood.
+    /// Parses the parameters of a command; `None` for an unsupported command.
     pub(super) fn read(
         letters: &[u8; 3],
         name: &[u8],
@@ -119,7 +118,7 @@ impl<'a> Command<'a> {
         })
     }
 
-    /// Appends the content.
+    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Command::Read(variable) => Writer::bare(b"sRN", variable.name().as_bytes(), out),

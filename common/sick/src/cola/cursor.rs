@@ -1,8 +1,7 @@
-//! Takes fields off the content of a telegram, one after the other, in either
-//! encoding.
+//! Reads the fields of a telegram's content in order, in either encoding.
 //!
-//! Each read names its field, so that an error says where and what. It never
-//! reads past the end and never skips.
+//! Each read names its field, so that errors say where and what. It never reads past the end and
+//! never skips.
 
 use super::Encoding;
 use super::words::{leading_hex, length_of_words};
@@ -13,12 +12,12 @@ pub(crate) struct Cursor<'a> {
     rest: &'a [u8],
     at: usize,
     encoding: Encoding,
-    /// Whether the same bytes have been read before, to their end.
+    /// True if these bytes have already been parsed to their end.
     is_checked: bool,
 }
 
 impl<'a> Cursor<'a> {
-    /// Over `rest`, which begins `at` bytes into the content.
+    /// Creates a cursor over `rest`, which begins `at` bytes into the content.
     pub(crate) fn new(encoding: Encoding, rest: &'a [u8], at: usize) -> Self {
         Cursor {
             rest,
@@ -28,13 +27,13 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Over the same bytes, which are known to be sound from now on.
+    /// Marks the bytes as already validated.
     pub(crate) fn checked(mut self) -> Self {
         self.is_checked = true;
         self
     }
 
-    /// Takes numbers of text, after a look at each the first time.
+    /// Takes `count` numbers in text form; validates each of them the first time.
     pub(crate) fn numbers(
         &mut self,
         field: &'static str,
@@ -84,7 +83,7 @@ impl<'a> Cursor<'a> {
         Ok(head)
     }
 
-    /// The next word of text, without the space behind it.
+    /// Takes the next word of text and the space after it.
     fn word(&mut self, field: &'static str) -> Result<&'a [u8], SickError> {
         let end = self.rest.iter().position(|&byte| byte == b' ');
         let end = end.unwrap_or(self.rest.len());
@@ -109,7 +108,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A number of this many bits as a word of text.
+    /// Takes a word of text as a number of this many bits.
     pub(crate) fn number(&mut self, field: &'static str, bits: u32) -> Result<u32, SickError> {
         if let Some((value, length)) = leading_hex(self.rest)
             && (bits == 32 || value >> bits == 0)
@@ -121,7 +120,7 @@ impl<'a> Cursor<'a> {
         self.unusual_number(field, bits)
     }
 
-    /// A number with a sign, or none at all.
+    /// Takes a signed decimal number, or reports the word as invalid.
     #[cold]
     fn unusual_number(&mut self, field: &'static str, bits: u32) -> Result<u32, SickError> {
         let offset = self.at;
@@ -186,12 +185,11 @@ impl<'a> Cursor<'a> {
         Err(field_error(field, offset, &value, "a finite number"))
     }
 
-    /// Two numbers of 8 bits.
     pub(crate) fn pair(&mut self, field: &'static str) -> Result<[u8; 2], SickError> {
         Ok([self.u8(field)?, self.u8(field)?])
     }
 
-    /// Exactly `N` characters.
+    /// Takes exactly `N` characters.
     pub(crate) fn letters<const N: usize>(
         &mut self,
         field: &'static str,
@@ -208,7 +206,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// This many characters, which may be spaces.
+    /// Takes `count` characters, which may include spaces.
     pub(crate) fn characters(
         &mut self,
         field: &'static str,
@@ -229,7 +227,7 @@ impl<'a> Cursor<'a> {
         Ok(characters)
     }
 
-    /// A u8 of at most `max`; `allowed` says the same in words.
+    /// Takes a u8 of at most `max`; `allowed` is the same range in words.
     pub(crate) fn u8_upto(
         &mut self,
         field: &'static str,
@@ -244,7 +242,7 @@ impl<'a> Cursor<'a> {
         Err(field_error(field, offset, &value, allowed))
     }
 
-    /// A u16 of at most `max`; `allowed` says the same in words.
+    /// Takes a u16 of at most `max`; `allowed` is the same range in words.
     pub(crate) fn u16_upto(
         &mut self,
         field: &'static str,
@@ -259,22 +257,22 @@ impl<'a> Cursor<'a> {
         Err(field_error(field, offset, &value, allowed))
     }
 
-    /// A u8 that says yes or no.
+    /// Takes a u8 that is 0 or 1.
     pub(crate) fn bool(&mut self, field: &'static str) -> Result<bool, SickError> {
         self.u8_upto(field, 1, "0 or 1").map(|value| value == 1)
     }
 
-    /// A u16 that returns whether a block follows.
+    /// Takes a u16 flag: true if a block follows.
     pub(crate) fn flag(&mut self, field: &'static str) -> Result<bool, SickError> {
         self.u16_upto(field, 1, "0 or 1").map(|value| value == 1)
     }
 
-    /// Bytes taken so far.
+    /// Returns the number of bytes taken so far.
     pub(crate) fn offset(&self) -> usize {
         self.at
     }
 
-    /// Checks that nothing is left.
+    /// Checks that no bytes are left.
     pub(crate) fn end(&self) -> Result<(), SickError> {
         if self.rest.is_empty() {
             return Ok(());

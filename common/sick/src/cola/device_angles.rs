@@ -1,31 +1,30 @@
-//! Which way a device looks, as far as that is known, and what to state where it is
-//! not: a scan that is turned or mirrored makes a pose that is wrong and looks right.
+//! Decides which way a device looks, or which option the user must give if that is unknown: a
+//! rotated or mirrored scan yields a pose that is wrong but looks right.
 
 use super::known_device::USUAL_REACH_M;
 use super::{AngleConvention, Field, KnownDevice};
 
-/// How far the middle of a field may be from where most devices have ahead,
-/// degrees: a device may leave out the last beam of a field that it centres, which
-/// is half of the coarsest step, 1°; its step is rounded to 1/10000°, which is 0.02°
-/// in 811 beams at a third of a degree.
+/// Largest distance of the middle of a field from the usual 90°, degrees. A device may leave out
+/// the last beam of a centred field, which is half of the coarsest step of 1°; its step is rounded
+/// to 1/10000°, which adds up to 0.02° in 811 beams at a third of a degree.
 const TOLERANCE_DEG: f64 = 1.0;
 
-/// What is known of how a device counts its angles.
+/// Knowledge about how a device counts its angles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum DeviceAngles {
-    /// It has not said its name.
+    /// The device has not reported its name.
     #[default]
     Unnamed,
-    /// Its name is not in the table.
+    /// The reported name is not in the table.
     Unknown(String),
-    /// Its name is in the table.
+    /// The reported name is in the table.
     Known(&'static KnownDevice),
-    /// Whoever owns it says so.
+    /// The user states the convention.
     Stated(AngleConvention),
 }
 
 impl DeviceAngles {
-    /// By the name that a device says (`DeviceIdent`).
+    /// Looks up the name that a device reports (`DeviceIdent`).
     #[must_use]
     pub fn of_name(name: &[u8]) -> Self {
         let name = name.escape_ascii().to_string();
@@ -35,11 +34,11 @@ impl DeviceAngles {
         }
     }
 
-    /// How the angles of a scan over `field` are to be read.
+    /// Returns the angle convention for a scan over `field`.
     ///
     /// # Errors
-    /// [`ConventionError`], which says what is to be stated: where nothing is known
-    /// and the middle of the field is not where most devices have ahead.
+    /// [`ConventionError`], which names the options to set, if the device is not known and the
+    /// middle of the field is not where most devices have ahead.
     pub fn convention(&self, field: Field) -> Result<AngleConvention, ConventionError> {
         let usual = AngleConvention::USUAL;
         let is_centred = (field.middle_deg() - usual.ahead_deg).abs() <= TOLERANCE_DEG;
@@ -58,7 +57,7 @@ impl DeviceAngles {
         }
     }
 
-    /// The convention if no field is needed to find it.
+    /// Returns the convention if it does not depend on the field.
     #[must_use]
     pub fn certain(&self) -> Option<AngleConvention> {
         match self {
@@ -68,7 +67,7 @@ impl DeviceAngles {
         }
     }
 
-    /// The farthest that the device is known to measure, metres.
+    /// Longest range that the device is known to measure, metres.
     #[must_use]
     pub fn reach_m(&self) -> f32 {
         match self {
@@ -78,29 +77,28 @@ impl DeviceAngles {
     }
 }
 
-/// Why it is not known which way a device looks.
+/// Reason why the convention of a device is unknown.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConventionError {
-    /// No name, and the field is off the usual middle.
+    /// The device reported no name, and its field is not centred as usual.
     #[error(
         "which way the laser looks is not known: its name was not read, and its field, {field}, \
          is not centred on 90°, which is ahead on most SICK lasers; {}",
         remedy()
     )]
     Unnamed {
-        /// Of its scans.
+        /// Field of its scans.
         field: Field,
     },
-    /// A name that is not in the table, and the field is off the usual middle.
+    /// The name is not in the table, and the field is not centred as usual.
     #[error(
         "which way the laser looks is not known: {name} is not in the table, and its field, \
          {field}, is not centred on 90°, which is ahead on most SICK lasers; {}",
         remedy()
     )]
     Unknown {
-        /// As it says it.
+        /// Name that the device reports.
         name: String,
-        /// Of its scans.
         field: Field,
     },
     /// The sources for a device contradict each other.
@@ -109,14 +107,14 @@ pub enum ConventionError {
         turned()
     )]
     Disputed {
-        /// Its name in the table.
+        /// Name of the device's row in the table.
         row: &'static str,
-        /// What they say, and where.
+        /// The contradicting statements and where they are found.
         sources: &'static str,
     },
 }
 
-/// The options of `lms_reader` that help where a device may be in the table.
+/// Returns the advice for a device that may be in the table.
 fn remedy() -> String {
     format!(
         "no scan is published until lms_reader is given --device NAME (such as TiM240, NAV310 or \
@@ -124,7 +122,7 @@ fn remedy() -> String {
     )
 }
 
-/// Those that always help.
+/// Returns the advice that applies to every device.
 fn turned() -> String {
     format!("no scan is published until lms_reader is given {OPTIONS}")
 }

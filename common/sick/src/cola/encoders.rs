@@ -1,27 +1,27 @@
-//! The incremental encoders on a device's inputs.
+//! Incremental encoders on a device's inputs.
 
 use super::cursor::Cursor;
 use super::writer::Writer;
 use crate::SickError;
 
-/// An incremental encoder.
+/// Reading of an incremental encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoder {
-    /// Ticks.
+    /// Position in ticks.
     pub position: u32,
-    /// Ticks per millimetre.
+    /// Speed in ticks per millimetre.
     pub speed: u16,
 }
 
-/// The encoders; iterating reads them in place.
+/// Sequence of encoders; iterating decodes them in place.
 #[derive(Debug, Clone)]
 pub struct Encoders<'a>(Place<'a>);
 
 #[derive(Debug, Clone)]
 enum Place<'a> {
-    /// In a telegram.
+    /// Encoded in a telegram.
     Read { left: u16, cursor: Cursor<'a> },
-    /// In memory.
+    /// A slice in memory.
     Listed(&'a [Encoder]),
 }
 
@@ -57,7 +57,7 @@ impl<'a> Encoders<'a> {
 }
 
 impl<'a> From<&'a [Encoder]> for Encoders<'a> {
-    /// At most three can be sent.
+    /// Keeps the first three encoders; no more can be sent.
     fn from(encoders: &'a [Encoder]) -> Self {
         Encoders(Place::Listed(encoders.get(..3).unwrap_or(encoders)))
     }

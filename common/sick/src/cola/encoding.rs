@@ -1,6 +1,3 @@
-//! The two encodings.
-
-/// How telegrams are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Encoding {

@@ -1,12 +1,12 @@
-//! Why a device refused a command.
+//! Error codes by which a device rejects a command.
 
 use std::fmt;
 
-/// SICK's number of an error; it displays with its meaning.
+/// SICK error code; it displays with its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault(pub u16);
 
-/// The meanings by their numbers (SICK, "Telegram listing", error codes).
+/// Meanings by error code (SICK, "Telegram listing", error codes).
 const MEANINGS: [&str; 27] = [
     "no error",
     "the user level does not allow this method",
@@ -38,24 +38,24 @@ const MEANINGS: [&str; 27] = [
 ];
 
 impl Fault {
-    /// The user level does not allow a method.
+    /// The user level does not allow this method.
     pub const METHOD_DENIED: Fault = Fault(1);
-    /// There is no such method.
+    /// The method does not exist.
     pub const UNKNOWN_METHOD: Fault = Fault(2);
-    /// There is no such variable.
+    /// The variable does not exist.
     pub const UNKNOWN_VARIABLE: Fault = Fault(3);
-    /// A value is out of its range.
+    /// A value is outside its range.
     pub const OUT_OF_RANGE: Fault = Fault(4);
-    /// The parameters cannot be read.
+    /// The parameters cannot be parsed.
     pub const INVALID_DATA: Fault = Fault(5);
-    /// The user level does not allow writing.
+    /// The user level does not allow writing this variable.
     pub const WRITE_DENIED: Fault = Fault(0xa);
-    /// There is no such command.
+    /// The command does not exist.
     pub const UNKNOWN_COMMAND: Fault = Fault(0xc);
-    /// There is no such event.
+    /// The event does not exist.
     pub const UNKNOWN_EVENT: Fault = Fault(0xf);
 
-    /// What SICK says that the number means.
+    /// Returns the meaning according to SICK's listing.
     #[must_use]
     pub fn meaning(self) -> &'static str {
         let meaning = MEANINGS.get(usize::from(self.0));

@@ -1,42 +1,38 @@
-//! Which devices count their angles in which way.
+//! Table of devices and how they count their angles.
 //!
-//! Each row says where its fact stands. A device is in the table only where a
-//! document or SICK's own driver states; the others must be stated by whoever owns
-//! one.
+//! Each row gives its source. A device is listed only if a document or SICK's own driver states its
+//! convention; for all others the owner has to state it.
 
 use super::AngleConvention;
 
-/// A row of the table: devices that count alike.
+/// Row of the table: devices with the same convention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownDevice {
-    /// As people call them, such as `TiM5xx`.
+    /// Common name, such as `TiM5xx`.
     pub name: &'static str,
-    /// Letters before the number, in capitals.
+    /// Letters before the number, in upper case.
     family: &'static str,
-    /// Digits of the number; `#` stands for any digit, and for the X of a name such
-    /// as `TIM2xx`.
+    /// Digits of the number; `#` stands for any digit and for the X of a name such as `TIM2xx`.
     number: &'static str,
-    /// How they count their angles; `None` where the sources contradict each other.
+    /// Angle convention; `None` if the sources contradict each other.
     pub convention: Option<AngleConvention>,
-    /// The farthest that they measure, metres, where that is beyond
-    /// [`USUAL_REACH_M`].
+    /// Longest range in metres, if it exceeds [`USUAL_REACH_M`].
     reach_m: Option<f32>,
-    /// Where this stands.
+    /// Source of the convention.
     pub source: &'static str,
 }
 
-/// The farthest that most of the devices measure, metres.
+/// Longest range of most devices, metres.
 pub const USUAL_REACH_M: f32 = 80.0;
 
-/// SICK's driver <https://github.com/SICKAG/sick_scan_xd>: the angle shift of each
-/// device.
+/// SICK's driver <https://github.com/SICKAG/sick_scan_xd>: angle shift of each device.
 const DRIVER: &str = "sick_scan_xd, driver/src/sick_generic_parser.cpp";
-/// The same driver, where scans are laid out.
+/// Layout of scans in the same driver.
 const LAYOUT: &str =
     "sick_scan_xd, configureAngleParameters in driver/src/sick_lmd_scandata_parser.cpp";
 
 impl KnownDevice {
-    /// All rows.
+    /// All rows of the table.
     pub const ALL: [KnownDevice; 17] = [
         usual("LMS1xx", "LMS", "1##", DRIVER),
         usual("LMS5xx", "LMS", "5##", DRIVER),
@@ -114,7 +110,7 @@ impl KnownDevice {
         ),
     ];
 
-    /// The row of a name as the device says it (`DeviceIdent`) or as people do:
+    /// Finds the row of a name as the device reports it (`DeviceIdent`) or as people write it:
     /// `LMS10x_FieldEval`, `TIM2xx V1.0`, `NAV310-3211`, `tim-240`.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static KnownDevice> {
@@ -130,13 +126,13 @@ impl KnownDevice {
         })
     }
 
-    /// The farthest that it measures, metres.
+    /// Longest range that the device measures, metres.
     #[must_use]
     pub fn reach_m(&self) -> f32 {
         self.reach_m.unwrap_or(USUAL_REACH_M)
     }
 
-    /// The names of all rows that define how devices count, for people.
+    /// Returns a list of the devices with a known convention, for messages.
     #[must_use]
     pub fn names() -> String {
         let rows = Self::ALL.iter().filter(|row| row.convention.is_some());
@@ -146,7 +142,7 @@ impl KnownDevice {
     }
 }
 
-/// Letters and number of a name, both in capitals: `("TIM", "2XX")`.
+/// Returns letters and number of a name in upper case: `("TIM", "2XX")`.
 fn model(name: &str) -> Option<(String, String)> {
     let name = name.trim_start().to_ascii_uppercase();
     let is_gap = |c: char| matches!(c, ' ' | '-' | '_');
@@ -261,7 +257,7 @@ mod tests {
 
     #[test]
     fn other_names_are_not_known() {
-        // A NAV350 sends no scans of this kind, and an LRS36xx may be either.
+        // A NAV350 does not send this kind of scan, and an LRS36xx may be either.
         for name in [
             "",
             "TiM",

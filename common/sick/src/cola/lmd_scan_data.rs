@@ -1,8 +1,7 @@
-//! `LMDscandata`: one scan as the device sends it.
+//! `LMDscandata`: one scan in the device's format.
 //!
-//! The layout is that of SICK's telegram listing for LiDAR sensors. Every field
-//! is read and checked, in order, to the last byte; what the values mean for a
-//! robot is not decided here.
+//! The layout follows SICK's telegram listing for LiDAR sensors. Every field is read and checked,
+//! in order, to the last byte; this module does not interpret the values.
 
 use super::Encoding;
 use super::channel::Channels;
@@ -12,14 +11,14 @@ use super::tail::{self, DeviceTime, Event, Position};
 use super::writer::Writer;
 use crate::SickError;
 
-/// Bytes before the first field.
+/// Number of bytes before the first field.
 const COMMAND: usize = 16;
 
-/// The event and the variable of this name.
+/// Name of both the event and the variable.
 pub(super) const NAME: &[u8] = b"LMDscandata";
 
-/// A scan telegram. Offsets count from the start of the content in CoLa B; in
-/// CoLa A each number is a word, and each u8 of a pair is one of its own.
+/// Scan telegram. Offsets count from the start of the content in CoLa B. In CoLa A each number is a
+/// word, and each u8 of a pair is a word of its own.
 ///
 /// | offset | bytes | field | |
 /// |---|---|---|---|
@@ -48,56 +47,55 @@ pub(super) const NAME: &[u8] = b"LMDscandata";
 /// | … | 2 (+ 16) | event | u16 flag, [`Event`] |
 #[derive(Debug, Clone, PartialEq)]
 pub struct LmdScanData<'a> {
-    /// Of the layout.
+    /// Version of the layout.
     pub version: u16,
-    /// Given by whoever set up the device.
+    /// Number assigned by the user.
     pub device_number: u16,
-    /// Given by the factory.
+    /// Number assigned by the manufacturer.
     pub serial_number: u32,
-    /// 0, 0 is in order; 0, 1 is an error; 0, 2 and 0, 4 are contamination.
+    /// Device status: 0, 0 is ok; 0, 1 is an error; 0, 2 and 0, 4 are contamination.
     pub status: [u8; 2],
-    /// Telegrams that the device has finished; wraps.
+    /// Number of telegrams that the device has finished; wraps.
     pub telegram_counter: u16,
-    /// Scans that the device has made; wraps.
+    /// Number of scans that the device has made; wraps.
     pub scan_counter: u16,
-    /// Since the device started; wraps after 71.6 minutes.
+    /// Time since the device started, µs; wraps after 71.6 minutes.
     pub time_since_start_up_us: u32,
-    /// On the same clock, when the telegram was handed to the interface.
+    /// Time on the same clock when the telegram was handed to the interface, µs.
     pub time_of_transmission_us: u32,
-    /// A bit for each input, in the low byte.
+    /// Digital inputs, one bit each, in the low byte.
     pub digital_inputs: [u8; 2],
-    /// A bit for each output.
+    /// Digital outputs, one bit each.
     pub digital_outputs: [u8; 2],
-    /// Which layer this is, on devices with several.
+    /// Angle of the layer, on devices with several layers.
     pub layer_angle_raw: i16,
-    /// Turns of the mirror, 1/100 Hz.
+    /// Mirror frequency, 1/100 Hz.
     pub scan_frequency_raw_1e2_hz: u32,
-    /// Shots, in 100 Hz on most devices; firmware differs.
+    /// Measurement frequency, in 100 Hz on most devices; depends on the firmware.
     pub measurement_frequency_raw: u32,
     /// Incremental encoders on the device's inputs.
     pub encoders: Encoders<'a>,
-    /// Distances, and remissions unless they are narrow.
+    /// Distances, and remissions if they have 16 bits.
     pub channels_16_bit: Channels<'a>,
-    /// Narrow remissions.
+    /// Remissions of 8 bits.
     pub channels_8_bit: Channels<'a>,
-    /// Where the device is mounted, if it is configured and sent.
+    /// Mounting position of the device, if configured and sent.
     pub position: Option<Position>,
-    /// The device's name, if it sends it.
+    /// Name of the device, if sent.
     pub name: Option<&'a [u8]>,
-    /// A comment, if it sends one.
+    /// Comment, if sent.
     pub comment: Option<&'a [u8]>,
-    /// The device's own clock, if it sends it.
+    /// Clock of the device, if sent.
     pub time: Option<DeviceTime>,
-    /// An event at an input, if there was one.
+    /// Event at a digital input, if there was one.
     pub event: Option<Event>,
 }
 
 impl<'a> LmdScanData<'a> {
-    /// Reads the whole content of a telegram.
+    /// Parses the whole content of a telegram.
     ///
     /// # Errors
-    /// [`SickError::Short`], [`SickError::Field`] or [`SickError::Trailing`], with
-    /// the place.
+    /// [`SickError::Short`], [`SickError::Field`] or [`SickError::Trailing`], each with the offset.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let mut whole = Cursor::new(Encoding::Binary, content, 0);
         let command = whole.take("command and name", COMMAND)?;
@@ -114,13 +112,13 @@ impl<'a> LmdScanData<'a> {
         LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND))
     }
 
-    /// Reads a content that has been read before.
+    /// Parses a content that has already been validated.
     pub(super) fn read_checked(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let fields = content.get(COMMAND..).unwrap_or_default();
         LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND).checked())
     }
 
-    /// Whether a content says that it is a scan.
+    /// Returns true if the content begins like a scan.
     pub(super) fn is_in(content: &[u8]) -> bool {
         content.starts_with(b"sSN LMDscandata ") || content.starts_with(b"sRA LMDscandata ")
     }
@@ -155,7 +153,7 @@ impl<'a> LmdScanData<'a> {
         Ok(data)
     }
 
-    /// Appends the content of a telegram that is pushed.
+    /// Appends the content of a pushed telegram (`sSN`).
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         let mut writer = Writer::command(encoding, b"sSN", NAME, out);
         self.write_header(&mut writer);
@@ -203,7 +201,7 @@ impl<'a> LmdScanData<'a> {
     }
 }
 
-/// A block behind its flag.
+/// Reads a flag, and the block after it if the flag is set.
 fn optional<'a, T>(
     cursor: &mut Cursor<'a>,
     flag: &'static str,
@@ -220,7 +218,7 @@ mod tests {
     use super::*;
     use crate::cola::Encoder;
 
-    /// A telegram in which every optional block is there, field by field.
+    /// Returns a telegram with every optional block.
     fn full() -> Vec<u8> {
         let mut bytes = b"sSN LMDscandata ".to_vec();
         bytes.extend([0, 1, 0, 7, 0, 1, 2, 3, 0, 2, 0xff, 0xff, 0, 0]);
@@ -363,7 +361,7 @@ mod tests {
                 if let Some(byte) = edited.get_mut(at) { *byte = value; }
             }
             if let Ok(data) = LmdScanData::read(Encoding::Binary, &edited) {
-                // What was accepted can be iterated to the end.
+                // Accepted contents can be iterated to the end.
                 let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values.count()).sum::<usize>();
                 let _ = data.encoders.count();
             }

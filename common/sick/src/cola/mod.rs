@@ -1,8 +1,8 @@
 //! CoLa, the command language of SICK's newer devices, in both encodings.
 //!
-//! Commands, answers and scans are the same in both; numbers are big-endian in
-//! CoLa B, and in CoLa A words of hexadecimal digits, or of decimal ones after a
-//! sign, with a space before each.
+//! Commands, answers and scans are the same in both. Numbers are big-endian in CoLa B. In CoLa A
+//! they are words of hexadecimal digits, or of decimal digits after a sign, each preceded by a
+//! space.
 //!
 //! | host sends | device answers | |
 //! |---|---|---|
@@ -10,11 +10,11 @@
 //! | `sWN` name value | `sWA` name | writes a variable |
 //! | `sMN` name arguments | `sAN` name result | calls a method |
 //! | `sEN` name 0 or 1 | `sEA` name 0 or 1, then `sSN` name value | subscribes to an event |
-//! | anything | `sFA` code | the device refuses |
+//! | anything | `sFA` code | the device rejects it |
 //!
-//! Understood is what a stream of scans and its set-up need ([`Command`],
-//! [`Answer`]); the rest stays [`Telegram::Other`]. [`KnownDevice`] lists which device
-//! counts its angles in which way, [`DeviceAngles`] decides how a scan is read.
+//! Only the telegrams for a stream of scans and its set-up are supported ([`Command`], [`Answer`]);
+//! all others become [`Telegram::Other`]. [`KnownDevice`] lists how each device counts its angles,
+//! [`DeviceAngles`] decides how a scan is read.
 
 mod angle_convention;
 mod answer;

@@ -1,10 +1,10 @@
-//! What can be set on a device: how it scans, and what its telegrams carry.
+//! Settings of a device: its scan configuration and the content of its telegrams.
 
 use super::cursor::Cursor;
 use super::writer::Writer;
 use crate::SickError;
 
-/// How the device scans: `LMPscancfg`, `mLMPsetscancfg`. One sector.
+/// Scan configuration: `LMPscancfg`, `mLMPsetscancfg`. One sector.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -15,17 +15,17 @@ use crate::SickError;
 /// | 4 | stop angle | i32, 1/10000° |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScanConfig {
-    /// Turns of the mirror, 1/100 Hz.
+    /// Mirror frequency, 1/100 Hz.
     pub frequency_raw_1e2_hz: u32,
-    /// From one beam to the next.
+    /// Angle between consecutive beams.
     pub resolution_raw_1e4_deg: u32,
-    /// Of the first beam, in the device's convention: 90° is ahead.
+    /// Angle of the first beam, in the device's convention (90° is ahead).
     pub start_angle_raw_1e4_deg: i32,
-    /// Of the last beam.
+    /// Angle of the last beam.
     pub stop_angle_raw_1e4_deg: i32,
 }
 
-/// The part of a scan that is sent: `LMPoutputRange`. One sector.
+/// Part of a scan that is sent: `LMPoutputRange`. One sector.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -35,15 +35,15 @@ pub struct ScanConfig {
 /// | 4 | stop angle | i32, 1/10000° |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OutputRange {
-    /// From one beam to the next.
+    /// Angle between consecutive beams.
     pub resolution_raw_1e4_deg: u32,
-    /// Of the first beam, in the device's convention: 90° is ahead.
+    /// Angle of the first beam, in the device's convention (90° is ahead).
     pub start_angle_raw_1e4_deg: i32,
-    /// Of the last beam.
+    /// Angle of the last beam.
     pub stop_angle_raw_1e4_deg: i32,
 }
 
-/// What `LMDscandata` carries: `LMDscandatacfg`.
+/// Content of `LMDscandata`: `LMDscandatacfg`.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -56,25 +56,25 @@ pub struct OutputRange {
 /// | 2 | interval | u16, every n-th scan |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScanDataConfig {
-    /// A bit for each echo, the first in the low bit of the first.
+    /// One bit per echo; the first echo is the low bit of the first byte.
     pub channels: [u8; 2],
-    /// Whether remissions are sent.
+    /// True if remissions are sent.
     pub remission: bool,
-    /// Whether remissions have 16 bits.
+    /// True if remissions have 16 bits.
     pub remission_16_bit: bool,
-    /// 0: digits.
+    /// Unit of the remissions; 0: digits.
     pub remission_unit: u8,
-    /// A bit for each encoder.
+    /// One bit per encoder.
     pub encoders: [u8; 2],
-    /// Whether the position is sent.
+    /// True if the position is sent.
     pub position: bool,
-    /// Whether the device's name is sent.
+    /// True if the device's name is sent.
     pub name: bool,
-    /// Whether the comment is sent.
+    /// True if the comment is sent.
     pub comment: bool,
-    /// Whether the device's clock is sent.
+    /// True if the device's clock is sent.
     pub time: bool,
-    /// Every n-th scan is sent.
+    /// Interval between scans that are sent: every n-th.
     pub interval: u16,
 }
 
@@ -118,7 +118,7 @@ impl OutputRange {
 }
 
 impl ScanDataConfig {
-    /// The distances of the first echo of each scan, and nothing beside.
+    /// Only the distances of the first echo, of every scan.
     pub const DISTANCES: ScanDataConfig = ScanDataConfig {
         channels: [1, 0],
         remission: false,

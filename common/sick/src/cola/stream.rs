@@ -1,4 +1,4 @@
-//! Telegrams in a stream, in either encoding.
+//! Framing of CoLa telegrams in a stream, in either encoding.
 
 use super::cola_b::Parity;
 use super::{Encoding, LmdScanData, Telegram, cola_a, cola_b};
@@ -6,8 +6,8 @@ use crate::SickError;
 use crate::framer::{self, Judgement, Pending, Protocol};
 
 impl Encoding {
-    /// Appends a telegram with everything around it. A content beyond
-    /// [`cola_b::MAX_CONTENT`] would not be read again.
+    /// Appends a complete telegram. A content longer than [`cola_b::MAX_CONTENT`] would be rejected
+    /// by the reader.
     pub fn frame(self, telegram: &Telegram<'_>, out: &mut Vec<u8>) {
         match self {
             Encoding::Text => cola_a::frame(out, |out| telegram.write(self, out)),
@@ -16,18 +16,18 @@ impl Encoding {
     }
 }
 
-/// CoLa as a protocol: an encoding, and what its checksum needs.
+/// CoLa as a protocol: the encoding and the state of its checksum.
 #[derive(Debug, Default)]
 pub struct Cola {
     encoding: Encoding,
     parity: Parity,
 }
 
-/// Finds CoLa telegrams of either direction in a stream.
+/// Framer for CoLa telegrams of either direction.
 pub type Framer = framer::Framer<Cola>;
 
 impl Framer {
-    /// A framer at the start of a stream in this encoding.
+    /// Creates a framer at the start of a stream in this encoding.
     #[must_use]
     pub fn new(encoding: Encoding) -> Self {
         Framer::of(Cola {
@@ -75,7 +75,7 @@ impl Protocol for Cola {
     }
 }
 
-/// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
+/// Returns the items of a stream: `content@offset` for telegrams, `!` and the text for errors.
 #[cfg(test)]
 pub(super) fn seen(encoding: Encoding, pieces: &[&[u8]]) -> Vec<String> {
     let mut framer = Framer::new(encoding);

@@ -1,4 +1,4 @@
-//! The optional blocks at the end of a scan telegram.
+//! Optional blocks at the end of a scan telegram.
 
 use chrono::{DateTime, Datelike, NaiveDate, Timelike};
 
@@ -6,7 +6,7 @@ use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
 
-/// Where the device is mounted, as configured.
+/// Mounting position of the device, as configured.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -15,15 +15,15 @@ use crate::SickError;
 /// | 1 | kind of rotation | 0 none, 1 pitch, 2 roll, 3 free |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
-    /// x, y and z in the configured unit.
+    /// Position along x, y and z in the configured unit.
     pub place: [f32; 3],
-    /// About x, y and z, in the configured unit.
+    /// Rotation about x, y and z in the configured unit.
     pub rotation: [f32; 3],
-    /// 0 none, 1 pitch, 2 roll, 3 free.
+    /// Kind of rotation: 0 none, 1 pitch, 2 roll, 3 free.
     pub rotation_kind: u8,
 }
 
-/// The device's own clock; 1970 and on where nobody set it.
+/// Clock of the device; starts in 1970 if it was never set.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -32,23 +32,23 @@ pub struct Position {
 /// | 4 | microsecond | u32 |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DeviceTime {
-    /// Of the Common Era.
+    /// Year of the Common Era.
     pub year: u16,
-    /// 1 to 12.
+    /// Month, 1 to 12.
     pub month: u8,
-    /// 1 to 31.
+    /// Day, 1 to 31.
     pub day: u8,
-    /// 0 to 23.
+    /// Hour, 0 to 23.
     pub hour: u8,
-    /// 0 to 59.
+    /// Minute, 0 to 59.
     pub minute: u8,
-    /// 0 to 60.
+    /// Second, 0 to 60.
     pub second: u8,
-    /// 0 to 999999.
+    /// Microsecond, 0 to 999999.
     pub microsecond: u32,
 }
 
-/// What happened at a fast digital input.
+/// Event at a fast digital input.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -58,13 +58,13 @@ pub struct DeviceTime {
 /// | 4 | angle | i32, 1/10000° |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Event {
-    /// `FDIN`.
+    /// Kind of the event: `FDIN`.
     pub kind: [u8; 4],
-    /// Ticks.
+    /// Encoder position in ticks.
     pub encoder_position: u32,
-    /// Since start-up.
+    /// Time since start-up, µs.
     pub time_us: u32,
-    /// In the device's convention.
+    /// Angle in the device's convention.
     pub angle_raw_1e4_deg: i32,
 }
 
@@ -89,8 +89,7 @@ impl Position {
 }
 
 impl DeviceTime {
-    /// This many microseconds after 1970 began, in UTC; `None` outside the years
-    /// 0 to 65535.
+    /// Converts microseconds since 1970 (UTC); `None` outside the years 0 to 65535.
     #[must_use]
     pub fn from_unix_us(unix_us: i64) -> Option<Self> {
         let time = DateTime::from_timestamp_micros(unix_us)?;
@@ -105,9 +104,8 @@ impl DeviceTime {
         })
     }
 
-    /// Microseconds since 1970 began, where it is UTC; `None` where there is no
-    /// such day, as on devices whose clock was never set. A second 60 is the first
-    /// of the next minute.
+    /// Returns microseconds since 1970, taking the clock as UTC; `None` if the date does not exist,
+    /// as on devices whose clock was never set. Second 60 is the first second of the next minute.
     #[must_use]
     pub fn unix_us(&self) -> Option<i64> {
         let (month, day) = (self.month.into(), self.day.into());
@@ -169,7 +167,7 @@ impl Event {
     }
 }
 
-/// A name or comment: its length in one byte, then its characters.
+/// Reads a name or comment: its length in one byte, then its characters.
 pub(super) fn text<'a>(
     cursor: &mut Cursor<'a>,
     field: &'static str,
@@ -178,7 +176,7 @@ pub(super) fn text<'a>(
     cursor.characters(field, usize::from(length))
 }
 
-/// Writes a name or comment; what is beyond 255 characters is left out.
+/// Writes a name or comment, truncated to 255 characters.
 pub(super) fn write_text(text: &[u8], writer: &mut Writer<'_>) {
     let text = text.get(..255).unwrap_or(text);
     writer.u8(text.len() as u8);

@@ -1,10 +1,10 @@
-//! A content by its first letters and its name.
+//! Dispatch of a telegram by its letters and name.
 
 use super::cursor::Cursor;
 use super::{Answer, Command, Encoding, LmdScanData, lmd_scan_data};
 use crate::SickError;
 
-/// What a content says, of either direction.
+/// Parsed content of a telegram, of either direction.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
@@ -13,20 +13,17 @@ use crate::SickError;
 pub enum Telegram<'a> {
     /// A scan, pushed (`sSN`) or polled (`sRA`).
     ScanData(LmdScanData<'a>),
-    /// From a host.
     Command(Command<'a>),
-    /// From a device.
     Answer(Answer<'a>),
-    /// Anything else: all of it. Nothing is known of its parameters.
+    /// Whole content of any other telegram; its parameters are not parsed.
     Other(&'a [u8]),
 }
 
 impl<'a> Telegram<'a> {
-    /// Reads a content.
+    /// Parses the content of a telegram.
     ///
     /// # Errors
-    /// Where the parameters are not those of the command; of other commands
-    /// nothing is known, so they pass.
+    /// If the parameters do not fit the command. Unsupported commands are accepted as they are.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
         let Some((letters, rest)) = content.split_first_chunk::<3>() else {
             return Ok(Telegram::Other(content));
@@ -51,7 +48,7 @@ impl<'a> Telegram<'a> {
         Ok(answer.map_or(Telegram::Other(content), Telegram::Answer))
     }
 
-    /// Appends the content.
+    /// Appends the content of the telegram.
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Telegram::ScanData(data) => data.write(encoding, out),
@@ -107,7 +104,7 @@ mod tests {
         Telegram::Answer(answer)
     }
 
-    /// Each kind of telegram, and its text in CoLa A.
+    /// Returns each kind of telegram with its text in CoLa A.
     fn all() -> Vec<(Telegram<'static>, &'static str)> {
         let login = Method::SetAccessMode {
             level: AUTHORIZED_CLIENT,
@@ -218,8 +215,8 @@ mod tests {
             2, 2, 2, 2, 0, 0, 0, 0x11, 0x73, 0x45, 0x4e, 0x20, 0x4c, 0x4d, 0x44, 0x73, 0x63, 0x61,
             0x6e, 0x64, 0x61, 0x74, 0x61, 0x20, 0x01, 0x33,
         ];
-        // The listing prints 0x33 for both request and answer; the XOR of the
-        // request is 0x33 and that of the answer 0x3c.
+        // The listing prints 0x33 for both request and answer, but the XOR of the request is 0x33
+        // and that of the answer is 0x3c.
         let subscribe = command(Command::SubscribeScans(true));
         assert_eq!(framed(Encoding::Binary, &subscribe), request);
         let subscribed = answer(Answer::ScansSubscribed(true));

@@ -1,4 +1,4 @@
-//! The values of a channel, wherever they lie.
+//! Values of a channel, encoded or in memory.
 
 use super::Encoding;
 use super::cursor::Cursor;
@@ -6,8 +6,7 @@ use super::words::leading_hex;
 use super::writer::Writer;
 use crate::SickError;
 
-/// Values of 16 bits, or of 8 that are read as such; iterating decodes them in
-/// place.
+/// Values of 16 bits, or of 8 bits widened to 16; iterating decodes them in place.
 #[derive(Debug, Clone, Copy)]
 pub struct Values<'a> {
     place: Place<'a>,
@@ -16,18 +15,18 @@ pub struct Values<'a> {
 
 #[derive(Debug, Clone, Copy)]
 enum Place<'a> {
-    /// Big-endian, two bytes each.
+    /// Two bytes each, big-endian.
     Wide(&'a [u8]),
-    /// A byte each.
+    /// One byte each.
     Narrow(&'a [u8]),
-    /// Words with a space between, each a number of this many bits.
+    /// Words separated by spaces, each a number of this many bits.
     Words(&'a [u8], u32),
-    /// In memory.
+    /// A slice in memory.
     Listed(&'a [u16]),
 }
 
 impl<'a> Values<'a> {
-    /// Takes `count` values of `width` bytes off a content, and checks them.
+    /// Takes `count` values of `width` bytes off the content and validates them.
     pub(super) fn read(
         cursor: &mut Cursor<'a>,
         count: usize,
@@ -95,7 +94,7 @@ impl Iterator for Values<'_> {
 
 impl ExactSizeIterator for Values<'_> {}
 
-/// Takes a word off text that has been checked.
+/// Takes one word off text that has been validated.
 fn next_word(text: &mut &[u8], bits: u32) -> Option<u16> {
     if let Some((value, length)) = leading_hex(text) {
         *text = text.get(length + 1..).unwrap_or_default();

@@ -1,29 +1,27 @@
-//! The variables of a device that are understood.
+//! Variables of a device that are supported.
 
 use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use super::{OutputRange, ScanConfig, ScanDataConfig};
 use crate::SickError;
 
-/// A variable by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
-    /// `DeviceIdent`: what the device is.
+    /// `DeviceIdent`: name and firmware version.
     DeviceIdent,
-    /// `SCdevicestate`: whether it is ready.
+    /// `SCdevicestate`: busy, ready, error or standby.
     DeviceState,
-    /// `LMPscancfg`: how it scans.
+    /// `LMPscancfg`: scan configuration.
     ScanConfig,
-    /// `LMDscandatacfg`: what scan telegrams carry.
+    /// `LMDscandatacfg`: content of scan telegrams.
     ScanDataConfig,
-    /// `LMPoutputRange`: which part of a scan is sent.
+    /// `LMPoutputRange`: part of a scan that is sent.
     OutputRange,
-    /// `EIHstCola`: which encoding the host's port speaks.
+    /// `EIHstCola`: encoding of the host port.
     HostEncoding,
 }
 
 impl Variable {
-    /// All that are understood.
     pub const ALL: [Variable; 6] = [
         Variable::DeviceIdent,
         Variable::DeviceState,
@@ -33,7 +31,7 @@ impl Variable {
         Variable::HostEncoding,
     ];
 
-    /// As it is written in telegrams.
+    /// Returns the name used in telegrams.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -52,29 +50,24 @@ impl Variable {
     }
 }
 
-/// What a variable holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Value<'a> {
-    /// Name and version: u16 length and characters, each.
+    /// Name and version, each a u16 length and characters.
     DeviceIdent {
-        /// Such as `LMS10x_FieldEval`.
+        /// Name such as `LMS10x_FieldEval`.
         name: &'a [u8],
-        /// Of the firmware.
         version: &'a [u8],
     },
     /// u8: 0 busy, 1 ready, 2 error, 3 standby.
     DeviceState(u8),
-    /// See [`ScanConfig`].
     ScanConfig(ScanConfig),
-    /// See [`ScanDataConfig`].
     ScanDataConfig(ScanDataConfig),
-    /// See [`OutputRange`].
     OutputRange(OutputRange),
-    /// u8: whether it is CoLa B.
+    /// u8: true for CoLa B.
     HostEncoding(bool),
 }
 
-/// A device state in a word.
+/// Returns the word for a device state.
 #[must_use]
 pub fn state_word(state: u8) -> &'static str {
     let words = ["busy", "ready", "error", "standby"];
@@ -82,7 +75,7 @@ pub fn state_word(state: u8) -> &'static str {
 }
 
 impl<'a> Value<'a> {
-    /// Whose value this is.
+    /// Returns the variable that holds this value.
     #[must_use]
     pub fn variable(&self) -> Variable {
         match self {
@@ -130,7 +123,7 @@ impl<'a> Value<'a> {
     }
 }
 
-/// The longest name of a device that is believed.
+/// Longest text accepted, characters.
 const LONGEST_TEXT: u16 = 256;
 
 fn text<'a>(cursor: &mut Cursor<'a>, field: &'static str) -> Result<&'a [u8], SickError> {

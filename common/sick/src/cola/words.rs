@@ -1,22 +1,22 @@
-//! Hexadecimal words, eight characters at a time.
+//! Hexadecimal words, parsed eight characters at a time.
 //!
-//! Most of a scan in CoLa A are short words of unforeseeable length, on which a
-//! loop over characters spends its time guessing: a step over eight bytes at once
-//! is about twice as fast (`cargo bench -p sick`).
+//! Most of a scan in CoLa A is short words of unpredictable length, on which a loop over characters
+//! suffers from branch mispredictions; a step over eight bytes at once is about twice as fast
+//! (`cargo bench -p sick`).
 
 const ONES: u64 = 0x0101_0101_0101_0101;
 const HIGHS: u64 = 0x80 * ONES;
 const LOWS: u64 = 0x7f * ONES;
 const SPACES: u64 = b' ' as u64 * ONES;
 
-/// The word of 1 to 8 hexadecimal digits that `text` starts with, and its
-/// length; a space or the end follows it.
+/// Returns value and length of the word of 1 to 8 hexadecimal digits at the start of `text`, which
+/// must be followed by a space or the end.
 pub(super) fn leading_hex(text: &[u8]) -> Option<(u32, usize)> {
     if let Some(chunk) = text.first_chunk::<8>() {
         let chunk = u64::from_le_bytes(*chunk);
         let length = spaces(chunk).trailing_zeros() / 8;
         if (1..8).contains(&length) {
-            // Leading zeros stand in for what comes behind the word.
+            // Zeros before the word replace the characters after it.
             let free = 64 - 8 * length;
             let digits = chunk << free | (u64::from(b'0') * ONES) & ((1 << free) - 1);
             return value(digits).map(|value| (value, length as usize));
@@ -35,8 +35,8 @@ fn leading_hex_by_characters(text: &[u8]) -> Option<(u32, usize)> {
     (1..=8).contains(&word.len()).then_some((value, word.len()))
 }
 
-/// How many bytes of `text` its first `count` words take, with the space behind
-/// each; there is one between two, and none before the first.
+/// Returns the number of bytes that the first `count` words of `text` take, including the space
+/// after each. The words are separated by one space, with none before the first.
 pub(super) fn length_of_words(text: &[u8], count: usize) -> usize {
     let (mut left, mut at) = (count, 0);
     while let Some(chunk) = text.get(at..).and_then(<[u8]>::first_chunk::<8>) {
@@ -56,13 +56,13 @@ pub(super) fn length_of_words(text: &[u8], count: usize) -> usize {
     if count == 0 { 0 } else { text.len() }
 }
 
-/// The high bit of each byte that is a space.
+/// Sets the high bit of each byte that is a space.
 fn spaces(chunk: u64) -> u64 {
     let differs = chunk ^ SPACES;
     !(((differs & LOWS) + LOWS) | differs | LOWS)
 }
 
-/// The value of eight digits, the first in the low byte.
+/// Returns the value of eight hexadecimal digits, the first one in the low byte.
 fn value(digits: u64) -> Option<u32> {
     if !are_hex(digits) {
         return None;
@@ -77,7 +77,7 @@ fn are_hex(digits: u64) -> bool {
     if digits & HIGHS != 0 {
         return false;
     }
-    // No byte carries into the next: each is below 80.
+    // No byte carries into the next one: each is below 0x80.
     let from = |bytes: u64, least: u8| bytes + u64::from(0x80 - least) * ONES;
     let lower = digits | SPACES;
     let decimal = from(digits, b'0') & !from(digits, b'9' + 1);

@@ -1,6 +1,4 @@
-//! Appends fields to a content, in either encoding.
-//!
-//! It mirrors the cursor: what one writes the other reads.
+//! Appends fields to a content, in either encoding; the counterpart of `Cursor`.
 
 use super::Encoding;
 
@@ -11,7 +9,7 @@ pub(crate) struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// Begins a content that has fields: the command's letters and its name.
+    /// Starts a content with fields: the command's letters and its name.
     pub(crate) fn command(
         encoding: Encoding,
         letters: &[u8; 3],
@@ -25,14 +23,14 @@ impl<'a> Writer<'a> {
         Writer { out, encoding }
     }
 
-    /// Writes a content without fields.
+    /// Appends a content without fields.
     pub(crate) fn bare(letters: &[u8; 3], name: &[u8], out: &mut Vec<u8>) {
         out.extend_from_slice(letters);
         out.push(b' ');
         out.extend_from_slice(name);
     }
 
-    /// Writes that a command is refused.
+    /// Appends the answer that rejects a command.
     pub(crate) fn fault(encoding: Encoding, code: u16, out: &'a mut Vec<u8>) {
         out.extend_from_slice(b"sFA");
         Writer { out, encoding }.u16(code);
@@ -91,7 +89,7 @@ impl<'a> Writer<'a> {
         values.into_iter().for_each(|value| self.u8(value));
     }
 
-    /// Characters whose number the reader knows.
+    /// Appends characters; the reader knows their number.
     pub(crate) fn characters(&mut self, characters: &[u8]) {
         if self.encoding == Encoding::Text {
             self.out.push(b' ');

@@ -1,4 +1,4 @@
-//! What a device sends.
+//! Telegrams that a device sends.
 
 use super::configuration::Configuration;
 use super::fields::Fields;
@@ -7,60 +7,57 @@ use super::scan::Scan;
 use super::status::{DeviceStatus, Status};
 use crate::SickError;
 
-/// All that comes from a device.
+/// Anything that a device sends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reply<'a> {
     /// `06`: a telegram arrived.
     Acknowledged,
-    /// `15`: a telegram arrived damaged, or is not allowed now.
+    /// `15`: a telegram arrived damaged or is not allowed now.
     Refused,
-    /// An answer with the status byte behind it.
+    /// Answer, followed by the status byte.
     Answer(Answer<'a>, Status),
 }
 
-/// An answer.
+/// Answer to a command, or an unsolicited scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer<'a> {
     /// `90`: the device has started; its type.
     Started(&'a [u8]),
-    /// `A0`: u8, 0 where the mode was changed, 1 wrong password or mode not
-    /// possible, 2 the device has an error.
+    /// `A0`: u8, 0 if the mode was changed, 1 if the password was wrong or the mode not possible, 2
+    /// if the device has an error.
     ModeSet(u8),
-    /// `B0` or `B7`.
+    /// `B0` or `B7`: measured values.
     Scan(Scan<'a>),
-    /// `B1`.
+    /// `B1`: status.
     Status(DeviceStatus),
     /// `BA`: the type, such as `LMS200;30106;V02.10`.
     Type(&'a [u8]),
-    /// `BB`: u8, 1 where field and resolution were changed, then those that
-    /// hold now.
+    /// `BB`: u8, 1 if field and resolution were changed, then the values in force.
     VariantSet {
-        /// Whether it was done.
+        /// True if the change was made.
         done: bool,
-        /// 100 or 180.
+        /// Width of the field: 100 or 180.
         width_deg: u16,
-        /// 25, 50 or 100.
+        /// Resolution: 25, 50 or 100.
         resolution_raw_1e2_deg: u16,
     },
-    /// `F4`.
+    /// `F4`: configuration.
     Configuration(Configuration),
-    /// `F7`: u8, 1 where it was changed, then the one that holds now.
+    /// `F7`: u8, 1 if the configuration was changed, then the one in force.
     ConfigurationSet {
-        /// Whether it was done.
+        /// True if the change was made.
         done: bool,
-        /// What holds now.
         configuration: Configuration,
     },
-    /// Anything else: code and data.
+    /// Code and data of any other answer.
     Other(&'a [u8]),
 }
 
 impl<'a> Reply<'a> {
-    /// Reads a payload, or the single byte of an acknowledgement.
+    /// Parses a payload or the single byte of an acknowledgement.
     ///
     /// # Errors
-    /// Where the data are not those of the code; of other codes nothing is
-    /// known, so they pass.
+    /// If the data do not fit the code. Unsupported codes are accepted as they are.
     pub fn read(content: &'a [u8]) -> Result<Self, SickError> {
         match content {
             [ACK] => Ok(Reply::Acknowledged),

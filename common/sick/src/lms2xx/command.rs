@@ -1,14 +1,13 @@
-//! What a host sends.
+//! Commands that a host sends.
 
 use super::configuration::Configuration;
 use super::fields::Fields;
 use super::framing::frame;
 use crate::SickError;
 
-/// The password with which every device is delivered.
+/// Factory password of every device.
 pub const DEFAULT_PASSWORD: [u8; 8] = *b"SICK_LMS";
 
-/// A command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command<'a> {
     /// `20`: change the operating mode.
@@ -19,59 +18,56 @@ pub enum Command<'a> {
     RequestStatus,
     /// `3A`: send the type.
     RequestType,
-    /// `3B`: change field and resolution, for as long as there is power.
+    /// `3B`: change field and resolution until the next power-off.
     SetVariant {
-        /// 100 or 180.
+        /// Width of the field: 100 or 180.
         width_deg: u16,
-        /// 25, 50 or 100.
+        /// Resolution: 25, 50 or 100.
         resolution_raw_1e2_deg: u16,
     },
     /// `74`: send the configuration.
     RequestConfiguration,
     /// `77`: change the configuration.
     SetConfiguration(Configuration),
-    /// Anything else: code and data.
+    /// Code and data of any other command.
     Other(&'a [u8]),
 }
 
-/// An operating mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// `00`: installation, where settings may be changed.
+    /// `00`: installation mode, in which settings may be changed.
     Installation {
-        /// See [`DEFAULT_PASSWORD`].
+        /// Password, by default [`DEFAULT_PASSWORD`].
         password: [u8; 8],
     },
-    /// `24`: every scan is sent.
+    /// `24`: sends every scan.
     Continuous,
-    /// `25`: a scan is sent on request.
+    /// `25`: sends a scan on request.
     OnRequest,
-    /// `2A`: every partial scan is sent.
+    /// `2A`: sends every partial scan.
     PartialScans,
-    /// `40` to `42` and `48`: the mode stays, the baud rate changes.
+    /// `40` to `42` and `48`: keeps the mode, changes the baud rate.
     Baud(Baud),
-    /// Anything else, by its code.
+    /// Code of any other mode.
     Other(u8),
 }
 
-/// A baud rate that the device knows.
+/// Baud rate that the device supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baud {
-    /// 9600, after power-on.
+    /// 9600, the rate after power-on.
     B9600,
-    /// 19200.
     B19200,
-    /// 38400.
     B38400,
-    /// 500000: RS-422 alone.
+    /// 500000: RS-422 only.
     B500000,
 }
 
 impl Baud {
-    /// All, slowest first.
+    /// All rates, slowest first.
     pub const ALL: [Baud; 4] = [Baud::B9600, Baud::B19200, Baud::B38400, Baud::B500000];
 
-    /// Bits a second.
+    /// Returns the rate in bits per second.
     #[must_use]
     pub const fn rate(self) -> u32 {
         match self {
@@ -82,7 +78,7 @@ impl Baud {
         }
     }
 
-    /// The baud rate of this many bits a second.
+    /// Returns the baud rate with this many bits per second.
     #[must_use]
     pub fn from_rate(rate: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|baud| baud.rate() == rate)
@@ -99,7 +95,7 @@ impl Baud {
 }
 
 impl Mode {
-    /// As it is written in telegrams.
+    /// Returns the code used in telegrams.
     #[must_use]
     pub const fn code(self) -> u8 {
         match self {
@@ -133,11 +129,10 @@ impl Mode {
 }
 
 impl<'a> Command<'a> {
-    /// Reads a payload.
+    /// Parses a payload.
     ///
     /// # Errors
-    /// Where the data are not those of the code; of other codes nothing is
-    /// known, so they pass.
+    /// If the data do not fit the code. Unsupported codes are accepted as they are.
     pub fn read(payload: &'a [u8]) -> Result<Self, SickError> {
         let mut fields = Fields::new(payload);
         let command = match fields.u8("code")? {

@@ -1,16 +1,15 @@
-//! What can be set in installation mode, to be read, changed and written back.
+//! Configuration that can be read, changed in installation mode and written back.
 
 use super::fields::Fields;
 use super::range_mode::{RangeMode, Unit};
 use crate::SickError;
 
-/// Devices differ in how much they send.
+/// Largest size in bytes; devices differ in how much they send.
 const LONGEST: usize = 64;
 const MODE: usize = 5;
 const UNIT: usize = 6;
 
-/// `F4` and `F7`, from the first byte behind the code; what is not named here
-/// is kept as it is.
+/// `F4` and `F7`, from the first byte after the code. Bytes not named here are kept unchanged.
 ///
 /// | offset | bytes | field | |
 /// |---|---|---|---|
@@ -25,14 +24,13 @@ const UNIT: usize = 6;
 pub struct Configuration {
     bytes: [u8; LONGEST],
     length: usize,
-    /// How far it measures.
+    /// Measuring mode, which sets the longest range.
     pub range_mode: RangeMode,
-    /// Of distances.
     pub unit: Unit,
 }
 
 impl Configuration {
-    /// The configuration of a device that was never set up but for these.
+    /// Returns the configuration of a device with only these two values set.
     #[must_use]
     pub fn new(range_mode: RangeMode, unit: Unit) -> Self {
         Configuration {
@@ -54,7 +52,7 @@ impl Configuration {
         let range_mode = fields.known("measuring mode", RangeMode::from_code, modes)?;
         let unit = fields.known("unit", Unit::from_code, "0 or 1")?;
         fields.take("the rest", length.saturating_sub(UNIT + 1))?;
-        // Kept once, in the fields that may be changed.
+        // These two are stored only in the fields that may be changed.
         bytes[MODE] = 0;
         bytes[UNIT] = 0;
         Ok(Configuration {

@@ -1,11 +1,11 @@
-//! The checksum of the LMS2xx.
+//! CRC of the LMS2xx.
 //!
-//! Polynomial x¹⁶ + x¹⁵ + x² + 1, initial value 0; each step takes in the
-//! current byte and, in the high half, the one before.
+//! Polynomial x¹⁶ + x¹⁵ + x² + 1, initial value 0; each step combines the current byte and, in the
+//! high half, the previous one.
 
 const POLYNOMIAL: u16 = 0x8005;
 
-/// The checksum of these bytes.
+/// Returns the checksum of these bytes.
 #[must_use]
 pub fn crc(bytes: &[u8]) -> u16 {
     let mut crc = 0u16;

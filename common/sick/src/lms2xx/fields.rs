@@ -1,4 +1,4 @@
-//! Takes little-endian fields off a payload; an error says where and what.
+//! Reads the little-endian fields of a payload in order; errors name the field and its place.
 
 use crate::SickError;
 
@@ -50,7 +50,7 @@ impl<'a> Fields<'a> {
         self.array(field).map(u16::from_le_bytes)
     }
 
-    /// A value that `known` knows; `allowed` says which ones.
+    /// Takes a u8 that `known` accepts; `allowed` lists the accepted values.
     pub(super) fn known<T>(
         &mut self,
         field: &'static str,
@@ -67,18 +67,17 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Goes on at this byte of the payload, which is not before here.
+    /// Skips to byte `at` of the payload, which must not be before the current one.
     pub(super) fn skip_to(&mut self, at: usize) -> Result<(), SickError> {
         self.take("what is skipped", at.saturating_sub(self.at))
             .map(drop)
     }
 
-    /// All that is left.
     pub(super) fn rest(self) -> &'a [u8] {
         self.rest
     }
 
-    /// Checks that nothing is left.
+    /// Checks that no bytes are left.
     pub(super) fn end(&self) -> Result<(), SickError> {
         if self.rest.is_empty() {
             return Ok(());

@@ -1,16 +1,16 @@
-//! What is around a payload: start, address, length and checksum.
+//! Framing of a payload: start, address, length and checksum.
 
 use super::crc;
 use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
-/// The longest payload.
+/// Longest payload, bytes.
 pub const MAX_PAYLOAD: usize = 812;
 
 const START: u8 = 2;
-/// Bytes before the payload: start, address and length.
+/// Number of bytes before the payload: start, address and length.
 const PREFIX: usize = 4;
-/// Bytes after it.
+/// Number of bytes after the payload: the checksum.
 const SUFFIX: usize = 2;
 pub(super) const ACK: u8 = 0x06;
 pub(super) const NACK: u8 = 0x15;
@@ -59,8 +59,7 @@ pub(super) fn judge(pending: Pending<'_>, is_address: impl Fn(u8) -> bool) -> Ju
     })
 }
 
-/// Appends a telegram around the payload that `write` appends, which is at most
-/// [`MAX_PAYLOAD`] bytes.
+/// Appends a telegram; `write` appends its payload of at most [`MAX_PAYLOAD`] bytes.
 pub(super) fn frame(address: u8, out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
     let start = out.len();
     out.extend_from_slice(&[START, address, 0, 0]);

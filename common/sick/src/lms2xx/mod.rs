@@ -1,6 +1,6 @@
 //! The serial telegrams of the LMS200, 211, 220, 221 and 291.
 //!
-//! | bytes | what |
+//! | bytes | field |
 //! |---|---|
 //! | 1 | start: `02` |
 //! | 1 | address: `00` to the device, `80` or `81` from it |
@@ -8,8 +8,8 @@
 //! | n | payload: a code and its data; from the device also a status byte |
 //! | 2 | CRC from the start through the payload, little-endian |
 //!
-//! The device acknowledges each telegram by a single byte: `06` where it is
-//! sound, `15` where it is not. Numbers are little-endian throughout.
+//! The device acknowledges each telegram by a single byte: `06` if it is valid, `15` if not.
+//! Numbers are little-endian throughout.
 //!
 //! | host | device | |
 //! |---|---|---|

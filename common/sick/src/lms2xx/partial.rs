@@ -1,26 +1,25 @@
-//! Puts interleaved partial scans together.
+//! Assembles interleaved partial scans.
 //!
-//! The mirror turns once for each part, and each part has one value a degree:
-//! at half a degree two parts make a scan, at a quarter four. Parts count only
-//! in their order, so that what is lost costs the whole scan and never mixes two.
+//! The mirror turns once for each part, and each part has one value per degree: a scan has two
+//! parts at half a degree and four at a quarter. Parts must arrive in order, so that a lost part
+//! costs the whole scan and two scans are never mixed.
 
 use super::scan::Scan;
 
-/// Collects the parts of one scan.
+/// Assembler of the parts of one scan.
 #[derive(Debug, Clone)]
 pub struct PartialScans {
     width_deg: usize,
     parts: usize,
-    /// The part that is awaited.
+    /// Index of the next part expected.
     next: usize,
     readings: Vec<u16>,
-    /// Parts that belonged to no whole scan.
     dropped: u64,
 }
 
 impl PartialScans {
-    /// For scans of this field and resolution; `None` where a degree is no
-    /// multiple of the resolution in quarters.
+    /// Creates an assembler for scans of this width and resolution; `None` unless the resolution is
+    /// 1, 1/2 or 1/4 of a degree.
     #[must_use]
     pub fn new(width_deg: u16, resolution_raw_1e2_deg: u16) -> Option<Self> {
         let parts = match resolution_raw_1e2_deg {
@@ -39,7 +38,7 @@ impl PartialScans {
         })
     }
 
-    /// Takes a part; gives the readings of the whole scan with its last one.
+    /// Adds a part; returns the readings of the whole scan after the last one.
     pub fn add(&mut self, scan: &Scan<'_>) -> Option<&[u16]> {
         let step = usize::from(scan.part?.quarter()) * self.parts;
         let part = step / 4;
@@ -65,7 +64,7 @@ impl PartialScans {
         Some(&self.readings)
     }
 
-    /// Parts that belonged to no whole scan.
+    /// Returns the number of parts that belonged to no complete scan.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
@@ -77,8 +76,7 @@ mod tests {
     use super::*;
     use crate::lms2xx::{Part, Unit};
 
-    /// Adds the part of this quarter, whose readings are their own index in the
-    /// whole scan.
+    /// Adds the part of this quarter; each reading is its own index in the whole scan.
     fn add(scans: &mut PartialScans, quarter: u8, parts: u16) -> Option<Vec<u16>> {
         let first = u16::from(quarter) * parts / 4;
         let count = if quarter == 0 { 101 } else { 100 };

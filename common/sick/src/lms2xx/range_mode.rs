@@ -1,29 +1,25 @@
-//! What a reading of 16 bits means.
+//! Meaning of the 16 bits of a reading.
 //!
-//! The lower bits are the distance, the upper ones belong to fields, dazzle or
-//! reflectivity, and the nine largest distances are codes: 1FFF not valid, 1FFE
-//! dazzled, 1FFD overflow, 1FFB too noisy, 1FFA channel failed, 1FF7 too far,
-//! and alike in the other modes (SICK, "Telegrams for configuring and operating
-//! the LMS 2xx").
+//! The lower bits are the distance, the upper ones are field, dazzle or reflectivity bits, and the
+//! nine largest distances are codes: 1FFF not valid, 1FFE dazzled, 1FFD overflow, 1FFB too noisy,
+//! 1FFA channel failed, 1FF7 too far, and correspondingly in the other modes (SICK, "Telegrams for
+//! configuring and operating the LMS 2xx").
 
-/// The unit of distances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Unit {
-    /// Centimetres.
     #[default]
     Centimetre,
-    /// Millimetres.
     Millimetre,
 }
 
 impl Unit {
-    /// As it is written in telegrams.
+    /// Returns the code used in telegrams.
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// The unit with this code.
+    /// Returns the unit with this code.
     #[must_use]
     pub const fn from_code(code: u8) -> Option<Self> {
         match code {
@@ -33,7 +29,7 @@ impl Unit {
         }
     }
 
-    /// Metres in one.
+    /// Returns the length of the unit in metres.
     #[must_use]
     pub const fn metres(self) -> f64 {
         match self {
@@ -43,15 +39,15 @@ impl Unit {
     }
 }
 
-/// The measuring mode: how far it reaches and what the upper bits are.
+/// Measuring mode: longest range and meaning of the upper bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum RangeMode {
     /// 8 m in millimetres or 80 m in centimetres; fields A, B and dazzle.
     Range8Fields = 0,
-    /// The same reach; reflectivity in eight levels.
+    /// The same range; reflectivity in eight levels.
     Range8Reflectivity = 1,
-    /// The same reach; fields A, B and C.
+    /// The same range; fields A, B and C.
     Range8ThreeFields = 2,
     /// 16 m; reflectivity in four levels.
     Range16Reflectivity = 3,
@@ -68,7 +64,6 @@ pub enum RangeMode {
 }
 
 impl RangeMode {
-    /// All modes.
     pub const ALL: [RangeMode; 9] = [
         RangeMode::Range8Fields,
         RangeMode::Range8Reflectivity,
@@ -81,19 +76,19 @@ impl RangeMode {
         RangeMode::Amplitude,
     ];
 
-    /// As it is written in telegrams.
+    /// Returns the code used in telegrams.
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// The mode with this code.
+    /// Returns the mode with this code.
     #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.code() == code)
     }
 
-    /// The bits of the distance; none where readings are amplitudes.
+    /// Returns the mask of the distance bits; 0 for amplitudes.
     #[must_use]
     pub const fn mask(self) -> u16 {
         match self {
@@ -108,13 +103,13 @@ impl RangeMode {
         }
     }
 
-    /// The largest distance; what is above are codes.
+    /// Returns the largest distance; larger values are codes.
     #[must_use]
     pub const fn last_distance(self) -> u16 {
         self.mask().saturating_sub(9)
     }
 
-    /// The distance in a reading, `None` where nothing came back.
+    /// Returns the distance in a reading, or `None` if there was no echo.
     #[must_use]
     pub const fn distance(self, reading: u16) -> Option<u16> {
         let distance = reading & self.mask();
@@ -124,7 +119,7 @@ impl RangeMode {
         Some(distance)
     }
 
-    /// The reading for a distance, or for nothing that came back.
+    /// Encodes a distance as a reading; `None` means no echo.
     #[must_use]
     pub const fn reading(self, distance: Option<u16>) -> u16 {
         match distance {

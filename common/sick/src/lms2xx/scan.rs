@@ -4,12 +4,12 @@ use super::fields::Fields;
 use super::range_mode::Unit;
 use crate::SickError;
 
-/// Bits 0 to 9 of the head.
+/// Mask of the count: bits 0 to 9 of the head.
 const COUNT: u16 = 0x03ff;
-/// Bit 13 of the head.
+/// Flag of a partial scan: bit 13 of the head.
 const IS_PARTIAL: u16 = 1 << 13;
 
-/// `B0`, or `B7` where it is a sub-range.
+/// Measured values: `B0`, or `B7` for a sub-range.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -17,28 +17,26 @@ const IS_PARTIAL: u16 = 1 << 13;
 /// | 2 + 2 | first and last value, from 1 | u16, `B7` only |
 /// | 2 | head | bits 0–9 count, 11–12 partial scan, 13 whether it is one, 14–15 unit |
 /// | 2 · count | readings | u16 each, right to left |
-/// | 2 | counters of scan and telegram | u8 each, where the device is set so |
+/// | 2 | counters of scan and telegram | u8 each, if the device is set to send them |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan<'a> {
-    /// Of the distances.
     pub unit: Unit,
-    /// Which part of a scan, where it is one.
+    /// Part of a scan, if it is a partial scan.
     pub part: Option<Part>,
-    /// First and last value that were asked for, from 1.
+    /// First and last value requested, from 1.
     pub sub_range: Option<(u16, u16)>,
-    /// The readings, right to left. At most 401 fit into a telegram.
+    /// Readings, right to left; at most 401 fit into a telegram.
     pub readings: Readings<'a>,
-    /// Counters of scans and of telegrams, where the device sends them.
+    /// Counters of scans and of telegrams, if the device sends them.
     pub counters: Option<(u8, u8)>,
 }
 
-/// A partial scan has one value a degree, this many quarters of a degree from
-/// the start.
+/// Part of a scan with one value per degree, starting at this many quarters of a degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part(u8);
 
 impl Part {
-    /// The part that begins at 0 to 3 quarters of a degree.
+    /// Returns the part that starts at 0 to 3 quarters of a degree.
     #[must_use]
     pub const fn at_quarter(quarter: u8) -> Option<Self> {
         if quarter < 4 {
@@ -48,7 +46,7 @@ impl Part {
         }
     }
 
-    /// Quarters of a degree from the start.
+    /// Returns the start in quarters of a degree.
     #[must_use]
     pub const fn quarter(self) -> u8 {
         self.0

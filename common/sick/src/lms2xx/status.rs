@@ -1,10 +1,10 @@
-//! The state of a device: the byte behind every answer, and the long status.
+//! Device state: the status byte after every answer, and the long status.
 
 use super::fields::Fields;
 use super::range_mode::{RangeMode, Unit};
 use crate::SickError;
 
-/// The status byte behind every answer.
+/// Status byte after every answer.
 ///
 /// | bits | |
 /// |---|---|
@@ -15,32 +15,32 @@ use crate::SickError;
 pub struct Status(pub u8);
 
 impl Status {
-    /// 0 in order, 1 information, 2 warning, 3 error, 4 fatal error.
+    /// Returns the severity: 0 ok, 1 information, 2 warning, 3 error, 4 fatal error.
     #[must_use]
     pub const fn level(self) -> u8 {
         self.0 & 7
     }
 
-    /// Whether measured values are implausible.
+    /// Returns true if measured values are implausible.
     #[must_use]
     pub const fn is_implausible(self) -> bool {
         self.0 & 1 << 6 != 0
     }
 
-    /// Whether the window is dirty.
+    /// Returns true if the window is dirty.
     #[must_use]
     pub const fn is_polluted(self) -> bool {
         self.0 & 1 << 7 != 0
     }
 
-    /// Whether neither an error nor the window stands against the readings.
+    /// Returns true if neither an error nor a dirty window affects the readings.
     #[must_use]
     pub const fn is_in_order(self) -> bool {
         self.level() < 3 && !self.is_implausible() && !self.is_polluted()
     }
 }
 
-/// `B1`, as far as it matters here. Offsets count from the code.
+/// `B1`, reduced to the fields used here. Offsets count from the code.
 ///
 /// | offset | bytes | field | |
 /// |---|---|---|---|
@@ -54,25 +54,24 @@ impl Status {
 /// | 122 | 1 | unit | see [`Unit`] |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DeviceStatus {
-    /// Of the device's software.
+    /// Software version of the device.
     pub version: [u8; 7],
     /// Code of the operating mode.
     pub mode: u8,
-    /// Whether the device has an error.
+    /// True if the device has an error.
     pub has_error: bool,
-    /// Turns of the mirror a minute.
+    /// Mirror frequency, turns per minute.
     pub turns: u16,
-    /// How far it measures.
+    /// Measuring mode, which sets the longest range.
     pub range_mode: RangeMode,
-    /// 100 or 180.
+    /// Width of the field: 100 or 180.
     pub width_deg: u16,
-    /// 25, 50 or 100.
+    /// Resolution: 25, 50 or 100.
     pub resolution_raw_1e2_deg: u16,
-    /// Of distances.
     pub unit: Unit,
 }
 
-/// Bytes of the answer without its status byte.
+/// Length of the answer without its status byte.
 const LENGTH: usize = 150;
 
 impl DeviceStatus {
@@ -104,7 +103,7 @@ impl DeviceStatus {
         })
     }
 
-    /// What is not known is written as 0.
+    /// Writes fields that are not modelled as 0.
     pub(super) fn write(&self, out: &mut Vec<u8>) {
         let start = out.len() - 1;
         out.resize(start + LENGTH, 0);

@@ -1,32 +1,32 @@
-//! Telegrams in a stream, of either direction.
+//! Framing of LMS2xx telegrams in a stream, of either direction.
 
 use super::framing::{ACK, NACK, judge};
 use super::{Command, Reply};
 use crate::SickError;
 use crate::framer::{Framer, Judgement, Pending, Protocol};
 
-/// Bytes of a payload with twenty readings.
+/// Payload length of a scan with twenty readings, bytes.
 const SHORTEST_SCAN: usize = 44;
 
-/// The stream that a device sends.
+/// Protocol of the stream that a device sends.
 #[derive(Debug, Default)]
 pub struct FromDevice;
 
-/// The stream that a host sends.
+/// Protocol of the stream that a host sends.
 #[derive(Debug, Default)]
 pub struct FromHost;
 
-/// Finds what a device says.
+/// Framer for telegrams of a device.
 pub type ReplyFramer = Framer<FromDevice>;
 
-/// Finds what a host says.
+/// Framer for telegrams of a host.
 pub type CommandFramer = Framer<FromHost>;
 
 impl Protocol for FromDevice {
     type Telegram<'a> = Reply<'a>;
 
     fn judge(&self, pending: Pending<'_>) -> Judgement {
-        // Out of step these are as likely to be any other byte.
+        // After garbage these are as likely to be any other byte.
         if pending.in_step && matches!(pending.bytes, [ACK | NACK, ..]) {
             return Judgement::Frame {
                 prefix: 0,
@@ -38,7 +38,7 @@ impl Protocol for FromDevice {
     }
 
     fn stands_alone(&self, content: &[u8]) -> bool {
-        // Shorter ones may come about by chance: the checksum has 16 bits.
+        // Shorter ones may occur by chance: the checksum has only 16 bits.
         matches!(content, [0xb0 | 0xb7, ..]) && content.len() >= SHORTEST_SCAN
     }
 

@@ -29,7 +29,7 @@ fn the_same_seed_gives_the_same_drive_and_another_does_not() {
 
 #[test]
 fn a_scan_is_taken_at_each_tick_from_start_to_end() {
-    // 14 m at 0.5 m/s and a quarter turn in two seconds, twice a second.
+    // 14 m at 0.5 m/s and a quarter turn in two seconds, at 2 Hz.
     let drive = drive("--rate 2");
     assert_eq!(drive.len(), 61);
     assert_eq!(drive[3].time_ns, 1_500_000_000);
@@ -41,11 +41,11 @@ fn a_scan_is_taken_at_each_tick_from_start_to_end() {
 fn readings_without_noise_are_those_of_the_room() {
     let first = &drive("--noise 0 --field-of-view 360 --beams 8 --mount 0.5,0,90")[0];
     assert_eq!(first.map_from_laser.x, 1.5);
-    // From 1.5, 1 with the first beam to the rear, seen from a laser that looks
-    // along y: walls of 0.1 m at 0 and 10 along x, at 0 and 8 along y.
+    // The laser is at 1.5, 1 and looks along y, its first beam to the rear: walls of 0.1 m at 0 and
+    // 10 along x, at 0 and 8 along y.
     for (beam, expected) in [(0, 0.9), (2, 8.4), (4, 6.9), (6, 1.4)] {
         let reading = first.ranges[beam];
-        // Millimetres.
+        // Readings are rounded to millimetres.
         assert!((reading - expected).abs() < 0.0006, "{beam}: {reading}");
     }
 }
@@ -56,14 +56,14 @@ fn each_laser_reads_from_its_own_place() {
     let lasers = "--laser a=0.5,0,0 --laser b=-0.3,0,180 --laser c=0,0,0,180";
     let first = &drive(&format!("{options} {lasers}"))[0];
     assert_eq!(first.map_from_laser.x, 1.5);
-    // From 1.5, 0.7 and 1 along x and 1 along y: walls of 0.1 m at 0 and 10
-    // along x, at 0 and 8 along y. To the right of one that looks ahead is a
-    // wall at 0.9 m, to its left one at 6.9 m; upside down it is the other way.
+    // The lasers are at x = 1.5, 0.7 and 1, and y = 1: walls of 0.1 m at 0 and 10 along x, at 0 and
+    // 8 along y. A laser that looks ahead has a wall at 0.9 m to its right and one at 6.9 m to its
+    // left; upside down it is the other way.
     let scans = [&first.ranges, &first.others[0], &first.others[1]];
     let expected = [[0.9, 8.4, 6.9], [6.9, 0.6, 0.9], [6.9, 8.9, 0.9]];
     for (scan, expected) in scans.into_iter().zip(expected) {
         for (reading, expected) in scan.iter().zip(expected) {
-            // Millimetres.
+            // Readings are rounded to millimetres.
             assert!((reading - expected).abs() < 0.0006, "{scan:?}");
         }
     }
@@ -91,13 +91,13 @@ fn the_robot_drives_on_while_a_scan_is_measured() {
     let options = "--noise 0 --odometry-noise-per-metre 0 --field-of-view 1 --beams 3";
     let moving = drive(&format!("{options} --scan-duration 0.1 --rate 5"));
     let first = &moving[0];
-    // At 0.5 m/s it comes 5 cm nearer to the wall at 9.9 m within 0.1 s; the outer
-    // beams are half a degree askew, which is less than a millimetre.
+    // At 0.5 m/s the robot approaches the wall at 9.9 m by 5 cm within 0.1 s; the outer beams are
+    // half a degree askew, which is less than a millimetre.
     for (reading, expected) in first.ranges.iter().zip([8.9, 8.875, 8.85]) {
         assert!((reading - expected).abs() < 0.0011, "{:?}", first.ranges);
     }
     let after = first.after.unwrap();
-    // In 32 bits, 0.1 s is right to some nanoseconds.
+    // In 32 bits, 0.1 s is exact to some nanoseconds.
     assert!((after.time_ns - 100_000_000).abs() < 10, "{after:?}");
     let expected = Pose::new(0.05, 0.0, 0.0);
     assert!(

@@ -1,8 +1,8 @@
-//! Who is alive: whoever holds a lock.
+//! Locks that show which processes are alive.
 //!
-//! Numbers of processes mean nothing across containers that share `/dev/shm`, and the
-//! folder where iceoryx2 keeps its nodes may be another one there. A lock on a file in
-//! shared memory is seen by all of them, and the kernel takes it away with the process.
+//! Process ids mean nothing across containers that share `/dev/shm`, and the folder where iceoryx2
+//! keeps its nodes may differ there. A lock on a file in shared memory is visible to all of them,
+//! and the kernel releases it with the process.
 
 use std::fs::{File, Metadata, OpenOptions, read_to_string, remove_file};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
@@ -16,22 +16,22 @@ use nix::libc::O_NOFOLLOW;
 use crate::membership::{Membership, SHARED_MEMORY};
 use crate::{GraphName, TransportError};
 
-/// Ends the name of the file that every member holds.
+/// Suffix of the file that every member locks.
 pub(crate) const MEMBERS: &str = "alive";
-/// Ends the name of the file that a launcher holds.
+/// Suffix of the file that a launcher locks.
 pub(crate) const LAUNCHER: &str = "launcher";
 
-/// For how long a claim may be held by whoever only looks whether it is taken.
+/// Longest time for which a mere check may hold a claim's lock.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// A lock on a file, as long as this lives.
+/// Lock on a file, held as long as this lives.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: Flock<File>,
 }
 
-/// A launcher's right to a graph's name: no other launcher has it, in whatever
-/// container that shares this machine's shared memory.
+/// A launcher's exclusive right to a graph's name, across all containers that share this machine's
+/// shared memory.
 #[derive(Debug)]
 pub struct Claim {
     path: PathBuf,
@@ -39,11 +39,11 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Takes the name of `graph`.
+    /// Claims the name of `graph`.
     ///
     /// # Errors
-    /// [`TransportError::StillRunning`] if another launcher has it, and
-    /// [`TransportError::File`] if its file cannot be used.
+    /// [`TransportError::StillRunning`] if another launcher has it, [`TransportError::File`] if its
+    /// file cannot be used.
     pub fn take(graph: &GraphName) -> Result<Self, TransportError> {
         let path = path(&Membership::of(graph), LAUNCHER);
         let begin = Instant::now();
@@ -61,28 +61,28 @@ impl Claim {
         }
     }
 
-    /// Whether a launcher has the name of `graph`.
+    /// True if a launcher has claimed the name of `graph`.
     pub(crate) fn is_taken(graph: &GraphName) -> bool {
         let path = path(&Membership::of(graph), LAUNCHER);
         let mut options = OpenOptions::new();
         let file = options.read(true).custom_flags(O_NOFOLLOW).open(path);
-        // Shared, so that several who look do not take each other for a launcher.
+        // Shared, so that concurrent checks do not take each other for a launcher.
         let look = |file| Flock::lock(file, FlockArg::LockSharedNonblock);
         matches!(file.map(look), Ok(Err((_, Errno::EWOULDBLOCK))))
     }
 }
 
-/// The files of the machine that a process holds with a lock as [`Claim`] does, whoever owns them.
+/// The files of the machine that are locked like a [`Claim`], by processes of any user.
 pub(crate) struct LockedFiles(String);
 
 impl LockedFiles {
-    /// As the system lists them now: number, kind, mode, access, process, `major:minor:inode` and
-    /// range of each lock.
+    /// Reads the locks of the system. Each line has number, kind, mode, access, process,
+    /// `major:minor:inode` and range.
     pub(crate) fn now() -> Self {
         LockedFiles(read_to_string("/proc/locks").unwrap_or_default())
     }
 
-    /// Whether a file is one of them.
+    /// True if `file` is locked.
     pub(crate) fn hold(&self, file: &Metadata) -> bool {
         let ending = format!(":{}", file.ino());
         self.0.lines().any(|line| {
@@ -94,16 +94,16 @@ impl LockedFiles {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // Whoever waits for it finds that the file is another one, and looks again.
+        // A process that waits for the lock finds another file at the path and tries again.
         let _ = remove_file(&self.path);
     }
 }
 
-/// What each member holds, beside others.
+/// Takes the shared lock of a member.
 pub(crate) fn as_member(membership: &Membership) -> Result<Lock, TransportError> {
     let path = path(membership, MEMBERS);
     let lock = lock(&path, FlockArg::LockShared)?;
-    // To wait for a shared lock ends with it.
+    // Waiting for a shared lock ends only when it is taken.
     lock.ok_or(TransportError::File {
         action: "lock",
         path,
@@ -111,7 +111,7 @@ pub(crate) fn as_member(membership: &Membership) -> Result<Lock, TransportError>
     })
 }
 
-/// What nobody holds while any member is alive.
+/// Takes the exclusive lock; `None` while any member is alive.
 pub(crate) fn as_only_one(membership: &Membership) -> Result<Option<Lock>, TransportError> {
     lock(&path(membership, MEMBERS), FlockArg::LockExclusiveNonblock)
 }
@@ -120,7 +120,7 @@ pub(crate) fn path(membership: &Membership, whose: &str) -> PathBuf {
     Path::new(SHARED_MEMORY).join(format!("{}{whose}", membership.prefix))
 }
 
-/// Nothing where somebody else has it.
+/// Locks the file at `path`; `None` if a nonblocking lock is not available.
 fn lock(path: &Path, how: FlockArg) -> Result<Option<Lock>, TransportError> {
     let failed = |action: &'static str, source| TransportError::File {
         action,
@@ -139,7 +139,7 @@ fn lock(path: &Path, how: FlockArg) -> Result<Option<Lock>, TransportError> {
             .map_err(|source| failed("open", source))?;
         match Flock::lock(file, how) {
             Ok(file) if is_at(&file, path) => return Ok(Some(Lock { _file: file })),
-            // It was removed while we waited.
+            // The file was removed while we waited.
             Ok(_) | Err((_, Errno::EINTR)) => {}
             Err((_, Errno::EWOULDBLOCK)) => return Ok(None),
             Err((_, errno)) => return Err(failed("lock", errno.into())),
@@ -186,7 +186,7 @@ mod tests {
         assert!(Claim::is_taken(&name));
         drop(claim);
         assert!(!Claim::is_taken(&name));
-        // Others look all the time.
+        // Other processes check all the time.
         let file = path(&Membership::of(&name), LAUNCHER);
         let looking = lock(&file, FlockArg::LockShared).unwrap();
         assert!(!Claim::is_taken(&name), "who looks is no launcher");
@@ -219,7 +219,7 @@ mod tests {
         let only = as_only_one(&membership).unwrap();
         assert!(only.is_some());
         remove_file(path(&membership, MEMBERS)).unwrap();
-        // The file that is locked is no more the one at its path.
+        // The locked file is no longer the one at its path.
         assert!(as_only_one(&membership).unwrap().is_some());
         remove_file(path(&membership, MEMBERS)).unwrap();
     }

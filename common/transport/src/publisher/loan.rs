@@ -1,8 +1,7 @@
-//! A sample on its way from being asked for to being sent.
+//! A sample between loan and send.
 //!
-//! The node fills it where its subscribers will read it: nothing is copied. Where shared
-//! memory is full, it is filled in memory of the process alone and goes nowhere; the
-//! publisher counts it.
+//! The node fills it where its subscribers will read it: nothing is copied. If shared memory is
+//! full, it is filled in private memory and not sent; the publisher counts the loss.
 
 use iceoryx2::prelude::ipc;
 use iceoryx2::sample_mut::SampleMut;
@@ -12,12 +11,12 @@ use crate::header::Header;
 use crate::publisher::send_failed;
 use crate::{Publisher, TransportError, space};
 
-/// Bytes of iceoryx2's own header in front of ours, and of padding, at most.
+/// Upper bound on the bytes of iceoryx2's header and padding.
 const OVERHEAD: usize = 256;
 
 type SharedSample<T> = SampleMut<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
 
-/// A sample being filled; dropping it gives the memory back unsent.
+/// A sample being filled; dropping it returns the memory without sending.
 #[derive(Debug)]
 pub struct Loan<'p, T: Topic> {
     place: Place<T>,
@@ -27,7 +26,7 @@ pub struct Loan<'p, T: Topic> {
 #[derive(Debug)]
 enum Place<T: Topic> {
     Shared(SharedSample<T>),
-    /// Shared memory is full, as the error says.
+    /// Private memory, because shared memory is full; `full` is the error.
     Private {
         header: T::Header,
         items: Vec<T::Item>,
@@ -39,9 +38,9 @@ impl<'p, T: Topic> Loan<'p, T> {
     pub(crate) fn of(publisher: &'p Publisher<T>, items: usize) -> Result<Self, TransportError> {
         let place = match space::ensure_free(T::NAME, sample_bytes::<T>(items)?) {
             Ok(()) => Place::Shared(shared(publisher, items)?),
-            // What stays for late joiners must not be missed, so its sender has to know.
+            // The loss of a latched sample must not go unnoticed, so its publisher gets the error.
             Err(full @ TransportError::SharedMemoryFull { .. }) if !T::LATCHED => {
-                // A size that no memory has is an error, as in shared memory.
+                // A size beyond private memory is an error, as in shared memory.
                 let mut private = Vec::new();
                 if private.try_reserve_exact(items).is_err() {
                     return Err(full);
@@ -58,7 +57,7 @@ impl<'p, T: Topic> Loan<'p, T> {
         Ok(Loan { place, publisher })
     }
 
-    /// The header, zeros at first.
+    /// Header, initially zero.
     pub fn header_mut(&mut self) -> &mut T::Header {
         match &mut self.place {
             Place::Shared(sample) => &mut sample.user_header_mut().0,
@@ -66,7 +65,7 @@ impl<'p, T: Topic> Loan<'p, T> {
         }
     }
 
-    /// The items, zeros at first.
+    /// Items, initially zero.
     pub fn items_mut(&mut self) -> &mut [T::Item] {
         match &mut self.place {
             Place::Shared(sample) => sample.payload_mut(),
@@ -74,8 +73,8 @@ impl<'p, T: Topic> Loan<'p, T> {
         }
     }
 
-    /// Hands the sample to every subscriber and wakes them; where shared memory is full,
-    /// the sample is lost and counted.
+    /// Sends the sample to every subscriber and wakes them. If shared memory is full, the sample is
+    /// lost and counted.
     ///
     /// # Errors
     /// [`TransportError::Send`] if a subscriber could not be reached.
@@ -93,7 +92,7 @@ impl<'p, T: Topic> Loan<'p, T> {
         }
     }
 
-    /// Where the sample lies in this process.
+    /// Address of the sample in this process.
     pub(crate) fn address(&self) -> usize {
         match &self.place {
             Place::Shared(sample) => std::ptr::from_ref(sample.user_header()).addr(),
@@ -115,8 +114,8 @@ fn shared<T: Topic>(
     Ok(sample.write_from_fn(|_| bytemuck::Zeroable::zeroed()))
 }
 
-/// Bytes that a sample touches at most. iceoryx2 rounds the size of its chunks
-/// up to a power of two, which must exist.
+/// Returns an upper bound on the bytes of a sample. iceoryx2 rounds the size of its chunks up to a
+/// power of two, which must be representable.
 fn sample_bytes<T: Topic>(items: usize) -> Result<u64, TransportError> {
     size_of::<T::Item>()
         .checked_mul(items)

@@ -1,4 +1,4 @@
-//! A graph that belongs to one test.
+//! A graph of a single test.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -9,21 +9,21 @@ use crate::membership::SHARED_MEMORY;
 use crate::root::{current_user, path_for};
 use crate::{Graph, GraphName, remove_leftovers};
 
-/// A graph whose name no other one has, in this process or another; what it leaves is
-/// removed in the end. A test that hangs is ended. To be declared before everything that is in
-/// the graph, so that it is dropped last; in a struct, behind it.
+/// A graph with a unique name. Its files are removed when this is dropped, and a test that hangs is
+/// ended. Declare it before everything that is in the graph, so that it is dropped last; in a
+/// struct, declare it as the last field.
 #[derive(Debug)]
 pub struct Isolated {
     name: GraphName,
-    /// Closed in the end, which is what the watch waits for.
+    /// Ends the watch when it is dropped.
     _watched: Option<Sender<()>>,
 }
 
 impl Isolated {
-    /// `tag` says in lists of processes whose graph it is, in at most 11 bytes.
+    /// Creates the graph. `tag` marks its name in lists of processes, with at most 11 bytes.
     ///
     /// # Panics
-    /// If `tag` is longer, or holds what a graph's name must not.
+    /// `tag` is longer or has characters that are invalid in a graph's name.
     #[must_use]
     pub fn new(tag: &str) -> Self {
         let name = name(tag);
@@ -31,10 +31,10 @@ impl Isolated {
         Isolated { name, _watched }
     }
 
-    /// For a benchmark, which takes as long as requested.
+    /// Creates a graph without a time limit, for a benchmark.
     ///
     /// # Panics
-    /// As [`Isolated::new`].
+    /// See [`Isolated::new`].
     #[must_use]
     pub fn for_long(tag: &str) -> Self {
         Isolated {
@@ -43,22 +43,21 @@ impl Isolated {
         }
     }
 
-    /// The graph's name.
     #[must_use]
     pub fn name(&self) -> &GraphName {
         &self.name
     }
 
-    /// The test's own membership, as `node`.
+    /// Joins the graph as `node`.
     ///
     /// # Panics
-    /// If the test cannot join.
+    /// The test cannot join.
     #[must_use]
     pub fn join(&self, node: &str) -> Graph {
         Graph::join_named(node, &self.name).unwrap()
     }
 
-    /// Every file of the graph, wherever it lies.
+    /// Returns every file of the graph in any folder.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = Vec::new();
@@ -72,7 +71,7 @@ impl Isolated {
 fn name(tag: &str) -> GraphName {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    // Of 20 bytes 5 are left for the process, as many as its largest number has in base 36.
+    // The name has 20 bytes, 5 of them for the process id, whose maximum has 5 digits in base 36.
     let [process, count] = [std::process::id(), count].map(in_base_36);
     GraphName::new(&format!("{process}-{count}-{tag}")).unwrap()
 }
@@ -98,7 +97,7 @@ impl Drop for Isolated {
 }
 
 fn collect(folder: &Path, part: &str, found: &mut Vec<PathBuf>) {
-    // Other tests remove files and folders of theirs meanwhile.
+    // Other tests may remove their files and folders meanwhile.
     let Ok(entries) = std::fs::read_dir(folder) else {
         return;
     };

@@ -1,9 +1,9 @@
-//! For tests of nodes: a graph of their own, the node as a process, and waiting
-//! for what it says.
+//! Helpers for tests of nodes: a graph of their own, the node as a process, and waiting for its
+//! messages.
 //!
-//! Everything here fails the test by panicking and waits without a limit, for
-//! how long a machine takes is nothing that a test could know; only a test that
-//! hangs for minutes is ended. Nodes themselves use none of it.
+//! Everything here fails the test by panicking and waits without a time limit, because a test
+//! cannot know the speed of the machine; only a test that hangs for minutes is ended. Nodes
+//! themselves use none of it.
 
 #![allow(
     clippy::unwrap_used,

@@ -11,22 +11,20 @@ use nix::unistd::Pid;
 use crate::node::LOG_FORMAT_VARIABLE;
 use crate::{GRAPH_VARIABLE, Graph};
 
-/// The node, killed if the test fails before it has ended; what it had logged
-/// is then shown.
+/// A node in a process, killed if the test fails before it has ended; its log is printed then.
 #[derive(Debug)]
 pub struct NodeProcess {
     child: Child,
-    /// Reads all the time, or a talkative node would wait for its reader.
+    /// Thread that reads the log all the time, as a full pipe would block the node.
     log: Option<JoinHandle<Vec<u8>>>,
 }
 
 impl NodeProcess {
-    /// Starts `executable` in `graph`; a test names that of its package by
-    /// `env!("CARGO_BIN_EXE_…")`. It logs as it does where nobody asks for
-    /// another way.
+    /// Starts `executable` in `graph`; a test gets the path of its package's executable by
+    /// `env!("CARGO_BIN_EXE_…")`. Logging has its default settings.
     ///
     /// # Panics
-    /// If it cannot be started.
+    /// It cannot be started.
     pub fn start<A: AsRef<OsStr>>(
         executable: &str,
         graph: &Graph,
@@ -45,50 +43,48 @@ impl NodeProcess {
         NodeProcess { child, log }
     }
 
-    /// Its process.
     #[must_use]
     pub fn pid(&self) -> Pid {
         Pid::from_raw(self.child.id().cast_signed())
     }
 
-    /// Asks it to end, by SIGTERM.
+    /// Sends SIGTERM.
     ///
     /// # Panics
-    /// If the signal cannot be sent.
+    /// The signal cannot be sent.
     pub fn interrupt(&self) {
         kill(self.pid(), Signal::SIGTERM).unwrap();
     }
 
-    /// Waits until it ends, by itself or because it was asked to; returns how it
-    /// ended and what it logged.
+    /// Waits until the process ends; returns its exit status and log.
     ///
     /// # Panics
-    /// If what it logged is not UTF-8.
+    /// The log is not UTF-8.
     pub fn finish(mut self) -> (ExitStatus, String) {
         let status = self.child.wait().unwrap();
         let log = String::from_utf8(self.take_log()).unwrap();
         (status, log)
     }
 
-    /// As [`NodeProcess::finish`]; the code alone, `None` if a signal ended it.
+    /// Like [`NodeProcess::finish`], but returns only the exit code; `None` if a signal ended it.
     pub fn exit_code(self) -> Option<i32> {
         self.finish().0.code()
     }
 
-    /// Asks it to end, which is no failure.
+    /// Sends SIGTERM and waits until the process ends with success.
     ///
     /// # Panics
-    /// If the node takes it for one.
+    /// The exit status is a failure.
     pub fn stop(self) {
         self.interrupt();
         let (status, log) = self.finish();
         assert!(status.success(), "{status}\n{log}");
     }
 
-    /// Ends it by SIGKILL, which it cannot notice.
+    /// Kills it with SIGKILL.
     ///
     /// # Panics
-    /// If it cannot be killed.
+    /// It cannot be killed.
     pub fn kill(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();

@@ -1,4 +1,4 @@
-//! A test where a file system is its own: it can be filled, and nobody else is disturbed.
+//! Runs a test with a file system of its own, which it can fill without disturbing other processes.
 
 use std::process::{Command, Stdio};
 
@@ -6,22 +6,22 @@ use nix::unistd::geteuid;
 
 const INSIDE: &str = "BACKCAST_TEST_INSIDE";
 
-/// Where a test runs that needs a file system of its own.
+/// Place where a test with a file system of its own runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OwnFileSystem {
-    /// Here, it is its own.
+    /// In this process, which has its own file system.
     Here,
-    /// It was run elsewhere, where it is its own, and has passed.
+    /// In another process, where it has passed.
     Elsewhere,
-    /// Nowhere: this kernel lets this user mount nothing.
+    /// Nowhere: the kernel does not allow this user to mount.
     Forbidden,
 }
 
 impl OwnFileSystem {
-    /// For the calling test, which is called `test`, one at `path` of so many bytes, as `16m`.
+    /// Gives the calling test, named `test`, a file system at `path` of this size, e.g. `16m`.
     ///
     /// # Panics
-    /// If the test fails there.
+    /// The test fails in the other process.
     #[must_use]
     pub fn of_test(test: &str, path: &str, size: &str) -> Self {
         if std::env::var_os(INSIDE).is_some() {

@@ -1,4 +1,4 @@
-//! Waiting for what a node says.
+//! Waits for messages of nodes.
 
 use std::time::Duration;
 
@@ -6,14 +6,14 @@ use messages::{HealthHeader, NodeState, Topic, topic};
 
 use crate::{Flow, Graph, Subscriber, TransportError};
 
-/// How long a late joiner waits for what the test itself has latched.
+/// Tick of the test: a late joiner waits for its latched samples for that long.
 const TICK: Duration = Duration::from_millis(20);
 
-/// Waits for a message of which `take` makes something, and returns that.
-/// Meanwhile the test's own latched topics are served.
+/// Waits for a message for which `take` returns a value, and returns that value. Meanwhile the
+/// test's own latched topics are served.
 ///
 /// # Panics
-/// If the graph fails.
+/// The graph fails.
 pub fn wait_for<T: Topic, R>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -34,10 +34,10 @@ pub fn wait_for<T: Topic, R>(
     taken.unwrap()
 }
 
-/// Waits for a message that `is_awaited`.
+/// Waits for a message for which `is_awaited` is true.
 ///
 /// # Panics
-/// As [`wait_for`].
+/// See [`wait_for`].
 pub fn wait_until<T: Topic>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -48,10 +48,10 @@ pub fn wait_until<T: Topic>(
     });
 }
 
-/// Waits for a report that `is_awaited`; returns it and its last error.
+/// Waits for a health message for which `is_awaited` is true; returns it and its last error.
 ///
 /// # Panics
-/// If the graph fails, or the error is not UTF-8.
+/// The graph fails, or the error is not UTF-8.
 pub fn wait_for_health(
     graph: &Graph,
     health: &Subscriber<topic::Health>,
@@ -62,10 +62,10 @@ pub fn wait_for_health(
     })
 }
 
-/// Waits until a node has all that it needs.
+/// Waits until a node reports that it is ready.
 ///
 /// # Panics
-/// If the graph fails.
+/// The graph fails.
 pub fn wait_until_ready(graph: &Graph, node: &str) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let is_ready = NodeState::Ready as u32;

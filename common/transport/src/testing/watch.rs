@@ -9,18 +9,18 @@ use nix::sys::signal::{Signal, raise};
 
 use crate::GraphName;
 
-/// How long a test may take: it waits for what it expects, and what never comes
-/// would hold up all tests behind it. Many times the slowest test on a slow machine.
+/// Longest time of a test. It is many times the slowest test on a slow machine; a message that
+/// never comes would block all tests behind it.
 const TIMEOUT: Duration = Duration::from_secs(300);
 
-/// From being asked to end until it has to, for what does not wait in a graph.
+/// Time from SIGTERM to the abort, which is for code that does not wait in a graph.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// Starts and ends of what takes long by itself.
+/// Counts starts and ends of long work.
 static LONG_WORK: AtomicUsize = AtomicUsize::new(0);
 
-/// Does what takes long without hanging, as compiling; one at a time. Tests have all
-/// their time again afterwards.
+/// Runs long work that is not a hang, such as compiling; one at a time. Afterwards tests have their
+/// full time again.
 pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     LONG_WORK.fetch_add(1, Ordering::Relaxed);
     let done = work();
@@ -28,8 +28,8 @@ pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     done
 }
 
-/// Ends the process, and so its test, where that hangs: waiting in a graph ends, and
-/// the test fails with what its nodes logged. Until the sender is dropped.
+/// Ends the process if its test hangs, until the sender is dropped: waiting in a graph ends, and
+/// the test fails with the log of its nodes.
 pub(super) fn watch(graph: GraphName) -> Sender<()> {
     let (watched, end) = channel();
     std::thread::spawn(move || {
@@ -37,9 +37,9 @@ pub(super) fn watch(graph: GraphName) -> Sender<()> {
         let mut before = LONG_WORK.load(Ordering::Relaxed);
         while lasts(TIMEOUT) {
             let now = LONG_WORK.load(Ordering::Relaxed);
-            // Where a start has no end yet, that continues.
+            // An odd number means that long work is going on.
             if now == before && now.is_multiple_of(2) {
-                // Not by `eprintln!`, whose words a test keeps until it ends.
+                // Not by `eprintln!`, whose output the test harness captures until the test ends.
                 let _ = writeln!(
                     stderr(),
                     "the test in graph {graph} takes more than {TIMEOUT:?}: it is ended"

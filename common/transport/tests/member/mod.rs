@@ -1,5 +1,5 @@
-//! Another process of a test's graph: the test's own executable, which does
-//! what it is commanded line by line. It can be killed.
+//! Another process in a test's graph: the test's own executable, which executes commands line by
+//! line. It can be killed.
 
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::fs::MetadataExt;
@@ -11,12 +11,12 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use transport::{Flow, GRAPH_VARIABLE, Graph, GraphName, Publisher, Subscriber, TransportError};
 
-/// Set in such a process: the name under which it joins.
+/// Environment variable of such a process: the name under which it joins.
 const NODE_VARIABLE: &str = "TRANSPORT_TEST_NODE";
-/// Distinguishes answers from what the test harness prints.
+/// Marks answers in the output of the test harness.
 const ANSWER: &str = "answer:";
 
-/// The member, as the test sees it.
+/// The member as seen by the test.
 pub(crate) struct Member {
     process: Child,
     commands: Option<ChildStdin>,
@@ -72,13 +72,13 @@ impl Member {
         kill(Pid::from_raw(self.process.id().cast_signed()), signal).unwrap();
     }
 
-    /// Ends it with SIGKILL, which it cannot notice.
+    /// Kills it with SIGKILL.
     pub(crate) fn kill(mut self) {
         self.process.kill().unwrap();
         self.process.wait().unwrap();
     }
 
-    /// Lets it leave the graph and end.
+    /// Makes it leave the graph and end.
     pub(crate) fn end(mut self) {
         drop(self.commands.take());
         assert!(self.process.wait().unwrap().success());
@@ -87,15 +87,14 @@ impl Member {
 
 impl Drop for Member {
     fn drop(&mut self) {
-        // A test that fails half-way must not leave it behind. Where it has
-        // ended already, this finds nothing to do.
+        // A test that fails half-way must not leave the process behind.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// In a process that [`Member::start`] started, does what it is commanded until its
-/// input ends, and returns true; false in the test itself.
+/// In a process started by [`Member::start`], executes commands until its input ends, and returns
+/// true. Returns false in the test itself.
 pub(crate) fn serve_if_asked() -> bool {
     let Ok(node) = std::env::var(NODE_VARIABLE) else {
         return false;
@@ -137,7 +136,7 @@ impl Served {
         }
     }
 
-    /// Sends a map whose id and cells are `id`; says where its cells lie.
+    /// Publishes a map whose id and cells are `id`; returns the place of its cells.
     fn publish(&mut self, id: u8, cells: usize) -> String {
         let publisher = self
             .publisher
@@ -150,7 +149,7 @@ impl Served {
         place
     }
 
-    /// Waits for a map and holds it; says its id and where its cells lie.
+    /// Waits for a map and holds it; returns its id and the place of its cells.
     fn receive(&mut self) -> String {
         let subscriber = self.subscriber.as_ref().unwrap();
         let sample = wait_for_map(&self.graph, subscriber);
@@ -174,7 +173,7 @@ impl Served {
     }
 }
 
-/// What `main` of a node makes of an outcome, and of the second start of logging.
+/// Runs `main` of a node with this outcome; a second call starts logging twice.
 fn run_main(outcome: &str) -> ExitCode {
     transport::node::main("inner", |graph| match outcome {
         "ok" => Ok(()),
@@ -203,8 +202,8 @@ pub(crate) fn wait_for_map(
     received.unwrap()
 }
 
-/// Where bytes lie, in words that mean the same in every process: the file that
-/// is mapped there and the offset in it.
+/// Returns the location of bytes in a form that is equal in all processes: the mapped file and the
+/// offset in it.
 pub(crate) fn place_of(bytes: &[u8]) -> String {
     let address = bytes.as_ptr().addr();
     let maps = std::fs::read_to_string("/proc/self/maps").unwrap();

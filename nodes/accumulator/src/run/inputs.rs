@@ -1,4 +1,4 @@
-//! What the node subscribes to.
+//! Subscribers of the node.
 
 use engine::heading::{HeadingSource, History};
 use engine::joined::Joiner;
@@ -8,16 +8,16 @@ use transport::{Graph, Health, Input, Subscriber, TransportError};
 use crate::Config;
 use crate::config::Searched;
 
-/// The node's subscribers; the truth only where it is looked at.
+/// Subscribers of the node; the ground truth only if headings come from it.
 pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) maps: Subscriber<topic::Map>,
-    /// Where several are searched together.
+    /// Sets of maps that are searched together.
     pub(super) sets: Subscriber<topic::Maps>,
     pub(super) boundaries: Subscriber<topic::Boundary>,
-    /// Wishes where to search.
+    /// Requests for a search region.
     pub(super) regions: Subscriber<topic::Region>,
-    /// Scans that are to be searched; only where those alone are.
+    /// Requests for scans to search; `None` if all scans are searched.
     pub(super) attention: Option<Subscriber<topic::Attention>>,
     odometry: Subscriber<topic::OdometryTopic>,
     truths: Option<Subscriber<topic::GroundTruthTopic>>,
@@ -55,7 +55,7 @@ impl Inputs {
         always.into_iter().chain(truths).chain(attention).collect()
     }
 
-    /// Takes down all odometry and truths that have come.
+    /// Records all odometry and ground truth received.
     pub(super) fn take_poses(
         &self,
         joiner: &mut Joiner,

@@ -1,4 +1,4 @@
-//! What the node publishes.
+//! Publishers of the node.
 
 use engine::beams::BeamConfig;
 use messages::{
@@ -9,7 +9,6 @@ use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use crate::Config;
 use crate::pace::Pace;
 
-/// The node's publishers.
 pub(super) struct Outputs {
     votes: Publisher<topic::Votes>,
     by_map: Publisher<topic::VotesByMap>,
@@ -23,14 +22,14 @@ impl Outputs {
         Ok(Outputs {
             votes: graph.publisher_for(config.localizer.collect.max_votes as usize)?,
             by_map: graph.publisher()?,
-            // As many as vote by default; more of them have it grow.
+            // Enough for the default number of beams; the publisher grows for more.
             readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
         })
     }
 
-    /// Sends what was found on several maps that were searched together, of which one leads.
+    /// Publishes the votes on several maps that were searched together, one of which leads.
     pub(super) fn votes_of_maps(
         &self,
         leading: &VotesHeader,
@@ -78,8 +77,7 @@ impl Outputs {
         loan.send()
     }
 
-    /// Whether somebody subscribes to the image and one is due; if so, it is
-    /// taken to be sent.
+    /// Returns true if `field` has a subscriber and an image is due, and counts it as sent.
     pub(super) fn is_field_due(&mut self) -> bool {
         self.field.has_subscribers() && self.field_pace.pass(monotonic_ns())
     }

@@ -1,4 +1,4 @@
-//! A set of maps that came and can be used.
+//! Set of maps received from the topic.
 
 use engine::space;
 use messages::{MapSet, topic};
@@ -7,18 +7,18 @@ use transport::Sample;
 use crate::preparation::{Job, Key};
 use crate::subject::{Refused, Subject};
 
-/// A set of maps, which was checked when it came.
+/// Set of maps that has been checked.
 pub(super) struct Set {
     sample: Sample<topic::Maps>,
-    /// Of its maps, in order.
+    /// Keys of its maps, in order.
     pub(super) keys: Vec<Key>,
 }
 
 impl Set {
-    /// Takes a set that came.
+    /// Checks a received set.
     ///
     /// # Errors
-    /// If it is none, or a map has impossible rules.
+    /// If the set is invalid, or the rules of one of its maps are.
     pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, Refused> {
         let set = MapSet::read(sample.header(), sample.items());
         let set = set.map_err(|error| Subject::Set(sample.header().set_id).refused(error))?;
@@ -29,10 +29,10 @@ impl Set {
         Ok(Set { sample, keys })
     }
 
-    /// What to do to search it.
+    /// Returns the jobs that prepare its maps.
     ///
     /// # Errors
-    /// None, of a set that was read.
+    /// Not expected for a set that has been checked.
     pub(super) fn jobs(&self) -> Result<Vec<Job>, Refused> {
         let header = self.sample.header();
         let set = MapSet::split(header, self.sample.items());

@@ -1,4 +1,4 @@
-//! Maps and boundaries on their way to localizers.
+//! Preparation of localizers from received maps and boundaries.
 
 use std::error::Error;
 use std::time::Instant;
@@ -16,31 +16,29 @@ use crate::preparation::{Job, Key, PreparedMap};
 use crate::subject::{Refused, Subject};
 use crate::{AccumulatorError, Config};
 
-/// What has come, what is wanted of it, and what is being prepared: one map, or all maps of a
-/// set, at a time, always for what came last.
+/// Received maps and the state of their preparation. One map or all maps of a set are prepared at a
+/// time, always for the newest input.
 pub(super) struct Supply {
     config: LocalizerConfig,
-    /// Where poses are searched unless somebody requests otherwise.
+    /// Search region unless another one is requested.
     configured: Option<Region>,
     prior: Prior,
-    /// Where prepared maps are kept.
     cache: Option<IndexCache>,
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
-    /// Where there is one, it is searched, and the map above is that of it which is shown.
+    /// Set of maps, which takes precedence; `map` is then the one of its maps that is displayed.
     set: Option<Set>,
-    /// To be prepared, once nothing else is.
+    /// Order to prepare next.
     wanted: Option<Order>,
     under_way: Option<UnderWay>,
-    /// Of the map that was handed out last.
+    /// Order of the maps returned last.
     handed_out: Option<Order>,
 }
 
-/// What to prepare.
+/// Maps to prepare.
 #[derive(Debug, Clone, PartialEq)]
 struct Order {
     keys: Vec<Key>,
-    /// Where poses are searched.
     region: Option<Region>,
 }
 
@@ -50,7 +48,7 @@ struct UnderWay {
     work: Background<Prepared>,
 }
 
-/// All maps that were ordered and have poses, or the one that cannot be used.
+/// All ordered maps with allowed poses, or the map that cannot be used.
 type Prepared = Result<Vec<(PreparedMap, Kept)>, Refused>;
 
 impl Supply {
@@ -74,12 +72,12 @@ impl Supply {
         }
     }
 
-    /// Takes what has come and starts or ends a preparation; returns what is to be searched
-    /// from now on as soon as it is prepared.
+    /// Processes new inputs and starts or ends a preparation; returns the maps to search from now
+    /// on once they are prepared.
     ///
     /// # Errors
-    /// If the graph or a preparing thread fails. A map or a boundary that is
-    /// refused is reported in `health`.
+    /// If the transport or a preparing thread fails. A rejected map or boundary is reported in
+    /// `health`.
     pub(super) fn poll(
         &mut self,
         inputs: &Inputs,
@@ -107,7 +105,7 @@ impl Supply {
             }
         }
         self.boundary = boundary.or(self.boundary.take());
-        // Where sets are sent, it is the one of their maps that is shown.
+        // While a publisher sends sets, this is the map of the set that is displayed.
         if let Some(map) = map.filter(|_| !inputs.sets.has_publishers()) {
             match map.header().check_id(map.items()) {
                 Ok(()) => {
@@ -120,8 +118,8 @@ impl Supply {
         Ok(came > 0)
     }
 
-    /// Takes a request for a region: none is for what is configured. One that cannot
-    /// be used is refused, and the one before holds.
+    /// Applies a request for a search region; an empty one restores the configured region. An
+    /// invalid one is refused and changes nothing.
     fn on_region(
         &mut self,
         regions: &Subscriber<topic::Region>,
@@ -145,8 +143,7 @@ impl Supply {
         }
     }
 
-    /// Decides what there is to prepare. Samples that came last replace what was
-    /// wanted before them.
+    /// Determines what to prepare; newer inputs replace an older order.
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
         match self.keys() {
@@ -171,7 +168,7 @@ impl Supply {
         Ok(key.map(|key| vec![key]))
     }
 
-    /// What to do for what is wanted.
+    /// Returns the jobs of the current order.
     fn jobs(&self) -> Result<Vec<Job>, Refused> {
         if let Some(set) = &self.set {
             return set.jobs();
@@ -226,8 +223,8 @@ impl Supply {
         Ok(Some(maps))
     }
 
-    /// Where a region leaves no pose of maps that are searched elsewhere, the region is
-    /// refused, not the maps.
+    /// Refuses the region instead of the maps if the new region leaves no pose of maps that could
+    /// be searched before.
     fn refuse_order(
         &mut self,
         order: &Order,
@@ -257,7 +254,7 @@ impl Supply {
             return Ok(());
         };
         if self.handed_out.as_ref() == Some(&order) {
-            // Served again, or taken back after another one was refused.
+            // The same map was sent again, or restored after another one was refused.
             return Ok(health.state(NodeState::Ready)?);
         }
         let jobs = match self.jobs() {
@@ -265,7 +262,7 @@ impl Supply {
             Err(refused) => return Ok(refuse(&refused, health)?),
         };
         if self.handed_out.is_none() {
-            // Scans are not answered before; with another map, they are meanwhile.
+            // Before the first map, scans are refused; later, the previous map answers them.
             health.state(NodeState::Busy)?;
         }
         let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
@@ -281,7 +278,7 @@ impl Supply {
     }
 }
 
-/// The region with these corners; none is everywhere.
+/// Returns the region with these corners; `None` (everywhere) for no corners.
 fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
     let corners: Vec<[f64; 2]> = corners.iter().map(|&Corner { x, y }| [x, y]).collect();
     if corners.is_empty() {
@@ -290,8 +287,8 @@ fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
     Region::new(&corners).map(Some)
 }
 
-/// Reports on the file of an index, and writes one that is to be written, beside the scans
-/// that are answered meanwhile. Nobody waits for that.
+/// Reports problems with a cached index and saves a new one on another thread, so that scans are
+/// answered meanwhile.
 fn keep(kept: Kept) {
     let warn = |problem: &dyn Error| tracing::warn!("cached index: {}", with_causes(problem));
     if let Some(problem) = kept.problem {
@@ -304,7 +301,7 @@ fn keep(kept: Kept) {
     }
 }
 
-/// Prepares maps, without those of a set in which no pose is left.
+/// Prepares maps, leaving out those of a set in which no pose is allowed.
 fn prepare(
     jobs: Vec<Job>,
     config: &LocalizerConfig,
@@ -330,7 +327,7 @@ fn prepare(
     }
 }
 
-/// Poses are searched where they were before.
+/// Reports a refused region; the previous one stays in force.
 fn refuse_region(problem: &str, health: &mut Health) -> Result<(), TransportError> {
     let problem = format!("search region rejected: {problem}");
     tracing::warn!("{problem}");
@@ -338,7 +335,7 @@ fn refuse_region(problem: &str, health: &mut Health) -> Result<(), TransportErro
     health.error(&problem)
 }
 
-/// Scans are answered as before.
+/// Reports a refused map or set; scans are answered with the previous one.
 fn refuse((subject, error): &Refused, health: &mut Health) -> Result<(), TransportError> {
     let problem = format!("{subject} rejected: {}", with_causes(&**error));
     tracing::warn!("{problem}");

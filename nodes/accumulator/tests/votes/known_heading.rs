@@ -1,5 +1,4 @@
-//! The node with known headings: x and y alone are searched, and the intensity
-//! image is published.
+//! The node with known headings: only x and y are searched, and the intensity image is published.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -17,10 +16,10 @@ use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 
 use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
 
-/// In the grid's frame, as the scans are drawn.
+/// Heading in the grid's frame, as in the drawn scans, degrees.
 const HEADING: usize = 40;
 
-/// The same in the map frame, radians.
+/// Returns the same heading in the map frame, radians.
 fn map_heading() -> f64 {
     (HEADING as f64).to_radians() + FRAME.map_from_grid.yaw
 }
@@ -59,7 +58,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     let (votes, poses) = world.ask(&ranges);
 
     let heading = votes.known_heading;
-    // The heading went through decimal degrees: a rounding or two.
+    // The heading was printed in decimal degrees, which costs a rounding or two.
     assert!((heading - map_heading()).abs() < 1e-12, "{heading}");
     let (outcome, image) = localizer(&ROOM, Prior::Heading)
         .search_at(&scan(&ranges), heading, &|| false)
@@ -86,8 +85,8 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     });
     assert_eq!((header, intensities), (expected, image));
 
-    // The next image is due in ten seconds; each scan is answered all the same.
-    // Were one sent, it would come before the answer to the scan after it.
+    // The next image is due in ten seconds, but each scan is answered. An image would be sent
+    // before the answer to the next scan.
     for _ in 0..3 {
         world.ask(&ranges);
     }
@@ -133,7 +132,7 @@ fn headings_come_from_odometry_of_the_base() {
         };
         loan.send().unwrap();
     };
-    // Scan 1 is measured at 1 s: between these two.
+    // Scan 1 is measured at 1 s, between these two.
     let yaw = map_heading() - FRAC_PI_2 - MOUNT.yaw;
     report(900_000_000, yaw);
     report(1_100_000_000, 3.0);

@@ -1,4 +1,4 @@
-//! The accumulator as a process.
+//! Tests of the accumulator as a process.
 
 mod known_heading;
 mod node;

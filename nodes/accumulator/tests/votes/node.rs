@@ -1,5 +1,4 @@
-//! The node as a process: scans go in, votes come out, and they are the
-//! engine's.
+//! Tests of the node as a process: its votes are compared with those of the engine.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -15,7 +14,7 @@ use transport::testing::{Isolated, wait_for, wait_for_health};
 
 use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
 
-/// The same room after somebody has moved the pillar and opened a door.
+/// The same room with the pillar moved and a door opened.
 pub(crate) const CHANGED: [&str; 9] = [
     "################",
     "#..............#",
@@ -28,7 +27,7 @@ pub(crate) const CHANGED: [&str; 9] = [
     "#######.........",
 ];
 
-/// Three blocks of sixteen cells long and two high, the outer ones cut off.
+/// Three blocks of sixteen cells long and two high; the outer ones are cut off.
 const HALL: [&str; 18] = [
     "########################################",
     "#......................................#",
@@ -81,7 +80,7 @@ fn is_refused(votes: &VotesHeader) -> bool {
 fn votes_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);
-    // Both are there before the node, which is thus a late joiner.
+    // Both are published before the node starts, so the node is a late joiner.
     world.publish_map(&ROOM);
     world.publish_boundary(id(&ROOM), &ROOM);
     let node = world.start(&[]);
@@ -141,8 +140,8 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
         assert!(vote.intensity <= bounds[pixel as usize], "{vote:?}");
     }
 
-    // The next image is due in ten seconds; each scan is answered all the same.
-    // Were one sent, it would come before the answer to the scan after it.
+    // The next image is due in ten seconds, but each scan is answered. An image would be sent
+    // before the answer to the next scan.
     for _ in 0..3 {
         world.ask(&ranges);
     }
@@ -207,8 +206,8 @@ fn scans_that_never_came_are_counted_as_dropped() {
     node.stop();
 }
 
-/// Asks until a scan is matched with `map_id`; each answer on the way must be
-/// that of the map which it names.
+/// Asks until a scan is matched with `map_id`; until then each answer must be that of the map named
+/// in it.
 fn ask_until_swapped(world: &World, map_id: u64) {
     let scanned = ranges(&CHANGED, 3, 3, 40);
     loop {
@@ -256,7 +255,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
 
-    // What is known of one map would be taken for another one's.
+    // A wrong id would let data of one map be used for another one.
     let mut loan = world.maps.loan(occupancy(&CHANGED).len()).unwrap();
     *loan.header_mut() = map_header(&ROOM);
     loan.items_mut().copy_from_slice(&occupancy(&CHANGED));
@@ -281,7 +280,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
     assert_eq!(votes.map_id, id(&ROOM));
 
-    // The extractor is started again and sends a sound one.
+    // The restarted extractor sends a valid boundary.
     world.publish_boundary(id(&CHANGED), &CHANGED);
     world.wait_until(NodeState::Ready);
     ask_until_swapped(&world, id(&CHANGED));
@@ -307,7 +306,7 @@ fn a_map_that_is_taken_back_is_in_use_again() {
     node.stop();
 }
 
-/// Corners of a box of the grid, in cells, as somebody requests for them.
+/// Publishes a request for a region with corners in grid cells.
 pub(crate) fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
     let corner = |&(x, y): &(f64, f64)| {
         let side = FRAME.resolution_m;
@@ -333,10 +332,10 @@ fn a_requested_region_holds_until_it_is_taken_back() {
     let ranges = ranges(&ROOM, 12, 6, 211);
     let found = || world.ask(&ranges).1[0].x;
     assert_eq!(found(), 12);
-    // Scans are answered by the map as it was until it is prepared again.
+    // Scans are answered with the old map until the new one is prepared.
     request(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
     while found() >= 6 {}
-    // What is no region changes nothing.
+    // An invalid region changes nothing.
     request(&regions, &[(0.0, 0.0), (f64::NAN, 1.0)]);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
     assert!(

@@ -1,4 +1,4 @@
-//! The node on a set of maps.
+//! Tests of the node with a set of maps.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -15,11 +15,10 @@ use transport::testing::{Isolated, NodeProcess, wait_for_health};
 use crate::node::{CHANGED, request};
 use crate::world::{FRAME, ROOM, World, id, map_header, occupancy, ranges};
 
-/// The name of a map, how far along x its frame lies from where the others have it, metres,
-/// and how it is drawn.
+/// Name of a map, offset of its frame along x in metres, and its drawing.
 type Floor<'a> = (&'a str, f64, &'a [&'a str]);
 
-/// Two maps whose frames have no place in common.
+/// Two maps whose frames do not overlap.
 const BUILDING: [Floor<'_>; 2] = [("ground", 0.0, &ROOM), ("first", 1000.0, &CHANGED)];
 
 fn floor_header((name, along, rows): Floor<'_>) -> MapHeader {
@@ -56,7 +55,7 @@ fn publish_set(
     loan.send().unwrap();
 }
 
-/// Asks where a scan of the room was taken until the answer is like this one.
+/// Asks for a scan of the room until the answer satisfies `is_it`.
 #[track_caller]
 fn ask_until(world: &World, is_it: impl Fn(&VotesHeader, &[Vote]) -> bool) {
     let (scanned, since) = (ranges(&ROOM, 12, 6, 211), Instant::now());
@@ -70,13 +69,13 @@ fn ask_until(world: &World, is_it: impl Fn(&VotesHeader, &[Vote]) -> bool) {
     }
 }
 
-/// Whether both maps were searched, and the room leads.
+/// Returns true if both maps were searched and the room leads.
 fn is_of_building(votes: &VotesHeader, poses: &[Vote]) -> bool {
     let best = poses.first().map(|best| (best.x, best.y));
     votes.maps == 2 && votes.map_id == floor_header(BUILDING[0]).map_id && best == Some((12, 6))
 }
 
-/// The node, ready with the building that it was sent.
+/// Starts the node with the building and waits until it is ready.
 fn start(world: &World) -> (Publisher<topic::Maps>, NodeProcess) {
     let sets = world.graph.publisher().unwrap();
     publish_set(&sets, &BUILDING, |_| {});
@@ -91,13 +90,13 @@ fn a_map_that_is_served_alone_ends_the_set() {
     let world = World::new(&isolated);
     let (sets, node) = start(&world);
     ask_until(&world, is_of_building);
-    // It is the map of the set that is shown.
+    // This is the map of the set that is displayed.
     world.publish_map(&ROOM);
     world.publish_boundary(id(&ROOM), &ROOM);
     for _ in 0..5 {
         ask_until(&world, is_of_building);
     }
-    // Whoever sent sets goes, and the set stays until something else comes.
+    // The publisher of sets is gone, but the set stays in use until something else arrives.
     drop(sets);
     for _ in 0..5 {
         ask_until(&world, is_of_building);
@@ -123,7 +122,7 @@ fn a_region_on_one_map_leaves_out_the_others() {
     };
     ask_until(&world, is_within);
 
-    // On no map is any of it: the region before holds, also for maps that come later.
+    // The region overlaps no map, so the previous one stays in force, also for later maps.
     request(&regions, &[(500.0, 500.0), (510.0, 510.0)]);
     let refused = |report: &HealthHeader| report.refused == 1;
     let (report, error) = wait_for_health(&world.graph, &world.health, refused);

@@ -1,4 +1,4 @@
-//! What a shell and `man` know of the command, made of its options.
+//! Shell completions and manual pages, generated from the options.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,21 +9,19 @@ use command_line::{CommandError, OutputError, stdout};
 
 use super::Cli;
 
-/// What `backcast completions` takes.
 #[derive(Debug, Args)]
 pub(crate) struct CompletionsConfig {
-    /// The shell
+    /// Shell to generate completions for
     shell: Shell,
 }
 
-/// What `backcast man` takes.
 #[derive(Debug, Args)]
 pub(crate) struct ManConfig {
-    /// The folder for the pages: backcast.1, and one of each command
+    /// Folder for the pages: backcast.1, and one for each command
     folder: PathBuf,
 }
 
-/// Why nothing was written.
+/// Error while writing completions or pages.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ShellError {
     #[error(transparent)]
@@ -37,10 +35,10 @@ pub(crate) enum ShellError {
 
 impl CommandError for ShellError {}
 
-/// Prints the completions.
+/// Prints the completions for a shell.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// If standard output cannot be written.
 pub(crate) fn completions(config: &CompletionsConfig) -> Result<ExitCode, ShellError> {
     let mut script = Vec::new();
     clap_complete::generate(config.shell, &mut Cli::command(), "backcast", &mut script);
@@ -48,10 +46,10 @@ pub(crate) fn completions(config: &CompletionsConfig) -> Result<ExitCode, ShellE
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the pages.
+/// Writes the manual pages.
 ///
 /// # Errors
-/// The folder cannot be written to.
+/// If the folder cannot be written to.
 pub(crate) fn man(config: &ManConfig) -> Result<ExitCode, ShellError> {
     let failed = |source| ShellError::Man {
         folder: config.folder.clone(),

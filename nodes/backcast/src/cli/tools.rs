@@ -1,5 +1,5 @@
-//! The commands that a graph does not need: they are left out without the feature
-//! `tools`, and with them what they link.
+//! Commands that do not need a running graph. They and their dependencies are omitted without the
+//! feature `tools`.
 
 use std::process::ExitCode;
 
@@ -9,7 +9,7 @@ use recording_tools::{convert, doctor, info, simulate};
 
 use super::{EXIT_CODES, end, shell};
 
-/// What is done with recordings.
+/// Commands that work with recordings.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OnRecordings {
     /// Finds the place of each scan of a recording, in one process
@@ -35,7 +35,7 @@ pub(crate) enum OnRecordings {
     Regress(regression::Config),
 }
 
-/// What is done beside a graph, with a laser or on generated worlds.
+/// Commands for running graphs, lasers and generated worlds.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OnTheSide {
     /// Runs a graph for a long time under faults and checks that it recovers
@@ -64,7 +64,6 @@ pub(crate) enum OnTheSide {
 }
 
 impl OnRecordings {
-    /// Does it.
     pub(crate) fn run(&self) -> ExitCode {
         match self {
             Self::Locate(config) => end(locate::run(config)),
@@ -78,7 +77,7 @@ impl OnRecordings {
     }
 }
 
-/// Checks recordings, or a live robot by one that is made of it.
+/// Checks recordings, or a live robot by way of a recording made from it.
 fn doctor(config: &doctor::Config) -> ExitCode {
     let Some((router, length)) = config.live() else {
         return end(doctor::run(config));
@@ -90,7 +89,6 @@ fn doctor(config: &doctor::Config) -> ExitCode {
 }
 
 impl OnTheSide {
-    /// Does it.
     pub(crate) fn run(&self) -> ExitCode {
         match self {
             Self::Soak(config) => end(soak::run(config)),

@@ -1,8 +1,8 @@
-//! Graphs by their names: taken, private, restarted and stopped from elsewhere.
+//! Graphs and their names: occupied names, access rights, and control from other processes.
 
 use super::*;
 
-/// Whether we may start processes of other users; a test that may not is counted as left out.
+/// Returns true if the test may start processes of other users; otherwise counts it as skipped.
 fn may_act_as_others(test: &str) -> bool {
     let is_root = nix::unistd::geteuid().is_root();
     if !is_root {
@@ -55,7 +55,8 @@ fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
     assert!(said.contains("--graph"), "{said}");
 }
 
-/// What another user makes in `/tmp` keeps no graph from starting that has another place.
+/// A folder in `/tmp` that belongs to another user does not keep a graph from starting if it can
+/// use another place.
 #[test]
 fn a_folder_that_another_user_has_taken_is_passed_over() {
     if !may_act_as_others("a_folder_that_another_user_has_taken_is_passed_over") {
@@ -153,7 +154,7 @@ fn a_graph_whose_files_are_removed_is_started_again_as_a_whole() {
     assert_eq!(shared_memory_of(name), [""; 0]);
 }
 
-/// As whatever cleans temporary folders does.
+/// Removes the files whose path contains `part`, as a cleaner of temporary folders does.
 fn remove_files_of(folder: &Path, part: &str) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

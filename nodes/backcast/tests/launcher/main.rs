@@ -1,5 +1,5 @@
-//! The launcher as a process, with small shell scripts as nodes. Tests wait for
-//! what processes say or for the ends of pipes, never for time.
+//! Tests of the launcher as a process, with small shell scripts as nodes. They wait for output or
+//! for the ends of pipes, never for time.
 
 #![allow(
     clippy::unwrap_used,
@@ -30,7 +30,7 @@ use tests::needs::Need;
 use transport::testing::{wait_for_health, wait_until};
 use transport::{Graph, GraphName};
 
-/// A folder with a descriptor of these nodes, one a line.
+/// Creates a folder with a descriptor of these nodes, one per line.
 fn graph(nodes: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let nodes: String = nodes
@@ -46,7 +46,7 @@ fn graph(nodes: &[&str]) -> TempDir {
 }
 
 fn launcher(folder: &Path, args: &[&str]) -> Command {
-    // Under nohup hangups are ignored, and the launcher leaves it at that.
+    // Under nohup, hangups are ignored, and the launcher would keep that setting.
     let mut command = Command::new("env");
     command
         .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_backcast")])
@@ -61,7 +61,7 @@ fn launcher(folder: &Path, args: &[&str]) -> Command {
     command
 }
 
-/// Runs to the end: exit code, standard output, standard error.
+/// Runs to the end; returns exit code, standard output and standard error.
 fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
     let folder = graph(nodes);
     let Output {
@@ -73,7 +73,7 @@ fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
     (status.code().unwrap(), text(stdout), text(stderr))
 }
 
-/// A launcher that runs, and what it says.
+/// Running launcher and its output.
 struct Running {
     child: Child,
     said: Lines<BufReader<ChildStderr>>,
@@ -86,7 +86,7 @@ impl Running {
         Running { child, said }
     }
 
-    /// Waits for `node` to say something and returns it.
+    /// Waits for a line of output of `node` and returns it.
     fn receive(&mut self, node: &str) -> String {
         let mark = format!("{node} | ");
         let all = self.said.by_ref().map(Result::unwrap);
@@ -103,14 +103,14 @@ impl Running {
     }
 
     fn wait(mut self) -> (ExitStatus, String) {
-        // Its pipe is read to the end, so that it does not wait for us.
+        // Reads the pipe to its end, so that the process does not block on it.
         let said: Vec<String> = self.said.by_ref().map(Result::unwrap).collect();
         (self.child.wait().unwrap(), said.join("\n"))
     }
 }
 
-/// Whether a process has ended. One whose parent has ended before it stays a
-/// zombie where nobody takes orphans, as in a container.
+/// Returns true if a process has ended. An orphan stays a zombie if no process reaps it, as in a
+/// container.
 fn has_ended(pid: &str) -> bool {
     fs::read_to_string(format!("/proc/{pid}/stat")).map_or(true, |stat| stat.contains(") Z "))
 }

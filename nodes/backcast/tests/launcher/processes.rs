@@ -1,4 +1,4 @@
-//! How nodes end, and what the run makes of it.
+//! Ends of nodes and their effect on the run.
 
 use super::*;
 
@@ -113,7 +113,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
         "{lost}"
     );
 
-    // Who asks later is stdout, too.
+    // Processes that ask later receive the state as well.
     let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
     let health = member.subscriber::<topic::Health>().unwrap();
     wait_for_health(&member, &health, |report| {
@@ -136,7 +136,7 @@ fn a_signal_stops_even_what_does_not_want_to() {
     ]);
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let mut running = Running::start(&folder, &["--graph", "test-stop"]);
-        // The order of what different nodes say is theirs.
+        // The output of different nodes has no fixed order.
         let mut pids = Vec::new();
         while pids.len() < 3 {
             let line = running.said.next().unwrap().unwrap();
@@ -161,7 +161,7 @@ fn a_killed_launcher_leaves_no_orphans() {
     let pipe = folder.path().join("pipe");
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", "test-kill"]);
-    // Opening waits for the node to open its end; reading, for it to end.
+    // Opening waits until the node opens its end; reading waits until the node ends.
     let mut reader = File::open(&pipe).unwrap();
     assert_eq!(running.receive("a"), "up");
     running.signal(Signal::SIGKILL);
@@ -172,7 +172,7 @@ fn a_killed_launcher_leaves_no_orphans() {
     transport::remove_leftovers(&GraphName::new("test-kill").unwrap()).unwrap();
 }
 
-/// The scan `counter`, measured at `counter` milliseconds.
+/// Returns the stamp of scan `counter`, measured at `counter` milliseconds.
 fn stamp(counter: u64) -> Stamp {
     Stamp {
         measured_ns: i64::try_from(counter).unwrap() * 1_000_000,
@@ -238,7 +238,7 @@ fn answers_are_printed_and_summed_up() {
     }
     drop((scans, hypotheses, truths, member));
 
-    // Writing lets the source end, and the run with it.
+    // Writing ends the source and thereby the run.
     let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     std::io::Write::write_all(&mut writer, b"\n").unwrap();
     let rest: Vec<String> = printed.map(Result::unwrap).collect();

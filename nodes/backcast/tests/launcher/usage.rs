@@ -1,4 +1,4 @@
-//! What is wrong with options and descriptors.
+//! Errors in options and descriptors.
 
 use super::*;
 

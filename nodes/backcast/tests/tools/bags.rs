@@ -1,5 +1,5 @@
-//! Recordings as others make them: in folders, with maps that grow, with several
-//! topics of a kind, with transforms that are invalid.
+//! Recordings from other sources: in folders, with growing maps, with several topics of a kind,
+//! with invalid transforms.
 
 #![allow(
     clippy::unwrap_used,
@@ -17,7 +17,7 @@ use crate::drawn::{
     truth_at,
 };
 
-/// The room as far as it is known: this many of its rows.
+/// Returns the map of the room with only the first `rows` rows known.
 fn known_rows(rows: usize) -> (&'static str, Message) {
     let mut room = room();
     let width = room.width as usize;
@@ -51,7 +51,7 @@ fn the_newest_map_before_a_scan_counts() {
     let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
     assert_eq!(found, ["NoScan", "Unique", "Unique"], "{stderr}");
     assert_eq!(code, 0);
-    // The two maps without a cell are the same, and said once.
+    // The two maps without occupied cells are identical and reported once.
     let note = "backcast: r.mcap: a map is ignored: the map has no occupied cell: there is nothing \
                 that a laser could see\n";
     assert_eq!(stderr, note);
@@ -103,7 +103,7 @@ fn where_every_scan_is_refused_there_is_an_error() {
     );
 }
 
-/// A map that names its frame, as `doctor` wants it.
+/// Returns the map with a frame name, which `doctor` requires.
 fn framed_map() -> (&'static str, Message) {
     let (topic, mut map) = map_message();
     if let Message::Map(map) = &mut map {

@@ -1,5 +1,4 @@
-//! `backcast convert` as a process: the logs that robots leave, and what becomes of
-//! them.
+//! Tests of `backcast convert` as a process, with logs of real robots.
 
 #![allow(
     clippy::unwrap_used,
@@ -37,7 +36,7 @@ fn a_destination_that_exists_or_is_no_recording_is_refused() {
     }
 }
 
-/// The scans of a recording's `/scan`.
+/// Returns the scans on `/scan` of a recording.
 fn scans(file: &Path) -> Vec<LaserScan> {
     let recording = Recording::open(file).unwrap();
     let records = recording.records_of(&[Kind::Scan]);
@@ -51,7 +50,7 @@ fn scans(file: &Path) -> Vec<LaserScan> {
     scans.collect()
 }
 
-/// A recording as a log with lines `ODOM` and `FLASER`.
+/// Writes a recording as a log with lines `ODOM` and `FLASER`.
 fn log(recording: &Recording) -> String {
     let mut odom_from_base = Pose::IDENTITY;
     let mut log = String::new();
@@ -82,7 +81,7 @@ fn log(recording: &Recording) -> String {
     log
 }
 
-/// The corridor as a log, and what it is made of.
+/// The corridor as a log, with the scans that it was made from.
 struct Corridor {
     folder: tempfile::TempDir,
     log: String,
@@ -102,7 +101,7 @@ impl Corridor {
         }
     }
 
-    /// The log with each scan's words rewritten; `head` goes before.
+    /// Returns the log with the words of each scan changed, after the lines of `head`.
     fn with(&self, head: &str, change: impl Fn(Vec<&str>) -> Vec<String>) -> String {
         let line = |line: &str| match line.starts_with("FLASER ") {
             true => change(line.split(' ').collect()).join(" "),
@@ -112,7 +111,7 @@ impl Corridor {
         format!("{head}\n{}\n", lines.join("\n"))
     }
 
-    /// Converts `content` in a file called `name`; what is said, and the scans.
+    /// Converts a file `name` with `content`; returns the messages and the scans.
     fn converted(&self, name: &str, content: &[u8]) -> (String, Vec<LaserScan>) {
         let to = self.folder.path().join("to.mcap");
         fs::write(self.folder.path().join(name), content).unwrap();
@@ -123,14 +122,14 @@ impl Corridor {
         (said, scans)
     }
 
-    /// Asserts that these are the corridor's scans, each from beam `first` on.
+    /// Asserts that these are the corridor's scans, each starting at beam `first`.
     fn assert_same(&self, found: &[LaserScan], first: usize, what: &str) {
         assert_eq!(found.len(), self.scans.len(), "{what}");
         for (found, scan) in found.iter().zip(&self.scans) {
             let last = first + found.ranges.len();
             assert_eq!(found.ranges, scan.ranges[first..last], "{what}");
             let start = scan.angle_min + first as f32 * scan.angle_increment;
-            // Logs have six digits of a step, and there are 360 of them.
+            // Logs give the step with six digits, and there are 360 steps.
             assert!((found.angle_min - start).abs() < 4e-4, "{what}");
             assert!(
                 (found.angle_increment - scan.angle_increment).abs() < 2e-6,
@@ -144,7 +143,7 @@ fn owned(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// The words of an old line with its readings in the other order.
+/// Returns the words of an old line with its readings in reverse order.
 fn reversed(words: &[&str]) -> Vec<String> {
     let mut words = owned(words);
     let readings = 2..2 + words[1].parse::<usize>().unwrap();
@@ -152,7 +151,7 @@ fn reversed(words: &[&str]) -> Vec<String> {
     words
 }
 
-/// An old line as a raw one.
+/// Converts an old line to a raw line.
 fn raw(words: &[&str], number: u8, start: f64, step: f64) -> Vec<String> {
     let count: usize = words[1].parse().unwrap();
     let head = format!("RAWLASER{number} 0 {start} 3.141593 {step} 81.9 0.01 0");
@@ -233,7 +232,7 @@ fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
 fn parameters_show_the_field_of_view_of_old_lines() {
     let corridor = Corridor::new();
     let narrow = |words: Vec<&str>| {
-        // 201 of 361 beams, the middle ones.
+        // The middle 201 of 361 beams.
         [
             &owned(&["FLASER", "201"]),
             &owned(&words[82..283])[..],
@@ -267,7 +266,7 @@ fn several_lasers_become_topics_with_their_mounts() {
     );
     let recording = Recording::open(corridor.folder.path().join("b.mcap")).unwrap();
     let mount = recording.base_from_laser("laser_rear").unwrap().unwrap();
-    // A rear laser looks back; the angle passes through a quaternion.
+    // A rear laser looks backwards; the angle passes through a quaternion.
     let back = Pose::new(-0.4, 0.0, PI);
     assert!(
         mount.base_from_laser.is_within(back, 1e-9, 1e-9),
@@ -337,7 +336,7 @@ fn where_nothing_can_be_converted_no_file_is_left() {
     let (code, _, said) = run(folder.path(), "convert r.mcap c.log");
     assert_eq!(code, 2, "{said}");
     assert!(!folder.path().join("c.log").exists(), "{said}");
-    // One of a kind that is no recording here is named by what reads recordings.
+    // An unsupported kind of file is reported by the reader of recordings.
     fs::write(folder.path().join("drive.bag"), "#ROSBAG V2.0\nrest").unwrap();
     let (code, _, said) = run(folder.path(), "convert drive.bag b.mcap");
     assert_eq!(code, 1, "{said}");

@@ -1,4 +1,4 @@
-//! `backcast evaluate` as a process, on drawn and on real recordings.
+//! Tests of `backcast evaluate` as a process, on drawn and on real recordings.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,8 +16,8 @@ use crate::drawn::{
     HERE, THERE, keys, map_message, record, recordings, run, scan, scan_at, truth_at,
 };
 
-/// A folder with `r.mcap`: a map and five scans, of which the second has no
-/// truth, the third is empty, and the truth of the last is of another place.
+/// Creates a folder with `r.mcap`: a map and five scans. The second has no ground truth, the third
+/// is empty, and the ground truth of the last is that of another place.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut empty = scan(3, HERE);
@@ -79,7 +79,7 @@ fn the_object_has_the_keys_of_the_contract() {
     assert_eq!(keys(&object["error_deg"]), ["median", "p90"]);
     assert_eq!(object["bag"], "r.mcap");
     assert_eq!(object["map_cells"], 240);
-    // Not where the walls are.
+    // Cells of walls are not searchable.
     let searchable = object["searchable_cells"].as_u64().unwrap();
     assert!((1..240).contains(&searchable), "{searchable}");
     assert!(object["index_bytes"].as_u64().unwrap() > 0);
@@ -98,7 +98,7 @@ fn the_object_has_the_keys_of_the_contract() {
         (3, 2),
         "of the scan that was refused nothing was said"
     );
-    // Errors are of what was found: within the half metre of a success.
+    // Errors are computed for successes only, so they are within half a metre.
     assert!(object["error_m"]["p90"].as_f64().unwrap() <= 0.5);
     for key in ["prepare_cpu_ms", "peak_rss_mb"] {
         assert!(object[key].as_f64().unwrap() > 0.0, "{key}");
@@ -151,7 +151,7 @@ fn people_get_a_row_for_each_file() {
         assert_eq!(words[..5], [name, "240", "5", "4", "50.0"], "{line}");
         assert_eq!(line.len(), lines[0].len());
     }
-    // Of both files together.
+    // The lower table covers both files.
     assert_eq!(
         below[..2],
         ["", "probability  answers  mean %  right %"],
@@ -203,7 +203,8 @@ fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
 #[test]
 fn a_file_that_misses_a_requirement_fails_with_the_figure() {
     let folder = folder();
-    // Of four truths two are found; of one the scan is empty, one is that of another place.
+    // Of four ground truths two are found; one scan is empty, and one truth is that of another
+    // place.
     let missed = "--min-success 75 --max-wrong 0 --max-p90-ms 0.000001 --max-error-cm 0.000001";
     let (code, stdout, stderr) = run(folder.path(), &format!("evaluate --json {missed} r.mcap"));
     assert_eq!(code, 1, "{stderr}");
@@ -250,7 +251,6 @@ fn wrong_use_is_reported() {
     assert!(stderr.contains("none.yaml"), "{stderr}");
 }
 
-/// Evaluates a real recording.
 fn real(bag: &Path, options: &str) -> Value {
     let arguments = format!("evaluate --json {options} {}", bag.display());
     let (code, stdout, stderr) = run(Path::new("."), &arguments);
@@ -282,7 +282,7 @@ fn the_corridor_is_found_with_known_headings() {
     let object = real(&bag, "--heading-from truth --every 6");
     assert_eq!(object["truths"], 7);
     assert_eq!(object["success_50cm_10deg"], 1.0, "{object}");
-    // The heading is answered as it was given, through a quaternion.
+    // The result has the given heading, after a conversion to a quaternion.
     assert!(share(&object["error_deg"], "p90") < 1e-6, "{object}");
 }
 

@@ -1,5 +1,5 @@
-//! `backcast init` and `check`: what is written can be run, and what cannot be meant is
-//! refused with the reason.
+//! Tests of `backcast init` and `check`: descriptors that are written can be run, and impossible
+//! options are refused with the reason.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -22,7 +22,7 @@ fn init(folder: &Path, options: &str) -> (i32, String, String) {
 
 #[test]
 fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
-    // Built by the test run, beside the command.
+    // Built by the test run, next to the command.
     let _ = tests::executables::path("backcast");
     let folder = tempfile::tempdir().unwrap();
     for (file, options) in [
@@ -47,7 +47,7 @@ fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
     let args = "--tcp 192.168.0.1:2112 --protocol cola-b --mount 0.2,0,-90";
     assert!(text.contains(args), "{text}");
 
-    // The same name again.
+    // The same file name again.
     let again = "--replay DRIVE --map MAP --out replay.yaml";
     let (code, _, stderr) = init(folder.path(), again);
     assert_eq!(code, 2);

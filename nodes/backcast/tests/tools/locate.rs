@@ -1,4 +1,4 @@
-//! `backcast locate` as a process, on drawn and on real recordings.
+//! Tests of `backcast locate` as a process, on drawn and on real recordings.
 
 #![allow(
     clippy::unwrap_used,
@@ -22,7 +22,7 @@ fn pose(object: &Value) -> Pose {
     Pose::new(number("x"), number("y"), number("yaw"))
 }
 
-/// A cell and a step of the headings: as near as the search itself comes.
+/// Asserts that poses agree within a cell and a heading step, the accuracy of the search.
 #[track_caller]
 fn assert_near(found: Pose, expected: Pose) {
     let near = found.is_within(expected, RESOLUTION_M, 1.5f64.to_radians());
@@ -43,7 +43,7 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
         let number = |column| word(row, column).parse::<f64>().unwrap();
         let found = Pose::new(number(1), number(2), number(3).to_radians());
         assert_near(found, map_from_laser(place));
-        // Rays end at a wall's face, up to half a cell before its middle.
+        // Rays end at the face of a wall, up to half a cell before its middle.
         assert!(number(4) > 0.9, "every beam agrees: {row}");
         assert_eq!((word(row, 5), word(row, 6)), ("Unique".into(), "0".into()));
         assert!(number(7) > 0.0, "computing costs");
@@ -70,7 +70,7 @@ fn poses_are_searched_within_limits() {
         )),
         here,
     );
-    // The other place is 2.3 m away: more than refining moves a pose.
+    // The other place is 2.3 m away, more than refining moves a pose.
     let there = map_from_laser(THERE);
     let (x, y) = (there.x, there.y);
     let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
@@ -82,7 +82,7 @@ fn poses_are_searched_within_limits() {
         degrees + 170.0
     ));
     assert!(turned.angle_to(here) > 60f64.to_radians(), "{turned:?}");
-    // The pillar is three cells of 0.25 m from here, the walls are three and more.
+    // The pillar is three cells of 0.25 m away, and the walls are at least as far.
     assert_near(found("--robot-radius 0.7"), here);
 }
 
@@ -185,7 +185,7 @@ fn an_object_shows_votes_and_hypotheses() {
     assert_eq!(best["covariance"].as_array().unwrap().len(), 9);
     assert_eq!(best["intensity"], votes["best"]);
     assert_near(pose(best), map_from_laser(HERE));
-    // Of the same transforms in another order: a few units in the last place.
+    // The same transforms in another order: they agree up to a few units in the last place.
     let base = pose(&best["map_from_base"]);
     assert!(base.then(BASE_FROM_LASER).is_within(pose(best), 1e-9, 1e-9));
 }
@@ -203,8 +203,8 @@ fn particles_gather_around_the_place_the_same_with_a_seed() {
     assert_eq!(poses.len(), 50);
     let base = map_from_laser(HERE).then(BASE_FROM_LASER.inverse());
     for particle in poses {
-        // The place is unique and its spread no more than half a cell and a degree or
-        // so; the base stands half a metre before the laser.
+        // The place is unique, with a spread of about half a cell and a degree; the base is half a
+        // metre from the laser.
         assert!(pose(particle).is_within(base, 1.0, 0.2), "{particle}");
     }
     let lines = lines(folder.path(), "--particles 2");
@@ -293,7 +293,7 @@ fn a_known_heading_comes_from_where_it_is_said_to() {
         for (object, truth) in objects.iter().zip(truths).take(answered) {
             let best = pose(&object["hypotheses"][0]);
             assert_near(best, truth);
-            // Of one rotation and a few sums: what was given is kept.
+            // One rotation and a few sums: the given heading is kept up to rounding.
             assert!(best.angle_to(truth) < 1e-9, "{options}");
             assert_eq!(object["votes"]["known_heading"], best.yaw);
         }
@@ -354,7 +354,7 @@ fn on_a_terminal_there_is_a_bar() {
     let mut command = backcast(folder.path(), "locate --bag r.mcap");
     command.env("TERM", "xterm").stderr(terminal.slave);
     let child = command.spawn().unwrap();
-    // The terminal ends when nobody holds its other end any more.
+    // Reading the terminal ends when the last copy of its other end is closed.
     drop(command);
     let mut shown = Vec::new();
     let mut buffer = [0; 4096];
@@ -388,10 +388,10 @@ fn a_real_corridor_is_found_on_either_copy_of_its_map() {
             assert_eq!(inside[key], named[key], "{key}");
         }
         assert_eq!(inside["verdict"], "Unique");
-        // The YAML rounds the origin in the last place of its numbers.
+        // The YAML rounds the origin in the last digit.
         let copy = pose(&named["hypotheses"][0]);
         assert!(copy.is_within(pose(&inside["hypotheses"][0]), 1e-9, 1e-9));
-        // The base is 0.78 m behind the laser, as the recording says.
+        // According to the recording, the base is 0.78 m behind the laser.
         let best = &inside["hypotheses"][0];
         let apart = pose(best).distance_to(pose(&best["map_from_base"]));
         assert!((apart - 0.78).abs() < 1e-6, "{apart}");

@@ -1,4 +1,4 @@
-//! `backcast locate` as a process, on bad scans, bad files and wrong use.
+//! Tests of `backcast locate` as a process, on bad scans, bad files and wrong use.
 
 #![allow(
     clippy::unwrap_used,
@@ -33,7 +33,7 @@ fn a_refused_scan_has_a_line_with_the_reason() {
         with(5, |scan| scan.ranges[..300].fill(-1.0)),
         scan_at(6, HERE),
     ]);
-    // No beam is thinned out.
+    // All beams are used.
     let objects = objects(folder.path(), "--max-beams 360");
     let reason = |i: usize| objects[i]["refused"].as_str().unwrap_or("none");
     assert_eq!(reason(0), "the scan is empty: it has no ranges");
@@ -157,12 +157,12 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
     let folder = folder(&[map_message(), scan_at(1, HERE)]);
     let path = folder.path().join("r.mcap");
     let bytes = fs::read(&path).unwrap();
-    // The end mark alone is lost: all messages are there.
+    // Only the end mark is missing: all messages are there.
     fs::write(&path, &bytes[..bytes.len() - 4]).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.lines().count()), (1, 1), "{stderr}");
     assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
-    // Cut within the only chunk, it is damage that is reported, not missing scans.
+    // Cut within the only chunk: the damage is reported, not missing scans.
     fs::write(&path, &bytes[..200]).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");

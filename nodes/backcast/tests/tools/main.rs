@@ -1,5 +1,5 @@
-//! The tools of the command as processes: what they print, write and refuse. In one
-//! executable, since each links the engine and all formats of recordings.
+//! Tests of the tools as processes: their output, files and errors. They share one executable,
+//! because each would link the engine and all formats of recordings.
 
 mod bags;
 mod convert;

@@ -1,5 +1,5 @@
-//! `backcast plot` as a process: pictures of a drawn room and of a real
-//! recording, and the messages for wrong use.
+//! Tests of `backcast plot` as a process: pictures of a drawn room and of a real recording, and
+//! messages for wrong use.
 
 #![allow(
     clippy::unwrap_used,
@@ -18,7 +18,7 @@ use crate::drawn::{
     truth_at,
 };
 
-/// The colour of the best place, as the picture's legend shows it too.
+/// Colour of the best place, which the legend uses as well.
 const BEST: Rgb<u8> = Rgb([0x1B, 0x5F, 0xD0]);
 
 fn drive() -> TempDir {
@@ -31,7 +31,7 @@ fn drive() -> TempDir {
     ])
 }
 
-/// Draws with these options, which must go well.
+/// Draws with these options, asserts success, and returns the file.
 fn plot(folder: &Path, options: &str, file: &str) -> Vec<u8> {
     let (code, stdout, stderr) = run(folder, &format!("plot {options} --out {file}"));
     assert_eq!((code, stderr.as_str()), (0, ""), "{options}: {stdout}");
@@ -43,8 +43,8 @@ fn decoded(png: &[u8]) -> RgbImage {
     image::load_from_memory(png).unwrap().to_rgb8()
 }
 
-/// The middle of the robot: the pixels of its colour below the heading and
-/// above the axis' name and the legend, which has two rows here.
+/// Returns the centre of the robot: the mean of the pixels of its colour below the heading and
+/// above the axis name and the legend, which has two rows here.
 fn robot(picture: &RgbImage) -> (f64, f64) {
     let pixels = picture.enumerate_pixels();
     let body = 80..picture.height() - 110;
@@ -95,13 +95,12 @@ fn the_robot_stands_where_the_pose_says() {
     let (from, to) = (map_from_laser(HERE), map_from_laser(THERE));
     let (along_x, along_y) = (to.x - from.x, to.y - from.y);
     let pixels_per_m = (x2 - x1).hypot(y2 - y1) / along_x.hypot(along_y);
-    // x runs to the right and y up. The darts point elsewhere, so that their
-    // middles lie up to two pixels to different sides of the lasers.
+    // x runs to the right and y up. The darts point in different directions, so their centres are
+    // up to two pixels off the lasers.
     assert!((x2 - x1 - pixels_per_m * along_x).abs() < 4.0, "{x1} {x2}");
     assert!((y1 - y2 - pixels_per_m * along_y).abs() < 4.0, "{y1} {y2}");
-    // The map, turned by half a radian, is 5.8 m wide and 5.0 m high with its
-    // rim of 2 %; the picture's body is 1168 pixels wide, of which the numbers
-    // of an axis take about 85.
+    // The map, rotated by half a radian, is 5.8 m wide and 5.0 m high including its margin of 2 %;
+    // the body of the picture is 1168 pixels wide, of which the axis numbers take about 85.
     assert!((pixels_per_m - 187.0).abs() < 15.0, "{pixels_per_m}");
 }
 
@@ -127,7 +126,7 @@ fn a_map_needs_no_recording() {
     let boundary = Rgb([0xD5, 0x5E, 0x00]);
     let found = picture.pixels().filter(|pixel| **pixel == boundary).count();
     assert!(found > 1000, "{found} pixels of boundary cells");
-    // The picture of a map never takes the place of the map.
+    // The picture of a map never overwrites the map.
     let image = folder.path().join("room.png");
     let before = fs::read(&image).unwrap();
     let options = "plot map --map room.yaml --out ./room.png";

@@ -1,4 +1,4 @@
-//! `backcast info` and `doctor` as processes.
+//! Tests of `backcast info` and `doctor` as processes.
 
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use crate::drawn::{
     scan_at, truth_at,
 };
 
-/// The room in a frame with a name.
+/// Returns the room in a frame with a name.
 fn framed_map() -> (&'static str, Message) {
     let (topic, mut message) = map_message();
     if let Message::Map(map) = &mut message {
@@ -44,7 +44,7 @@ fn elsewhere((topic, mut message): (&'static str, Message)) -> (&'static str, Me
     (topic, message)
 }
 
-/// The severities and findings of `doctor --json`.
+/// Returns the severities and findings of `doctor --json`.
 fn findings(folder: &std::path::Path, expected_code: i32) -> Vec<(String, String)> {
     let (code, stdout, stderr) = run(folder, "doctor --json r.mcap");
     assert_eq!((code, stderr.as_str()), (expected_code, ""), "{stdout}");

@@ -1,5 +1,4 @@
-//! `backcast simulate`: what it records is found again, and what cannot be driven
-//! is refused.
+//! Tests of `backcast simulate`: its recordings can be located, and impossible drives are refused.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -13,10 +12,10 @@ use crate::drawn::{recordings, run};
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
 
-/// Along the corridor of the recording, and into a turn.
+/// Path along the recorded corridor and into a turn.
 const CORRIDOR: &str = "3.5,-10.4 6.5,-10.9 9,-10.9 14.5,-10.3";
 
-/// A folder, and a file `r.mcap` in it that was simulated.
+/// Creates a folder with a simulated recording `r.mcap`.
 fn simulated(options: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let (code, stdout, stderr) = simulate(&folder, options);
@@ -44,13 +43,13 @@ fn each_scan_of_a_laser_is_found_where_it_was_taken() {
         "--path '{CORRIDOR}' --rate 1 --people 3 --outliers 0.02 --mount 0.4,0,0"
     ));
     let judged = evaluate(&folder, "");
-    // 11.2 m at 0.5 m/s and some turns, a scan a second.
+    // 11.2 m at 0.5 m/s and some turns, one scan per second.
     assert!(judged["scans"].as_u64().unwrap() > 20, "{judged}");
     assert_eq!(judged["truths"], judged["scans"]);
     assert_eq!(judged["success_20cm_3deg"], 1.0, "{judged}");
     assert_eq!(judged["unique_wrong"], 0.0, "{judged}");
-    // Readings end where a cell begins and the fit takes its middle: half a cell of
-    // 5 cm along each axis, and the noise. A cell is allowed.
+    // Readings end at the edge of a cell, but the fit uses its middle: half a cell of 5 cm along
+    // each axis, plus noise. The limit is one cell.
     assert!(
         judged["error_m"]["median"].as_f64().unwrap() < 0.05,
         "{judged}"
@@ -59,7 +58,7 @@ fn each_scan_of_a_laser_is_found_where_it_was_taken() {
 
 #[test]
 fn two_lasers_back_to_back_show_what_one_may_not() {
-    // The rear one upside down, which its place on /tf_static says.
+    // The rear laser is upside down, according to its mount on /tf_static.
     let folder = simulated(&format!(
         "--path '{CORRIDOR}' --rate 1 --laser front=0.49,0,0 --laser rear=-0.43,0,180,180 --range-max 3"
     ));
@@ -77,7 +76,7 @@ fn two_lasers_back_to_back_show_what_one_may_not() {
 
 #[test]
 fn the_motion_within_scans_is_taken_out() {
-    // Turns on the spot at 60 degrees a second: in 0.1 s, by 6 degrees.
+    // Turns on the spot at 60 degrees per second: 6 degrees in 0.1 s.
     let folder = simulated(
         "--path '9,-10.9 9.2,-10.9 9,-10.9 9.2,-10.9 9,-10.9' --turn-rate 60 --rate 3 --scan-duration 0.1",
     );
@@ -87,8 +86,8 @@ fn the_motion_within_scans_is_taken_out() {
         judged["error_deg"]["median"].as_f64().unwrap()
     };
     let (taken_out, left_in) = (error(true), error(false));
-    // Left in, both ends of a scan are bent by 3 degrees, and the heading is between;
-    // taken out, what stays is what a robot that stands has, some tenths of a degree.
+    // Without deskewing, both ends of a scan are off by 3 degrees, with the heading in between;
+    // with it, the error is that of a standing robot, a few tenths of a degree.
     assert!(taken_out < 0.25 * left_in, "{taken_out} and {left_in}");
 }
 
@@ -126,7 +125,7 @@ fn the_topics_are_those_of_a_robot() {
         .channels()
         .map(|channel| (channel.topic.to_string(), channel.messages))
         .collect();
-    // 1.005 m at 0.5 m/s, twice a second, and one at the start.
+    // 1.005 m at 0.5 m/s, twice per second, and one at the start.
     let expected = [
         ("/map", 1),
         ("/tf_static", 1),

@@ -1,5 +1,5 @@
-//! The router of a fleet and what it keeps out: the configurations that are shipped
-//! are those that are tested, with other addresses and paths.
+//! The router of a fleet and its access rules. The tests use the shipped configurations with other
+//! addresses and paths.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -20,10 +20,10 @@ use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
 
-/// What a rule forbids is logged only where somebody wants to know.
+/// Log filter that shows messages rejected by an access rule.
 const INTERCEPTOR: &str = ",zenoh::net::routing::interceptor=trace";
 
-/// Certificates and configurations of a fleet whose router has this address.
+/// Certificates and configurations of a fleet with this router address.
 struct Papers {
     folder: TempDir,
     address: String,
@@ -46,7 +46,7 @@ impl Papers {
         let router = format!("router={address}");
         let names = [router.as_str(), "r1", "r2", "desk"];
         make_certificates(&folder.path().join("pki"), &names);
-        // Another authority, which the router does not know.
+        // Certificate of another authority, which the router does not trust.
         make_certificates(&folder.path().join("other"), &["r1"]);
         let users = "r1:one\nr2:two\ndesk:three\n";
         std::fs::write(folder.path().join("pki/users.txt"), users).unwrap();
@@ -57,7 +57,7 @@ impl Papers {
         self.folder.path().join(file)
     }
 
-    /// A shipped configuration with the paths of this test, changed further.
+    /// Writes a shipped configuration with the paths of this test and a further change.
     fn adapted(&self, file: &str, name: &str, change: impl Fn(String) -> String) -> PathBuf {
         let pki = format!("\"{}/", self.path("pki").display());
         let text = std::fs::read_to_string(shipped(file)).unwrap();
@@ -72,7 +72,7 @@ impl Papers {
         })
     }
 
-    /// A robot's configuration, for whoever it is.
+    /// Writes the configuration of a robot with this name and password.
     fn of(&self, name: &str, password: &str) -> PathBuf {
         self.adapted("robot.json5", &format!("{name}.json5"), |text| {
             text.replace("192.168.0.7", &self.address)
@@ -83,7 +83,7 @@ impl Papers {
     }
 }
 
-/// A bridge that has joined the graph and the network; a map goes out.
+/// Starts a bridge that sends the map, and waits until it has joined graph and network.
 fn bridge(graph: &Graph, papers: &Papers, robot: &str, config: &Path) -> NodeProcess {
     let descriptor = "nodes:
   - {id: laser, path: x, outputs: [map]}
@@ -109,11 +109,10 @@ fn bridge(graph: &Graph, papers: &Papers, robot: &str, config: &Path) -> NodePro
     process
 }
 
-/// A fleet with its router.
 struct Fleet {
     papers: Papers,
     router: NodeProcess,
-    // Dropped after everything in it.
+    // Declared last, so that it is dropped after the other fields.
     _isolated: Isolated,
 }
 
@@ -130,7 +129,7 @@ impl Fleet {
         }
     }
 
-    /// Ends the router, and returns what it logged.
+    /// Stops the router and returns its log.
     fn log(self) -> String {
         self.router.interrupt();
         let (status, log) = self.router.finish();
@@ -139,8 +138,7 @@ impl Fleet {
     }
 }
 
-/// Somebody who comes in, or does not: as Zenoh does by default, it tries
-/// once.
+/// Tries to connect once, which is Zenoh's default.
 fn connect(config: &Path) -> Result<Session, zenoh::Error> {
     zenoh::open(zenoh::Config::from_file(config).unwrap()).wait()
 }
@@ -202,14 +200,13 @@ fn a_robot_writes_its_own_keys_alone() {
     let seen = subscribe(&desk, "backcast/*/odometry");
     let others = subscribe(&other, "backcast/**");
     let own = subscribe(&other, "backcast/r2/*");
-    // What is written before a subscription is known at the router is lost, so it
-    // is written until it is received.
+    // Data sent before the router knows the subscription is lost, so it is sent until it is
+    // received.
     let until = |received: &Subscriber<FifoChannelHandler<Sample>>, puts: &[(&Session, &str)]| loop {
         for (session, key) in puts {
             session.put(*key, "x").wait().unwrap();
         }
-        // Writing without a pause would leave more behind than a session that closes
-        // has time for.
+        // Without a pause, more would be pending than a closing session can send.
         let pause = Duration::from_millis(5);
         if let Some(sample) = received.recv_timeout(pause).unwrap() {
             return sample.key_expr().to_string();
@@ -218,10 +215,10 @@ fn a_robot_writes_its_own_keys_alone() {
     let forged = (&robot, "backcast/r2/odometry");
     let received = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
     assert_eq!(received, "backcast/r1/odometry");
-    // The other robot receives what the desk may send it, and nothing from the first.
+    // The other robot receives the desk's messages, and nothing from the first robot.
     let received = until(&own, &[forged, (&desk, "backcast/r2/save")]);
     assert_eq!(received, "backcast/r2/save");
-    // A session gives all its subscribers what it receives for one of them.
+    // A session passes data received for one subscriber to all of its subscribers.
     let others = others.drain().map(|sample| sample.key_expr().to_string());
     let foreign: Vec<_> = others.filter(|key| key != "backcast/r2/save").collect();
     assert!(foreign.is_empty(), "a robot reads or receives {foreign:?}");

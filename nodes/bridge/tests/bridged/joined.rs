@@ -1,5 +1,5 @@
-//! Two graphs joined by two bridges over a loopback connection, and unknown senders that
-//! send what they should not.
+//! Two graphs joined by two bridges over a loopback connection, and unknown senders of invalid
+//! data.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -27,17 +27,17 @@ use zenoh::sample::SampleKind;
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
 
-/// The machine with the laser and the map.
+/// Machine with the laser and the map.
 const LASER: &str = "nodes:
   - {id: laser, path: x, outputs: [scan, map]}
   - {id: bridge, path: y, inputs: {scan: laser/scan, map: laser/map}, outputs: [hypotheses]}
 ";
-/// One that follows a robot.
+/// Machine with a tracker.
 const TRACKER: &str = "nodes:
   - {id: tracker, path: x, outputs: [pose]}
   - {id: bridge, path: y, inputs: {pose: tracker/pose}}
 ";
-/// The machine with the engine.
+/// Machine with the engine.
 const ENGINE: &str = "nodes:
   - {id: engine, path: x, inputs: {scan: bridge/scan}, outputs: [hypotheses]}
   - {id: bridge, path: y, inputs: {hypotheses: engine/hypotheses}, outputs: [scan, map]}
@@ -72,7 +72,7 @@ fn scan(counter: u64) -> ScanHeader {
     }
 }
 
-/// Different for each scan, with what lasers say where nothing came back.
+/// Returns ranges that differ for each scan, with one beam without a return.
 fn ranges(counter: u64) -> Vec<f32> {
     let mut ranges: Vec<_> = (0..181)
         .map(|i| (counter * 181 + i) as f32 / 100.0)
@@ -111,8 +111,8 @@ fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
     loan.send().unwrap();
 }
 
-/// Sends scans until it is asked to stop, from a thread of its own: a member of a
-/// graph stays on its thread.
+/// Sends scans until `stop` is set, on a thread of its own, because a member of a graph stays on
+/// its thread.
 fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinHandle<()> {
     let name = isolated.name().clone();
     let stop = Arc::clone(stop);
@@ -149,7 +149,7 @@ fn scans_cross_as_they_are_and_nobody_else_receives_them() {
     let bridges = [
         laser.joined_bridge(&["--listen", &endpoint]),
         engine.joined_bridge(&["--connect", &endpoint]),
-        // Another robot, on the same network.
+        // Another robot on the same network.
         other.joined_bridge(&["--connect", &endpoint]),
     ];
     let stop = Arc::new(AtomicBool::new(false));
@@ -168,8 +168,8 @@ fn scans_cross_as_they_are_and_nobody_else_receives_them() {
     });
     stop.store(true, Ordering::Relaxed);
     source.join().unwrap();
-    // Each once and in order; on a loaded machine the queues may run over, and
-    // what is live is dropped then.
+    // Each scan once and in order; on a loaded machine the queues may overflow, and live messages
+    // are then dropped.
     assert!(counters.is_sorted_by(|a, b| a < b), "{counters:?}");
     assert!(foreign.receive().unwrap().is_none(), "another robot's");
     assert!(unjoined.receive().unwrap().is_none(), "no bridge, no scan");
@@ -197,12 +197,12 @@ fn a_late_joiner_gets_the_map_once() {
         });
     };
     expect(&sent);
-    // One that joins the graph later receives it from the bridge.
+    // A subscriber that joins later receives it from the bridge.
     let later = engine.graph.subscriber::<topic::Map>().unwrap();
     wait_until(&engine.graph, &later, |header, _| {
         header.map_id == sent.0.map_id
     });
-    // A bridge that is started again brings nothing twice, and what is new arrives.
+    // A restarted bridge repeats nothing, and new maps arrive.
     first.kill();
     laser.graph.cleanup_dead_nodes();
     let first = laser.joined_bridge(&["--listen", &endpoint]);
@@ -257,14 +257,14 @@ fn what_strangers_send_is_refused_and_counted() {
     for (encoding, payload) in refused {
         put(encoding, payload);
         count += 1;
-        // One after the other, so that the queue does not run over.
+        // One after the other, so that the queue does not overflow.
         let (report, error) = wait_for_health(&engine.graph, &health, |report| {
             report.node.as_str() == "bridge" && report.refused >= count
         });
         assert_eq!(report.refused, count, "{error}");
         assert!(!error.is_empty());
     }
-    // The bridge continues, and lets in what is sound, once.
+    // The bridge continues, and accepts each valid message once.
     for sequence in [5, 5, 6] {
         put(&sound, good(sequence));
     }
@@ -300,7 +300,7 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
         while changes.recv().unwrap() != wanted {}
     };
     until("", SampleKind::Put);
-    // A node is there from its first report to its last.
+    // A node is alive from its first report to its last.
     let joined = engine.isolated().join("engine");
     let health = joined.health().unwrap();
     until("engine", SampleKind::Put);
@@ -310,7 +310,7 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
     until("", SampleKind::Delete);
 }
 
-/// A session of somebody else, connected to `endpoint`.
+/// Opens the session of another client, connected to `endpoint`.
 fn connect(endpoint: &str) -> Session {
     let folder = tempfile::tempdir().unwrap();
     let session = zenoh::open(client(folder.path(), endpoint)).wait();
@@ -327,7 +327,7 @@ fn client(folder: &Path, endpoint: &str) -> zenoh::Config {
     zenoh::Config::from_file(&file).unwrap()
 }
 
-/// That the map comes is one thing; a reader that speaks Zenoh alone gets it too.
+/// A reader that uses only Zenoh receives the map with its encoding.
 #[test]
 fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     let laser = machine("reader", LASER);
@@ -336,8 +336,7 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     let sent = map(0, 30, 20);
     send(&maps, &sent);
     let bridge = laser.joined_bridge(&["--listen", &endpoint]);
-    // The bridge's own report that it sent something: the map, for nobody receives
-    // its health.
+    // The only message that the bridge has sent is the map, since no one receives its health.
     let health = laser.graph.subscriber::<topic::Health>().unwrap();
     let (report, _) = wait_for_health(&laser.graph, &health, |report| report.sent > 0);
     assert_eq!(report.sent, 1);
@@ -358,7 +357,7 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     bridge.stop();
 }
 
-/// The example of docs/bridge.md, by the library of others.
+/// Runs the example of docs/bridge.md with Zenoh's Python library.
 #[test]
 fn ten_lines_of_python_print_where_the_robot_is() {
     let found = python::with("robot", &tests::robot::LIBRARIES, "zenoh");

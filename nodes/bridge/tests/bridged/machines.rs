@@ -1,8 +1,8 @@
-//! One graph over several machines: the laser and the map on one, the engine on
-//! another, somebody who watches on a third, joined by bridges.
+//! One graph over several machines: laser and map on one, the engine on another, a monitor on a
+//! third, joined by bridges.
 //!
-//! The machines are graphs of their own on this one, over loopback connections or
-//! in network namespaces with cables between them, which can be pulled.
+//! The machines are separate graphs on this computer, over loopback connections or in network
+//! namespaces with virtual cables, which can be pulled.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -20,14 +20,13 @@ use tests::world::World;
 use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until};
 use transport::{Flow, Graph, Subscriber, TransportError};
 
-/// What the recording in the repository holds.
+/// Number of scans in the recording.
 const SCANS: usize = 37;
 
-/// The player waits for the answer to each scan, so that nothing is dropped.
+/// Options with which the player waits for the answer to each scan, so that nothing is dropped.
 const LOSSLESS: [&str; 4] = ["--rate", "max", "--wait-for", "accumulator,peak_extractor"];
 
-/// In namespaces: where the laser's machine is called by the engine's, and by the
-/// one that watches.
+/// Addresses of the laser's machine for the engine's and the monitor's machine, in namespaces.
 const FROM_ENGINE: [&str; 2] = ["--connect", "tcp/10.77.1.1:7447"];
 const FROM_MONITOR: [&str; 2] = ["--connect", "tcp/10.77.2.1:7447"];
 const LISTEN: [&str; 2] = ["--listen", "tcp/0.0.0.0:7447"];
@@ -51,14 +50,13 @@ fn collect(graph: &Graph, hypotheses: &Subscriber<topic::Hypotheses>) -> Vec<Ans
     found
 }
 
-/// Plays the recording on the machine of the laser, and collects the answers on
-/// that of `watcher`.
+/// Plays the recording on the laser's machine, and collects the answers on that of `watcher`.
 fn answers_at(watcher: &Machine<'_>, laser: &Machine<'_>, engine: &Machine<'_>) -> Vec<Answer> {
     let hypotheses = watcher.graph.subscriber().unwrap();
     let health = watcher.graph.subscriber().unwrap();
     let mut nodes = engine.engine();
     nodes.push(laser.map_server(&world().map()));
-    // The player does not wait for those who watch from elsewhere.
+    // The player does not wait for remote watchers.
     wait_for_health(&watcher.graph, &health, |report| {
         report.node.as_str() == "peak_extractor"
     });
@@ -69,8 +67,7 @@ fn answers_at(watcher: &Machine<'_>, laser: &Machine<'_>, engine: &Machine<'_>) 
     found
 }
 
-/// Compares with the answers of one machine. Times are others, and the rest is the
-/// same to the last bit.
+/// Compares with the answers of a single machine: bit-identical except for the times.
 fn assert_same(found: &[Answer]) {
     static ONE: LazyLock<Vec<Answer>> = LazyLock::new(|| {
         let world = world();
@@ -117,7 +114,7 @@ fn without_bridges_nothing_is_received() {
     wait_until(&laser.graph, &played, |header, _| {
         header.stamp.counter == SCANS as u64 - 1
     });
-    // Nobody holds it back, so it may have lost some on a slow machine.
+    // Without a receiver the player is not slowed down, so it may lose messages on a slow machine.
     assert!(matches!(source.exit_code(), Some(0 | 3)));
     nodes.into_iter().for_each(NodeProcess::stop);
     assert!(scans.receive().unwrap().is_none(), "a scan");
@@ -125,7 +122,7 @@ fn without_bridges_nothing_is_received() {
     assert!(hypotheses.receive().unwrap().is_none(), "an answer");
 }
 
-/// Namespaces with a cable from the first to each of the others.
+/// Creates namespaces with a cable from the first one to each of the others.
 fn star<const N: usize>() -> [Namespace; N] {
     let all: [Namespace; N] = std::array::from_fn(|_| Namespace::new());
     let (hub, others) = all.split_first().unwrap();
@@ -170,12 +167,12 @@ fn three_machines_answer_as_one() {
     assert_same(&found);
 }
 
-/// What the machines without the laser have received.
+/// Messages received on a machine without the laser.
 struct Received<'a> {
     machine: &'a Machine<'a>,
     maps: Subscriber<topic::Map>,
     hypotheses: Subscriber<topic::Hypotheses>,
-    /// Of the maps and the answers, in the order of their coming.
+    /// Ids of the maps, in order of arrival.
     map_ids: Vec<u64>,
     counters: Vec<u64>,
 }
@@ -191,8 +188,8 @@ impl<'a> Received<'a> {
         }
     }
 
-    /// Listens until the map of this id is there, and an answer about it to a scan
-    /// after `counter`: they arrive on separate connections, in either order.
+    /// Waits for the map with this id and for an answer on it to a scan after `counter`; they
+    /// arrive on separate connections, in either order.
     fn until(&mut self, map_id: u64, counter: u64) {
         let graph = &self.machine.graph;
         let tick = Duration::from_millis(100);
@@ -214,15 +211,14 @@ impl<'a> Received<'a> {
     }
 }
 
-/// The id of the newest map that is served on the laser's machine, after the one
-/// that is given.
+/// Returns the id of the map that is served next on the laser's machine and differs from `not`.
 fn served(machine: &Machine<'_>, maps: &Subscriber<topic::Map>, not: u64) -> u64 {
     wait_for(&machine.graph, maps, |header, _| {
         (header.map_id != not).then_some(header.map_id)
     })
 }
 
-/// The number of the scan that comes after this many more.
+/// Returns the counter of the scan that follows this many others.
 fn scan_after(machine: &Machine<'_>, scans: u64) -> u64 {
     let played = machine.graph.subscriber::<topic::Scan>().unwrap();
     let mut seen = 0;
@@ -232,14 +228,14 @@ fn scan_after(machine: &Machine<'_>, scans: u64) -> u64 {
     })
 }
 
-/// Makes a map another one: a cell in its corner.
+/// Changes a map by one cell in its corner.
 fn change(map: &Path) {
     let mut grid = map::load(map).unwrap();
     grid.cells[0] = if grid.cells[0] == 100 { 0 } else { 100 };
     map::save(&grid, map).unwrap();
 }
 
-/// Ten seconds of scans, which come five times a second.
+/// Number of scans in ten seconds, at five per second.
 const OUTAGE: u64 = 50;
 
 #[test]
@@ -267,7 +263,7 @@ fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
     for cable in ["cable1", "cable2"] {
         places[0].pull(cable);
     }
-    // Meanwhile a wall is built.
+    // Meanwhile the map changes.
     change(&map);
     let second = served(&laser, &maps, first);
     let back = scan_after(&laser, OUTAGE);
@@ -275,15 +271,15 @@ fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
         places[0].plug(cable);
     }
     received.until(second, back);
-    // Each map and each answer once, whatever was sent again.
+    // Each map and each answer arrives once, even if it was sent again.
     assert_eq!(received.map_ids, [first, second]);
     let counters = &received.counters;
     assert!(counters.is_sorted_by(|a, b| a < b), "{counters:?}");
-    // Who joins now gets the map and the boundary that were sent long ago.
+    // New subscribers still get the map and the boundary sent long ago.
     let late = engine.graph.subscriber::<topic::Boundary>().unwrap();
     wait_until(&engine.graph, &late, |header, _| header.map_id == second);
     let late = monitor.graph.subscriber::<topic::Map>().unwrap();
     wait_until(&monitor.graph, &late, |header, _| header.map_id == second);
-    // No process was lost: each is still there to be stopped.
+    // No process was lost: each can still be stopped.
     nodes.into_iter().for_each(NodeProcess::stop);
 }

@@ -1,4 +1,4 @@
-//! Graphs that the bridge joins: on one machine, over networks, in fleets.
+//! Tests of the bridge: on one machine, over networks, in fleets.
 
 mod fleet;
 mod joined;

@@ -1,4 +1,4 @@
-//! What the device refuses, and what its scans look like.
+//! Tests of the device's refusals and of its scan telegrams.
 
 use super::*;
 use crate::sweep::five_beams;
@@ -48,7 +48,7 @@ fn nothing_changes_without_a_login() {
     );
     let written = Answer::Written(Variable::OutputRange);
     assert_eq!(ask(&mut device, &mut session, range), written);
-    // Another client has not logged in, and this one logs out.
+    // Another client has not logged in, and this client logs out.
     let fault = Answer::Fault(Fault::WRITE_DENIED);
     assert_eq!(ask(&mut device, &mut Session::default(), range), fault);
     ask(&mut device, &mut session, Command::Call(Method::Run));
@@ -135,7 +135,7 @@ fn scans_are_rounded_to_the_devices_unit() {
     let content = &content[8..content.len() - 1];
     let scan = LmdScanData::read(Encoding::Binary, content).unwrap();
     let channel = scan.channels_16_bit.named(b"DIST1").unwrap();
-    // 70 m takes steps of two millimetres, and a millimetre would be a code.
+    // 70 m needs steps of two millimetres, and a millimetre would be a code.
     assert_eq!(channel.scale_factor, 2.0);
     assert_eq!(
         channel.values.collect::<Vec<_>>(),
@@ -160,7 +160,7 @@ fn other_devices_turn_and_count_otherwise() {
         let unix_us = scan.time.and_then(|time| time.unix_us()).unwrap();
         (channel.start_angle_raw_1e4_deg, values, unix_us)
     };
-    // The beams are at 88° to 92° of the usual convention.
+    // The beams are at 88° to 92° in the usual convention.
     let (start, usual, first_us) = scan("LMS111");
     assert_eq!(start, 880_000);
     let (start, values, unix_us) = scan("TiM240");
@@ -168,7 +168,7 @@ fn other_devices_turn_and_count_otherwise() {
     let (start, mut values, unix_us) = scan("NAV310");
     values.reverse();
     assert_eq!((start, &values), (1_780_000, &usual));
-    // Four of 360 steps at 50 Hz are 222 µs.
+    // Four of 360 steps at 50 Hz take 222 µs.
     assert_eq!(first_us - unix_us, 222);
 }
 

@@ -1,4 +1,4 @@
-//! An LMS2xx on a pseudo-terminal.
+//! Serves an LMS2xx on a pseudo-terminal.
 
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -12,12 +12,13 @@ use super::{Common, SLICE, Summary, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
-/// What nobody reads is lost on a line; the terminal counts up to 4095.
+/// Largest number of unread bytes before data is dropped, as on a real line; the terminal counts up
+/// to 4095.
 const MAX_UNREAD: u32 = 3300;
 
-/// How long nothing must be unread before the terminal is closed, which takes
-/// along what it has not handed over, nanoseconds. It hands over in the
-/// background, and what is under way there is not counted.
+/// Time for which nothing must be unread before the terminal is closed, nanoseconds. Closing
+/// discards data that the terminal is still passing on in the background, which is not counted as
+/// unread.
 const REST_NS: i64 = 500_000_000;
 
 pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, EmulatorError> {
@@ -59,8 +60,8 @@ struct Terminal {
     device: Lms2xxDevice,
     framer: CommandFramer,
     master: TTYPort,
-    /// The client's side: held open, or the master would be hung up while no
-    /// client is there.
+    /// Client side of the terminal; kept open, because otherwise the master would hang up while
+    /// there is no client.
     slave: TTYPort,
     unsent: Vec<u8>,
     _link: Link,
@@ -87,7 +88,7 @@ impl Terminal {
         })
     }
 
-    /// Waits for commands as long as nothing else is due, and answers them.
+    /// Waits for commands until something else is due, and answers them.
     fn listen(&mut self) -> Result<(), EmulatorError> {
         self.master
             .set_timeout(self.common.pause())
@@ -97,7 +98,7 @@ impl Terminal {
             Ok(count) if self.is_understood()? => {
                 self.framer.push(piece.get(..count).unwrap_or_default());
             }
-            // At another rate these were no bytes.
+            // Data sent at another baud rate is not received.
             Ok(_) => {}
             Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
             Err(error) => return Err(failed("read", error)),
@@ -124,7 +125,7 @@ impl Terminal {
             self.common.faults.damage(&mut self.unsent, start, now_ns);
         }
         if next_baud != self.device.baud {
-            // What is said until here is said at the old rate.
+            // Earlier replies are sent at the old rate.
             self.write()?;
             self.device.baud = next_baud;
         }
@@ -155,7 +156,7 @@ impl Terminal {
         Ok(())
     }
 
-    /// Sends everything; what nobody reads is lost.
+    /// Sends all pending data; unread data beyond the limit is dropped.
     fn write(&mut self) -> Result<(), EmulatorError> {
         if self.unsent.is_empty() {
             return Ok(());
@@ -178,14 +179,14 @@ impl Terminal {
         Ok(())
     }
 
-    /// Whether the client's side has the device's baud rate.
+    /// Returns true if the client uses the device's baud rate.
     fn is_understood(&self) -> Result<bool, EmulatorError> {
         let baud = self.master.baud_rate();
         let baud = baud.map_err(|error| failed("read the baud rate", error))?;
         Ok(baud == self.device.baud.rate())
     }
 
-    /// Bytes that the client has not read.
+    /// Returns the number of bytes that the client has not read.
     fn unread(&self) -> Result<u32, EmulatorError> {
         let unread = self.slave.bytes_to_read();
         unread.map_err(|error| failed("look at what is unread", error))
@@ -199,12 +200,11 @@ fn failed(what: &'static str, error: impl Into<std::io::Error>) -> EmulatorError
     }
 }
 
-/// A link that is removed in the end.
+/// Symbolic link that is removed when dropped.
 struct Link(PathBuf);
 
 impl Link {
-    /// Takes the place of another link, such as one that was left, but of
-    /// nothing else.
+    /// Creates the link; replaces an existing link, but no other kind of file.
     fn make(path: &Path, target: &Path) -> Result<Self, EmulatorError> {
         let failed = |source| EmulatorError::Link {
             path: path.into(),
@@ -220,7 +220,7 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // There is nobody left to notify.
+        // An error here cannot be reported.
         let _ = std::fs::remove_file(&self.0);
     }
 }

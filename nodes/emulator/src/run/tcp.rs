@@ -1,4 +1,4 @@
-//! A CoLa device on a socket, for any number of clients.
+//! Serves a CoLa device on a socket, for any number of clients.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -16,7 +16,7 @@ use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
 
-/// A client that leaves this much unread is given up, bytes.
+/// Largest number of unread bytes before a client is disconnected.
 const MAX_UNREAD: usize = 1 << 22;
 
 pub(super) fn run(
@@ -71,7 +71,7 @@ pub(super) fn run(
     Ok(common.conclude(false))
 }
 
-/// Sends each scan that is due to all that want it.
+/// Sends each due scan to all subscribed clients.
 fn play(
     device: &mut ColaDevice,
     clients: &mut [Client],
@@ -96,8 +96,7 @@ fn play(
     Ok(())
 }
 
-/// Sleeps until a client says something, comes or can take more, or the time is
-/// over.
+/// Waits for data, a new client, room to write, or the timeout.
 fn wait(
     listener: &TcpListener,
     clients: &[Client],
@@ -109,7 +108,7 @@ fn wait(
         flags.set(PollFlags::POLLOUT, client.is_full);
         PollFd::new(client.stream.as_fd(), flags)
     }));
-    // Whole milliseconds, rounded up: never early, and it does not spin.
+    // Rounded up to milliseconds, so that it never wakes early and does not spin.
     let millis = timeout.as_micros().div_ceil(1000) as u16;
     match poll(&mut fds, PollTimeout::from(millis)) {
         Ok(_) | Err(Errno::EINTR) => Ok(()),
@@ -118,7 +117,7 @@ fn wait(
 }
 
 fn accept(listener: &TcpListener, encoding: Encoding, clients: &mut Vec<Client>) {
-    // One that fails has gone again; there is nothing to wait for.
+    // A failed connection is already gone; there is nothing to wait for.
     while let Ok((stream, address)) = listener.accept() {
         let ready = stream
             .set_nonblocking(true)
@@ -139,9 +138,9 @@ struct Client {
     encoding: Encoding,
     framer: Framer,
     session: Session,
-    /// What it has not been sent yet.
+    /// Data not sent yet.
     unsent: Vec<u8>,
-    /// Whether it takes no more at the moment.
+    /// True if the client's buffer is full.
     is_full: bool,
     has_gone: bool,
 }
@@ -160,7 +159,7 @@ impl Client {
         }
     }
 
-    /// Takes its commands and answers them.
+    /// Receives commands and answers them.
     fn receive(
         &mut self,
         device: &mut ColaDevice,
@@ -200,7 +199,7 @@ impl Client {
         Ok(())
     }
 
-    /// Sends what it takes.
+    /// Sends as much as the client takes.
     fn write(&mut self, faults: &mut Faults, is_over: bool) {
         self.is_full = false;
         if !is_over && faults.holds_back() {

@@ -32,7 +32,7 @@ fn without_requests_nothing_is_changed() {
         .unwrap();
     let subscribe = Command::SubscribeScans(true);
     assert_eq!(setup.next(3).unwrap(), Some(subscribe));
-    // An answer to something else changes nothing.
+    // The answer to another command changes nothing.
     setup.receive(&Answer::Running(true)).unwrap();
     assert!(!setup.is_done());
     setup.receive(&Answer::ScansSubscribed(true)).unwrap();
@@ -40,7 +40,7 @@ fn without_requests_nothing_is_changed() {
     assert_eq!(setup.next(i64::MAX).unwrap(), None);
 }
 
-/// Answers as an LMS111 that applies all requested settings but `range`.
+/// Simulates an LMS111 that applies all requested settings, but reports `range` if given.
 fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
     play_as(b"LMS111", setup, range)
 }
@@ -104,7 +104,7 @@ fn requested_settings_are_set_and_read_back() {
 fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
     let mut setup = Setup::new(Wanted::of(None, None, true), None);
     let said = play(&mut setup, None).unwrap();
-    // Its identity and state, its contents, login, change, check, run, scans.
+    // Identity, state, contents, login, change, check, run, scans.
     assert_eq!(said.len(), 8, "{said:#?}");
     assert!(said[3].contains("SetAccessMode"), "{said:#?}");
     assert!(said[4].contains("Write") && said[4].contains("time: true"));
@@ -191,7 +191,7 @@ fn a_field_is_laid_around_what_is_ahead_on_that_device() {
     is_at(&written(b"TiM240", None), -450_000, 450_000);
     let stated = Some(DeviceAngles::of_name(b"TiM240"));
     is_at(&written(b"LMS111", stated), -450_000, 450_000);
-    // What it measures is centred where most have ahead.
+    // The field is centred on 90°, which is ahead on most devices.
     is_at(&written(b"XY7", None), 450_000, 1_350_000);
 }
 

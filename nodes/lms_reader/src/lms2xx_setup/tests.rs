@@ -1,10 +1,10 @@
-//! The dialogue with a device that executes commands, or does not.
+//! The dialogue with a device that executes commands, and with one that does not.
 
 use sick::lms2xx::Unit;
 
 use super::*;
 
-/// A device at this rate that executes commands; the commands it received.
+/// Simulated device that executes commands and records them.
 struct Device {
     baud: Baud,
     port: Baud,
@@ -63,7 +63,7 @@ impl Device {
         })
     }
 
-    /// Lets them speak until scans come or nothing happens any more.
+    /// Runs the dialogue until the device sends scans.
     fn speak(&mut self, setup: &mut Setup) -> Result<(), LmsError> {
         let mut now_ns = 0;
         while setup.format().is_none() {

@@ -1,4 +1,4 @@
-//! Scans from a file of telegrams.
+//! Reads scans from a file of telegrams.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -11,7 +11,7 @@ use super::outlet::Outlet;
 use crate::pace::Pace;
 use crate::{Config, LmsError, Rate};
 
-/// Plays the capture to its end, or over and over, until the stop flag is set.
+/// Plays the capture, once or in a loop, until the stop flag is set.
 pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     let mut pacer = (config.rate == Rate::Device).then(|| (Instant::now(), Pace::default()));
     loop {
@@ -19,7 +19,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
         if outlet.stopped() {
             break;
         }
-        // Looping over a file that yields nothing would spin for ever.
+        // Looping over a file without usable scans would spin forever.
         if outlet.sent == 0 {
             return Err(LmsError::NoScans {
                 path: path.into(),

@@ -1,4 +1,4 @@
-//! Where scans are published and errors are reported.
+//! Publishes scans and reports errors.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,14 +17,14 @@ use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 use crate::{Config, LmsError};
 
-/// How long the stop flag may go unseen.
+/// Longest time before the stop flag is noticed.
 pub(super) const SLICE: Duration = Duration::from_millis(20);
 
-/// How long the end waits for subscribers that are busy with what was sent: a
-/// search takes seconds at most, and each may have a few scans before it.
+/// Longest wait at the end for subscribers to process the last scans: a search takes seconds at
+/// most, and a few scans may be queued.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
-/// What was last said about the source.
+/// Last reported state of the source.
 #[derive(PartialEq)]
 enum Link {
     Untried,
@@ -37,19 +37,18 @@ pub(super) struct Outlet {
     health: Health,
     stop: Arc<AtomicBool>,
     settings: ScanSettings,
-    /// Which way the device looks.
     pub(super) angles: Angles,
     error_limit: ErrorLimit,
-    /// Of the device that sends now.
+    /// Clock of the connected device.
     clock: DeviceClock,
     link: Link,
-    /// As the device codes it; 0 is in order.
+    /// Status code of the device; 0 is ok.
     device_status: u16,
-    /// Sound telegrams of any kind.
+    /// Number of valid telegrams of any kind.
     pub(super) telegrams: u64,
     pub(super) sent: u64,
     pub(super) refused: u64,
-    /// Why the last telegram that was to be a scan made none.
+    /// Reason for rejecting the last scan telegram that was rejected.
     pub(super) scan_refusal: Option<String>,
 }
 
@@ -76,7 +75,7 @@ impl Outlet {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Waits until `deadline` or the stop flag.
+    /// Waits until `deadline` or until the stop flag is set.
     pub(super) fn wait_until(&mut self, deadline: Instant) -> Result<(), TransportError> {
         while !self.stopped() {
             self.health.tick()?;
@@ -89,8 +88,8 @@ impl Outlet {
         Ok(())
     }
 
-    /// The end of all scans: waits until subscribers have taken the last ones, for
-    /// a publisher takes along what nobody has looked at.
+    /// Waits at the end until subscribers have taken the last scans, because unread messages are
+    /// lost when the publisher is dropped.
     pub(super) fn finish(&mut self) -> Result<(), LmsError> {
         if !self.wait_until_taken(Instant::now() + TIMEOUT)? && !self.stopped() {
             let seconds = TIMEOUT.as_secs();
@@ -99,8 +98,8 @@ impl Outlet {
         Ok(())
     }
 
-    /// Waits until every subscriber is done with what was sent, until `deadline`
-    /// or the stop flag; returns whether they are.
+    /// Waits until every subscriber has processed all messages, up to `deadline` or the stop flag.
+    /// Returns true if they have.
     fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
         loop {
             if self.publisher.is_settled()? {
@@ -118,7 +117,7 @@ impl Outlet {
         self.health.tick()
     }
 
-    /// The telegram in a frame; anything else is reported.
+    /// Returns the telegram in a frame; reports errors.
     pub(super) fn take<T>(
         &mut self,
         next: Result<Frame<'_, T>, SickError>,
@@ -135,8 +134,7 @@ impl Outlet {
         Ok(Some(frame.telegram))
     }
 
-    /// Sends the scan of a CoLa telegram; one that cannot be laid out is
-    /// reported as refused.
+    /// Publishes the scan of a CoLa telegram, or reports it as refused if it cannot be converted.
     pub(super) fn publish_cola(
         &mut self,
         data: &LmdScanData<'_>,
@@ -168,8 +166,7 @@ impl Outlet {
         Ok(())
     }
 
-    /// Sends the scan of an LMS2xx; one that cannot be laid out is reported as
-    /// refused.
+    /// Publishes the scan of an LMS2xx, or reports it as refused if it cannot be converted.
     pub(super) fn publish_lms2xx(
         &mut self,
         scan: &WholeScan<'_>,
@@ -198,7 +195,7 @@ impl Outlet {
         fill(loan.items_mut());
         loan.send()?;
         if self.sent == 0 {
-            // That the device came up after the node was no error.
+            // It is not an error if the device starts after the node.
             self.health.forget_error();
         }
         self.sent += 1;
@@ -210,14 +207,14 @@ impl Outlet {
         Ok(())
     }
 
-    /// The source is gone; said once for each reason.
+    /// Reports that the source is lost, once for each reason.
     pub(super) fn lost(&mut self, error: &LmsError) -> Result<(), LmsError> {
         let lost = Link::Lost(with_causes(error));
         if let Link::Lost(reason) = &lost
             && self.link != lost
         {
             match self.link {
-                // A device may come up after the node.
+                // The device may start after the node.
                 Link::Untried => tracing::info!("waiting for the device: {reason}"),
                 _ => tracing::warn!("{reason}; reconnecting"),
             }
@@ -242,7 +239,7 @@ impl Outlet {
         Ok(())
     }
 
-    /// A device in order makes the node ready.
+    /// Updates the node's state from the device status: 0 is ready, others are degraded.
     fn judge(
         &mut self,
         status: u16,

@@ -1,4 +1,4 @@
-//! Scans from an LMS2xx on a serial line.
+//! Reads scans from an LMS2xx on a serial line.
 
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::lms2xx_scan::WholeScan;
 use crate::lms2xx_setup::{Action, Format, Setup, Wanted};
 use crate::{Config, LmsError};
 
-/// The device wants 55 µs between two bytes that it receives.
+/// Pause after each byte sent; the device needs 55 µs between two bytes.
 const BYTE_GAP: Duration = Duration::from_micros(60);
 
-/// Keeps the line until the stop flag is set.
+/// Keeps the line open until the stop flag is set.
 pub(super) fn run(device: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     let mut last_baud = None;
     super::keep(outlet, |outlet| {
@@ -35,7 +35,7 @@ fn wanted(config: &Config) -> Wanted {
     }
 }
 
-/// An open line and what has been said on it.
+/// Open serial line and the state of its dialogue.
 struct Line<'a> {
     name: &'a Path,
     silence_s: f64,
@@ -43,9 +43,9 @@ struct Line<'a> {
     setup: Setup,
     framer: ReplyFramer,
     parts: Option<PartialScans>,
-    /// When the last telegram came.
+    /// Time of the last telegram.
     last_data: Instant,
-    /// Is filled and sent, again and again.
+    /// Buffer of the command to send, reused.
     command: Vec<u8>,
 }
 
@@ -68,7 +68,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Reads until the stop flag is set, which alone is a success.
+    /// Reads until the stop flag is set; any other end is an error.
     fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
         let mut piece = [0; 1 << 12];
         while !outlet.stopped() {
@@ -106,7 +106,7 @@ impl<'a> Line<'a> {
         received: crate::scan::Received,
     ) -> Result<(), LmsError> {
         while let Some(next) = self.framer.next_frame() {
-            // Before the rate is known, everything may be garbage.
+            // Before the baud rate is known, anything received may be garbage.
             let Some(baud) = self.setup.baud() else {
                 if let Ok(frame) = next
                     && let Reply::Answer(answer, _) = frame.telegram
@@ -149,7 +149,7 @@ impl<'a> Line<'a> {
         Ok(())
     }
 
-    /// What came at another rate is no use.
+    /// Sets the baud rate and drops bytes received at the old one.
     fn switch(&mut self, baud: Baud) -> Result<(), LmsError> {
         self.port
             .set_baud_rate(baud.rate())
@@ -160,7 +160,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Sends a scan, or keeps a part of one until the rest is there.
+/// Publishes a scan, or stores a partial scan until it is complete.
 fn publish(
     scan: &Scan<'_>,
     status: Status,
@@ -168,7 +168,7 @@ fn publish(
     parts: &mut Option<PartialScans>,
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
-    // Start, eight data bits and stop; head, CRC and two bytes a reading.
+    // A byte has ten bits with start and stop; a scan has ten bytes and two per reading.
     let bytes = 10 + 2 * scan.readings.len() as i64;
     let line_ns = bytes * 10 * 1_000_000_000 / i64::from(baud.rate());
     let whole = WholeScan::of(scan, format, line_ns);

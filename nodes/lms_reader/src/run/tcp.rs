@@ -1,4 +1,4 @@
-//! Scans from a device on the network.
+//! Reads scans from a device on the network.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -11,12 +11,12 @@ use crate::cola_setup::{Setup, Wanted};
 use crate::scan::Stamps;
 use crate::{Config, LmsError};
 
-/// How long an attempt to connect, or to send the request, may take. A device
-/// is near, and a stop must not wait for long.
+/// Timeout for connecting and for sending a command: a device is near, and a stop must not wait
+/// long.
 const ATTEMPT: Duration = Duration::from_millis(500);
 
-/// Keeps a connection until the stop flag is set. (Looking up a host's name
-/// may take as long as the system's resolver does; a number needs no look-up.)
+/// Keeps a connection until the stop flag is set. (Resolving a host name may take as long as the
+/// system's resolver; an IP address needs no look-up.)
 pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     super::keep(outlet, |outlet| {
         let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
@@ -33,7 +33,7 @@ pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result
     })
 }
 
-/// Tries all that a name stands for; the last failure counts.
+/// Tries all addresses of a name and returns the last error if none connects.
 fn try_each(address: &str) -> std::io::Result<TcpStream> {
     let mut failure = ErrorKind::AddrNotAvailable.into();
     for candidate in address.to_socket_addrs()? {
@@ -45,16 +45,16 @@ fn try_each(address: &str) -> std::io::Result<TcpStream> {
     Err(failure)
 }
 
-/// A connection and what has been said on it.
+/// Open connection and the state of its dialogue.
 struct Connection<'a> {
     address: &'a str,
     silence_s: f64,
     encoding: Encoding,
     stream: TcpStream,
-    /// None where the device is only listened to.
+    /// Dialogue with the device; `None` once it is done or if the node only listens.
     setup: Option<Setup>,
     framer: Framer,
-    /// Is filled and sent, again and again.
+    /// Buffer of the command to send, reused.
     command: Vec<u8>,
 }
 
@@ -85,7 +85,7 @@ impl<'a> Connection<'a> {
         })
     }
 
-    /// Reads until the stop flag is set, which alone is a success.
+    /// Reads until the stop flag is set; any other end is an error.
     fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
         let mut piece = [0; 1 << 14];
         let mut last_data = Instant::now();
@@ -116,7 +116,7 @@ impl<'a> Connection<'a> {
         Ok(())
     }
 
-    /// Says what is to be said now.
+    /// Sends the next command of the dialogue, if one is due.
     fn speak(&mut self) -> Result<(), LmsError> {
         let Some(setup) = &mut self.setup else {
             return Ok(());
@@ -141,7 +141,7 @@ impl<'a> Connection<'a> {
         self.framer.push(piece);
         while let Some(next) = self.framer.next_frame() {
             match (outlet.take(next)?, &mut self.setup) {
-                // Which way it looks may hang on the name that it is about to say.
+                // The angle convention may depend on the name that the device is about to report.
                 (Some(Telegram::ScanData(_)), Some(setup)) if setup.is_identifying() => {}
                 (Some(Telegram::ScanData(data)), _) => outlet.publish_cola(&data, received)?,
                 (Some(Telegram::Answer(answer)), Some(setup)) => {

@@ -18,7 +18,7 @@ fn settings() -> ScanSettings {
     }
 }
 
-/// A telegram with the given times, angles in 1/10000° and raw distances.
+/// Telegram with the given times, angles in 1/10000° and raw distances.
 struct World {
     times_us: [u32; 2],
     layer: i16,
@@ -143,8 +143,8 @@ fn the_devices_date_and_time_are_taken_as_they_are() {
 #[test]
 fn times_come_from_the_turn_of_the_mirror() {
     let (header, _) = World::default().scan().unwrap();
-    // 15 Hz; 1080 steps of a third of a degree make a turn, the rounding of
-    // the step to 1/10000° is one part in 10⁴.
+    // 15 Hz; 1080 steps of a third of a degree make a turn, and the step is rounded to 1/10000°,
+    // one part in 10⁴.
     assert!((header.scan_time_s - 1.0 / 15.0).abs() < 1e-12);
     assert!((header.time_increment_s * 1080.0 * 15.0 - 1.0).abs() < 1.1e-4);
 }
@@ -181,13 +181,13 @@ fn a_clockwise_device_is_read_from_its_last_beam() {
     .unwrap();
     assert_eq!(header.angle_min, recordable((-90f64).to_radians()));
     assert_eq!(header.angle_increment, recordable(1f64.to_radians()));
-    // Its first reading, at 90°, is to the left.
+    // The first reading, at 90°, is to the left.
     assert_eq!((ranges.len(), ranges[0], ranges[180]), (181, 1.18, 1.0));
-    // The first beam of the message is the last that was measured.
+    // The first beam of the message was measured last.
     let first_ns = RECEIVED.realtime_ns - 6_000_000;
     assert_eq!(header.stamp.measured_ns, first_ns + 33_333_000);
     let back_ns = (header.time_increment_s * 180.0 * 1e9).round() as i64;
-    // Whole microseconds.
+    // Equal up to whole microseconds.
     assert!((header.stamp.measured_ns + back_ns - first_ns).abs() < 1000);
 }
 
@@ -230,7 +230,7 @@ fn the_settings_are_passed_on() {
     assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
     assert_eq!(with.frame.as_str(), "laser");
     assert_eq!(World::default().scan().unwrap().0.mount_known, 0);
-    // Where nobody says it, it is what the device is known to measure.
+    // If no option sets it, it is the device's longest range.
     let settings = ScanSettings {
         range_max_m: None,
         ..settings

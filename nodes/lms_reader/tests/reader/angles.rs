@@ -1,4 +1,4 @@
-//! Devices whose zero and turning direction differ, as captures and on a socket.
+//! Devices with other zero angles and turning directions, as captures and over TCP.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -17,8 +17,8 @@ use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
 use crate::listen;
 
-/// A scan with a reading every degree: the first at `first_deg` is 1 m, each
-/// further one a millimetre more.
+/// Returns a scan with a reading per degree: the first one, at `first_deg`, is 1 m, and each
+/// further one is a millimetre longer.
 fn scan(first_deg: i32, beams: u16) -> Vec<u8> {
     let values: Vec<u16> = (1000..1000 + beams).collect();
     let channels = [Channel {
@@ -68,7 +68,7 @@ fn ident(name: &str) -> Vec<u8> {
     })))
 }
 
-/// A graph, and a capture in a folder.
+/// Graph, and a folder for a capture.
 struct Bench {
     isolated: Isolated,
     folder: tempfile::TempDir,
@@ -88,7 +88,7 @@ impl Bench {
         path
     }
 
-    /// The first scan of a capture that is played over and over, and the log.
+    /// Returns the first scan of a capture that is played in a loop, and the log.
     fn first(&self, bytes: &[u8], options: &[&str]) -> (ScanHeader, Vec<f32>, String) {
         let graph = self.isolated.join("test");
         let scans = graph.subscriber::<topic::Scan>().unwrap();
@@ -108,7 +108,7 @@ impl Bench {
         (header, ranges, log)
     }
 
-    /// How a capture ends of which no scan can be used: the log.
+    /// Returns the log of a capture without usable scans.
     fn refusal(&self, bytes: &[u8], options: &[&str]) -> String {
         let graph = self.isolated.join("test");
         let scans = graph.subscriber::<topic::Scan>().unwrap();
@@ -126,7 +126,7 @@ fn start(graph: &Graph, capture: &Path, options: &[&str]) -> NodeProcess {
     NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), graph, &arguments)
 }
 
-/// Single precision, as recordings have it.
+/// Rounds to single precision, as in recordings.
 fn radians(deg: f64) -> f64 {
     f64::from(deg.to_radians() as f32)
 }
@@ -152,7 +152,7 @@ fn a_tim240_without_a_name_is_refused_and_with_one_read() {
         assert_eq!((ranges.len(), ranges[0], ranges[240]), (241, 1.0, 1.24));
         assert!(log.contains("0° is ahead"), "{log}");
     }
-    // The capture holds what the device answered.
+    // The capture includes the device's answer with its name.
     let named = [ident("TIM2xx"), telegram].concat();
     let (header, _, log) = Bench::new("tim3").first(&named, &[]);
     assert_eq!(header.angle_min, radians(-120.0));
@@ -161,7 +161,7 @@ fn a_tim240_without_a_name_is_refused_and_with_one_read() {
 
 #[test]
 fn a_clockwise_device_is_published_counter_clockwise() {
-    // A whole turn, 0° behind: its middle is at 180°.
+    // A full turn with 0° behind: the middle of the field is at 180°.
     let telegram = scan(0, 360);
     says_what_to_state(&Bench::new("nav0").refusal(&telegram, &[]));
     for (tag, options) in [
@@ -172,7 +172,7 @@ fn a_clockwise_device_is_published_counter_clockwise() {
         assert_eq!(header.angle_min, radians(-179.0), "{log}");
         assert_eq!(header.angle_increment, radians(1.0));
         assert!(header.time_increment_s < 0.0);
-        // The device's 90° is to the left, that is beam 269.
+        // The device's 90° is to the left, which is beam 269.
         assert_eq!((ranges.len(), ranges[269]), (360, 1.09));
         assert!(ranges.iter().all(|&range| range < header.range_max_m));
     }
@@ -188,14 +188,14 @@ fn a_part_of_a_field_needs_a_name() {
     let named = [ident("LMS10x_FieldEval"), telegram.clone()].concat();
     let (header, ranges, _) = Bench::new("part2").first(&named, &[]);
     assert_eq!((header.angle_min, ranges.len()), (radians(-90.0), 91));
-    // What is stated counts more than what is read.
+    // The stated device takes precedence over the reported name.
     let options = ["--device", "TiM240"];
     let (header, _, _) = Bench::new("part3").first(&named, &options);
     assert_eq!(header.angle_min, 0.0);
 }
 
-/// Takes the node's connection; says `early` at once, its name when it is asked, and
-/// `late` once it is to send scans.
+/// Accepts the node's connection; sends `early` at once, the name on request, and `late` when asked
+/// to send scans.
 fn device(listener: &TcpListener, name: &str, early: &[u8], late: &[u8]) -> TcpStream {
     let (mut stream, _) = listener.accept().unwrap();
     stream.write_all(early).unwrap();
@@ -228,8 +228,8 @@ fn a_device_says_its_name_before_its_scans_count() {
     let (listener, address) = listen();
     let arguments = ["--tcp", &address];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), &graph, arguments);
-    // Half of its field, whose middle is where others have ahead: without the name it
-    // would be taken as that.
+    // Half of the field, with its middle where most devices have ahead: without the name the usual
+    // convention would be assumed.
     let half = scan(0, 181);
     let _stream = device(&listener, "TiM240", &half, &half);
     wait_until(&graph, &scans, |header, _| {

@@ -1,5 +1,4 @@
-//! The node as a process: a capture, and a device on the network that this test
-//! plays.
+//! Tests of the node as a process: with a capture, and with a simulated device on the network.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -45,10 +44,10 @@ fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
         let stamp = header.stamp;
         let &mut from = first.get_or_insert(stamp);
         let steps = (stamp.counter - from.counter) as i64;
-        // The device turns at 15 Hz, and the host never plays early; by up to
-        // one step it may have been late with the first.
+        // The device turns at 15 Hz, and the node never plays early; the first scan may have been
+        // up to one step late.
         assert!(stamp.entered_ns - from.entered_ns >= (steps - 1) * 66_000_000);
-        // Sixteen scans are in the file, so this one is of the second round.
+        // The file has sixteen scans, so this one is from the second round.
         stamp.counter >= 17
     });
     node.stop();
@@ -73,7 +72,7 @@ fn the_last_scans_of_a_capture_wait_for_a_subscriber_that_is_late() {
     let scans = graph.subscriber::<topic::Scan>().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
     let node = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]);
-    // Until all have been sent, nobody looks at the scans.
+    // No one reads the scans until all have been sent.
     wait_for_health(&graph, &health, |report| report.sent == 16);
     let taken = std::iter::from_fn(|| scans.receive().unwrap());
     let counters: Vec<u64> = taken.map(|scan| scan.header().stamp.counter).collect();
@@ -125,8 +124,7 @@ fn usage_errors_end_with_two() {
     assert_eq!(node.exit_code(), Some(2));
 }
 
-/// Takes the node's connection; says to it what a device of few words does,
-/// until it wants scans.
+/// Accepts the node's connection; rejects each command until the node subscribes to scans.
 fn accept(listener: &TcpListener) -> TcpStream {
     let (mut stream, _) = listener.accept().unwrap();
     let mut framer = Framer::new(Encoding::Binary);
@@ -162,7 +160,7 @@ fn a_device_that_goes_and_comes_back() {
     let node = start(&graph, &["--tcp", &address]);
 
     let mut stream = accept(&listener);
-    // Pieces that respect no telegram.
+    // Pieces that split telegrams at arbitrary places.
     for piece in CAPTURE[..2 * TELEGRAM].chunks(1000) {
         stream.write_all(piece).unwrap();
     }

@@ -1,4 +1,4 @@
-//! The server as a process, asked over loopback connections.
+//! Tests of the server as a process, over loopback connections.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -26,11 +26,11 @@ use zenoh::{Session, Wait};
 /// Longer than any answer takes on any machine.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A server with a graph of its own.
+/// Server with a graph of its own.
 struct Server {
     process: NodeProcess,
     graph: Graph,
-    // Behind the graph, so that it is dropped after it.
+    // Declared after the graph, so that it is dropped after it.
     isolated: Isolated,
 }
 
@@ -45,7 +45,7 @@ impl Server {
         Server::of(tag, &[&common, arguments].concat())
     }
 
-    /// A server with these maps.
+    /// Starts a server with these arguments.
     fn of(tag: &str, arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
@@ -65,7 +65,7 @@ impl Server {
         endpoint(&self.isolated)
     }
 
-    /// Waits until the server has sent this many answers, to those who ask.
+    /// Waits until the server has sent this many answers while `asking` runs.
     fn wait_until_sent(&self, answers: u64, asking: &ScopedJoinHandle<'_, ()>) {
         let health = self.graph.subscriber::<topic::Health>().unwrap();
         wait_for_health(&self.graph, &health, |report| {
@@ -75,18 +75,18 @@ impl Server {
     }
 }
 
-/// Where whoever is isolated listens.
+/// Returns the listening address for an isolated test.
 fn endpoint(isolated: &Isolated) -> String {
     format!("tcp/{}:7447", isolated.name().loopback())
 }
 
-/// A caller who is connected to all of these.
+/// Opens a client session that is connected to all of these servers.
 fn caller(servers: &[&Server]) -> Session {
     let endpoints: Vec<_> = servers.iter().map(|server| server.endpoint()).collect();
     session(&[], &endpoints)
 }
 
-/// A session that listens at some endpoints and connects to others.
+/// Opens a session that listens and connects at these endpoints.
 fn session(listen: &[String], connect: &[String]) -> Session {
     let mut config = zenoh::Config::default();
     let mut set = |key, value: &str| config.insert_json5(key, value).unwrap();
@@ -105,7 +105,7 @@ fn scans() -> Vec<Scan> {
         .collect()
 }
 
-/// Asks with any bytes; the first reply.
+/// Sends a request with arbitrary bytes; returns the only reply.
 fn ask_raw(session: &Session, parameters: &str, encoding: &str, payload: Vec<u8>) -> Reply {
     let replies = session
         .get(format!("backcast/locate/corridor{parameters}"))
@@ -131,7 +131,7 @@ fn json_of((header, ranges): &Scan) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Asks and does not wait for the answer, which may take a minute.
+/// Sends a request without waiting for the answer, which may take a minute.
 fn ask_json(session: &Session, scan: &Scan) -> FifoChannelHandler<Reply> {
     session
         .get("backcast/locate/corridor?deadline_ms=60000")
@@ -204,13 +204,13 @@ fn what_is_no_request_is_refused_and_counted() {
     }
     let health = server.graph.subscriber::<topic::Health>().unwrap();
     wait_for_health(&server.graph, &health, |report| report.refused == count);
-    // Through the client, too: asking again would not help, so it does not.
+    // The client does not repeat such a request either, since that would not help.
     let empty = ask(&session, "corridor", (&scan.0, &[]), TIMEOUT);
     assert!(
         matches!(empty, Err(LocateError::Refused { .. })),
         "{empty:?}"
     );
-    // And it continues.
+    // The server keeps working.
     assert!(ask_raw(&session, "", &postcard, sound).result().is_ok());
     server.process.stop();
 }
@@ -219,7 +219,7 @@ fn what_is_no_request_is_refused_and_counted() {
 fn what_cannot_be_answered_in_time_is_not_searched() {
     let server = Server::start("late", &[]);
     let session = caller(&[&server]);
-    // A search takes many times that.
+    // A search takes many times longer.
     let payload = json_of(&scans()[0]);
     let reply = ask_raw(&session, "?deadline_ms=1", JSON, payload);
     let error = reply.into_result().unwrap_err();
@@ -233,7 +233,7 @@ fn beyond_its_queue_a_server_is_busy() {
     let session = caller(&[&server]);
     let scan = &scans()[0];
     let (mut answers, mut busy) = (0, 0);
-    // Sooner or later more than two come at the same time.
+    // Repeats until more than two requests arrive at the same time.
     while answers == 0 || busy == 0 {
         let asking: Vec<_> = (0..20).map(|_| ask_json(&session, scan)).collect();
         for replies in asking {
@@ -249,8 +249,8 @@ fn beyond_its_queue_a_server_is_busy() {
     server.process.stop();
 }
 
-/// Asks on several threads until stopped, each request until it is answered;
-/// returns how many there were.
+/// Sends requests on several threads until `stop` is set, each until it is answered, and counts the
+/// answers.
 fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
     let scans = scans();
     std::thread::scope(|scope| {
@@ -274,7 +274,7 @@ fn a_request_is_brought_to_one_server() {
     let first = Server::start("once-a", &[]);
     let endpoint = first.endpoint();
     let second = Server::start("once-b", &["--connect", &endpoint]);
-    // Whichever is asked.
+    // The result is the same whichever server is asked.
     for asked in [&first, &second] {
         assert_one_receives_it(asked);
     }
@@ -284,14 +284,14 @@ fn a_request_is_brought_to_one_server() {
 
 fn assert_one_receives_it(server: &Server) {
     let session = caller(&[server]);
-    // An empty request is rejected by each server that receives it.
+    // Each server that receives an empty request rejects it.
     let receivers = || {
         let get = session.get("backcast/locate/corridor");
         let get = get.target(QueryTarget::All);
         let get = get.consolidation(ConsolidationMode::None);
         get.timeout(TIMEOUT).wait().unwrap().into_iter().count()
     };
-    // Had they not met in time, both would receive it at first.
+    // Until the servers have discovered each other, both receive requests.
     while receivers() != 1 {
         std::thread::yield_now();
     }
@@ -314,11 +314,11 @@ fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
     let (stop, answered) = (AtomicBool::new(false), AtomicUsize::new(0));
     std::thread::scope(|scope| {
         let asking = scope.spawn(|| keep_asking(&session, &stop, &answered));
-        // Whoever is asked, the others get their share.
+        // All servers get a share, whichever is asked.
         for server in [&first, &second, &third] {
             server.wait_until_sent(5, &asking);
         }
-        // One that requests are handed on to, and one that is asked.
+        // Kills one server that requests are forwarded to, and one that is asked.
         let before = answered.load(Ordering::Relaxed);
         third.process.kill();
         second.wait_until_sent(20, &asking);
@@ -330,7 +330,7 @@ fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
     second.process.stop();
 }
 
-/// Keeps what it is asked, and says nothing.
+/// Declares a queryable that stores queries without answering them.
 fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>) {
     let (sender, kept) = unbounded();
     let queryable = session

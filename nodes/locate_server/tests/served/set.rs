@@ -1,10 +1,10 @@
-//! Several maps on one server.
+//! Tests of several maps on one server.
 
 use locate_server::SearchedMap;
 
 use super::*;
 
-/// The maps that are shipped, in the order of the set.
+/// Shipped maps, in the order of the set.
 const MAPS: [&str; 3] = ["malaga_campus", "malaga_corridor", "malaga_courtyard"];
 
 #[test]

@@ -1,4 +1,4 @@
-//! A map that is served alone.
+//! Serves a single map.
 
 use std::error::Error;
 use std::path::Path;
@@ -23,11 +23,11 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         served: 0,
         map_id: 0,
     };
-    // Looked at before loading: what changes in between is noticed.
+    // Checked before loading, so that changes in between are noticed.
     let mut watch = Watch::new(files.look());
     server.health.state(NodeState::Busy)?;
     let recorded = recorded(config)?;
-    // What is in a recording does not change.
+    // The map in a recording does not change.
     let is_watched = recorded.is_none();
     match recorded.map_or_else(|| load(config, path), Ok) {
         Ok(grid) => {
@@ -49,14 +49,14 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     })
 }
 
-/// Reads the map, if the graph can hold it; keys of its description that mean nothing are logged.
+/// Loads the map, if it fits into the graph's memory; logs unknown keys of its description.
 fn load(config: &Config, path: &Path) -> Result<OccupancyGrid, map::MapError> {
     map::load_within(config.memory.limit(), path, |key| {
         tracing::warn!("{key}");
     })
 }
 
-/// The last map of the recording that is named, where it holds one.
+/// Returns the last map of the recording from `--recorded`, if it contains one.
 fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
     let Some(path) = &config.recorded else {
         return Ok(None);
@@ -74,7 +74,7 @@ fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
     Ok(grid)
 }
 
-/// The last map of a recording, where it holds one; the graph can hold it.
+/// Returns the last map of a recording, if it contains one and it fits into the graph's memory.
 fn map_in(
     path: &Path,
     config: &Config,
@@ -91,12 +91,12 @@ fn map_in(
     Ok(Some(grid))
 }
 
-/// Says so where what is played was recorded on another map than this one.
+/// Logs a warning if the played recording was made on another map than the served one.
 fn compare((config, map): (&Config, &Path), served: &OccupancyGrid) {
     let Some(path) = &config.played else {
         return;
     };
-    // What is wrong with the recording, its player says.
+    // Errors in the recording are reported by its player.
     let Ok(Some(own)) = map_in(path, config) else {
         return;
     };
@@ -143,7 +143,7 @@ impl Server {
         }
     }
 
-    /// Keeps the map that is served, or waits where none is.
+    /// Keeps the served map, or waits for one if there is none.
     fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
         let error = with_causes(error);
         if self.served == 0 {

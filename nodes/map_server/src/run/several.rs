@@ -1,5 +1,4 @@
-//! A set of maps: all of them for those who search, and the one on which the robot is for those
-//! who show a map.
+//! Serves a set of maps: all of them for searches, and the one on which the robot is for display.
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,11 +18,12 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;
     let mut files = SetFiles::new(path, &config.on);
-    // Looked at before loading: what changes in between is noticed.
+    // Checked before loading, so that changes in between are noticed.
     let mut watch = Watch::new(files.look());
     let first = load(config, path);
     let poses = graph.subscriber::<topic::Tracked>()?;
-    // Whoever looks at `map` sees that it is one of a set.
+    // Opened before the publisher of `map`, so that its subscribers see that the map is part of a
+    // set.
     let sets = graph.publisher::<topic::Maps>()?;
     let mut server = Server {
         sets,
@@ -55,7 +55,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     })
 }
 
-/// The maps of a set, in its order.
+/// Maps of a set, in order.
 #[derive(Default)]
 struct Loaded {
     maps: Vec<LoadedMap>,
@@ -78,7 +78,7 @@ struct LoadedMap {
     cells: Vec<u8>,
 }
 
-/// Reads the maps, if the graph can hold all of them.
+/// Loads the maps, if all of them fit into the graph's memory.
 fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
     let set = map::set_of_noting(path, |line| tracing::info!("{line}"))?.select(&config.on)?;
     let mut limit = config.memory.limit();
@@ -111,19 +111,19 @@ struct Server {
     sets: Publisher<topic::Maps>,
     maps: Publisher<topic::Map>,
     health: Health,
-    /// Sets and maps that were sent.
+    /// Number of messages sent: sets and single maps.
     served: u64,
-    /// Which of the maps is sent alone.
     shown: Shown,
     set: Loaded,
-    /// Whether the files hold something else than what is served.
+    /// True if the files hold something other than the served set.
     is_refused: bool,
-    /// Whether there was room for the map that is to be shown.
+    /// True if the map to be displayed fitted into memory.
     has_room: bool,
 }
 
 impl Server {
-    /// Sends all maps, and the one with this number alone; none where not all of them have room.
+    /// Publishes all maps, and the one with this number for display; publishes nothing if not all
+    /// of them fit into memory.
     fn serve(&mut self, set: Loaded, shown: usize) -> Result<(), TransportError> {
         let stamp = now(self.served);
         let maps = set.maps.iter();
@@ -164,7 +164,7 @@ impl Server {
         self.report_state()
     }
 
-    /// Sends the map with this number alone.
+    /// Publishes the map with this number for display.
     fn show(&mut self, number: usize) -> Result<(), TransportError> {
         let map = &self.set.maps[number];
         filled(&self.maps, map, now(self.served))?.send()?;
@@ -175,8 +175,8 @@ impl Server {
         Ok(())
     }
 
-    /// Shows the map on which the robot is; where there is no room for it, again with the next
-    /// pose.
+    /// Displays the map on which the robot is; if it does not fit into memory, tries again with the
+    /// next pose.
     fn follow(&mut self, pose: &PoseHeader) -> Result<(), TransportError> {
         if pose.pose_known == 0 {
             return Ok(());
@@ -187,7 +187,7 @@ impl Server {
         };
         let named = (number, pose.is_believed());
         if !self.shown.is_due(named, Instant::now()) {
-            // Back on the map that is shown, the other one is not missed any more.
+            // Back on the displayed map, the other one is no longer needed.
             return self.note_room(self.has_room || number == self.shown.map());
         }
         match self.show(number) {
@@ -206,7 +206,8 @@ impl Server {
         }
     }
 
-    /// Whether the map that is to be shown had room.
+    /// Records `has_room` and updates the state: true if the map to be displayed fitted into
+    /// memory.
     fn note_room(&mut self, has_room: bool) -> Result<(), TransportError> {
         if self.has_room == has_room {
             return Ok(());
@@ -258,7 +259,7 @@ impl Server {
     }
 }
 
-/// A map on its way to whoever shows one.
+/// Fills a message with a map for display.
 fn filled<'p>(
     publisher: &'p Publisher<topic::Map>,
     map: &LoadedMap,

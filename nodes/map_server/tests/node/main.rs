@@ -1,4 +1,4 @@
-//! The node as a process, while its map files change under it.
+//! Tests of the node as a process, while its map files change.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -19,7 +19,7 @@ use tempfile::TempDir;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use transport::{Graph, Subscriber};
 
-/// A folder with map files, a graph, and the node in both.
+/// Folder with map files, graph, and node.
 struct World {
     node: Option<NodeProcess>,
     folder: TempDir,
@@ -28,7 +28,7 @@ struct World {
 }
 
 impl World {
-    /// A map whose only row has these pixels.
+    /// Creates a map whose only row has these pixels.
     fn new(test: &str, row: &[u8]) -> World {
         let isolated = Isolated::new(test);
         let world = World {
@@ -54,7 +54,7 @@ impl World {
         self.replace("map.yaml", text.as_bytes());
     }
 
-    /// Puts a new file in the place of the old one, as careful writers do.
+    /// Replaces a file by renaming a new one, as careful writers do.
     fn replace(&self, name: &str, bytes: &[u8]) {
         fs::write(self.at("new"), bytes).unwrap();
         fs::rename(self.at("new"), self.at(name)).unwrap();
@@ -74,7 +74,7 @@ impl World {
         ));
     }
 
-    /// Waits for a message of `T` that `wanted` likes.
+    /// Waits for a message that `wanted` accepts.
     fn wait<T: messages::Topic>(
         &self,
         subscriber: &Subscriber<T>,
@@ -159,7 +159,7 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
 
-    // Played on another map, which is served and is said to be another.
+    // Played on another map, which is served with a warning.
     world.start_with(&[OsStr::new("--played"), OsStr::new(file)]);
     let late = world.graph.subscriber::<topic::Map>().unwrap();
     world.wait(&late, |_, cells| cells == [100, 0]);
@@ -168,7 +168,7 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
     assert!(log.contains("recorded on another map"), "{log}");
-    // On its own, there is nothing to say.
+    // Played on its own map, without a warning.
     let own = Path::new(file).with_file_name("map.yaml");
     let options = [
         "--map".as_ref(),
@@ -182,7 +182,7 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     let (status, log) = node.finish();
     assert!(status.success() && !log.contains("another map"), "{log}");
 
-    // One without a map, which has that of the file.
+    // A recording without a map: the map of the file is served.
     let empty = world.at("empty.mcap");
     let mut writer = RecordingWriter::create(&empty, Packing::Zstd).unwrap();
     let transforms = Message::StaticTransforms(TfMessage::default());
@@ -240,16 +240,16 @@ fn a_changed_map_is_served_and_a_broken_one_refused() {
     world.start();
     world.wait_for_cells(&maps, 0, &[100, 0]);
 
-    // An editor's own files beside the map's do not matter.
+    // Temporary files of an editor are ignored.
     fs::write(world.at(".map.yaml.swp"), "rubbish").unwrap();
     world.replace("map.pgm", &image(&[255, 0]));
     world.wait_for_cells(&maps, 1, &[0, 100]);
 
-    // The description alone.
+    // Only the description changes.
     world.describe(0.1);
     world.wait(&maps, |header, _| header.resolution_m == 0.1);
 
-    // An image cut short is refused, and what was served stays.
+    // A truncated image is rejected, and the previous map stays.
     let whole = image(&[255, 255, 0]);
     fs::write(world.at("map.pgm"), &whole[..whole.len() - 2]).unwrap();
     let (report, error) = world.wait_for_state(&health, NodeState::Degraded);
@@ -258,7 +258,7 @@ fn a_changed_map_is_served_and_a_broken_one_refused() {
     let late = world.graph.subscriber::<topic::Map>().unwrap();
     world.wait_for_cells(&late, 2, &[0, 100]);
 
-    // Mended.
+    // After the repair.
     fs::write(world.at("map.pgm"), whole).unwrap();
     world.wait_for_cells(&maps, 3, &[0, 0, 100]);
     world.wait_for_state(&health, NodeState::Ready);

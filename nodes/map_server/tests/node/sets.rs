@@ -1,5 +1,5 @@
-//! The node on a set of maps, while files come and change, and the robot goes from one map to
-//! another.
+//! Tests of the node with a set of maps, while files appear and change and the robot moves from one
+//! map to another.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -14,7 +14,7 @@ use transport::{Publisher, Subscriber};
 use super::{World, image};
 
 impl World {
-    /// One more map, whose only row has these pixels.
+    /// Adds a map whose only row has these pixels.
     fn add(&self, name: &str, row: &[u8]) {
         fs::write(self.at(&format!("{name}.pgm")), image(row)).unwrap();
         let text = format!(
@@ -24,14 +24,14 @@ impl World {
         self.replace(&format!("{name}.yaml"), text.as_bytes());
     }
 
-    /// Starts the node on all maps of the folder.
+    /// Starts the node with all maps of the folder.
     fn start_on_set(&mut self) {
         let options = [OsStr::new("--maps"), self.folder.path().as_os_str()];
         let node = env!("CARGO_BIN_EXE_map_server");
         self.node = Some(NodeProcess::start(node, &self.graph, options));
     }
 
-    /// Waits for a set of so many maps; their ids.
+    /// Waits for a set with this many maps; returns their ids.
     fn wait_for_maps(&self, sets: &Subscriber<topic::Maps>, count: usize) -> Vec<u64> {
         let mut ids = Vec::new();
         self.wait(sets, |header, items| {
@@ -43,7 +43,7 @@ impl World {
     }
 }
 
-/// Sends a pose of the tracker on a map.
+/// Publishes a pose of the tracker on a map.
 fn send(poses: &Publisher<topic::Tracked>, map_id: u64, state: TrackState, pose_known: u32) {
     let mut loan = poses.loan(0).unwrap();
     let header = loan.header_mut();
@@ -84,7 +84,7 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
         true
     });
 
-    // The set is served again when one of its maps changes; what is shown stays.
+    // The set is served again when one of its maps changes; the displayed map stays.
     world.replace("map.pgm", &image(&[0, 0, 205]));
     world.wait(&sets, |header, items| {
         let set = MapSet::read(header, items).unwrap();
@@ -95,7 +95,7 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
         assert_eq!((map.name.as_str(), cells), ("hall", &[100, 100, 255][..]));
         true
     });
-    // One that is broken leaves all as they are.
+    // A broken list changes nothing.
     world.replace("maps.yaml", b"maps: []");
     let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
     assert!(error.contains("there are no maps"), "{error}");
@@ -113,7 +113,7 @@ fn maps_that_come_into_the_folder_are_served_and_other_files_are_not_looked_at()
     world.start_on_set();
     world.wait_for_maps(&sets, 1);
 
-    // A folder that is copied: it is there for a while before its files are.
+    // A folder that is being copied: it exists for a while before its files do.
     fs::create_dir(world.at("first")).unwrap();
     sleep(Duration::from_millis(600));
     for file in ["map.pgm", "map.yaml"] {
@@ -163,7 +163,7 @@ fn only_a_pose_that_is_believed_changes_the_map_that_is_shown_at_once() {
     }
     send(&poses, maps[1], TrackState::Unique, 0);
     send(&poses, maps[1], TrackState::Doubtful, 1);
-    // The next one that is sent.
+    // The next map that is sent.
     world.wait(&shown, |map, _| {
         assert_eq!((map.map_id, map.stamp.counter), (maps[1], counter + 1));
         true
@@ -182,7 +182,7 @@ fn without_room_a_set_and_a_map_are_not_sent_and_the_node_goes_on() {
         OwnFileSystem::Forbidden => return eprintln!("left out: {test}"),
     }
     let mut world = World::new("no-room", &[0, 255]);
-    // Of 1.2 MB.
+    // A map of 1.2 MB.
     world.add("yard", &[255]);
     let pixels = [&b"P5\n30000 40\n255\n"[..], &[255; 1_200_000]].concat();
     fs::write(world.at("yard.pgm"), pixels).unwrap();
@@ -195,7 +195,7 @@ fn without_room_a_set_and_a_map_are_not_sent_and_the_node_goes_on() {
     world.wait(&shown, |map, _| map.map_id == maps[0]);
     world.wait_for_state(&health, NodeState::Ready);
 
-    // Poses and reports have room beyond what stays free, a set or the yard has none.
+    // The remaining space is enough for poses and reports, but not for a set or the yard.
     let free = "df --output=avail -B1 /dev/shm | tail -n 1";
     let fill = format!("head -c $(( $({free}) - (1 << 20) - 600000 )) /dev/zero > /dev/shm/filler");
     let filled = Command::new("sh").args(["-c", &fill]).status().unwrap();

@@ -1,10 +1,10 @@
-//! The topics that are always subscribed to.
+//! Topics with a permanent subscription.
 
 use dashboard::Robot;
 use messages::topic;
 use transport::{Graph, Health, Input, Subscriber, TransportError, monotonic_ns};
 
-/// All but the field, which is subscribed to when somebody looks.
+/// All topics but the field, which is subscribed to only while it is viewed.
 pub(super) struct Inputs {
     maps: Subscriber<topic::Map>,
     hypotheses: Subscriber<topic::Hypotheses>,
@@ -38,7 +38,7 @@ impl Inputs {
         [maps, hypotheses, poses, beams, health, log]
     }
 
-    /// Takes all that has come, a map before what was found in it.
+    /// Processes everything that has arrived, the map before the results that refer to it.
     pub(super) fn take(&self, to: &Robot, health: &mut Health) -> Result<(), TransportError> {
         if let Some(map) = self.maps.newest()? {
             health.count_received(1);
@@ -47,8 +47,8 @@ impl Inputs {
             }
         }
         while let Some(answer) = self.hypotheses.receive()? {
-            // A gap may be a scan that was never answered. What this node is too
-            // slow for is only not seen, and no loss of the graph's.
+            // Gaps are not counted as dropped: they may be scans that were never answered, and
+            // messages that only this node missed are no loss for the graph.
             health.count_received(1);
             to.on_answer(answer.header(), answer.items(), monotonic_ns());
         }
@@ -74,7 +74,7 @@ impl Inputs {
     }
 }
 
-/// Counts what cannot be shown.
+/// Counts and reports a message that cannot be shown.
 pub(super) fn refuse(health: &mut Health, problem: &str) -> Result<(), TransportError> {
     health.count_refused(1);
     health.error(problem)

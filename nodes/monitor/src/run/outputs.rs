@@ -1,4 +1,4 @@
-//! What those with the token may ask of the graph.
+//! Publishers for the requests of users with the token.
 
 use dashboard::Abilities;
 use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
@@ -19,7 +19,7 @@ impl Outputs {
         })
     }
 
-    /// Who subscribes to it.
+    /// Returns which requests have a subscriber.
     pub(super) fn abilities(&self) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),
@@ -27,7 +27,7 @@ impl Outputs {
         }
     }
 
-    /// Sends corners, metres in the map; none for everywhere.
+    /// Publishes a search region with these corners, metres in the map; none for everywhere.
     pub(super) fn region(&mut self, corners: &[[f64; 2]]) -> Result<(), TransportError> {
         let stamp = self.stamp();
         let mut loan = self.regions.loan(corners.len())?;
@@ -45,7 +45,7 @@ impl Outputs {
         loan.send()
     }
 
-    /// Nothing was measured: it is a request of this moment.
+    /// Returns a stamp of the current time, without a time of measurement.
     fn stamp(&mut self) -> Stamp {
         let counter = self.sent;
         self.sent += 1;

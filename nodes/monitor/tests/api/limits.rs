@@ -1,4 +1,4 @@
-//! Too many, too large, too slow.
+//! Limits on number, size and speed.
 
 use std::io::Read;
 use std::net::TcpStream;
@@ -13,16 +13,16 @@ fn silent_connections_lock_nobody_out() {
     let world = World::new("silent");
     let mut watcher = world.stream();
     assert_eq!(next(&mut watcher)["type"], "snapshot");
-    // More than are allowed at the same time; none says a word.
+    // More connections than are allowed at the same time, all of them silent.
     let mut silent: Vec<_> = (0..300)
         .map(|_| TcpStream::connect(world.site.0).unwrap())
         .collect();
     assert_eq!(world.site.get("/api/v1/robots")["robots"], json!(["r"]));
-    // The first one had to make room.
+    // The first one was closed to make room.
     assert_eq!(silent[0].read(&mut [0]).unwrap_or(0), 0);
-    // Those that are left have some seconds for a request, and are closed then.
+    // The remaining ones have a few seconds for a request and are then closed.
     assert_eq!(silent[299].read(&mut [0]).unwrap_or(0), 0);
-    // Whoever watches is not silent: it was not its turn.
+    // The watcher is not silent, so it was not closed.
     world.answer(1, 1.0);
     while next(&mut watcher)["type"] != "answer" {}
 }
@@ -32,7 +32,7 @@ fn hostile_sizes_end_the_connection_and_nothing_else() {
     let world = World::new("hostile");
     let mut socket = world.stream();
     next(&mut socket);
-    // More than a message to the monitor may have.
+    // Larger than a message to the monitor may be.
     let sent = socket.send(Message::text("x".repeat(1 << 20)));
     let ended =
         sent.is_err() || std::iter::from_fn(|| Some(socket.read())).any(|read| read.is_err());
@@ -46,7 +46,7 @@ fn hostile_sizes_end_the_connection_and_nothing_else() {
     };
     assert_eq!(u16::from(closed.code), 1008);
     assert!(closed.reason.contains("reboot"), "{}", closed.reason);
-    // A head without end is cut off, and garbage is no request.
+    // A header without end is cut off, and garbage is not a request.
     let head = format!(
         "GET / HTTP/1.1\r\nHost: x\r\nX: {}\r\n\r\n",
         "x".repeat(1 << 20)

@@ -1,4 +1,4 @@
-//! The API as anybody sees it from outside: over TCP, with a graph behind it.
+//! Tests of the API from outside: over TCP, with a graph behind it.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"

@@ -1,9 +1,9 @@
-//! What a terminal shows, for a phone to open the page by.
+//! Terminal output for opening the page on a phone.
 
 use transport::node::LOG_FORMAT_VARIABLE;
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 
-/// What the monitor logs in this form, where it listens at this address.
+/// Returns the monitor's log in this format, when it listens on this address.
 fn log(form: &str, listen: &str) -> String {
     let isolated = Isolated::new("phone");
     let graph = isolated.join("test");

@@ -1,4 +1,4 @@
-//! What is known, and what happens.
+//! Reading the state and following changes.
 
 use std::io::Read;
 
@@ -28,7 +28,7 @@ fn what_flows_in_the_graph_is_reported() {
     *loan.header_mut() = BeamsHeader::zeroed();
     loan.send().unwrap();
     assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
-    // A later viewer gets the same at once.
+    // A later viewer gets the same state at once.
     let known = world.site.get("/api/v1/robots/r");
     assert_eq!(known["answer"]["counter"], 7);
     let names: Vec<&Value> = known["nodes"]
@@ -58,7 +58,7 @@ fn the_trackers_pose_is_reported_with_its_age() {
     assert_eq!(known["pose"]["counter"], 7);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
     assert_eq!(known["track"], json!([[1.5, 2.0, "U", 0.5]]));
-    // A later viewer gets its age.
+    // A later viewer gets the age of the pose.
     let age_s = known["ages"]["scan_s"].as_f64().unwrap();
     assert!(age_s >= 61.0, "{age_s}");
 }

@@ -1,4 +1,4 @@
-//! Who is not let in.
+//! Requests that are refused.
 
 use crate::world::World;
 
@@ -11,7 +11,7 @@ fn other_sites_are_refused() {
     assert_eq!(ask(&[&format!("Origin: http://{}", world.site.0)]), 200);
     assert_eq!(ask(&["Host: evil.example"]), 421);
     assert_eq!(ask(&["Sec-Fetch-Site: cross-site"]), 403);
-    // A WebSocket is not kept from other sites by browsers.
+    // Browsers do not block WebSockets from other sites.
     let upgrade = [
         "Connection: Upgrade",
         "Upgrade: websocket",

@@ -1,4 +1,4 @@
-//! States that are posted to a server of the user's.
+//! State changes posted to the user's server.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
@@ -9,11 +9,11 @@ use transport::testing::wait_until;
 
 use crate::world::World;
 
-/// The age of a scan that is of an hour from now: it does not become old while the test runs,
-/// which would be another change of state.
+/// Age of a scan stamped one hour ahead, in seconds, so that it does not become old during the
+/// test, which would be a further state change.
 const FRESH: i64 = -3600;
 
-/// Takes a request, and answers it with a status; returns its first line and its body.
+/// Accepts a request and answers it with a status; returns its first line and its body.
 fn take(listener: &TcpListener, status: &str) -> (String, Value) {
     let (mut stream, _) = listener.accept().unwrap();
     let mut lines = BufReader::new(stream.try_clone().unwrap());
@@ -51,7 +51,7 @@ fn each_change_of_state_is_posted() {
     }
     assert_eq!(first["graph"], world.graph.name().as_str());
     assert!(first["since_s"].as_f64().unwrap() > 1.7e9, "{first}");
-    // The same state again is no change, and what is refused is logged and not sent again.
+    // The same state again is no change; a post that is refused is logged and not repeated.
     world.track(2, TrackState::Unique, 1.75, FRESH);
     world.track(3, TrackState::Lost, 2.0, FRESH);
     let (_, lost) = take(&listener, "500 Broken");
@@ -77,7 +77,7 @@ fn each_change_of_state_is_posted() {
         (&found["state"], &found["before"]),
         (&json!("Unique"), &json!("Lost"))
     );
-    // Nobody there any more: the page is not troubled.
+    // The server is gone, which does not affect the page.
     drop(listener);
     world.track(5, TrackState::Doubtful, 3.0, FRESH);
     let known = world.wait_for_state(|known| known["pose"]["counter"] == 5);

@@ -1,4 +1,4 @@
-//! The node in a graph of its own, which a test speaks in.
+//! The node in a graph of its own, fed by the test.
 
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
@@ -15,12 +15,12 @@ use tungstenite::{Message, WebSocket, client};
 
 pub(crate) const TOKEN: &str = "0123456789abcdef";
 
-/// As the API says it.
+/// Returns the map id as written by the API.
 pub(crate) fn map_name() -> String {
     format!("{:016x}", DrawnMap::small().header.map_id)
 }
 
-/// The node in a graph of its own, and what it may be asked.
+/// The node in a graph of its own, and its web address.
 pub(crate) struct World {
     node: Option<NodeProcess>,
     pub(crate) site: Site,
@@ -38,7 +38,7 @@ impl World {
         World::with(test, &[])
     }
 
-    /// With more arguments for the node.
+    /// Starts the node with additional arguments.
     pub(crate) fn with(test: &str, arguments: &[&str]) -> World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
@@ -82,7 +82,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Sends where the tracker has the robot, by a scan that came `age_s` ago.
+    /// Publishes a pose of the tracker, from a scan that arrived `age_s` seconds ago.
     pub(crate) fn track(&self, counter: u64, state: TrackState, x: f64, age_s: i64) {
         let words = b"one place is left";
         let mut loan = self.poses.loan(words.len()).unwrap();
@@ -102,13 +102,13 @@ impl World {
         };
         header.stamp.counter = counter;
         header.stamp.entered_ns = header.sent_ns - age_s * 1_000_000_000;
-        // Nothing is sent before it was measured.
+        // A message is not sent before its measurement.
         header.sent_ns = header.sent_ns.max(header.stamp.entered_ns);
         loan.items_mut().copy_from_slice(words);
         loan.send().unwrap();
     }
 
-    /// Asks until the answer is as it should be; the graph continues meanwhile.
+    /// Repeats the request until the answer satisfies `is_awaited`; the graph keeps running.
     pub(crate) fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
         let mut found = None;
         let tick = std::time::Duration::from_millis(20);

@@ -1,4 +1,4 @@
-//! What changes the graph.
+//! Requests that change the graph.
 
 use messages::{Corner, topic};
 use serde_json::json;

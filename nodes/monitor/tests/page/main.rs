@@ -1,5 +1,5 @@
-//! The page in a browser, in each state of the robot: what an operator reads, and that
-//! everybody can read and reach it.
+//! Tests of the page in a browser, in each state of the robot: the text that operators read, and
+//! accessibility.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -26,7 +26,7 @@ fn browser(test: &str, width: u32, height: u32) -> Option<Browser> {
     browser
 }
 
-/// Waits until the card says a word.
+/// Waits until the card shows this word.
 fn wait_for(browser: &Browser, word: &str) {
     let is_said = format!("document.getElementById('verdict').textContent === '{word}'");
     browser.wait_until(&is_said);
@@ -47,7 +47,8 @@ fn click(browser: &Browser, selector: &str) {
     let _ = browser.run(&script);
 }
 
-/// Where the map shows exactly this colour: pixels of the page, each a group of its own.
+/// Returns the centres of the groups of pixels with exactly this colour on the map, in pixels of
+/// the page.
 fn spots(browser: &Browser, color: [u8; 3]) -> Vec<(f64, f64)> {
     let [red, green, blue] = color;
     let found = browser.run(&format!(
@@ -70,7 +71,7 @@ fn spots(browser: &Browser, color: [u8; 3]) -> Vec<(f64, f64)> {
     found.as_array().unwrap().iter().filter_map(pair).collect()
 }
 
-/// Clicks on the map, as a pointer does.
+/// Clicks on the map like a pointer.
 fn click_map(browser: &Browser, (x, y): (f64, f64)) {
     let _ = browser.run(&format!(
         "const canvas = document.getElementById('map');
@@ -110,7 +111,7 @@ fn while_several_places_fit_none_of_them_leads() {
     );
     assert!(text(&browser, "todo").contains("Drive a few metres"));
 
-    // All are in view, 90 m apart, though a view begins around 34.
+    // All places are in view although they are 90 m apart; the initial view covers about 34 m.
     let spots = loop {
         let spots = spots(&browser, OTHER);
         if spots.len() == PLACES.len() {
@@ -122,10 +123,10 @@ fn while_several_places_fit_none_of_them_leads() {
         apart(0, 1).max(apart(1, 2)).max(apart(0, 2)) > 500.0,
         "{spots:?}"
     );
-    // A click shows one of them in numbers, and where the pointer is.
+    // A click shows the numbers of a place, and the position of the pointer.
     click_map(&browser, spots[0]);
     assert!(text(&browser, "inspect-title").ends_with(" of 3"));
-    // Of the base: 2 cm, and what 0.01 radians make half a metre behind the laser.
+    // Of the base: 2 cm, plus the effect of 0.01 radians half a metre behind the laser.
     assert!(text(&browser, "inspect-facts").contains("95 % along5.0 cm"));
     assert!(text(&browser, "cursor").starts_with("x "));
     click(&browser, "#inspect-close");
@@ -146,11 +147,11 @@ fn the_card_says_where_how_sure_and_how_exact() {
     assert_eq!(text(&browser, "why"), "one place, fit 0.90, since 3 m.");
     let trust = text(&browser, "trust");
     assert!(trust.contains("87 % probable"), "{trust}");
-    // Two deviations and a half of 2 cm, and two of 0.6°.
+    // Two and a half deviations of 2 cm, and two of 0.6°.
     assert!(trust.contains("within 4.9 cm and 1.1° (95 %)"), "{trust}");
     let weight = "return Number(getComputedStyle(document.querySelector('#pose dd')).fontWeight)";
     assert!(browser.run(weight).as_i64().unwrap() > 500, "it is known");
-    // Of the base, and of the laser on demand.
+    // Pose of the base, or of the laser on request.
     let [laser, _, _] = PLACES;
     assert_eq!(
         text(&browser, "pose-x"),
@@ -162,7 +163,7 @@ fn the_card_says_where_how_sure_and_how_exact() {
         laser.x
     );
     browser.wait_until(&is_laser);
-    // Places that are hardly possible are hidden.
+    // Places with a very low probability are hidden.
     assert_eq!(
         browser.run("return document.querySelectorAll('#places tr').length"),
         1
@@ -173,7 +174,7 @@ fn the_card_says_where_how_sure_and_how_exact() {
     assert_eq!(title, format!("unique · r7 · {} · Backcast", stage.graph));
     assert_eq!(text(&browser, "graph-name"), stage.graph.to_string());
 
-    // A click on the end of a beam shows it, and the keys of the panel the next one.
+    // A click on the end of a beam shows it, and the panel's buttons show the next one.
     let ends = loop {
         let ends = spots(&browser, HIT);
         if ends.len() > 1 {
@@ -191,7 +192,7 @@ fn the_card_says_where_how_sure_and_how_exact() {
     click(&browser, "#beam-after");
     assert_ne!(text(&browser, "inspect-title"), first);
 
-    // Who pauses the page sees the past.
+    // A paused page shows the past.
     click(&browser, "#pause");
     wait_for(&browser, "Paused");
     assert_eq!(text(&browser, "link-text"), "Paused");
@@ -200,7 +201,7 @@ fn the_card_says_where_how_sure_and_how_exact() {
     wait_for(&browser, "Unique");
 }
 
-/// What colours the state: nothing, where it is past.
+/// Returns the kind that colours the state; empty for past states.
 fn kind(browser: &Browser) -> String {
     let script = "return document.getElementById('verdict').dataset.verdict";
     browser.run(script).as_str().unwrap().to_owned()
@@ -213,7 +214,7 @@ fn the_moments_when_it_was_lost_can_be_looked_at() {
         return;
     };
     let stage = Stage::new("lost");
-    // It was lost before anybody looked.
+    // The pose was lost before this page was opened.
     stage.show(UNIQUE);
     let early = Browser::open(1280, 800).unwrap();
     early.visit(&stage.url());
@@ -241,7 +242,7 @@ fn the_moments_when_it_was_lost_can_be_looked_at() {
     let places = text(&browser, "moment-places");
     assert!(places.contains("Last known place: x 49.50 m"), "{places}");
     assert!(places.contains("Found again: x 49.50 m"), "{places}");
-    // By keys: the state before it, and back to now.
+    // With the keyboard: the state before it, and back to the present.
     let press = |key: &str| {
         let _ = browser.run(&format!(
             "document.getElementById('timeline').dispatchEvent(
@@ -278,7 +279,7 @@ fn without_scans_all_turns_grey_and_says_what_to_check() {
     let dot = "return getComputedStyle(document.querySelector('.link i')).backgroundColor";
     assert_ne!(browser.run(dot), "rgb(29, 138, 87)", "not green");
     assert!(text(&browser, "link-text").starts_with("no data for "));
-    // The log, of one node alone.
+    // The log of a single node.
     let set = |id: &str, value: &str| {
         let _ = browser.run(&format!(
             "const list = document.getElementById('{id}');
@@ -296,7 +297,7 @@ fn without_scans_all_turns_grey_and_says_what_to_check() {
     ));
     set("log-level", "4");
     browser.wait_until(&format!("!{lines}.length"));
-    // Scans come again, and so does the colour.
+    // Scans arrive again, and the colour returns.
     stage.show(UNIQUE);
     wait_for(&browser, "Unique");
     assert_eq!(kind(&browser), "Unique");
@@ -348,7 +349,7 @@ fn everybody_can_read_and_reach_it() {
     }
 }
 
-/// What is to be clicked, and smaller than a finger: 44 pixels either way.
+/// Returns the controls smaller than 44 by 44 pixels, the size of a finger.
 fn small_targets(browser: &Browser) -> Value {
     browser.run(
         "const all = [...document.querySelectorAll('button, select, input, [role=slider]')];

@@ -1,4 +1,4 @@
-//! A graph that is in whatever state a test wants, with the monitor and a browser.
+//! A graph in any state that a test needs, with the monitor and a browser.
 
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
@@ -14,10 +14,10 @@ use tests::http::Site;
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns};
 
-/// The places that fit: where the laser would be.
+/// Places that fit, as poses of the laser.
 pub(crate) const PLACES: [Pose2; 3] = [place(50.0), place(5.0), place(95.0)];
 
-/// The base lies so far behind the laser.
+/// Distance of the base behind the laser, metres.
 pub(crate) const BEHIND_M: f64 = 0.5;
 
 const fn place(x: f64) -> Pose2 {
@@ -25,18 +25,18 @@ const fn place(x: f64) -> Pose2 {
     Pose2 { x, y, yaw }
 }
 
-/// What the graph does.
+/// State of the simulated graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scene {
     /// Several places fit, and there is no tracker.
     Ambiguous,
     /// The tracker is in this state.
     Tracked(TrackState),
-    /// No scan comes, for the laser cannot be reached.
+    /// No scans, because the laser cannot be reached.
     Silent,
 }
 
-/// The monitor, and what feeds it.
+/// The monitor and the thread that feeds it.
 pub(crate) struct Stage {
     node: Option<NodeProcess>,
     pub(crate) site: Site,
@@ -96,7 +96,7 @@ impl Drop for Stage {
     }
 }
 
-/// Sends what a graph would, twenty times a second, until nobody wants anything any more.
+/// Publishes the messages of a graph twenty times per second, until the stage is dropped.
 fn feed(graph: &GraphName, wanted: &Receiver<Scene>) {
     let graph = Graph::join_named("lms_reader", graph).unwrap();
     let mut health = graph.health().unwrap();
@@ -133,7 +133,7 @@ struct Source {
 }
 
 impl Source {
-    /// Serves a corridor of 100 by 10 metres.
+    /// Publishes the map of a corridor of 100 by 10 metres.
     fn new(graph: &Graph) -> Self {
         let is_free = |i: usize| (1..999).contains(&(i % 1000)) && (1..99).contains(&(i / 1000));
         let cells = (0..100_000).map(|i| if is_free(i) { 0 } else { 100 });
@@ -222,7 +222,7 @@ impl Source {
         loan.send()
     }
 
-    /// Two walls, four metres away.
+    /// Publishes the beams of two walls, four metres away.
     fn reflect(&self, stamp: Stamp) -> Result<(), TransportError> {
         let bearings = [std::f32::consts::FRAC_PI_2, -std::f32::consts::FRAC_PI_2];
         let mut loan = self.beams.loan(bearings.len())?;
@@ -243,7 +243,7 @@ impl Source {
     }
 }
 
-/// Of 2 cm along either axis, and 0.01 radians.
+/// Deviations of 2 cm along either axis, and 0.01 radians.
 const COVARIANCE: [f64; 9] = [4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 1e-4];
 
 fn behind(laser: Pose2) -> Pose2 {

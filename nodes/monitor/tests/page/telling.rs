@@ -1,4 +1,4 @@
-//! What the page tells who does not look at it closely: causes and notifications.
+//! Information for users who do not watch the page closely: causes and notifications.
 
 use serde_json::{Value, json};
 
@@ -33,7 +33,7 @@ fn the_first_cause_is_named_first() {
         assert!(is_so, "{found:?}, expected {expected:?}");
     };
     check(&[], Value::Null, &["is the graph started?"]);
-    // Later nodes wait for what the first does not send.
+    // Later nodes wait for the output of the first one.
     let tracker = node("tracker", "waiting", 0.0, "");
     let dead = node("lms_reader", "silent", 0.0, "");
     let expected = ["lms_reader does not report", "tracker waits"];
@@ -66,7 +66,7 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     stage.show(UNIQUE);
     browser.visit(&stage.url());
     wait_for(&browser, "Unique");
-    // In place of the browser's own, which asks whoever sits before it.
+    // Replaces the browser's notifications, which would ask the user.
     let _ = browser.run(
         "window.notified = [];
          window.Notification = class {

@@ -1,10 +1,10 @@
-//! What became of each beam.
+//! Classification of the beams.
 
 use engine::fit::{BeamClass, Ends};
 use engine::peaks::Places;
 use messages::{Beam, BeamFate};
 
-/// All beams of a scan, as they fare at the best place.
+/// Returns all beams of a scan with their classes at the best place.
 pub(super) fn judged(ends: &Ends, places: &Places) -> impl Iterator<Item = Beam> {
     let voted = ends.judged(&places.classes).map(|beam| Beam {
         bearing: beam.bearing as f32,

@@ -10,8 +10,8 @@ use crate::check::{check_on_map, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
 
-/// Reads the places from votes on several maps that were searched together, as the engine's
-/// `MapSet` does it in one process.
+/// Finds the places from votes on several maps that were searched together, with the same result as
+/// the engine's `MapSet` in one process.
 pub(super) fn on_several<'w>(
     header: &VotesHeader,
     votes: &[Vote],
@@ -89,7 +89,7 @@ mod tests {
         counter: 3,
     };
 
-    /// Two maps of a set, 7 and 8.
+    /// Returns two maps of a set, 7 and 8.
     fn maps() -> Maps {
         let map = |map_id| MapHeader {
             map_id,
@@ -117,7 +117,7 @@ mod tests {
         }
     }
 
-    /// What there is to say of so many votes on a map, of which the best has these.
+    /// Returns the header for this many votes on a map, the best of which has intensity `best`.
     fn on_map(map_id: u64, total: u64, best: u32) -> VotesHeader {
         let outcome = match best {
             0 => SearchOutcome::NoVotes,
@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    /// What is made of votes of which the parts say on which map they are; the first leads.
+    /// Returns the result for votes on the maps of `parts`; the first one leads.
     fn said(
         parts: &[VotesHeader],
         votes: &[Vote],

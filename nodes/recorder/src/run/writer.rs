@@ -1,4 +1,4 @@
-//! The thread that packs and writes.
+//! Thread that compresses and writes.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -12,18 +12,15 @@ use transport::with_causes;
 use crate::writing::{BlackBox, Limits, Parts, Preamble, Room, Store, Tally};
 use crate::{Config, Event, RecorderError};
 
-/// How long something may lie in memory before it is on its way to the disk;
-/// well below the guaranteed second.
+/// Longest time before data is written to the file, well below the guaranteed second.
 const FLUSH_PERIOD: Duration = Duration::from_millis(500);
 
-/// A million bytes.
 const MEGABYTE: u64 = 1_000_000;
 
-/// The state of the writer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Status {
     pub(super) tally: Tally,
-    /// Why it cannot write now.
+    /// Reason why it cannot write now.
     pub(super) problem: Option<String>,
 }
 
@@ -33,15 +30,15 @@ enum Command {
     Happened(Event),
 }
 
-/// The end from which it gets its work. What waits for it is bounded: more is
-/// dropped, and nobody waits.
+/// Handle of the writer thread. The queue is bounded: when it is full, messages are dropped without
+/// blocking.
 pub(super) struct Writer {
     commands: Sender<Command>,
     thread: JoinHandle<Status>,
     status: Arc<Mutex<Status>>,
     queued_bytes: Arc<AtomicUsize>,
     capacity_bytes: usize,
-    /// Messages that did not fit into the queue.
+    /// Number of messages that did not fit into the queue.
     dropped: u64,
 }
 
@@ -49,7 +46,7 @@ impl Writer {
     /// Creates the file and starts the thread.
     ///
     /// # Errors
-    /// If one of them cannot be.
+    /// If the file cannot be created or the thread not started.
     pub(super) fn start(graph: &str, config: &Config) -> Result<Self, RecorderError> {
         let preamble = Preamble::new(config, graph)?;
         let output = config.output.clone();
@@ -93,7 +90,7 @@ impl Writer {
         })
     }
 
-    /// Hands over an entry, or drops it where too much waits already.
+    /// Queues an entry, or drops it if the queue is full.
     pub(super) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
         let size = size(&entry);
         let queued = self.queued_bytes.fetch_add(size, Ordering::Relaxed);
@@ -105,12 +102,12 @@ impl Writer {
         self.send(Command::Put(entry))
     }
 
-    /// Asks it to save a black box.
+    /// Requests to save a black box.
     pub(super) fn save(&self, why: &str) -> Result<(), RecorderError> {
         self.send(Command::Save(why.to_owned()))
     }
 
-    /// Tells it of an event on which a black box is saved.
+    /// Reports an event on which a black box is saved.
     pub(super) fn happened(&self, event: Event) -> Result<(), RecorderError> {
         self.send(Command::Happened(event))
     }
@@ -125,10 +122,10 @@ impl Writer {
         status
     }
 
-    /// Waits until all is written.
+    /// Waits until everything is written.
     ///
     /// # Errors
-    /// If the thread has panicked.
+    /// If the thread panicked.
     pub(super) fn finish(self) -> Result<Status, RecorderError> {
         drop(self.commands);
         let mut status = self.thread.join().map_err(|_| RecorderError::ThreadEnded)?;
@@ -143,19 +140,19 @@ impl Writer {
     }
 }
 
-/// What the thread works with.
+/// State of the writer thread.
 struct WriterThread {
     store: Store,
     waiting: Receiver<Command>,
     queued_bytes: Arc<AtomicUsize>,
     status: Arc<Mutex<Status>>,
     problem: Option<String>,
-    /// How often what is written is synced to the disk.
+    /// Interval at which the file is synced to the disk; `None` for never.
     sync: Option<Duration>,
 }
 
 impl WriterThread {
-    /// Writes until nobody sends any more.
+    /// Writes until the handle is dropped.
     fn work(&mut self) -> Status {
         let mut flush_at = Instant::now() + FLUSH_PERIOD;
         let mut synced = Instant::now();
@@ -204,7 +201,7 @@ impl WriterThread {
         }
     }
 
-    /// Publishes its state, after an attempt to write.
+    /// Publishes the status after an attempt to write.
     fn note(&mut self, outcome: Result<(), RecorderError>) {
         self.problem = outcome.err().map(|error| with_causes(&error));
         let current = self.current();

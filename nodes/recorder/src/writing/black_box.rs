@@ -1,8 +1,7 @@
-//! The last minutes in memory, saved when somebody asks for them.
+//! Keeps the last minutes in memory and saves them on request.
 //!
-//! The disk is not touched before. What is older than asked for, or more than
-//! the memory allows, is forgotten; what a reader must know of it (the map, the
-//! mounts) is kept for the head of the file.
+//! Nothing is written before. Messages older than configured or beyond the memory limit are
+//! dropped; those that a reader needs (the map, the mounts) are kept for the head of the file.
 
 use std::collections::VecDeque;
 use std::io::{BufWriter, Write};
@@ -15,7 +14,7 @@ use ros_export::Entry;
 use super::{Preamble, Tally, name};
 use crate::RecorderError;
 
-/// What a message takes beside its bytes.
+/// Memory of a message in addition to its bytes.
 const OVERHEAD_BYTES: usize = 128;
 
 /// Limits of the files of a black box on the disk.
@@ -30,9 +29,9 @@ pub(crate) struct BlackBox {
     keep: Duration,
     capacity_bytes: usize,
     room: Room,
-    /// The newest message of the last file.
+    /// Time of the newest message in the last file.
     saved_ns: Option<i64>,
-    /// Events that the next file is about, and how often each came.
+    /// Events for the next file, with their counts.
     events: Vec<(String, u32)>,
     preamble: Preamble,
     kept: VecDeque<Entry>,
@@ -42,7 +41,7 @@ pub(crate) struct BlackBox {
 }
 
 impl BlackBox {
-    /// An empty one, of which saved files are called after `path`.
+    /// Creates an empty black box; saved files are named after `path`.
     pub(crate) fn new(
         path: PathBuf,
         keep: Duration,
@@ -65,8 +64,10 @@ impl BlackBox {
         }
     }
 
+    /// Adds an entry, drops entries beyond the limits, and saves a file if one is due.
+    ///
     /// # Errors
-    /// If a file is due for events before, and cannot be written.
+    /// If a file for earlier events is due and cannot be written.
     pub(super) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
         if let Entry::Message(message) = &entry {
             self.newest_ns = self.newest_ns.max(message.log_time_ns);
@@ -83,7 +84,7 @@ impl BlackBox {
         self.save_due_events()
     }
 
-    /// Whether the last file holds some of what is kept: one of now would overlap it.
+    /// Returns true if a file saved now would overlap the last one.
     fn is_in_last_file(&self) -> bool {
         self.saved_ns.is_some_and(|saved_ns| {
             let since_ns = i128::from(self.newest_ns) - i128::from(saved_ns);
@@ -91,8 +92,7 @@ impl BlackBox {
         })
     }
 
-    /// Writes what is kept because something happened: at once, or when the last file holds
-    /// nothing of it any more.
+    /// Saves because of an event: at once, or once the file no longer overlaps the last one.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -104,7 +104,7 @@ impl BlackBox {
         self.save_due_events()
     }
 
-    /// Writes what is kept where events wait for it, and a file would not overlap the last one.
+    /// Saves if there are unsaved events and the file would not overlap the last one.
     fn save_due_events(&mut self) -> Result<(), RecorderError> {
         match self.is_in_last_file() {
             true => Ok(()),
@@ -112,7 +112,7 @@ impl BlackBox {
         }
     }
 
-    /// Writes what is kept where events wait for it.
+    /// Saves if there are unsaved events.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -129,7 +129,7 @@ impl BlackBox {
         }
     }
 
-    /// Writes what is kept, which continues to be kept.
+    /// Writes the entries to a file, and also keeps them.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -146,7 +146,7 @@ impl BlackBox {
             }
         }
         let mut file = writer.finish()?;
-        // It is saved when a loss of power does not take it.
+        // Synced, so that the file survives a power failure.
         file.flush()
             .and_then(|()| file.get_ref().sync_data())
             .map_err(|source| RecorderError::Save {
@@ -160,7 +160,7 @@ impl BlackBox {
         Ok(())
     }
 
-    /// Removes the oldest files that there is no room for beside the newest.
+    /// Removes the oldest files beyond the limits; the newest one always stays.
     fn remove_oldest(&self, newest: &Path) {
         let files = name::created(&self.path).into_iter();
         let files = files.filter(|path| path != newest).filter_map(|path| {
@@ -168,7 +168,7 @@ impl BlackBox {
             Some((found.modified().ok()?, found.len(), path))
         });
         let mut files: Vec<_> = files.collect();
-        // The newest first.
+        // Sorted from newest to oldest.
         files.sort_unstable_by(|a, b| b.cmp(a));
         let newest_bytes = newest.metadata().map_or(0, |found| found.len());
         let (mut count, mut bytes) = (1, newest_bytes);
@@ -280,7 +280,7 @@ mod tests {
         let mut black_box = black_box(&folder, 4, 1 << 20);
         for second in 0..12 {
             black_box.put(message("/n", second, false)).unwrap();
-            // Something happens each second from 3 to 6, and in the end.
+            // An event each second from 3 to 6, and one at the end.
             if (3..7).contains(&second) || second == 11 {
                 black_box.happened("asked").unwrap();
             }
@@ -309,7 +309,7 @@ mod tests {
         std::fs::write(folder.path().join("r_notes.mcap"), "").unwrap();
         for _ in 0..5 {
             black_box.save("asked").unwrap();
-            // Times of files have the steps of the system's clock.
+            // File times have the resolution of the system clock.
             std::thread::sleep(Duration::from_millis(20));
         }
         let mut names: Vec<_> = std::fs::read_dir(folder.path())
@@ -317,7 +317,7 @@ mod tests {
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
         names.sort();
-        // A name that has become free is taken again.
+        // A name that has become free is used again.
         assert_eq!(names.len(), 4, "{names:?}");
         assert!(names.contains(&"r_notes.mcap".to_owned()), "{names:?}");
         black_box.room.bytes = 1;

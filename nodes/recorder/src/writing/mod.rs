@@ -1,7 +1,7 @@
-//! Files: what stands at their head, when they are flushed and split, what
-//! happens when the disk is full; and the black box.
+//! Files of a recording: their head, flushing, splitting, and handling of a full disk; and the
+//! black box.
 //!
-//! Everything here runs on the thread that writes and knows no graph.
+//! Everything here runs on the writer thread and does not use the graph.
 
 mod black_box;
 mod name;

@@ -1,4 +1,4 @@
-//! Names of files that do not exist yet.
+//! Names for new files.
 
 use std::fs::File;
 use std::io::ErrorKind;
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use crate::RecorderError;
 
-/// Most numbers that are tried.
+/// Largest number tried.
 const MAX: u32 = 100_000;
 
-/// Creates the file `path`, or where it exists the first of `stem_1.mcap`,
-/// `stem_2.mcap` and so on that does not; with `numbered`, `stem_0.mcap` and so
-/// on, as rosbag2 calls the parts of a bag. A folder that is missing is made.
+/// Creates the file `path`; if it exists, the first free one of `stem_1.mcap`, `stem_2.mcap` and so
+/// on. With `numbered`, the names start at `stem_0.mcap`, like the parts of a rosbag2 bag. Missing
+/// folders are created.
 ///
 /// # Errors
-/// If it cannot be created, or all names are taken.
+/// If the file cannot be created, or all names are taken.
 pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), RecorderError> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|source| RecorderError::Create {
@@ -45,7 +45,7 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
     })
 }
 
-/// The files that [`create`] has named so, in any order.
+/// Returns the existing files with names of [`create`], in any order.
 pub(super) fn created(path: &Path) -> Vec<PathBuf> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,

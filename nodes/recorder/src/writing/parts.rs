@@ -1,4 +1,4 @@
-//! A recording in one file, or in parts by size and time.
+//! Recording in one file, or in parts by size and time.
 
 use std::fs::File;
 use std::io::Write;
@@ -12,24 +12,24 @@ use super::staged::{Progress, Staged};
 use super::{Preamble, Tally, name};
 use crate::RecorderError;
 
-/// When a part ends, and how much may wait for the disk.
+/// Limits of a part, and of the data waiting for the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Limits {
-    /// Bytes of a part.
+    /// Size of a part in bytes.
     pub(crate) split_bytes: Option<u64>,
-    /// What a part covers, by the times of its messages.
+    /// Duration of a part, by the times of its messages.
     pub(crate) split_time: Option<Duration>,
-    /// Bytes in memory beyond which messages are dropped.
+    /// Number of bytes in memory beyond which messages are dropped.
     pub(crate) waiting_bytes: usize,
 }
 
-/// The parts, of which the last one is written to.
+/// Parts of a recording; the last one is open.
 pub(crate) struct Parts {
     path: PathBuf,
     limits: Limits,
     preamble: Preamble,
     part: Option<Part>,
-    /// The newest file, and those that were ended since the last time that all was synced.
+    /// Newest file, and files finished since the last sync.
     unsynced: Vec<(PathBuf, File)>,
     tally: Tally,
 }
@@ -38,14 +38,14 @@ struct Part {
     path: PathBuf,
     writer: RecordingWriter<Staged>,
     progress: Progress,
-    /// Of its first message.
+    /// Time of its first message.
     first_ns: Option<i64>,
-    /// Whether the disk took all that was flushed.
+    /// True if the last flush succeeded.
     flushed: bool,
 }
 
 impl Parts {
-    /// Begins the first file.
+    /// Creates the first file.
     ///
     /// # Errors
     /// If it cannot be created or written.
@@ -67,7 +67,7 @@ impl Parts {
         Ok(parts)
     }
 
-    /// Takes an entry; a message that cannot be written is counted as dropped.
+    /// Writes an entry; a message that cannot be written is counted as dropped.
     pub(super) fn put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
         let outcome = self.try_put(entry);
         if outcome.is_err() && matches!(entry, Entry::Message(_)) {
@@ -125,7 +125,7 @@ impl Parts {
                 source,
             })?;
         }
-        // What was ended changes no more.
+        // Finished files do not change any more.
         let ended = match self.part {
             Some(_) => self.unsynced.len().saturating_sub(1),
             None => self.unsynced.len(),
@@ -138,11 +138,11 @@ impl Parts {
         self.tally
     }
 
-    /// Ends the part if it is full; not while the disk is, for a part that is
-    /// ended could not be tried again.
+    /// Finishes the part if it is full. While the disk is full, the part stays open, since
+    /// finishing a part cannot be retried.
     fn split_before(&mut self, message: &Encoded) -> Result<(), RecorderError> {
         if self.part.is_none() {
-            // The part before could not be ended.
+            // The previous part could not be finished.
             return self.begin(Some(message.log_time_ns));
         }
         let is_full = self
@@ -186,7 +186,7 @@ impl Parts {
 
 impl Limits {
     fn reached(&self, part: &Part, next: &Encoded) -> bool {
-        // The chunk that is being packed comes on top: about a second's messages.
+        // The chunk being compressed comes on top: about one second of messages.
         let by_size = self
             .split_bytes
             .is_some_and(|limit| part.progress.all() >= limit);
@@ -216,7 +216,7 @@ mod tests {
             definition: "int64 n",
             latched,
             log_time_ns: second * SECOND,
-            // Bytes that do not pack: the file grows by about as many.
+            // Incompressible bytes, so that the file grows by about as much.
             body: (0..2000)
                 .map(|i: u32| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
                 .collect(),
@@ -334,7 +334,7 @@ mod tests {
         let mut parts = parts(&folder, None, None);
         parts.limits.waiting_bytes = 0;
         parts.put(&message("/n", 1, false)).unwrap();
-        // The beginning of the chunk waits already.
+        // The beginning of the chunk is already waiting.
         parts.put(&message("/n", 2, false)).unwrap();
         parts.flush().unwrap();
         parts.put(&message("/n", 3, false)).unwrap();

@@ -1,5 +1,4 @@
-//! What stands at the head of each file: who wrote it and how, and the files
-//! that belong to it.
+//! Head of each file: metadata about the recorder, and attached files.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,12 +12,12 @@ use transport::wall_ns;
 
 use crate::{Config, RecorderError};
 
-/// The head of a file, and what of its content must be known from its head on.
+/// Head of a file, and the latched content that each file has to start with.
 #[derive(Debug)]
 pub(crate) struct Preamble {
     metadata: BTreeMap<String, String>,
     files: Vec<File>,
-    /// What was said last under each name, and on each latched topic.
+    /// Last metadata of each name.
     said: BTreeMap<&'static str, BTreeMap<String, String>>,
     latched: BTreeMap<Cow<'static, str>, Encoded>,
 }
@@ -28,15 +27,15 @@ struct File {
     name: String,
     media_type: &'static str,
     content: Vec<u8>,
-    /// When it was read, nanoseconds since 1970.
+    /// Time of reading, nanoseconds since 1970.
     read_ns: i64,
 }
 
 impl Preamble {
-    /// Reads the files that the configuration names.
+    /// Reads the files to attach.
     ///
     /// # Errors
-    /// If one cannot be read.
+    /// If a file cannot be read.
     pub(crate) fn new(config: &Config, graph: &str) -> Result<Self, RecorderError> {
         let entry = |key: &str, value: String| (key.to_owned(), value);
         let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -57,7 +56,7 @@ impl Preamble {
         })
     }
 
-    /// Notes what later files need at their head.
+    /// Remembers entries that later files need at their head.
     pub(super) fn note(&mut self, entry: &Entry) {
         match entry {
             Entry::Message(message) if message.latched => {
@@ -119,7 +118,7 @@ fn read(path: &Path) -> Result<File, RecorderError> {
 
 #[cfg(test)]
 impl Preamble {
-    /// One that says nothing, for tests.
+    /// Returns an empty head for tests.
     pub(super) fn empty() -> Self {
         Preamble {
             metadata: BTreeMap::new(),

@@ -1,9 +1,8 @@
-//! A file that is written in whole steps: what comes between two of them stays
-//! in memory.
+//! File that is written in whole steps; data between two flushes stays in memory.
 //!
-//! If the disk takes a step only in part, the file is cut back to the step
-//! before, so that it always ends with a whole chunk, and the step is tried
-//! again later. A process that is killed loses what was not flushed.
+//! If the disk takes only part of a step, the file is truncated to the previous step, so that it
+//! always ends with a whole chunk, and the step is retried later. A process that is killed loses
+//! the data since the last flush.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -11,8 +10,7 @@ use std::os::unix::fs::FileExt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// How many bytes wait in memory, and how many there are in all; shared, for the
-/// writer owns the file.
+/// Number of bytes waiting in memory and number in total; shared, because the writer owns the file.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Progress(Arc<Counts>);
 
@@ -42,16 +40,16 @@ impl Progress {
 #[derive(Debug)]
 pub(super) struct Staged<F = File> {
     file: F,
-    /// Bytes in the file.
+    /// Number of bytes in the file.
     written: u64,
-    /// What follows them.
+    /// Data that follows them.
     step: Vec<u8>,
-    /// Where the next byte goes, from the start of the file.
+    /// Position of the next byte, from the start of the file.
     position: u64,
     progress: Progress,
 }
 
-/// What is asked of a file.
+/// File operations; a trait for tests.
 pub(super) trait Storage {
     fn write_all_at(&self, bytes: &[u8], at: u64) -> io::Result<()>;
     fn cut(&self, length: u64) -> io::Result<()>;
@@ -68,7 +66,7 @@ impl Storage for File {
 }
 
 impl<F: Storage> Staged<F> {
-    /// Writes to an empty file.
+    /// Starts with an empty file.
     pub(super) fn new(file: F, progress: Progress) -> Self {
         Staged {
             file,
@@ -100,10 +98,9 @@ impl<F: Storage> Write for Staged<F> {
         Ok(bytes.len())
     }
 
-    /// Takes the step.
     fn flush(&mut self) -> io::Result<()> {
         if let Err(error) = self.file.write_all_at(&self.step, self.written) {
-            // Where even that fails, a reader finds the last chunk cut short.
+            // If truncating fails as well, readers find a truncated last chunk.
             let _ = self.file.cut(self.written);
             return Err(error);
         }
@@ -139,7 +136,7 @@ mod tests {
 
     use super::*;
 
-    /// A disk with room for this many bytes; what does not fit is written in part.
+    /// Disk with room for this many bytes; what does not fit is written partly.
     #[derive(Debug, Clone, Default)]
     struct SmallDisk {
         bytes: Rc<RefCell<Vec<u8>>>,

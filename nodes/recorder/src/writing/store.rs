@@ -1,4 +1,4 @@
-//! Where entries go: to files at once, or to a black box.
+//! Destination of entries: files, or a black box.
 
 use ros_export::Entry;
 
@@ -12,10 +12,10 @@ pub(crate) enum Store {
 }
 
 impl Store {
-    /// Takes an entry; returns whether there was room.
+    /// Stores an entry.
     ///
     /// # Errors
-    /// If it cannot be written for another reason than a full disk.
+    /// If it cannot be written.
     pub(crate) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
         match self {
             Store::Parts(parts) => parts.put(&entry),
@@ -23,10 +23,10 @@ impl Store {
         }
     }
 
-    /// Brings to the disk what is there.
+    /// Writes buffered data to the disk.
     ///
     /// # Errors
-    /// If the disk does not take it; it is kept and tried again.
+    /// If the disk does not take it; it is kept and retried.
     pub(crate) fn flush(&mut self) -> Result<(), RecorderError> {
         match self {
             Store::Parts(parts) => parts.flush(),
@@ -34,11 +34,11 @@ impl Store {
         }
     }
 
-    /// Waits until the disk has what was flushed, so that a loss of power does not take it.
-    /// A black box is on the disk once it is saved.
+    /// Syncs flushed data to the disk, so that it survives a power failure. A black box is synced
+    /// when it is saved.
     ///
     /// # Errors
-    /// If the disk does not take it.
+    /// If syncing fails.
     pub(crate) fn sync(&mut self) -> Result<(), RecorderError> {
         match self {
             Store::Parts(parts) => parts.sync(),
@@ -46,10 +46,10 @@ impl Store {
         }
     }
 
-    /// Saves a black box; nothing for files, which are saved already.
+    /// Saves a black box; does nothing for files, which are already saved.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file cannot be written.
     pub(crate) fn save(&mut self, why: &str) -> Result<(), RecorderError> {
         match self {
             Store::Parts(_) => Ok(()),
@@ -57,10 +57,10 @@ impl Store {
         }
     }
 
-    /// Saves a black box because something happened, at once or with what happens next.
+    /// Saves a black box because of an event, at once or together with later events.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file cannot be written.
     pub(crate) fn happened(&mut self, event: &str) -> Result<(), RecorderError> {
         match self {
             Store::Parts(_) => Ok(()),
@@ -68,7 +68,7 @@ impl Store {
         }
     }
 
-    /// Ends the file, or saves what events still wait for.
+    /// Finishes the file, or saves the black box for unsaved events.
     ///
     /// # Errors
     /// If the disk does not take the rest.

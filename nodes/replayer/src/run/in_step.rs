@@ -1,20 +1,20 @@
-//! Nodes that only look on, and miss nothing all the same: the next scan waits for them.
+//! Nodes that only watch but must not miss anything: the next scan waits for them.
 
 use std::rc::Rc;
 
 use messages::{Stamp, topic};
 use transport::{Graph, Subscriber, TransportError};
 
-/// How many scans each of these nodes has taken, by its reports in topic `health`.
+/// Number of answers that each of these nodes has received, according to its reports on `health`.
 pub(super) struct InStep {
     reports: Option<Rc<Subscriber<topic::Health>>>,
     nodes: Vec<(String, u64)>,
-    /// The last scan that is answered.
+    /// Last scan that was answered.
     answered: Option<Stamp>,
 }
 
 impl InStep {
-    /// Nodes by their names.
+    /// Creates the state for the nodes with these names.
     pub(super) fn new(graph: &Graph, names: &[String]) -> Result<Self, TransportError> {
         Ok(InStep {
             reports: match names {
@@ -26,17 +26,17 @@ impl InStep {
         })
     }
 
-    /// The reports of the nodes, to wake whoever waits for them.
+    /// Returns the subscription to the reports, so that the event loop can wait for it.
     pub(super) fn reports(&self) -> Option<Rc<Subscriber<topic::Health>>> {
         self.reports.clone()
     }
 
-    /// Takes the answer to a scan.
+    /// Records the answer to a scan.
     pub(super) fn answer(&mut self, stamp: Stamp) {
         self.answered = Some(stamp);
     }
 
-    /// The last scan that is answered, once all nodes have taken the answer.
+    /// Returns the last answered scan once all nodes have received the answer.
     pub(super) fn done(&mut self) -> Result<Option<Stamp>, TransportError> {
         if let Some(reports) = &self.reports {
             while let Some(report) = reports.receive()? {

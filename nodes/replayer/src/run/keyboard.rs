@@ -5,23 +5,22 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use crate::pause::{Command, Pause};
 
-/// The typed lines.
+/// Receiver of the typed lines.
 pub(super) struct Keyboard {
     commands: Receiver<Command>,
 }
 
-/// What came of the lines.
+/// Effect of the typed lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KeyPress {
     Nothing,
-    /// Playing continues after a pause.
+    /// Playback continues after a pause.
     Resumed,
     Quit,
 }
 
 impl Keyboard {
-    /// Reads `input` to its end. The thread stays with it; it ends with the
-    /// process.
+    /// Reads `input` to its end on a thread that ends with the process.
     pub(super) fn read(input: impl BufRead + Send + 'static) -> std::io::Result<Self> {
         let (send, commands) = channel();
         let body = move || {
@@ -38,7 +37,8 @@ impl Keyboard {
         Ok(Keyboard { commands })
     }
 
-    /// Takes what was typed. Where nobody can type any more, nothing is held up.
+    /// Applies the typed lines. If the input has ended, a pause is lifted, since it could never end
+    /// otherwise.
     pub(super) fn take(&self, pause: &mut Pause) -> KeyPress {
         let before = *pause;
         loop {
@@ -68,7 +68,7 @@ mod tests {
 
     use super::*;
 
-    /// What was pressed, and the pause in the end, once `until` holds.
+    /// Types lines until the result satisfies `until`; returns the last effect and the pause.
     fn typed(lines: &'static str, until: impl Fn(KeyPress, Pause) -> bool) -> (KeyPress, Pause) {
         let keyboard = Keyboard::read(Cursor::new(lines)).unwrap();
         let mut pause = Pause::new(true);
@@ -88,7 +88,7 @@ mod tests {
         let (pressed, pause) = typed("p\n", |pressed, _| pressed != KeyPress::Nothing);
         assert_eq!((pressed, pause.is_paused()), (KeyPress::Resumed, false));
         let (pressed, _) = typed("q\n", |pressed, _| pressed != KeyPress::Nothing);
-        // The end of what is typed may be seen with it, or not.
+        // The end of the input may be seen at the same time or later.
         assert_eq!(pressed, KeyPress::Quit);
     }
 

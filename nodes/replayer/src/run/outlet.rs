@@ -1,4 +1,4 @@
-//! Where messages are published and errors are reported.
+//! Publishes messages and reports errors.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub(super) struct Outlet {
     pub(super) health: Health,
     pub(super) summary: Summary,
     pub(super) first_laser: Name,
-    /// Scans sent of the other lasers.
+    /// Number of scans sent, by the name of each further laser.
     others: BTreeMap<String, u64>,
 }
 
@@ -30,13 +30,12 @@ impl Outlet {
         })
     }
 
-    /// Whether anybody gets the scans.
+    /// Returns true if the scans have a subscriber.
     pub(super) fn has_subscribers(&self) -> bool {
         self.scans.has_subscribers()
     }
 
-    /// Sends a message now; returns the stamp that its answer will carry, if it is to
-    /// be answered.
+    /// Sends a message now; returns the stamp of the answer to expect, if any.
     pub(super) fn send(&mut self, timed: Timed) -> Result<Option<Stamp>, TransportError> {
         self.health.count_sent(1);
         match timed.content {
@@ -53,7 +52,7 @@ impl Outlet {
     ) -> Result<Option<Stamp>, TransportError> {
         let mut loan = self.scans.loan(ranges.len())?;
         loan.items_mut().copy_from_slice(ranges);
-        // Each laser counts its own scans, and those of the first are answered.
+        // Each laser counts its own scans, and those of the first one are answered.
         let is_first = header.laser == self.first_laser;
         let count = match is_first {
             true => &mut self.summary.scans,
@@ -67,21 +66,21 @@ impl Outlet {
         Ok(is_first.then_some(header.stamp))
     }
 
-    /// An answer came, to whichever scan.
+    /// Counts an answer to any scan.
     pub(super) fn count_answer(&mut self) -> Result<(), TransportError> {
         self.summary.answers += 1;
         self.health.count_received(1);
         self.health.state(NodeState::Ready)
     }
 
-    /// A message of the recording cannot be used.
+    /// Counts and reports a message that cannot be used.
     pub(super) fn refuse(&mut self, error: &PlaybackError) -> Result<(), TransportError> {
         self.summary.refused += 1;
         self.health.count_refused(1);
         self.complain(&with_causes(error))
     }
 
-    /// A scan got no answer in time.
+    /// Counts and reports a scan without an answer.
     pub(super) fn give_up(&mut self, stamp: Stamp, patience_s: f64) -> Result<(), TransportError> {
         self.summary.unanswered += 1;
         self.health.count_dropped(1);

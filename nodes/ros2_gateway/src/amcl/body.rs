@@ -1,4 +1,4 @@
-//! What a lifecycle manager starts and stops: the node but for its life.
+//! The part of the node that a lifecycle manager starts and stops.
 
 mod parts;
 
@@ -18,14 +18,14 @@ use crate::topics::Topics;
 use crate::{Config, GatewayError};
 use parts::Parts;
 
-/// What the graph says.
+/// Subscribers to the graph's results.
 pub(super) struct Said {
     pub(super) hypotheses: Subscriber<topic::Hypotheses>,
     pub(super) poses: Subscriber<topic::Tracked>,
     pub(super) health: Subscriber<topic::Health>,
 }
 
-/// What the node has joined, and as what.
+/// Context that the parts of the node share.
 #[derive(Clone, Copy)]
 pub(super) struct Joined<'a> {
     pub(super) graph: &'a Graph,
@@ -34,14 +34,14 @@ pub(super) struct Joined<'a> {
     pub(super) topics: &'a Topics,
 }
 
-/// The node but for its life.
+/// The node without its lifecycle state.
 pub(super) struct Body<'a> {
     joined: Joined<'a>,
     map_frame: String,
     inputs: Inputs,
     parts: Option<Parts>,
     bond: Option<Bond>,
-    /// What somebody says of where the robot is; kept until it can be handed on.
+    /// Initial pose from a message, a service or the parameters; kept until it can be handed on.
     pending: Option<InitialPose>,
     is_active: bool,
     was_active: bool,
@@ -61,7 +61,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Does what the lifecycle manager wants; whether it could.
+    /// Carries out a transition; returns true if that succeeded, which a shutdown always does.
     pub(super) fn change(&mut self, change: Change, parameters: &Parameters) -> bool {
         let outcome = match change {
             Change::Configure => self.configure(parameters),
@@ -103,7 +103,7 @@ impl<'a> Body<'a> {
         if self.pending.is_none() {
             self.pending = self.said_by(parameters, is_first);
         }
-        // Later, the tracker has its own.
+        // After the first activation, the tracker has a pose of its own.
         let saved = match is_first && self.pending.is_none() {
             true => self.saved(parameters),
             false => None,
@@ -115,7 +115,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Where parameters say that the robot starts.
+    /// Returns the initial pose of the parameters, if this activation uses it.
     fn said_by(&self, parameters: &Parameters, is_first: bool) -> Option<InitialPose> {
         let is_again = is_first || parameters.is_on("always_reset_initial_pose");
         let is_said = parameters.is_on("set_initial_pose") && is_again;
@@ -125,7 +125,7 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// Where the robot was when it was on last.
+    /// Returns the saved pose of the last run, if the parameters ask for it.
     fn saved(&self, parameters: &Parameters) -> Option<InitialPose> {
         if !parameters.is_on("initialize_at_saved_pose") {
             return None;
@@ -160,7 +160,7 @@ impl<'a> Body<'a> {
         self.bond.take().map_or(Ok(()), Bond::end)
     }
 
-    /// Takes and sends what there is, in this state of its life.
+    /// Handles all queued messages, according to the lifecycle state.
     pub(super) fn step(
         &mut self,
         said: &Said,
@@ -197,7 +197,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// What the node waits for in this state of its life.
+/// Returns the reason for which the node waits in this lifecycle state.
 fn missing(state: Primary) -> Option<&'static str> {
     match state {
         Primary::Unconfigured => {
@@ -209,7 +209,7 @@ fn missing(state: Primary) -> Option<&'static str> {
     }
 }
 
-/// Passes over what is sent to nobody.
+/// Discards the queued results of the graph.
 fn drain(said: &Said) -> Result<(), TransportError> {
     while said.hypotheses.receive()?.is_some() {}
     while said.poses.receive()?.is_some() {}

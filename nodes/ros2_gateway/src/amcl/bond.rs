@@ -1,5 +1,4 @@
-//! The bond with the lifecycle manager: signs of life while the node is active, which end
-//! when it is not.
+//! Bond with the lifecycle manager: heartbeats while the node is active, which end when it is not.
 
 use ros::{BondStatus, Header, Time};
 use transport::{monotonic_ns, wall_ns};
@@ -8,13 +7,14 @@ use twox_hash::XxHash3_128;
 use crate::GatewayError;
 use crate::rmw::{Member, Publisher};
 
-/// Without a sign for so long the manager gives the node up, seconds: as nav2 has it.
+/// Time without a heartbeat after which the manager gives the node up, seconds; the same as in
+/// nav2.
 const TIMEOUT_S: f32 = 4.0;
 
-/// The node's side.
+/// The node's end of the bond.
 pub(super) struct Bond {
     publisher: Publisher<BondStatus>,
-    /// The node's name, without its namespace.
+    /// Name of the node, without its namespace.
     id: String,
     instance_id: String,
     period_ns: i64,
@@ -22,14 +22,14 @@ pub(super) struct Bond {
 }
 
 impl Bond {
-    /// Of a node; `period_s` above 0.
+    /// Opens the bond of a node; `period_s` is above 0.
     pub(super) fn open(
         member: &Member,
         topic: &str,
         node: &str,
         period_s: f64,
     ) -> Result<Self, GatewayError> {
-        // Nobody else begins at this nanosecond in this process.
+        // No other bond of this process begins at this nanosecond.
         let seed = format!("{} {} {}", wall_ns(), monotonic_ns(), std::process::id());
         Ok(Bond {
             publisher: Publisher::open_blocking(member, topic, 10)?,
@@ -40,7 +40,7 @@ impl Bond {
         })
     }
 
-    /// Sends a sign of life where one is due.
+    /// Sends a heartbeat if one is due.
     pub(super) fn tick(&mut self) -> Result<(), GatewayError> {
         let now_ns = monotonic_ns();
         let is_due = |sent_ns| now_ns - sent_ns >= self.period_ns;
@@ -50,7 +50,7 @@ impl Bond {
         }
     }
 
-    /// Ends the bond in good order.
+    /// Tells the manager that the bond ends.
     pub(super) fn end(mut self) -> Result<(), GatewayError> {
         self.send(false)
     }

@@ -1,31 +1,31 @@
-//! Where the robot may be as a cloud of particles, for tools that show one. Pure.
+//! Possible poses of the robot as a particle cloud, for tools that show one. Pure.
 //!
-//! The points of a place fill its covariance evenly: by a sequence that repeats and not by
-//! chance, so that equal answers look equal.
+//! The particles of a pose fill its covariance evenly. They come from a deterministic sequence, so
+//! that equal results look equal.
 
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, PoseHeader};
 use ros::nav2_msgs::{Particle, ParticleCloud};
 use ros::{Header, planar};
 
-/// Points of a place.
+/// Number of particles for each pose.
 const POINTS: usize = 64;
 
-/// Hypotheses that are shown, and how likely they are at least.
+/// Largest number of hypotheses shown, and their minimum probability.
 const MOST: usize = 16;
 const LIKELY: f32 = 0.01;
 
-/// A place: its pose and covariance, and how likely the robot is there.
+/// A possible pose of the robot: the pose, its covariance and its probability.
 type Place = (Pose, Covariance, f64);
 
-/// The cloud about the pose that the tracker believes.
+/// Makes the cloud around the pose that the tracker believes.
 pub(super) fn of_pose(header: Header, from: &PoseHeader) -> ParticleCloud {
     let covariance = Covariance::from_rows(from.base_covariance);
     let place = (from.map_from_base.into(), covariance, from.probability);
     cloud(header, [place].into_iter())
 }
 
-/// The cloud about all hypotheses of a scan.
+/// Makes the cloud around the likely hypotheses of a scan.
 pub(super) fn of_hypotheses(
     header: Header,
     from: &HypothesesHeader,
@@ -61,15 +61,15 @@ fn cloud(header: Header, places: impl Iterator<Item = Place>) -> ParticleCloud {
                     pose.yaw + off[2],
                 ))
             })),
-            // As sure as can be.
+            // The covariance has no Cholesky root, for example if it is zero: all particles are at
+            // the pose.
             None => particles.extend((0..POINTS).map(|_| particle(pose))),
         }
     }
     ParticleCloud { header, particles }
 }
 
-/// Three numbers as if drawn from a normal distribution: Box and Muller's transform of
-/// Halton's sequence.
+/// Returns three numbers of a normal distribution: the Box-Muller transform of Halton's sequence.
 fn normal(index: usize) -> [f64; 3] {
     let [a, b, c, d] = [2, 3, 5, 7].map(|base| halton(index + 1, base));
     let pair = |radius: f64, turn: f64| {
@@ -81,7 +81,7 @@ fn normal(index: usize) -> [f64; 3] {
     [x, y, yaw]
 }
 
-/// The digits of a number behind the point in turn, between 0 and 1.
+/// Halton's sequence: the digits of the index in this base, mirrored at the radix point; 0 to 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut result, mut digit) = (0.0, 1.0);
     while index > 0 {
@@ -146,7 +146,7 @@ mod tests {
         let items = [item(1.0, 0.5), item(2.0, 0.25), item(3.0, 0.001)];
         let cloud = of_hypotheses(Header::default(), &header, &items);
         assert_eq!(cloud.particles.len(), 2 * POINTS);
-        // It has no covariance: all points are there.
+        // Without a covariance, all particles are at the pose.
         assert!(
             cloud.particles[..POINTS]
                 .iter()

@@ -1,6 +1,6 @@
-//! Where somebody says that the robot is, as the graph takes it. Pure.
+//! Conversion of initial poses to the graph's message. Pure.
 //!
-//! Refuses poses in other frames than the map's, and covariances that are none.
+//! Rejects poses in other frames than the map's, and invalid covariances.
 
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, Pose2, Stamp};
@@ -9,14 +9,13 @@ use ros::PoseWithCovarianceStamped;
 use crate::GatewayError;
 use crate::checks::measured_ns;
 
-/// How far a pose may be off of which nobody says it: standard deviations, metres and
-/// radians, as RViz has them.
+/// Standard deviations of a pose without a covariance, metres and radians; those of RViz.
 const UNSAID: (f64, f64) = (0.5, 0.26);
 
-/// Nobody points at a place better than this: standard deviations, metres and radians.
+/// Smallest standard deviations, metres and radians: no user points more precisely.
 const LEAST: (f64, f64) = (0.1, 0.05);
 
-/// The pose of a message, carried on by what the robot moved since its stamp.
+/// Converts the pose of a message, moved on by the robot's motion since its stamp.
 pub(super) fn of_message(
     message: &PoseWithCovarianceStamped,
     map_frame: &str,
@@ -53,7 +52,7 @@ pub(super) fn of_message(
     })
 }
 
-/// The pose of the parameters.
+/// Converts a pose of the parameters or of the saved file.
 pub(super) fn of_parameters(pose: Pose) -> InitialPose {
     InitialPose {
         stamp: Stamp::default(),
@@ -63,7 +62,6 @@ pub(super) fn of_parameters(pose: Pose) -> InitialPose {
     }
 }
 
-/// A pose as one of this kind.
 pub(super) fn of_kind(kind: InitialPoseKind, pose: InitialPose) -> InitialPose {
     InitialPose {
         kind: kind as u64,
@@ -71,7 +69,7 @@ pub(super) fn of_kind(kind: InitialPoseKind, pose: InitialPose) -> InitialPose {
     }
 }
 
-/// The robot may be anywhere.
+/// Returns the request to localize anywhere on the map.
 pub(super) fn anywhere() -> InitialPose {
     InitialPose {
         stamp: Stamp::default(),
@@ -126,7 +124,7 @@ mod tests {
         let hint = of_message(&message, "map", moved).unwrap();
         let expected = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2 + 0.5);
         assert!(Pose::from(hint.map_from_base).is_within(expected, 1e-12, 1e-12));
-        // Nobody said how sure it is.
+        // The message has no covariance.
         assert_eq!(hint.covariance[8], 0.26 * 0.26);
     }
 

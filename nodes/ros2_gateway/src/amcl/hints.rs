@@ -1,5 +1,4 @@
-//! Where somebody says that the robot is, by topic and by service, and what the tracker
-//! is sent of it.
+//! Initial poses from a topic or a service, and their way to the tracker.
 
 use messages::{InitialPose, InitialPoseKind, topic};
 use ros::nav2_msgs::SetInitialPose;
@@ -14,19 +13,19 @@ use crate::incoming::{MAX_BYTES, take};
 use crate::rmw::{Keeping, Member, Service, Subscription, Watch};
 use crate::topics::Topics;
 
-/// What comes, and where it goes.
+/// Sources of initial poses, and the publisher to the tracker.
 pub(super) struct Hints {
     initial_poses: Subscription<PoseWithCovarianceStamped>,
     set_initial_pose: Service<SetInitialPose>,
     reinitialize: Service<Empty>,
     publisher: Publisher<topic::InitialPoseTopic>,
     sent: u64,
-    /// What a pose that somebody says is taken for.
+    /// Kind of the initial poses: hint or believed.
     kind: InitialPoseKind,
 }
 
 impl Hints {
-    /// Poses are believed with no scan that confirms them where `are_believed` says so.
+    /// Opens the topic and services; with `are_believed`, poses need no scan that confirms them.
     pub(super) fn open(
         graph: &Graph,
         member: &Member,
@@ -47,7 +46,7 @@ impl Hints {
         })
     }
 
-    /// Takes what has come; the newest counts, and stays in `pending` until it can be handed
+    /// Takes the queued poses and requests; the newest stays in `pending` until it can be handed
     /// on.
     pub(super) fn take(
         &mut self,
@@ -74,7 +73,7 @@ impl Hints {
         self.set_initial_pose.serve(report, |request| {
             match said(&request.pose) {
                 Ok(found) => *pending = Some(found),
-                // The response has no room for it.
+                // The response has no field for it.
                 Err(error) => wrong.push(error),
             }
             Nothing::default()
@@ -90,7 +89,7 @@ impl Hints {
         Ok(())
     }
 
-    /// Hands on what is pending, once the tracker is there; what that was.
+    /// Sends the pending pose once there is a tracker; returns its kind.
     pub(super) fn hand_on(
         &mut self,
         pending: &mut Option<InitialPose>,
@@ -111,7 +110,7 @@ impl Hints {
     }
 }
 
-/// What a pose that somebody says is taken for.
+/// Returns the kind of initial poses: believed or hint.
 pub(super) fn kind(are_believed: bool) -> InitialPoseKind {
     match are_believed {
         true => InitialPoseKind::Believed,

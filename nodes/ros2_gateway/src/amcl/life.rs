@@ -1,5 +1,5 @@
-//! The services by which a lifecycle manager starts and stops the node, and what is
-//! published of it.
+//! Services by which a lifecycle manager starts and stops the node, and the topic of its
+//! transitions.
 
 use ros::lifecycle_msgs::{
     ChangeState, ChangeStateResponse, GetAvailableStates, GetAvailableStatesResponse,
@@ -13,7 +13,7 @@ use super::lifecycle::{self, Change, Lifecycle};
 use crate::GatewayError;
 use crate::rmw::{Member, Publisher, Service};
 
-/// The node's life, as others see it.
+/// The node's lifecycle with its services and events.
 pub(super) struct Life {
     pub(super) lifecycle: Lifecycle,
     change: Service<ChangeState>,
@@ -25,7 +25,7 @@ pub(super) struct Life {
 }
 
 impl Life {
-    /// Of the node with this whole name.
+    /// Opens the services of the node with this full name.
     pub(super) fn open(graph: &Graph, member: &Member, node: &str) -> Result<Self, GatewayError> {
         let name = |service: &str| format!("{node}/{service}");
         Ok(Life {
@@ -39,7 +39,7 @@ impl Life {
         })
     }
 
-    /// Answers who asks; `act` does what is wanted, and says whether it could.
+    /// Answers requests; `act` carries out a transition and returns true if it succeeded.
     pub(super) fn serve(
         &mut self,
         mut act: impl FnMut(Change) -> bool,
@@ -80,7 +80,7 @@ impl Life {
         Ok(())
     }
 
-    /// Goes on without being asked.
+    /// Configures and activates the node without a request.
     pub(super) fn start(&mut self, mut act: impl FnMut(Change) -> bool) {
         for change in [Change::Configure, Change::Activate] {
             turn(&mut self.lifecycle, &mut self.events, change, &mut act);

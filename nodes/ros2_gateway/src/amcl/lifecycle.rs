@@ -1,7 +1,7 @@
-//! The life of a managed node: its states, and which transition leads from which to
-//! which, with the numbers and names of `lifecycle_msgs`. Pure.
+//! Lifecycle of a managed node: states and transitions, with the numbers and names of
+//! `lifecycle_msgs`. Pure.
 //!
-//! Refuses transitions that do not begin in the state that the node is in.
+//! Rejects transitions that do not begin in the state that the node is in.
 
 use ros::lifecycle_msgs::{State, Transition, TransitionDescription, TransitionEvent};
 
@@ -15,7 +15,7 @@ pub(crate) enum Primary {
     Finalized = 4,
 }
 
-/// What others may ask for.
+/// Transition that others may request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Change {
     Configure,
@@ -25,7 +25,7 @@ pub(crate) enum Change {
     Shutdown,
 }
 
-/// All states by number, those on the way from one to the next included.
+/// All states by number, including those in the course of a transition.
 const STATES: [(u8, &str); 11] = [
     (0, "unknown"),
     (1, "unconfigured"),
@@ -40,11 +40,11 @@ const STATES: [(u8, &str); 11] = [
     (15, "errorprocessing"),
 ];
 
-/// A transition that others may ask for, as in [`ASKED`].
+/// Row of [`ASKED`].
 type Asked = (u8, &'static str, Primary, u8, Change, Primary);
 
-/// What others may ask for: the transition's number and name, the state in which it
-/// begins, the state on the way, what it means, and the state to which it leads.
+/// Transitions that others may request: number, name, start state, state in between, meaning and
+/// goal state.
 const ASKED: [Asked; 7] = {
     use {Change as C, Primary as P};
     [
@@ -72,7 +72,7 @@ const ASKED: [Asked; 7] = {
     ]
 };
 
-/// How a state on the way ends: number, name, start and goal.
+/// Transitions that end a state in between: number, name, start and goal.
 const ENDS: [(u8, &str, u8, u8); 18] = [
     (10, SUCCESS, 10, 2),
     (11, FAILURE, 10, 1),
@@ -97,7 +97,6 @@ const SUCCESS: &str = "transition_success";
 const FAILURE: &str = "transition_failure";
 const ERROR: &str = "transition_error";
 
-/// The state of the node.
 #[derive(Debug)]
 pub(crate) struct Lifecycle {
     state: Primary,
@@ -118,10 +117,10 @@ impl Lifecycle {
         self.state
     }
 
-    /// What is asked for: by name where there is one, else by number.
+    /// Finds the requested transition: by name if there is one, else by number.
     ///
     /// # Errors
-    /// The reason why it cannot be now.
+    /// Returns the reason if the transition does not begin in this state.
     pub(crate) fn asked(&self, wanted: &Transition) -> Result<Change, String> {
         let from_here = ASKED.iter().filter(|row| row.2 == self.state);
         let is_wanted = |row: &&Asked| match &*wanted.label {
@@ -137,8 +136,7 @@ impl Lifecycle {
         })
     }
 
-    /// Goes on to the next state, or stays where the change failed; what there is to say
-    /// of it.
+    /// Goes to the next state, or stays if the change failed; returns the events to publish.
     pub(crate) fn take(
         &mut self,
         change: Change,
@@ -151,7 +149,7 @@ impl Lifecycle {
         };
         let word = if is_done { SUCCESS } else { FAILURE };
         let end = ENDS.iter().find(|end| end.2 == *way && end.1 == word);
-        // A shutdown succeeds always.
+        // A shutdown always succeeds.
         let goal = if is_done { *goal } else { *start };
         let first = (*id, *label, *start as u8, *way);
         let last = end.map(|end| (end.0, end.1, end.2, goal as u8));
@@ -171,7 +169,7 @@ impl Lifecycle {
             .collect()
     }
 
-    /// The transitions that begin in the state of the node.
+    /// Returns the transitions that begin in the state of the node.
     pub(crate) fn available(&self) -> Vec<TransitionDescription> {
         let here = self.state as u8;
         let all = graph().into_iter();
@@ -179,12 +177,10 @@ impl Lifecycle {
     }
 }
 
-/// All states.
 pub(crate) fn states() -> Vec<State> {
     STATES.iter().map(|(id, _)| state(*id)).collect()
 }
 
-/// All transitions.
 pub(crate) fn graph() -> Vec<TransitionDescription> {
     let asked = ASKED.iter().map(|r| (r.0, r.1, r.2 as u8, r.3));
     asked.chain(ENDS).map(described).collect()

@@ -1,9 +1,9 @@
-//! In the place of `nav2_amcl`: the same node, topics, services and parameters, and a pose
-//! with no initial guess.
+//! The gateway in the place of `nav2_amcl`: the same node, topics, services and parameters, and a
+//! pose without an initial guess.
 //!
-//! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud` and `standing` are pure; `life`
-//! and `parameter_services` offer the first two, `rosout` is the log and `type_descriptions` a service
-//! of each node, `body` is what a lifecycle manager
+//! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud` and `standing` are pure. `life` and
+//! `parameter_services` offer the first two to other nodes, `rosout` publishes the log, and
+//! `type_descriptions` is a service that each node has. `body` is the part that a lifecycle manager
 //! configures and activates, with `parts` while it is configured.
 
 mod body;
@@ -41,7 +41,7 @@ use parameters::Parameters;
 use rosout::Rosout;
 use type_descriptions::TypeDescriptions;
 
-/// Is nav2's AMCL until the stop flag is set; looks for what came every `tick`.
+/// Runs in AMCL's place until the stop flag is set; takes a step at least every `tick`.
 pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), GatewayError> {
     let node = rmw::resolve(&config.namespace, config.node());
     let node = node.map_err(|reason| GatewayError::Option {
@@ -115,9 +115,9 @@ fn load(parameters: &mut Parameters, path: &Path, node: &str) -> Result<Vec<Stri
     params_file::load(parameters, &text, &file, node)
 }
 
-/// Refuses a file of the saved pose that another user decides about. Where nobody has named
-/// a file, the pose is not saved then: another user who takes AMCL's default in `/tmp` does
-/// not keep the node from starting.
+/// Rejects a file of the saved pose that another user controls. If it is the default file, the pose
+/// is not saved instead: another user who occupies AMCL's default in `/tmp` does not keep the node
+/// from starting.
 fn check_saved_pose_file(parameters: &mut Parameters) -> Result<(), GatewayError> {
     let checked = parameters.saved_pose_file().map(saved_pose::check);
     match checked {
@@ -134,8 +134,8 @@ fn check_saved_pose_file(parameters: &mut Parameters) -> Result<(), GatewayError
     }
 }
 
-/// The options with what the parameters say. What was given as an option counts before
-/// them.
+/// Merges the parameters into the options. Options of the map's frame, the scans and the map's
+/// topic take precedence over parameters.
 fn applied(config: &Config, parameters: &Parameters) -> Config {
     let mut config = config.clone();
     config.seed = Seed::Never;

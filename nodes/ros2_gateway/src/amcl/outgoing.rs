@@ -1,4 +1,4 @@
-//! What AMCL publishes: the pose, where the robot may be, and the transform from map to
+//! The topics that AMCL publishes: the pose, the particle cloud and the transform from map to
 //! odometry.
 
 use geometry::Pose;
@@ -19,7 +19,7 @@ use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 
-/// What goes to the robot, while the node is active.
+/// Publishers to the robot, while the node is active.
 pub(super) struct Outgoing {
     pose: Publisher<PoseWithCovarianceStamped>,
     cloud: Publisher<ParticleCloud>,
@@ -27,14 +27,14 @@ pub(super) struct Outgoing {
     verdict: Verdict,
     pub(super) diagnostics: Diagnostics,
     standing: Standing,
-    /// Whether the tracker believes a pose.
+    /// True if the tracker believes a pose of the robot that is not outdated.
     is_believed: bool,
-    /// Whether the tracker was asked to start over, and has not yet: what it believes is of
+    /// True if the tracker was asked to start over and has not done so yet: its pose is from
     /// before.
     is_outdated: bool,
-    /// Whether time is that of the scans and of `/clock`, and not this machine's.
+    /// True if time is that of the scans and of `/clock`, not of this machine.
     uses_sim_time: bool,
-    /// The newest time of both.
+    /// Newest time of both, nanoseconds.
     sim_ns: i64,
 }
 
@@ -59,21 +59,21 @@ impl Outgoing {
         })
     }
 
-    /// Forgets what it would send again.
+    /// Forgets the state that would be sent again.
     pub(super) fn rest(&mut self) {
         self.standing = Standing::default();
         self.is_believed = false;
         self.is_outdated = false;
     }
 
-    /// Takes the time of a simulation: what is sent between scans is dated by it, so that
-    /// nothing is dated ahead of a simulation that is paused or slow.
+    /// Takes the simulation time, with which messages between scans are stamped: nothing is stamped
+    /// ahead of a simulation that is paused or slow.
     pub(super) fn on_sim_time(&mut self, now_ns: i64) {
         self.sim_ns = now_ns;
         self.diagnostics.on_sim_time(now_ns);
     }
 
-    /// The clock by which the transform is sent between scans.
+    /// Returns the time of the clock by which the transform is sent between scans.
     fn now_ns(&self) -> i64 {
         match self.uses_sim_time {
             true => self.sim_ns,
@@ -81,7 +81,7 @@ impl Outgoing {
         }
     }
 
-    /// The scan as it stands on that clock.
+    /// Converts the stamp of a scan to that clock.
     fn on_clock(&mut self, stamp: Stamp) -> Stamp {
         if !self.uses_sim_time {
             return stamp;
@@ -94,12 +94,12 @@ impl Outgoing {
         }
     }
 
-    /// The tracker was given where the robot is: what it believes counts.
+    /// Notes that the tracker was given a pose: its result counts again.
     pub(super) fn go_on(&mut self) {
         self.is_outdated = false;
     }
 
-    /// The tracker was asked to forget its pose: nothing is sent of it any more.
+    /// Notes that the tracker was asked to forget its pose: nothing is sent of it any more.
     pub(super) fn start_over(&mut self) {
         self.rest();
         self.is_outdated = true;
@@ -150,7 +150,7 @@ impl Outgoing {
         Ok(())
     }
 
-    /// Shows where the robot may be, while the tracker believes no pose.
+    /// Sends the hypotheses as a particle cloud while the tracker believes no pose.
     pub(super) fn found(
         &mut self,
         header: &HypothesesHeader,
@@ -172,7 +172,7 @@ impl Outgoing {
         Ok(())
     }
 
-    /// Sends the transform where it is due.
+    /// Sends the transform if it is due.
     pub(super) fn tick(
         &mut self,
         map_frame: &str,

@@ -1,4 +1,4 @@
-//! The services by which other nodes read and set the parameters.
+//! Services by which other nodes read and set the parameters.
 
 use ros::Time;
 use ros::rcl_interfaces::{
@@ -14,10 +14,10 @@ use super::parameters::Parameters;
 use crate::GatewayError;
 use crate::rmw::{Member, Publisher, Service};
 
-/// Events that are kept for those that are slow, as ROS has it.
+/// Number of events kept for slow subscribers; the same as in ROS.
 const EVENTS: usize = 1000;
 
-/// As each node of ROS has them.
+/// Parameter services of a node of ROS.
 pub(super) struct ParameterServices {
     describe: Service<DescribeParameters>,
     get: Service<GetParameters>,
@@ -26,12 +26,12 @@ pub(super) struct ParameterServices {
     set: Service<SetParameters>,
     set_all: Service<SetParametersAtomically>,
     events: Publisher<ParameterEvent>,
-    /// The node's whole name.
+    /// Full name of the node.
     node: String,
 }
 
 impl ParameterServices {
-    /// Of the node with this whole name.
+    /// Opens the services of the node with this full name.
     pub(super) fn open(
         graph: &Graph,
         member: &Member,
@@ -51,7 +51,7 @@ impl ParameterServices {
         })
     }
 
-    /// Answers who asks.
+    /// Answers queued requests.
     pub(super) fn serve(
         &mut self,
         parameters: &mut Parameters,
@@ -83,7 +83,7 @@ impl ParameterServices {
         self.list.serve(report, |request| ListParametersResponse {
             result: parameters.list(&request.prefixes, request.depth),
         })?;
-        // What one call has set is one event.
+        // All parameters that one call has set are one event.
         let mut changes: Vec<Vec<Parameter>> = Vec::new();
         self.set.serve(report, |request| {
             let mut changed = Vec::new();
@@ -117,7 +117,7 @@ impl ParameterServices {
         Ok(())
     }
 
-    /// Says what was set; to what it was already, too, as ROS does.
+    /// Publishes the parameters that were set, even to the value they had, like ROS.
     fn tell(
         &mut self,
         changed_parameters: Vec<Parameter>,

@@ -1,6 +1,6 @@
-//! AMCL's parameters, as a file and as other nodes set them. Pure.
+//! AMCL's parameters, as set by a file or by other nodes. Pure.
 //!
-//! Refuses what is of another type, out of range, or cannot change while the node runs.
+//! Rejects a value of another type or out of range, and a change that needs a restart of the node.
 
 mod declared;
 
@@ -17,7 +17,7 @@ use crate::GatewayError;
 pub(crate) use declared::FILE;
 use declared::{ALL, Counts, Declared};
 
-/// What a parameter holds.
+/// Value of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
     Bool(bool),
@@ -37,8 +37,8 @@ impl Default for Parameters {
 }
 
 impl Parameters {
-    /// Takes a value that a file has. The result is a remark: that the parameter is none of
-    /// AMCL's, or has no meaning here.
+    /// Takes a value of a file. Returns a remark if the parameter is not one of AMCL's or has no
+    /// meaning here.
     pub(super) fn load(
         &mut self,
         name: &str,
@@ -75,7 +75,7 @@ impl Parameters {
         }
     }
 
-    /// Sets all of these or none.
+    /// Sets all of the values or none.
     pub(super) fn set_all<'a>(
         &mut self,
         values: impl Iterator<Item = (&'a str, &'a ParameterValue)>,
@@ -112,7 +112,7 @@ impl Parameters {
         Ok((declared, value))
     }
 
-    /// What a parameter holds; of type `NotSet` where there is none.
+    /// Returns the value of a parameter; of type `NotSet` if there is none of that name.
     pub(super) fn get(&self, name: &str) -> ParameterValue {
         self.0
             .get(name)
@@ -120,13 +120,13 @@ impl Parameters {
             .unwrap_or_default()
     }
 
-    /// The parameter of that name with what it holds.
+    /// Returns the parameter of that name with its value.
     pub(super) fn named(&self, name: String) -> Parameter {
         let value = self.get(&name);
         Parameter { name, value }
     }
 
-    /// What a parameter means.
+    /// Returns the type, range and meaning of a parameter; of type `NotSet` if there is none.
     pub(super) fn describe(&self, name: &str) -> ParameterDescriptor {
         let unknown = ParameterDescriptor {
             name: name.to_owned(),
@@ -153,8 +153,8 @@ impl Parameters {
         })
     }
 
-    /// The names that begin with one of the prefixes, and no more than `depth` levels below
-    /// it; 0 is any number of levels.
+    /// Lists the names that begin with one of the prefixes and are at most `depth` levels below it;
+    /// 0 is any number of levels.
     pub(super) fn list(&self, prefixes: &[String], depth: u64) -> ListParametersResult {
         let is_near = |rest: &str| depth == 0 || (rest.matches('.').count() as u64) < depth;
         let is_listed = |name: &str| {
@@ -186,12 +186,12 @@ impl Parameters {
         }
     }
 
-    /// Whether there is one of that name.
+    /// True if there is a parameter of that name.
     pub(super) fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }
 
-    /// A text; empty where there is none of that name.
+    /// Returns the text of a parameter; empty if there is none of that name.
     pub(super) fn text(&self, name: &str) -> &str {
         match self.0.get(name) {
             Some(Value::Text(text)) => text,
@@ -199,19 +199,19 @@ impl Parameters {
         }
     }
 
-    /// The file of the saved pose; `None` where the pose is not saved.
+    /// Returns the file of the saved pose; `None` if the pose is not saved.
     pub(super) fn saved_pose_file(&self) -> Option<&Path> {
         let file = self.text(FILE);
         (!file.is_empty()).then(|| Path::new(file))
     }
 
-    /// Whether the file of the saved pose is the default.
+    /// True if the file of the saved pose is the default.
     pub(super) fn has_default_file(&self) -> bool {
         let default = declared(FILE).map(|declared| Value::from(declared.default));
         self.0.get(FILE) == default.as_ref()
     }
 
-    /// Does not save the pose.
+    /// Turns off saving the pose.
     pub(super) fn clear_saved_pose_file(&mut self) {
         self.0.insert(FILE, Value::Text(String::new()));
     }
@@ -220,7 +220,7 @@ impl Parameters {
         self.0.get(name) == Some(&Value::Bool(true))
     }
 
-    /// A number; 0 where there is none of that name.
+    /// Returns the number of a parameter; 0 if there is none of that name.
     pub(super) fn number(&self, name: &str) -> f64 {
         match self.0.get(name) {
             Some(Value::Double(number)) => *number,
@@ -228,7 +228,7 @@ impl Parameters {
         }
     }
 
-    /// Where the robot is said to be when it starts.
+    /// Returns the initial pose of the parameters.
     pub(super) fn initial_pose(&self) -> Pose {
         let of = |axis: &str| self.number(&format!("initial_pose.{axis}"));
         Pose::new(of("x"), of("y"), of("yaw"))
@@ -239,7 +239,7 @@ fn declared(name: &str) -> Option<&'static Declared> {
     ALL.iter().find(|declared| declared.name == name)
 }
 
-/// The value as the parameter holds it: a whole number is a number, too.
+/// Converts a value to the parameter's type and checks its range: an integer is a number, too.
 fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
     let value = match (Value::from(declared.default), value) {
         (Value::Double(_), Value::Integer(whole)) => Value::Double(whole as f64),
@@ -281,7 +281,7 @@ impl std::fmt::Display for Value {
             Value::Bool(value) => write!(f, "{value}"),
             Value::Integer(value) => write!(f, "{value}"),
             Value::Double(value) => write!(f, "{value:?}"),
-            // Somebody else decides how long it is.
+            // The text comes from outside and may have any length.
             Value::Text(value) => {
                 let end = value.floor_char_boundary(80);
                 write!(f, "the text {:?}", value.get(..end).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! A file of parameters in the form of ROS. Pure.
+//! Parser of parameter files in the format of ROS. Pure.
 //!
 //! ```yaml
 //! amcl:
@@ -6,23 +6,23 @@
 //!     initial_pose: { x: 1.0 }
 //! ```
 //!
-//! Nodes are called by name, in a namespace (`r2: amcl:` or `/r2/amcl:`), or by wildcards:
-//! `*` is one level, `/**` any number. The parameters of other nodes are not looked at.
+//! Nodes are given by name, in a namespace (`r2: amcl:` or `/r2/amcl:`), or by wildcards: `*`
+//! matches one level, `/**` any number. The parameters of other nodes are ignored.
 
 use serde_json::Value as Json;
 
 use super::parameters::{Parameters, Value};
 use crate::GatewayError;
 
-/// Under this word stand the parameters of a node.
+/// Key above the parameters of a node.
 const PARAMETERS: &str = "ros__parameters";
 
-/// Most bytes of a file, and how deep it may go: those of a whole robot fit many times.
+/// Largest size of a file in bytes, and its largest depth: many times those of a whole robot.
 const MAX_BYTES: usize = 1 << 20;
 const MAX_DEPTH: usize = 16;
 
-/// Takes from a file's text what it has for the node with this whole name; remarks on
-/// what has no effect.
+/// Loads the parameters of the node with this full name from a file's text; returns remarks on
+/// those without effect.
 pub(super) fn load(
     parameters: &mut Parameters,
     text: &str,
@@ -43,7 +43,7 @@ pub(super) fn load(
     let mut found = Found::default();
     find(&root, "", MAX_DEPTH, &mut found).map_err(&refuse)?;
     let mut remarks = Vec::new();
-    // Wildcards come before names in the order of bytes, so that names count.
+    // Wildcards sort before names, so that names override them.
     found.nodes.sort_by(|a, b| a.0.cmp(&b.0));
     let mut is_there = false;
     for (name, values) in found.nodes.iter().filter(|(name, _)| is_meant(name, node)) {
@@ -57,7 +57,7 @@ pub(super) fn load(
                     kind(json)
                 ))
             });
-            // Lists are none of AMCL's, but may stand in its file.
+            // AMCL has no lists, but its file may contain some.
             let remark = match (value, json) {
                 (Ok(value), _) => parameters.load(&parameter, value),
                 (Err(_), Json::Array(_)) if !parameters.has(&parameter) => Ok(Some(format!(
@@ -87,7 +87,7 @@ pub(super) fn load(
     Ok(remarks)
 }
 
-/// Takes one parameter, as `use_sim_time:=true`, whose value is one of YAML.
+/// Sets one parameter by a rule such as `use_sim_time:=true`, with a value in YAML.
 pub(super) fn set(
     parameters: &mut Parameters,
     rule: &str,
@@ -111,7 +111,7 @@ struct Found<'a> {
     nodes: Vec<(String, &'a Json)>,
 }
 
-/// All nodes below, with their names so far.
+/// Collects all nodes below, with their names so far.
 fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> Result<(), String> {
     let Json::Object(keys) = json else {
         return match (json, name) {
@@ -136,7 +136,7 @@ fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> 
     Ok(())
 }
 
-/// Whether the name, with wildcards, is that of the node.
+/// True if the pattern, which may have wildcards, matches the name of the node.
 fn is_meant(pattern: &str, node: &str) -> bool {
     let parts = |name: &str| -> Vec<String> {
         name.split('/')

@@ -1,4 +1,4 @@
-//! The log of the graph's nodes on the topic on which ROS collects logs.
+//! Log of the graph's nodes, on the topic on which ROS collects logs.
 
 use messages::{LogLevel, topic};
 use ros::{Log, Time};
@@ -9,11 +9,11 @@ use crate::GatewayError;
 use crate::config::NODE;
 use crate::rmw::{Member, Publisher};
 
-/// Lines that are kept for those who come late, as ROS has it.
+/// Number of lines kept for late subscribers; the same as in ROS.
 const LINES: usize = 1000;
 
-/// Publishes what the nodes log: the gateway's own lines by the name of the node in ROS, those
-/// of the others by loggers below it, as `amcl.tracker`.
+/// Publishes the log of the nodes: the gateway's own lines under the name of the node in ROS, those
+/// of the others under loggers below it, such as `amcl.tracker`.
 pub(super) struct Rosout {
     lines: Subscriber<topic::Log>,
     publisher: Publisher<Log>,
@@ -21,7 +21,7 @@ pub(super) struct Rosout {
 }
 
 impl Rosout {
-    /// Of the node with this whole name.
+    /// Opens the log of the node with this full name.
     pub(super) fn open(
         graph: &Graph,
         member: &Member,
@@ -35,11 +35,11 @@ impl Rosout {
         })
     }
 
-    /// Publishes the lines that have come.
+    /// Publishes the queued lines.
     pub(super) fn send(&mut self, report: &mut Report) -> Result<(), TransportError> {
         while let Some(line) = self.lines.receive()? {
             let header = line.header();
-            // As a node of ROS, unless somebody asks for more.
+            // Lines below level info are left out, like those of ROS nodes by default.
             if header.level < LogLevel::Info as u32 {
                 continue;
             }

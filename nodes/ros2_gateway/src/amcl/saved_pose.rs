@@ -1,4 +1,4 @@
-//! The last pose on disk, in the file and the form in which AMCL keeps it.
+//! The last pose on disk, in AMCL's file and format.
 
 use std::io::Write;
 use std::path::Path;
@@ -10,10 +10,10 @@ use serde::Deserialize;
 
 use crate::GatewayError;
 
-/// Most bytes of the file: it has six lines.
+/// Largest size of the file, bytes: it has six lines.
 const MAX_BYTES: u64 = 4096;
 
-/// What stands in the file; AMCL writes `z`, too, and older ones no frame.
+/// Content of the file; AMCL writes `z`, too, and older versions no frame.
 #[derive(Debug, Deserialize)]
 struct Kept {
     frame_id: Option<String>,
@@ -22,29 +22,28 @@ struct Kept {
     yaw: f64,
 }
 
-/// When the pose is saved.
+/// Pose to be saved, and the time of the last saving.
 #[derive(Debug, Default)]
 pub(super) struct SavedPose {
-    /// The last that was believed, and when it was measured, if it is not saved yet.
+    /// Last unique pose and the time of its scan in nanoseconds, if it is not saved yet.
     last: Option<(Pose, i64)>,
     saved_ns: Option<i64>,
 }
 
 impl SavedPose {
-    /// Takes the tracker's pose at a scan: what is doubtful is not kept.
+    /// Takes the tracker's pose at a scan; a doubtful one is not kept.
     pub(super) fn take(&mut self, header: &PoseHeader) {
         if header.is_unique() && header.mount_known == 1 {
             self.last = Some((header.map_from_base.into(), header.stamp.measured_ns));
         }
     }
 
-    /// Forgets it: it is wrong.
+    /// Forgets the pose, because it is wrong.
     pub(super) fn forget(&mut self) {
         self.last = None;
     }
 
-    /// What is to be saved now, at most `rate` times a second; never where that is 0 or
-    /// below.
+    /// Returns the pose to save now, at most `rate` times a second; never if that is 0 or below.
     pub(super) fn due(&mut self, rate: f64, now_ns: i64) -> Option<(Pose, i64)> {
         let since_ns = self
             .saved_ns
@@ -58,14 +57,14 @@ impl SavedPose {
         Some(due)
     }
 
-    /// What is left to be saved in the end.
+    /// Returns the pose that is still to be saved at the end.
     pub(super) fn left(&mut self, rate: f64) -> Option<(Pose, i64)> {
         self.last.take().filter(|_| rate > 0.0)
     }
 }
 
-/// Makes sure that the file can be named in the place where it is to be: by the parameter
-/// alone, and not by another user who puts a link there.
+/// Checks that the parameter alone decides which file is written, and not another user who puts a
+/// link in its place.
 ///
 /// # Errors
 /// Names the folder, link or file that is not trusted.
@@ -73,8 +72,8 @@ pub(super) fn check(file: &Path) -> Result<(), GatewayError> {
     trusted_files::check_place(file).map_err(|error| refused(file, &transport::with_causes(&error)))
 }
 
-/// Replaces the file at once, so that it is whole at any time; only its owner can read it.
-/// A link in its place is replaced and not followed.
+/// Replaces the file atomically, so that it is always complete; only its owner can read it. A link
+/// in its place is replaced and not followed.
 pub(super) fn save(
     file: &Path,
     map_frame: &str,
@@ -101,10 +100,10 @@ pub(super) fn save(
     write().map_err(|error| refused(file, &error))
 }
 
-/// The pose in the file; `None` where there is no file.
+/// Reads the pose of the file; `None` if there is no file.
 ///
 /// # Errors
-/// It is not trusted, cannot be read, holds no pose, or one in another frame than the map's.
+/// If the file is not trusted, cannot be read, or holds no pose in the map's frame.
 pub(super) fn load(file: &Path, map_frame: &str) -> Result<Option<Pose>, GatewayError> {
     let refuse = |reason: &dyn std::fmt::Display| Err(refused(file, reason));
     let text = match trusted_files::read(file, MAX_BYTES) {

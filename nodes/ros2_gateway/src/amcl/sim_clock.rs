@@ -1,4 +1,4 @@
-//! The time of a simulation, on topic `/clock`.
+//! Simulation time, from topic `/clock`.
 
 use ros::Clock;
 use transport::{Graph, TransportError};
@@ -10,7 +10,7 @@ use crate::incoming::{MAX_BYTES, take};
 use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::topics::Topics;
 
-/// Follows it.
+/// Subscription to the clock, with its newest time.
 pub(super) struct SimClock {
     clocks: Subscription<Clock>,
     now_ns: Option<i64>,
@@ -32,7 +32,6 @@ impl SimClock {
         })
     }
 
-    /// Takes what has come.
     pub(super) fn take(&mut self, report: &mut Report) -> Result<(), TransportError> {
         let SimClock {
             clocks,
@@ -46,7 +45,7 @@ impl SimClock {
         })
     }
 
-    /// The time, if one has come: nanoseconds since 1970.
+    /// Returns the newest time, nanoseconds since 1970; `None` before the first message.
     pub(super) fn now_ns(&self) -> Option<i64> {
         self.now_ns
     }

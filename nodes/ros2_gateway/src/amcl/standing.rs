@@ -1,28 +1,27 @@
-//! When the transform from map to odometry is sent: with each scan at which a pose is
+//! Decides when the transform from map to odometry is sent: with each scan at which a pose is
 //! believed, and at a steady rate until the next. Pure.
 //!
-//! Not when scans stay out for longer than a few of them: whoever drives by it would take
-//! what is old for new.
+//! It stops when several scans are missing: a controller would take an old transform for a new one.
 
 use geometry::Pose;
 use messages::Stamp;
 
-/// From one sending to the next, nanoseconds: as often as the slowest lasers scan.
+/// Time from one sending to the next, nanoseconds: the period of the slowest lasers.
 const AGAIN_NS: i64 = 50_000_000;
 
-/// For so many times the time between scans the last one counts.
+/// Number of scan periods for which the last scan counts.
 const SCANS: i64 = 4;
 
-/// The least and the most that this comes to, nanoseconds. One lost scan of a slow laser
-/// is none, and a robot goes no metre in a second.
+/// Limits of that time, nanoseconds: one lost scan of a slow laser is tolerated, and a robot moves
+/// less than a metre in a second.
 const LEAST_NS: i64 = 300_000_000;
 const MOST_NS: i64 = 1_000_000_000;
 
-/// The last scan, and what is sent of it.
+/// The last scan and its transform.
 #[derive(Debug, Default)]
 pub(super) struct Standing {
     last: Option<Last>,
-    /// When the scan before entered the graph.
+    /// Time at which the last scan entered the graph, nanoseconds.
     before_ns: Option<i64>,
     limit_ns: i64,
 }
@@ -35,7 +34,7 @@ struct Last {
     sent_ns: i64,
 }
 
-/// A transform that is due: when, by the clock of the scans, and what.
+/// Transform to be sent, with its time on the clock of the scans.
 #[derive(Debug, PartialEq)]
 pub(super) struct Due<'a> {
     pub(super) at_ns: i64,
@@ -44,7 +43,7 @@ pub(super) struct Due<'a> {
 }
 
 impl Standing {
-    /// Takes the pose of a scan, if one is believed; it is due at once.
+    /// Takes the transform of a scan, if a pose is believed; it is due at once.
     pub(super) fn on_scan(&mut self, stamp: Stamp, found: Option<(Pose, String)>) {
         let before = self.before_ns.replace(stamp.entered_ns);
         let between = before.map_or(MOST_NS, |before| stamp.entered_ns.saturating_sub(before));
@@ -57,11 +56,12 @@ impl Standing {
         });
     }
 
-    /// What is to be sent now, by the clock by which scans enter the graph.
+    /// Returns the transform to send at `now_ns`, a time of the clock by which scans enter the
+    /// graph.
     pub(super) fn due(&mut self, now_ns: i64) -> Option<Due<'_>> {
         let age_ns = |last: &Last| now_ns.saturating_sub(last.stamp.entered_ns).max(0);
         let limit_ns = self.limit_ns;
-        // The answer to a scan may take its time; it is sent at least once.
+        // The result of a scan may be late; it is sent at least once.
         self.last
             .take_if(|last| last.sent_ns != i64::MIN && age_ns(last) > limit_ns);
         let last = self.last.as_mut()?;
@@ -70,7 +70,7 @@ impl Standing {
             return None;
         }
         last.sent_ns = now_ns;
-        // The first is of the scan itself.
+        // The first one has the stamp of the scan itself.
         let since_ns = if is_first { 0 } else { age_ns };
         Some(Due {
             at_ns: last.stamp.measured_ns.saturating_add(since_ns),
@@ -88,7 +88,7 @@ mod tests {
 
     fn stamp(ms: i64) -> Stamp {
         Stamp {
-            // The robot's clock is another.
+            // The robot's clock differs from this machine's.
             measured_ns: (ms + 5000) * MS,
             entered_ns: ms * MS,
             counter: 0,
@@ -129,7 +129,7 @@ mod tests {
         standing.on_scan(stamp(700), None);
         assert_eq!(at(&mut standing, 701), None, "it is lost");
         standing.on_scan(stamp(800), found());
-        // The answer came late; it is of the scan, and not sent again.
+        // The result is late: it has the stamp of its scan, and is not sent again.
         assert_eq!(at(&mut standing, 5000), Some(800));
         assert_eq!(at(&mut standing, 5100), None);
     }

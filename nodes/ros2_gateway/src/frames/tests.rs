@@ -61,7 +61,7 @@ fn the_mount_comes_with_the_transforms_or_from_the_user() {
     }
 }
 
-/// A turn about x by half a turn.
+/// Half a turn about x.
 const OVER: Quaternion = Quaternion {
     x: 1.0,
     y: 0.0,
@@ -126,7 +126,7 @@ fn each_laser_has_its_own_mount_also_upside_down() {
         let found = frames.base_from_laser(1, "rear").unwrap();
         assert_eq!(found, Some(turned));
     }
-    // What is kept is bounded, and changes with the transforms.
+    // The cache is bounded, and changes with the transforms.
     for i in 0..3 * MAX_MOUNTS {
         frames.base_from_laser(1, &format!("f{i}")).unwrap();
         assert!(frames.mounts.len() <= MAX_MOUNTS);
@@ -225,7 +225,7 @@ fn the_odometry_lies_where_the_hypothesis_says() {
     };
     check("base_link", Some(5.5), &header);
     check("laser", Some(6.0), &header);
-    // Hypotheses are about the first laser, whichever sent a scan last.
+    // Hypotheses refer to the first laser, no matter which one sent the last scan.
     check("rear", Some(5.1), &header);
     check("base_footprint", Some(5.5), &header);
     check("base_footprint", None, &HypothesesHeader::zeroed());

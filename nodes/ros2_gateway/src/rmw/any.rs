@@ -1,4 +1,4 @@
-//! The middleware that was chosen: each type is that of `zenoh` or that of `dds`.
+//! The chosen middleware: each type wraps that of `zenoh` or that of `dds`.
 
 use ros::{RosMessage, RosService};
 use serde::de::DeserializeOwned;
@@ -12,15 +12,15 @@ use crate::middleware::{self, Rmw};
 use crate::waiting::Publishing;
 use crate::{Config, GatewayError};
 
-/// A node of ROS, as others see it, for as long as this lives.
+/// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) enum Member {
     Zenoh(Box<rmw_zenoh::Member>),
     Dds(Box<dds::Member>),
 }
 
 impl Member {
-    /// Joins the robot's domain by the names of the configuration; none once the stop flag
-    /// is set.
+    /// Joins the robot's domain under the names of the configuration; `None` once the stop flag is
+    /// set.
     pub(crate) fn join(
         graph: &Graph,
         config: &Config,
@@ -36,7 +36,7 @@ impl Member {
         })
     }
 
-    /// Zenoh's session, where Zenoh was chosen.
+    /// Returns Zenoh's session, if Zenoh was chosen.
     pub(crate) fn session(&self) -> Option<&Session> {
         match self {
             Member::Zenoh(member) => Some(member.session()),
@@ -44,7 +44,6 @@ impl Member {
         }
     }
 
-    /// The robot's domain.
     pub(crate) fn domain(&self) -> u32 {
         match self {
             Member::Zenoh(member) => member.domain(),
@@ -52,7 +51,7 @@ impl Member {
         }
     }
 
-    /// To be called now and then.
+    /// Does periodic work; to be called regularly.
     pub(crate) fn tick(&self) {
         match self {
             Member::Zenoh(_) => {}
@@ -60,7 +59,7 @@ impl Member {
         }
     }
 
-    /// Routers that are missing; empty where all are there, or none is needed.
+    /// Returns the missing routers; empty if all are there, or none is needed.
     pub(crate) fn missing(&self) -> String {
         match self {
             Member::Zenoh(member) => member.missing(),
@@ -69,22 +68,21 @@ impl Member {
     }
 }
 
-/// Sends messages of a topic.
 pub(crate) enum Publisher<M> {
     Zenoh(Box<rmw_zenoh::Publisher<M>>),
     Dds(Box<dds::Publisher<M>>),
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Reliable, with the last `depth` messages kept by those that are slow. What comes
-    /// with each scan is dropped where the robot's network is slower than the graph: it
-    /// is fresh or of no use.
+    /// Opens a reliable topic that keeps the last `depth` messages for slow subscribers. For
+    /// messages that come with each scan: they are dropped if the robot's network is slower than
+    /// the graph, since only fresh ones are of use.
     pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
         Self::with(member, topic, (Keeping::Reliable, depth), false)
     }
 
-    /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
-    /// is slow it is waited for.
+    /// Like [`Publisher::open`], for rare messages that must arrive: sending waits for a slow
+    /// network.
     pub(crate) fn open_blocking(
         member: &Member,
         topic: &str,
@@ -93,7 +91,7 @@ impl<M: RosMessage> Publisher<M> {
         Self::with(member, topic, (Keeping::Reliable, depth), true)
     }
 
-    /// Best effort, as sensors are: what nobody misses who did not get it.
+    /// Opens a best-effort topic, like those of sensors, for messages whose loss does not matter.
     pub(crate) fn open_fresh(
         member: &Member,
         topic: &str,
@@ -102,7 +100,7 @@ impl<M: RosMessage> Publisher<M> {
         Self::with(member, topic, (Keeping::Fresh, depth), false)
     }
 
-    /// Reliable and transient local: who joins later gets the last `depth` messages.
+    /// Opens a reliable, transient local topic: late subscribers get the last `depth` messages.
     pub(crate) fn open_kept(
         member: &Member,
         topic: &str,
@@ -137,14 +135,13 @@ impl<M: RosMessage> Publisher<M> {
     }
 }
 
-/// Receives messages of a topic.
 pub(crate) enum Subscription<M> {
     Zenoh(Box<rmw_zenoh::Subscription<M>>),
     Dds(Box<dds::Subscription<M>>),
 }
 
 impl<M: RosMessage + DeserializeOwned> Subscription<M> {
-    /// Takes messages of at most `max_bytes`; `depth` of them wait.
+    /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -164,17 +161,17 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    /// Messages that were lost because the queue was full since the last call.
+    /// Returns the number of messages lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         match self {
             Subscription::Zenoh(subscription) => subscription.dropped(),
-            // Gaps in the numbers of a sender show them.
+            // The sequence numbers of a sender show gaps.
             Subscription::Dds(_) => 0,
         }
     }
 
-    /// Most messages that can wait: who takes no more at once keeps no other topic
-    /// waiting, however fast they come.
+    /// Returns the largest number of queued messages: taking no more at once keeps a fast topic
+    /// from blocking the others.
     pub(crate) fn depth(&self) -> usize {
         match self {
             Subscription::Zenoh(subscription) => subscription.depth(),
@@ -182,11 +179,11 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         }
     }
 
-    /// Why a message was not let in at all, for each such.
+    /// Returns an error for each message that was too long to be queued.
     pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
         match self {
             Subscription::Zenoh(subscription) => subscription.next_too_long(),
-            // It stands in the place of the message.
+            // The error takes the place of the message.
             Subscription::Dds(_) => None,
         }
     }
@@ -199,7 +196,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     }
 }
 
-/// Offers a service as long as it lives.
+/// Offers a service until it is dropped.
 pub(crate) enum Service<S> {
     Zenoh(Box<rmw_zenoh::Service<S>>),
     Dds(Box<dds::Service<S>>),
@@ -217,8 +214,7 @@ impl<S: RosService> Service<S> {
         })
     }
 
-    /// Answers the calls that wait by what `respond` says, and counts them; returns how
-    /// many were answered.
+    /// Answers the queued calls with `respond`, and counts them; returns the number of answers.
     pub(crate) fn serve(
         &self,
         report: &mut Report,
@@ -231,14 +227,13 @@ impl<S: RosService> Service<S> {
     }
 }
 
-/// Watches the topics of other nodes.
 pub(crate) enum Watch {
     Zenoh(rmw_zenoh::Watch),
     Dds(dds::Watch),
 }
 
 impl Watch {
-    /// Reports subscribers of `subscribed`.
+    /// Opens a watch that reports subscribers of `subscribed`.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -268,7 +263,7 @@ impl Watch {
         }
     }
 
-    /// How the topic is published, by whoever does so as it is taken.
+    /// Returns the kind of the topic's publisher; a matching one counts before others.
     pub(crate) fn publishing(&self, topic: &str) -> Publishing {
         match self {
             Watch::Zenoh(watch) => watch.publishing(topic),
@@ -276,7 +271,7 @@ impl Watch {
         }
     }
 
-    /// Events that were not looked at since the last call: there were too many.
+    /// Returns the number of events dropped since the last call because there were too many.
     pub(crate) fn dropped(&self) -> u64 {
         match self {
             Watch::Zenoh(watch) => watch.dropped(),
@@ -284,7 +279,7 @@ impl Watch {
         }
     }
 
-    /// The next that is of interest.
+    /// Returns the next event of interest.
     pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
         match (self, member) {
             (Watch::Zenoh(watch), Member::Zenoh(member)) => watch.next(member),

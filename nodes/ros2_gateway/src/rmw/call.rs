@@ -1,13 +1,13 @@
-//! A call of a service, from bytes to bytes.
+//! A call of a service, from the bytes of the request to those of the response.
 
 use ros::RosService;
 
 use crate::GatewayError;
 
-/// Most bytes of a request: names and values of some hundred parameters.
+/// Largest size of a request, bytes: names and values of some hundred parameters.
 pub(super) const MAX_BYTES: usize = 64 << 10;
 
-/// The response to a request, both in CDR with its header.
+/// Returns the response to a request, both in CDR with its header.
 pub(super) fn answer<S: RosService>(
     topic: &str,
     request: &[u8],

@@ -1,6 +1,6 @@
-//! The type hash of a message or service, from the text of its definition, by the rule
-//! of REP-2011 (`RIHS01`): SHA-256 over the fields' names and types, and those of the
-//! types that it is made of.
+//! The type hash of a message or service, from the text of its definition, by the rule of REP-2011
+//! (`RIHS01`): SHA-256 over the names and types of its fields, and those of the types that it
+//! contains.
 //!
 //! Constants and defaults do not count.
 
@@ -15,10 +15,10 @@ use ros::RosMessage;
 use super::type_info::TypeInfo;
 use crate::GatewayError;
 
-/// What ROS puts into a message without fields.
+/// Field that ROS puts into a message without fields.
 const DUMMY: &str = "uint8 structure_needs_at_least_one_member";
 
-/// What each service keeps of its calls, for who watches.
+/// Definition of the event that each service publishes about its calls.
 const EVENT_INFO: &str = "\
 ================================================================================
 MSG: service_msgs/ServiceEventInfo
@@ -32,14 +32,14 @@ int32 sec
 uint32 nanosec
 ";
 
-/// Name and hash of a message type, as keys hold them.
+/// Returns name and hash of a message type, as keys hold them.
 pub(super) fn of_message<M: RosMessage>() -> Result<TypeInfo, GatewayError> {
     let mut parts = parts(M::SCHEMA, M::DEFINITION)?;
     let main = parts.remove(M::SCHEMA).unwrap_or_default();
     info(M::SCHEMA, described(M::SCHEMA, main), parts)
 }
 
-/// Likewise of a service whose request and response have these fields.
+/// Returns name and hash of a service type whose request and response have these fields.
 pub(super) fn of_service(
     name: &str,
     request: &str,
@@ -49,7 +49,7 @@ pub(super) fn of_service(
         ["Request", "Response", "Event"].map(|part| format!("{name}_{part}"));
     let mut all = parts(&requests, request)?;
     all.append(&mut parts(&responses, response)?);
-    // What stands before the first part has no name, and is nothing.
+    // The text before the first part has no name, and is empty.
     all.append(&mut parts("", EVENT_INFO)?);
     all.remove("");
     let sequence = TypeId::NESTED_TYPE_BOUNDED_SEQUENCE;
@@ -85,7 +85,7 @@ fn info(
     let parts = parts.into_iter();
     let hash = calculate_hash(&TypeDescriptionMsg {
         type_description: main,
-        // By name, as the rule wants them.
+        // Sorted by name, as the rule wants them.
         referenced_type_descriptions: parts.map(|(name, f)| described(&name, f)).collect(),
     });
     Ok(TypeInfo {
@@ -109,7 +109,7 @@ fn nested(name: &str, id: u8, capacity: u64, of: &str) -> FieldDescription {
     }
 }
 
-/// The fields of a type and of all that it is made of, by name.
+/// Returns the fields of a type and of all types that it contains, by name.
 fn parts(
     name: &str,
     definition: &str,
@@ -128,7 +128,7 @@ fn parts(
     Ok(parts)
 }
 
-/// `std_msgs/Header` and `std_msgs/msg/Header` are one.
+/// Expands `std_msgs/Header` to `std_msgs/msg/Header`.
 fn canonical(name: &str) -> String {
     match name.split_once('/') {
         Some((package, kind)) if !kind.contains('/') => format!("{package}/msg/{kind}"),
@@ -185,7 +185,7 @@ fn field(line: &str) -> Option<FieldDescription> {
         string_capacity,
         nested_type_name: match primitive {
             Some(_) => String::new(),
-            // Ours name the package of each type.
+            // Our definitions name the package of each type.
             None => kind.contains('/').then(|| canonical(kind))?,
         },
     };
@@ -200,7 +200,7 @@ fn primitive(kind: &str) -> Option<u8> {
     Some(match kind {
         "bool" => TypeId::BOOL,
         "byte" => TypeId::BYTE,
-        // In definitions it is a number of eight bits.
+        // In definitions, `char` is an unsigned number of eight bits.
         "char" | "uint8" => TypeId::UINT8,
         "int8" => TypeId::INT8,
         "int16" => TypeId::INT16,
@@ -276,7 +276,7 @@ mod tests {
         );
     }
 
-    /// As `rosbags` makes them of the definitions.
+    /// The hashes are those that `rosbags` makes of the definitions.
     #[test]
     fn messages_in_amcls_place_have_their_hashes() {
         check(
@@ -336,7 +336,7 @@ mod tests {
         );
     }
 
-    /// As `zenoh_ros2_sdk` makes them of the definitions.
+    /// The hashes are those that `zenoh_ros2_sdk` makes of the definitions.
     #[test]
     fn services_of_a_managed_node_have_their_hashes() {
         fn of<S: RosService>() -> Result<TypeInfo, GatewayError> {
@@ -357,7 +357,7 @@ mod tests {
             "rcl_interfaces::srv::dds_::DescribeParameters_",
             "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
         );
-        // With bounded texts.
+        // This one has bounded strings.
         check(
             of::<GetTypeDescription>(),
             "type_description_interfaces::srv::dds_::GetTypeDescription_",

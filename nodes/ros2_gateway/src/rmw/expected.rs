@@ -1,4 +1,4 @@
-//! The topics that are taken, and whether somebody publishes them as expected. Pure.
+//! The topics that the gateway takes, and how they are published. Pure.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use super::type_info::TypeInfo;
 use crate::GatewayError;
 use crate::waiting::Publishing;
 
-/// What was seen.
+/// Event of interest.
 #[derive(Debug)]
 pub(crate) enum Seen {
-    /// Somebody subscribes to the topic that is watched; the node's name.
+    /// A node subscribes to the topic that is watched: namespace and name of the node.
     Subscriber(String),
-    /// Somebody publishes a topic, where everything is looked for.
+    /// A node publishes a topic, while all topics are searched.
     Publisher {
         /// Namespace and name of the node.
         node: String,
         topic: String,
-        /// The type, as middleware names it.
+        /// Type name in the middleware.
         kind: String,
     },
-    /// Somebody publishes a topic that is taken in a way that it cannot be received.
+    /// A node publishes a topic that is taken, in a way that cannot be received.
     Stranger(GatewayError),
 }
 
@@ -30,24 +30,24 @@ pub(crate) enum Seen {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Endpoint {
     pub(super) is_publisher: bool,
-    /// Namespace and name.
+    /// Namespace and name of the node.
     pub(super) node: String,
     pub(super) topic: String,
     pub(super) info: TypeInfo,
 }
 
-/// What is awaited of other nodes.
+/// Topics that other nodes are expected to subscribe to or to publish.
 #[derive(Debug)]
 pub(super) struct Expected {
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
     is_everything: bool,
-    /// How those of them are published that somebody has published.
+    /// Kind of publisher of each published topic; a matching one counts before others.
     found: BTreeMap<String, Publishing>,
 }
 
 impl Expected {
-    /// Looks for subscribers of `subscribed`.
+    /// Expects subscribers of `subscribed`.
     pub(super) fn new(subscribed: &str) -> Self {
         Expected {
             subscribed: subscribed.to_owned(),
@@ -57,7 +57,7 @@ impl Expected {
         }
     }
 
-    /// Also looks for publishers of `topic`.
+    /// Also expects publishers of `topic`.
     pub(super) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
         let info = description::of_message::<M>()?;
         self.published.push((topic.to_owned(), info));
@@ -69,13 +69,14 @@ impl Expected {
         self.is_everything = true;
     }
 
-    /// How the topic is published, by whoever does so as it is taken.
+    /// Returns the kind of the topic's publisher; a matching one counts before others.
     pub(super) fn publishing(&self, topic: &str) -> Publishing {
         let found = self.found.get(topic);
         found.copied().unwrap_or(Publishing::Nobody)
     }
 
-    /// Whether anything is awaited of this topic.
+    /// True if publishers of this topic are of interest, or its subscribers if `is_publisher` is
+    /// false.
     pub(super) fn concerns(&self, is_publisher: bool, topic: &str) -> bool {
         match is_publisher {
             false => topic == self.subscribed,
@@ -83,7 +84,7 @@ impl Expected {
         }
     }
 
-    /// Takes notice of another node's topic; what is to be said of it.
+    /// Takes another node's topic; returns the event to report.
     pub(super) fn note(&mut self, endpoint: &Endpoint) -> Option<Seen> {
         let Endpoint { node, topic, .. } = endpoint;
         if !self.concerns(endpoint.is_publisher, topic) {
@@ -112,7 +113,7 @@ impl Expected {
         })
     }
 
-    /// Notes how a topic is published; one publisher whose messages are taken is enough.
+    /// Notes a publisher of a topic; one whose messages are taken is enough.
     pub(super) fn found_as(&mut self, topic: &str, how: Publishing) {
         if self.publishing(topic) != Publishing::Expected {
             self.found.insert(topic.to_owned(), how);
@@ -120,12 +121,12 @@ impl Expected {
     }
 }
 
-/// How a topic of this type is published, where another one is taken, or the same.
+/// Compares the type of a topic with the expected one.
 fn judge(found: &TypeInfo, expected: &TypeInfo) -> Publishing {
     match () {
         () if found == expected => Publishing::Expected,
         () if found.name != expected.name => Publishing::OtherType,
-        // Humble says none, and its messages are the same.
+        // Humble has no hashes, and its messages are the same.
         () if !found.hash.starts_with("RIHS01_") => Publishing::Expected,
         () => Publishing::OtherVersion,
     }

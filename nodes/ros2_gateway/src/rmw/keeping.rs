@@ -1,12 +1,12 @@
 //! The quality of service of a topic.
 
-/// Which messages a topic has for those who come late, in the words of ROS.
+/// Reliability and durability of a topic, in the words of ROS.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeping {
-    /// Best effort, volatile: sensors.
+    /// Best effort, volatile: for sensors.
     Fresh,
     /// Reliable, volatile.
     Reliable,
-    /// Reliable, transient local: the last of each sender is there.
+    /// Reliable, transient local: late subscribers get the last messages of each sender.
     Kept,
 }

@@ -1,7 +1,7 @@
-//! The robot's side: a node of ROS 2 with its topics and services, whatever the middleware.
+//! The robot's side: a node of ROS 2 with its topics and services, on any middleware.
 //!
-//! `zenoh` speaks as `rmw_zenoh` does and `dds` as Fast DDS and Cyclone DDS do; `any` is one
-//! of them, chosen at the start. The other files are pure and serve both.
+//! `zenoh` speaks the protocol of `rmw_zenoh`, and `dds` that of Fast DDS and Cyclone DDS; `any` is
+//! one of them, chosen at the start. The other files are pure and serve both.
 
 mod any;
 mod call;

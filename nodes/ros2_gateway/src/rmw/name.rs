@@ -1,10 +1,9 @@
-//! Names of topics and services, as ROS 2 resolves them.
+//! Full names of topics and services, as ROS 2 resolves them.
 
-/// The whole name of what is called `name` in `namespace`: itself where it begins
-/// with a slash.
+/// Returns the full name of `name` in `namespace`; a name that begins with a slash is full.
 ///
 /// # Errors
-/// The reason why there is no such name.
+/// Returns the reason if the name is invalid.
 pub(crate) fn resolve(namespace: &str, name: &str) -> Result<String, String> {
     let whole = if name.starts_with('/') {
         name.to_owned()

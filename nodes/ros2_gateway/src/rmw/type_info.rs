@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-/// A type, as all middlewares name it.
+/// Type name and hash, in the form that all middlewares use.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TypeInfo {
-    /// As `std_msgs::msg::dds_::String_`.
+    /// Name, such as `std_msgs::msg::dds_::String_`.
     pub(super) name: String,
-    /// As `RIHS01_` and 64 digits.
+    /// Hash: `RIHS01_` and 64 digits.
     pub(super) hash: String,
 }
 

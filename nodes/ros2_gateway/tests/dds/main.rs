@@ -31,11 +31,11 @@ const LIBRARIES: [&str; 9] = [
     "ros-jazzy-rcl-interfaces",
 ];
 
-/// So many bearings a scan has.
+/// Number of beams of a scan.
 const BEAMS: usize = 720;
 
-/// A domain of this process alone, as far as numbers go, away from those that people use;
-/// one of three.
+/// Returns one of three domains of this process, away from those that people use. Two processes
+/// have the same ones only if their ids are equal modulo 40.
 fn domain(number: u32) -> String {
     (101 + 3 * (std::process::id() % 40) + number).to_string()
 }
@@ -53,7 +53,7 @@ struct Joined {
 }
 
 impl Joined {
-    /// None where ROS cannot be had.
+    /// Returns `None` if ROS is not available.
     fn new(tag: &str, namespace: &'static str, options: &[&'static str]) -> Option<Self> {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
@@ -111,8 +111,8 @@ fn robot(domain: &str, namespace: &str) -> Option<Robot> {
     Some(Robot::run(&mut command))
 }
 
-/// Has the robot drive until its scan and its odometry are in the graph, which begins with
-/// the discovery of each other.
+/// Lets the robot drive until a scan and an odometry message are in the graph, once both sides have
+/// discovered each other.
 fn drive(joined: &mut Joined, ns: i64) -> (ScanHeader, Vec<f32>, Odometry) {
     let scans = joined.graph.subscriber::<topic::Scan>().unwrap();
     let odometries = joined.graph.subscriber::<topic::OdometryTopic>().unwrap();
@@ -145,7 +145,7 @@ fn drive(joined: &mut Joined, ns: i64) -> (ScanHeader, Vec<f32>, Odometry) {
     (header, ranges, odometry.unwrap())
 }
 
-/// When the first scan was measured.
+/// Stamp of the first scan, nanoseconds.
 const START_NS: i64 = 1_700_000_000_000_000_000;
 
 fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
@@ -251,7 +251,7 @@ fn what_the_graph_says_reaches_the_robot() {
     let hypotheses = joined.robot.wait_for("hypotheses");
     assert_eq!(hypotheses["poses"][0], seed["poses"][0]);
 
-    // Everybody who asks is answered.
+    // Every client that asks gets a response.
     joined.robot.order("reinitialize", json!({ "clients": 20 }));
     let said = joined.robot.wait_for("reinitialized");
     assert_eq!(said["missing"], 0);
@@ -323,7 +323,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
     let mut loan = poses.loan(0).unwrap();
     *loan.header_mut() = header;
     loan.send().unwrap();
-    // Kept for those who come later.
+    // Kept for late subscribers.
     joined
         .robot
         .order("subscribe", json!({ "topic": "amcl_pose" }));
@@ -346,7 +346,7 @@ fn publishers_that_cannot_be_received_are_named() {
     joined.stop();
 }
 
-/// By the commands that somebody types beside a robot that drives, of which nothing is known.
+/// Runs the commands that a user types next to an unknown robot that drives.
 #[test]
 fn a_robot_is_found_and_checked_while_it_drives() {
     let domain = domain(1);
@@ -390,7 +390,7 @@ fn nothing_crosses_from_one_domain_to_another() {
     let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.2,0,0"];
     let gateway = NodeProcess::start(executable, &other, options);
     let scans = other.subscriber::<topic::Scan>().unwrap();
-    // As often as the robot and its own gateway start anew.
+    // Repeated while that robot's own gateway is restarted.
     for _ in 0..3 {
         drive(&mut joined, START_NS);
         joined.stop();

@@ -8,7 +8,7 @@ use super::client::{ask, of_scan, parameters, state, until_now};
 use super::tracked::{poses_of, send_pose, tracked};
 use super::*;
 
-/// A stamp that is no scan's: milliseconds of the robot's clock.
+/// Returns a stamp of no scan, at milliseconds of the robot's clock.
 fn stamp(ms: i64) -> Stamp {
     Stamp {
         measured_ns: 1_700_000_000_000_000_000 + ms * 1_000_000,
@@ -17,7 +17,7 @@ fn stamp(ms: i64) -> Stamp {
     }
 }
 
-/// In AMCL's place, active, with these parameters and options.
+/// Starts an active node in AMCL's place, with these parameters and options.
 fn active(tag: &str, namespace: &str, more: &[&str], options: &[&str]) -> Option<Joined> {
     let file = parameters(&format!("{tag}.yaml"), more);
     let common = [
@@ -74,7 +74,7 @@ fn a_master_control_is_told_in_the_words_of_vda_5050() {
         "join",
         json!({ "name": "docking", "topic": "localization" }),
     );
-    // Its subscription has come when its call is answered.
+    // Once its call is answered, its subscription has arrived.
     assert_eq!(state(robot), "active");
     let poses = poses_of(&joined.graph);
     let sent = tracked(stamp(0));
@@ -120,7 +120,7 @@ fn a_master_control_is_told_in_the_words_of_vda_5050() {
         ),
         (&json!(4e-4), &json!(1e-2))
     );
-    // Who comes later has the last one at once.
+    // A late subscriber gets the last one at once.
     robot.order("join", json!({ "name": "late", "topic": "localization" }));
     of_scan(robot, "localization", sent.stamp.measured_ns);
     let lost = PoseHeader {
@@ -148,7 +148,7 @@ fn the_first_map_stays_where_parameters_say_so() {
         })
     };
     let (_, first) = next();
-    // Another one, of which nothing is taken.
+    // Another map, which is ignored.
     robot.order("other_map", json!({ "cell": 0 }));
     for _ in 0..2 {
         assert_eq!(state(robot), "active");
@@ -168,7 +168,7 @@ fn the_first_map_stays_where_parameters_say_so() {
     joined.stop();
 }
 
-/// The next message to the tracker.
+/// Waits for the next message to the tracker.
 fn hint(graph: &Graph, hints: &Subscriber<topic::InitialPoseTopic>) -> InitialPose {
     wait_for(graph, hints, |hint: &InitialPose, _| Some(*hint))
 }
@@ -178,7 +178,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let saved = folder.join("saved_pose");
     let file = format!("saved_pose_filepath: {}", saved.display());
-    // As AMCL leaves it.
+    // The file in AMCL's format.
     std::fs::write(
         &saved,
         "frame_id: map\nx: 1.25\ny: -2.5\nz: 0.0\nyaw: 0.5\n",
@@ -200,7 +200,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
         state: TrackState::Searching as u32,
         ..tracked(stamp(ms))
     };
-    // Who asks over the network names no file.
+    // No client on the network may name a file.
     let private = folder.join("private");
     std::fs::write(&private, "mine").unwrap();
     let other = json!({ "name": "saved_pose_filepath",
@@ -218,7 +218,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     let described = ask(robot, "amcl/describe_parameters", &names);
     assert_eq!(described["descriptors"][0]["read_only"], true);
 
-    // A tracker that has no pose needs it.
+    // A tracker without a pose needs the saved one.
     send_pose(&poses, &searching(-100));
     let first = hint(graph, &hints);
     assert_eq!(
@@ -238,7 +238,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     ask(robot, "reinitialize_global_localization", &json!({}));
     assert_eq!(hint(graph, &hints).kind, InitialPoseKind::Anywhere as u64);
 
-    // What the tracker still believes is of before, and is neither sent nor saved.
+    // The pose that the tracker still believes is from before, and is neither sent nor saved.
     robot.order("join", json!({ "name": "rviz" }));
     robot.order(
         "join",
@@ -258,7 +258,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     let sure = tracked(stamp(200));
     send_pose(&poses, &sure);
     of_scan(robot, "amcl_pose", sure.stamp.measured_ns);
-    // The turn after the one in which it was sent answers.
+    // These calls are answered in later steps than the one that sent the pose.
     for _ in 0..2 {
         assert_eq!(state(robot), "active");
     }
@@ -275,7 +275,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     joined.stop();
 }
 
-/// A link that another user could have planted where the pose is to be saved ends the start.
+/// A link that another user could have planted in the place of the saved pose ends the start.
 #[test]
 fn a_saved_pose_is_not_written_through_a_link() {
     let folder = tempfile::tempdir().unwrap();
@@ -307,7 +307,7 @@ fn a_simulation_that_is_paused_has_no_transform_of_the_future() {
     robot.order("follow", json!({}));
     let start = stamp(0).measured_ns;
     robot.order("clock", json!({ "ns": start }));
-    // Its subscriptions have come when its call is answered.
+    // Once its call is answered, its subscriptions have arrived.
     assert_eq!(state(robot), "active");
     let poses = poses_of(&joined.graph);
     send_pose(&poses, &tracked(stamp(0)));
@@ -317,7 +317,7 @@ fn a_simulation_that_is_paused_has_no_transform_of_the_future() {
         let tf = robot.wait_for("tf");
         let at_ns = tf["stamp"].as_i64().unwrap() - tolerance_ns - start;
         assert_eq!(at_ns, ms * 1_000_000);
-        // Time passes here, and not there.
+        // Time passes here, but not in the simulation.
         for _ in 0..5 {
             assert_eq!(state(robot), "active");
         }

@@ -1,17 +1,17 @@
-//! A robot in whose AMCL's place we are, that somebody carries away.
+//! A robot that is carried away, with the gateway in AMCL's place.
 
 use super::client::{of_scan, parameters, planar, state, until_now};
 use super::filter::engine_and_tracker;
 use super::*;
 
-/// Where the laser sits on the recorded robot.
+/// Pose of the laser on the recorded robot.
 const MOUNT: Pose = Pose {
     x: 0.78,
     y: 0.0,
     yaw: 0.0,
 };
 
-/// So many scans of the recording are left out while it is carried: some metres.
+/// Number of recorded scans that are left out while it is carried: some metres.
 const CARRIED: usize = 8;
 
 #[test]
@@ -76,7 +76,7 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
         );
         let odom = jump.then(odom_from_base(from));
         let pose = drive(robot, from, index, odom);
-        // What comes behind the verdict is of this scan.
+        // Messages after the verdict belong to this scan.
         of_scan(robot, "localization", stamp(index));
         if pose.is_unique() {
             assert!(was_lost, "a place elsewhere is not the same");

@@ -1,4 +1,4 @@
-//! A robot in whose AMCL's place we are, and an operator who clicks "2D Pose Estimate".
+//! An operator who clicks "2D Pose Estimate", with the gateway in AMCL's place.
 
 use messages::InitialPose;
 
@@ -6,7 +6,7 @@ use super::client::{of_scan, parameters, planar};
 use super::filter::engine_and_tracker;
 use super::*;
 
-/// As often as Simple Commander and an impatient operator do between two scans.
+/// Number of clicks between two scans, as by Simple Commander and an impatient operator.
 const CLICKS: usize = 10;
 
 #[test]
@@ -45,7 +45,7 @@ fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
             is_this.then_some(*header)
         })
     };
-    // The last of the clicks has come to the tracker as soon as it has come here.
+    // The last click has reached the tracker as soon as it has arrived here.
     let click = |robot: &mut Robot, at: Pose| {
         for _ in 0..CLICKS {
             let how = json!({ "frame": "map", "x": at.x, "y": at.y, "yaw": at.yaw });
@@ -59,7 +59,7 @@ fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
     while !drive(robot, index).is_unique() {
         index += 1;
     }
-    // Twenty at least, of which two in three are wrong.
+    // At least twenty rounds, two in three with a wrong click.
     let rounds = scans.len() - 1 - index;
     assert!(rounds >= 20, "{rounds}");
     for round in 0..rounds {

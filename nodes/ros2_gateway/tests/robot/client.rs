@@ -1,10 +1,10 @@
-//! What a client of nav2_amcl does: parameters, services, poses by their scans.
+//! A client of nav2_amcl: parameters, services, and poses by their scans.
 
 use std::path::PathBuf;
 
 use super::*;
 
-/// As `nav2_bringup` has it, but for a tolerance that shows.
+/// The parameters of `nav2_bringup`, with a tolerance that differs from the default.
 const PARAMETERS: &str = "\
 amcl:
   ros__parameters:
@@ -20,7 +20,7 @@ amcl:
     scan_topic: scan
 ";
 
-/// A file of parameters of that name, with more of them, each as `name: value`.
+/// Writes a parameter file of that name, with more parameters, each as `name: value`.
 pub(super) fn parameters(name: &str, more: &[&str]) -> PathBuf {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let more: Vec<String> = more.iter().map(|line| format!("    {line}\n")).collect();
@@ -28,7 +28,7 @@ pub(super) fn parameters(name: &str, more: &[&str]) -> PathBuf {
     file
 }
 
-/// What a service answers.
+/// Calls a service and returns its response.
 pub(super) fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
     robot.order("ask", json!({ "service": service, "request": request }));
     let said = robot.wait_for("answer");
@@ -37,7 +37,7 @@ pub(super) fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
     said["response"].clone()
 }
 
-/// Whether the lifecycle manager gets the transition of that number, and the state then.
+/// Requests the transition of that number; returns its success, and the state after it.
 pub(super) fn change(robot: &mut Robot, id: u8) -> (bool, String) {
     let done = ask(
         robot,
@@ -52,7 +52,7 @@ pub(super) fn state(robot: &mut Robot) -> String {
     state["current_state"]["label"].as_str().unwrap().to_owned()
 }
 
-/// All that was said up to now.
+/// Returns all events up to now.
 pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
     robot.order("mark", json!({}));
     let mut all = Vec::new();
@@ -70,7 +70,7 @@ pub(super) fn planar(value: &Value) -> Pose {
     Pose::new(of(0), of(1), of(2))
 }
 
-/// What was said on a topic of the scan with this stamp, nanoseconds.
+/// Returns the message on a topic that belongs to the scan with this stamp, nanoseconds.
 pub(super) fn of_scan(robot: &mut Robot, topic: &str, stamp: i64) -> Value {
     loop {
         let said = robot.wait_for(topic);

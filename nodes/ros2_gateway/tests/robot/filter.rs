@@ -10,7 +10,7 @@ pub(super) fn engine(graph: &Graph) -> Vec<NodeProcess> {
     )
 }
 
-/// The same with the tracker.
+/// Starts the engine's nodes and the tracker.
 pub(super) fn engine_and_tracker(graph: &Graph) -> Vec<NodeProcess> {
     let mut nodes = engine(graph);
     nodes.extend(start(graph, &["tracker"]));
@@ -42,7 +42,7 @@ fn a_particle_filter_gets_its_initial_pose() {
         .iter()
         .map(|scan| scan.header.stamp.as_ns())
         .collect();
-    // What was said up to the answer to scan `index`, which has an answer itself.
+    // Returns the initial poses that were sent before the hypotheses of scan `index`.
     let until_answered = |robot: &mut Robot, index: usize| {
         let mut seed = Vec::new();
         loop {
@@ -58,10 +58,10 @@ fn a_particle_filter_gets_its_initial_pose() {
         robot.order("scan", json!({ "index": index }));
         until_answered(robot, index)
     };
-    // No filter is there.
+    // There is no filter yet.
     assert_eq!(scan(robot, 0).len(), 0);
     robot.order("filter", json!({}));
-    // It gets an initial pose by a scan after it started, once.
+    // It gets one initial pose, by a scan after it started.
     let mut seed = Vec::new();
     let mut index = 0;
     while seed.is_empty() {
@@ -77,7 +77,7 @@ fn a_particle_filter_gets_its_initial_pose() {
     let pose = &seed[0]["pose"];
     let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
     let laser = base.then(Pose::new(0.78, 0.0, 0.0));
-    // As near as all answers on this recording are.
+    // The accuracy of all results on this recording.
     let truth = truths[&stamps[index]].pose;
     assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
     let believe = |robot: &mut Robot, index: usize, x: f64| {
@@ -87,14 +87,14 @@ fn a_particle_filter_gets_its_initial_pose() {
             json!({ "index": index, "x": x, "y": y, "yaw": yaw }),
         );
     };
-    // It follows, and is left alone.
+    // The filter follows the robot, and gets no further pose.
     let before = refused_by_gateway(&joined.graph);
     for _ in 0..3 {
         index += 1;
         believe(robot, index, base.x);
         assert_eq!(scan(robot, index).len(), 0);
     }
-    // Somebody asks.
+    // A client requests an initial pose.
     robot.order("call", json!({}));
     let called = robot.wait_for("called");
     assert_eq!(called["reply"], "0001000000", "{called}");
@@ -104,7 +104,7 @@ fn a_particle_filter_gets_its_initial_pose() {
     );
     index += 1;
     assert_eq!(scan(robot, index).len(), 1);
-    // It is carried away.
+    // The robot is carried away.
     let mut seed = Vec::new();
     while seed.is_empty() {
         index += 1;
@@ -121,7 +121,7 @@ fn a_particle_filter_gets_its_initial_pose() {
     joined.stop();
 }
 
-/// How much the gateway has refused.
+/// Returns the number of messages that the gateway has rejected.
 fn refused_by_gateway(graph: &Graph) -> u64 {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let is_gateway = |report: &messages::HealthHeader| report.node.as_str() == "ros2_gateway";

@@ -25,7 +25,7 @@ fn a_robot_whose_types_have_no_hashes_is_understood_and_understands() {
     assert_eq!(header.mount_known, 1, "by /tf_static");
     wait_for(graph, &odometry_in, |_: &Odometry, _| Some(()));
 
-    // What the node offers and publishes.
+    // Services and topics of the node.
     assert_eq!(state(robot), "active");
     let names = json!({ "names": ["scan_topic"] });
     let got = ask(robot, "amcl/get_parameters", &names);
@@ -37,7 +37,7 @@ fn a_robot_whose_types_have_no_hashes_is_understood_and_understands() {
     send_pose(&poses, &sent);
     of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
     assert_eq!(robot.wait_for("tf")["same"], true);
-    // Who comes late has the last pose.
+    // A late subscriber gets the last pose.
     robot.order("join", json!({ "name": "late" }));
     of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
     joined.stop();

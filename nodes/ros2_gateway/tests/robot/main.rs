@@ -36,12 +36,12 @@ struct Joined {
     robot: Robot,
     gateway: Option<NodeProcess>,
     graph: Graph,
-    // Behind the graph, so that it is dropped after it.
+    // Declared after the graph, so that it is dropped after it.
     _isolated: Isolated,
 }
 
 impl Joined {
-    /// None where there can be no such robot.
+    /// Returns `None` if the robot's libraries are missing.
     fn new(tag: &str, namespace: &str, options: &[&str]) -> Option<Self> {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
@@ -74,7 +74,7 @@ impl Joined {
     }
 }
 
-/// Waits until the gateway says, among others, that it waits for this.
+/// Waits until the gateway reports that it waits, with these words among others.
 fn wait_until_waiting(graph: &Graph, words: &str) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     wait_for(graph, &health, |report, error| {
@@ -85,7 +85,7 @@ fn wait_until_waiting(graph: &Graph, words: &str) {
     });
 }
 
-/// Waits until the gateway has all that it needs, by reports from when `health` joined.
+/// Waits until the gateway is ready, by reports from when `health` joined.
 fn wait_until_green(graph: &Graph, health: &Subscriber<topic::Health>) {
     let ready = NodeState::Ready as u32;
     wait_for_health(graph, health, |report| {
@@ -108,8 +108,8 @@ fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
     Pose2 { x, y, yaw }
 }
 
-/// What others make of a pose: quaternions give back a yaw to a few units in the last
-/// place.
+/// Compares a pose that other libraries have converted: quaternions give back a yaw to a few units
+/// in the last place.
 fn assert_near(found: &Value, expected: Pose) {
     let of = |index: usize| found[index].as_f64().unwrap();
     let found = Pose::new(of(0), of(1), of(2));
@@ -129,7 +129,7 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
     let scans_in = graph.subscriber::<topic::Scan>().unwrap();
     let odometry_in = graph.subscriber::<topic::OdometryTopic>().unwrap();
     joined.robot.order("arrive", json!({}));
-    // Kept for who comes late, as the gateway may have.
+    // The map is kept for late subscribers, such as the gateway.
     let map: (MapHeader, Vec<u8>) = wait_for(graph, &maps, |header, cells| {
         Some((*header, cells.to_vec()))
     });
@@ -311,7 +311,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         // At least the spread of 0.1 m and 3 degrees.
         let variances: Vec<f64> = serde_json::from_value(seed["variances"].clone()).unwrap();
         assert_eq!(variances[0], 0.1 * 0.1);
-        // The laser's, and what its yaw does half a metre away, but for rounding.
+        // The laser's variance, and the effect of its yaw half a metre away, up to rounding.
         assert!((variances[1] - (0.01 + 0.25e-6)).abs() < 1e-12);
         assert!((variances[2].sqrt().to_degrees() - 3.0).abs() < 1e-9);
         let tf = &received["tf"];

@@ -1,4 +1,4 @@
-//! A robot that starts us in the place of nav2_amcl.
+//! A robot that starts the gateway in the place of nav2_amcl.
 
 use messages::{InitialPose, InitialPoseKind};
 
@@ -21,7 +21,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let robot = &mut joined.robot;
     robot.order("follow", json!({}));
 
-    // The lifecycle manager's way, which the page shows as well.
+    // The steps of a lifecycle manager, which the page shows as well.
     assert_eq!(state(robot), "unconfigured");
     wait_until_waiting(
         graph,
@@ -71,7 +71,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     while right < 5 {
         let is_believed = drive(robot, index);
         if index == 0 {
-            // Green, now that all comes.
+            // The gateway is ready, now that all inputs arrive.
             wait_until_green(graph, &reports);
         }
         let stamp = scans[index].header.stamp.as_ns();
@@ -90,7 +90,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
                 base.then(mount).is_within(truth, 0.2, 0.05),
                 "{base:?} {truth:?}"
             );
-            // And so it is by the transforms.
+            // The transforms give the same pose.
             let tf = loop {
                 let tf = robot.wait_for("tf");
                 if tf["stamp"].as_i64().unwrap() >= stamp + 500_000_000 {
@@ -103,7 +103,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
             let odom_from_base = odometry.pose.pose.planar().unwrap();
             let by_tf = planar(&tf["pose"]).then(odom_from_base).then(mount);
             assert!(by_tf.is_within(truth, 0.2, 0.05), "{by_tf:?} {truth:?}");
-            // So it is by the verdict, and for a master control.
+            // So do the verdict and the position for a master control.
             let verdict = of_scan(robot, "localization", stamp);
             assert!(
                 [1, 2].contains(&verdict["state"].as_i64().unwrap()),
@@ -129,7 +129,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
         }
         index += 1;
     }
-    // While it searched, and since.
+    // Clouds were sent while it searched, and since.
     let cloud = robot.wait_for("particle_cloud");
     assert_eq!(cloud["same"], true);
     let weight = cloud["weight"].as_f64().unwrap();
@@ -137,12 +137,12 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     assert!(!cloud["poses"].as_array().unwrap().is_empty());
     until_now(robot);
 
-    // Who joins later has the last pose at once.
+    // A late subscriber gets the last pose at once.
     robot.order("join", json!({ "name": "late" }));
     let last = robot.wait_for("amcl_pose");
     assert_eq!(last["stamp"], scans[index - 1].header.stamp.as_ns());
 
-    // A pose that somebody points at is a hint, in the map's frame alone.
+    // A clicked pose is a hint, and must be in the map's frame.
     let refused = |least: u64| {
         wait_for_health(graph, &health, |report| {
             report.node.as_str() == "ros2_gateway" && report.refused >= least
@@ -174,7 +174,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     wait_for(graph, &hints, |hint, _| {
         (hint.kind == anywhere).then_some(())
     });
-    // What was sent before the answer has come.
+    // Messages that were sent before the response have arrived after these calls.
     for _ in 0..2 {
         assert_eq!(state(robot), "active");
     }
@@ -199,7 +199,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
     index += 1;
 
-    // Once it is not active, nothing is published.
+    // Nothing is published while it is not active.
     assert_eq!(change(robot, 4), (true, "inactive".into()));
     let ended = until_now(robot);
     let last_bond = ended.iter().rfind(|said| said["event"] == "bond");
@@ -286,7 +286,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     let reason = described["failure_reason"].as_str().unwrap();
     assert!(reason.contains("std_msgs/msg/String"), "{reason}");
 
-    // Who comes late has the log of the start.
+    // A late subscriber gets the log of the start.
     robot.order("join", json!({ "name": "console", "topic": "/rosout" }));
     let line = robot.wait_for("/rosout");
     assert_eq!(
@@ -333,7 +333,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         json!({ "parameters": [value("transform_tolerance", 0.25), text, value("z_hit", 0.4)] });
     robot.order("hear", json!({ "topic": "/parameter_events" }));
     let results = ask(robot, "amcl/set_parameters", &values);
-    // The event names what was set, and nothing of what was not.
+    // The event names the parameters that were set, and no others.
     let event = robot.wait_for("/parameter_events");
     assert_eq!(
         (&event["same"], &event["node"]),
@@ -358,7 +358,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     assert_eq!(together["result"]["successful"], false);
     let one = json!({ "parameters": [value("laser_max_range", 20.0)] });
     ask(robot, "amcl/set_parameters_atomically", &one);
-    // Of the call that was refused there was none.
+    // The rejected call caused no event.
     let event = robot.wait_for("/parameter_events");
     assert_eq!(event["changed_parameters"][0]["name"], "laser_max_range");
     let names = json!({ "names": ["transform_tolerance"] });

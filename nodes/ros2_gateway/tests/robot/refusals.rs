@@ -1,4 +1,4 @@
-//! What is no message.
+//! Bytes that are no valid message.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
             report.node.as_str() == "ros2_gateway" && report.refused >= refused
         });
         assert_eq!(report.refused, refused, "{error}");
-        // Of several in a second, the first is written as text.
+        // Of several errors in a second, only the first one is written as text.
         if refused == 1 {
             assert!(error.contains(expected), "{error}");
         }
@@ -39,7 +39,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
         None,
         "at most",
     );
-    // It continues, and takes what is sound.
+    // It continues, and takes valid messages.
     let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
     joined.robot.order("scan", json!({ "index": 0 }));
     wait_for(&joined.graph, &scans_in, |_, _| Some(()));

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What a tracker says that is sure of the robot's place.
+/// Returns the pose of a tracker that is sure of it.
 pub(super) fn tracked(stamp: Stamp) -> PoseHeader {
     PoseHeader {
         stamp,
@@ -58,7 +58,7 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
-    // Somebody else says that, too.
+    // Another node publishes the same transform.
     let health = joined.graph.subscriber::<topic::Health>().unwrap();
     joined.robot.order("correct", json!({}));
     let named = "from map to odom on /tf, as this one does";
@@ -73,7 +73,7 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     assert_eq!((&said["same"], &said["state"]), (&json!(true), &json!(1)));
     assert_eq!(said["reason"], "one place");
 
-    // The single answer says elsewhere, and is shown; no initial pose is sent there.
+    // The hypotheses are elsewhere: they are shown, and not sent as an initial pose.
     let mut header = answer;
     header.stamp.counter += 1;
     header.stamp.measured_ns += 1;

@@ -1,4 +1,4 @@
-//! What the gateway waits for, as the page shows it.
+//! Inputs that the gateway waits for, as the page shows them.
 
 use super::client::parameters;
 use super::*;
@@ -11,7 +11,7 @@ fn a_router_that_is_not_there_is_named_until_it_is() {
     let executable = env!("CARGO_BIN_EXE_ros2_gateway");
     let gateway = NodeProcess::start(executable, &graph, ["--connect", &endpoint]);
     wait_until_waiting(&graph, &format!("waiting for a router: none at {endpoint}"));
-    // Another gateway is one.
+    // Another gateway is a router.
     let elsewhere = Isolated::new("ros-elsewhere");
     let other = elsewhere.join("other");
     let router = NodeProcess::start(executable, &other, ["--listen", &endpoint]);
@@ -19,7 +19,7 @@ fn a_router_that_is_not_there_is_named_until_it_is() {
         &graph,
         "waiting for /map: no publisher, /scan: no publisher",
     );
-    // And away again.
+    // The router stops again.
     router.stop();
     wait_until_waiting(&graph, &format!("waiting for a router: none at {endpoint}"));
     gateway.stop();
@@ -41,7 +41,7 @@ fn inputs_that_do_not_come_are_named_and_the_node_is_ready_when_they_do() {
     wait_until_waiting(graph, &format!("/map: no publisher, {humble}"));
     robot.order("arrive", json!({}));
     wait_until_waiting(graph, &format!("waiting for {humble}"));
-    // Joined before, for it lasts no longer than the scan.
+    // Subscribed in advance, because this state lasts no longer than the scan.
     let health = graph.subscriber::<topic::Health>().unwrap();
     robot.order("drive", json!({ "index": 0 }));
     wait_until_green(graph, &health);

@@ -1,4 +1,4 @@
-//! What is said of where the robot is: when the node starts, and on topic `initial_pose`.
+//! Initial poses from the command line and from topic `initial_pose`.
 
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, TrackReason};
@@ -6,21 +6,20 @@ use messages::{InitialPose, InitialPoseKind, TrackReason};
 use super::turn::Turn;
 use super::{Node, TrackerError};
 
-/// What an operator's pose on the command line may err by: standard deviations, metres
-/// and radians.
+/// Assumed error of an initial pose from the command line: standard deviations, metres and radians.
 const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
 
-/// Where the robot is said to be.
+/// Initial pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Initial {
-    /// Of the base, in the map, with its covariance.
+    /// Pose of the base in the map, with its covariance.
     base: (Pose, Covariance),
-    /// Whether that counts before a scan confirms it.
+    /// True if the pose is used before a scan confirms it.
     is_believed: bool,
 }
 
 impl Initial {
-    /// As the command line says it.
+    /// Creates the initial pose of the command line.
     pub(super) fn of_option(pose: Pose) -> Self {
         let (metres, radians) = INITIAL_ERROR;
         Initial {
@@ -29,7 +28,7 @@ impl Initial {
         }
     }
 
-    /// As a message says it; `None` where the robot may be anywhere.
+    /// Reads the initial pose of a message; `None` if the robot may be anywhere.
     fn of_message(message: &InitialPose) -> Result<Option<Self>, String> {
         let kind = InitialPoseKind::from_code(message.kind)
             .ok_or_else(|| format!("its kind is {}: allowed are 0, 1 and 2", message.kind))?;
@@ -49,7 +48,7 @@ impl Initial {
 }
 
 impl Node {
-    /// Takes what somebody says; the newest counts.
+    /// Processes an initial pose; the newest one counts.
     pub(super) fn take_initial(&mut self, message: &InitialPose) -> Result<(), TrackerError> {
         match Initial::of_message(message) {
             Ok(Some(initial)) => self.initial = Some(initial),
@@ -59,11 +58,11 @@ impl Node {
         Ok(())
     }
 
-    /// Forgets where the robot was: the next scan is searched as after a start.
+    /// Forgets the pose: the next scan is searched as after a start.
     fn start_over(&mut self) -> Result<(), TrackerError> {
         tracing::info!("asked to start over: the pose is forgotten");
         if let Turn::Search { scan, .. } = self.turn {
-            // Its search was about what is forgotten; each scan has one pose all the same.
+            // The pending search is obsolete, but each scan must still get one pose.
             self.turn = Turn::Idle;
             self.send_nothing(&scan, TrackReason::NoScan)?;
         }
@@ -76,13 +75,13 @@ impl Node {
         Ok(())
     }
 
-    /// Starts at the pose that was said, if one was; whether the tracker is set there by
-    /// the scan whose turn it is, and follows from now on.
+    /// Applies the initial pose, if there is one. Returns true if the tracker is set to a believed
+    /// pose at the current scan and tracks from there.
     pub(super) fn begin_at_initial(&mut self) -> bool {
         let Some(Initial { base, is_believed }) = self.initial.take() else {
             return false;
         };
-        // Whoever said it has seen that one.
+        // The user chose the pose on the displayed map.
         let map = self.shown_map();
         if !is_believed {
             self.expect_base((map, base.0), base.1);
@@ -119,7 +118,7 @@ mod tests {
             assert_eq!(initial.is_believed, is_believed);
             assert_eq!(initial.base.0, Pose::new(1.0, 2.0, 0.5));
         }
-        // What stands for the pose is not read.
+        // The pose fields are not read.
         let anywhere = InitialPose {
             kind: 2,
             map_from_base: Pose::new(f64::NAN, 0.0, 0.0).into(),

@@ -1,14 +1,13 @@
-//! What the node subscribes to.
+//! Subscribers of the node.
 
 use messages::topic;
 use transport::{Graph, Input, Subscriber, TransportError};
 
-/// The node's subscribers.
 pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) odometry: Subscriber<topic::OdometryTopic>,
     pub(super) maps: Subscriber<topic::Map>,
-    /// Where several are tracked on together.
+    /// Sets of maps that are tracked on together.
     pub(super) sets: Subscriber<topic::Maps>,
     pub(super) hypotheses: Subscriber<topic::Hypotheses>,
     pub(super) initial_poses: Subscriber<topic::InitialPoseTopic>,

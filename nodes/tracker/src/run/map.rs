@@ -1,4 +1,4 @@
-//! The maps, and where the robot is expected on them.
+//! Maps, and the expected pose of the robot on them.
 
 use engine::peaks::Target;
 use engine::tracking::Tracker;
@@ -13,7 +13,7 @@ use crate::message::Tracked;
 use crate::world::Worlds;
 
 impl Node {
-    /// Takes a map that is served alone.
+    /// Uses a map that is served alone.
     pub(super) fn take_map(
         &mut self,
         header: &MapHeader,
@@ -29,7 +29,7 @@ impl Node {
         self.start_on(served, worlds.map_err(|error| (header.map_id, error)))
     }
 
-    /// Takes maps that are served together.
+    /// Uses maps that are served together.
     pub(super) fn take_set(
         &mut self,
         header: &MapsHeader,
@@ -67,16 +67,16 @@ impl Node {
         }
     }
 
-    /// Forgets what was known on other maps, but for where the robot was: most new maps are of
-    /// the same building.
+    /// Resets the tracker for new maps but keeps the pose as expected pose, since most new maps
+    /// show the same building.
     fn start_anew(&mut self) {
         let believed = self
             .last
             .filter(|last| last.report.state == TrackState::Unique);
         self.tracker = self.nothing_known();
         self.asked = None;
-        // A map that is served alone replaces the one before; of a set, it is the same one, or
-        // what has become of it.
+        // A map that is served alone replaces the previous one; in a set, the same map or its new
+        // version is looked up.
         let number = |last: &Tracked| match self.served {
             Some(Served::Map(_)) => Some(0),
             _ => {
@@ -110,18 +110,18 @@ impl Node {
         }
     }
 
-    /// A tracker that knows the maps alone.
+    /// Returns a tracker without knowledge of the pose.
     pub(super) fn nothing_known(&self) -> Tracker {
         Tracker::new(self.config.tracking).with_transitions(self.worlds.transitions.to_vec())
     }
 
-    /// The number of the map on which the robot was last; that of the first before.
+    /// Returns the number of the map on which the robot was last, or 0 before that.
     pub(super) fn current_map(&self) -> u32 {
         let last = self.last.and_then(|last| self.worlds.number(last.map_id));
         last.unwrap_or(0)
     }
 
-    /// The number of the map that people see: of a set, that which is shown.
+    /// Returns the number of the map that is displayed.
     pub(super) fn shown_map(&self) -> u32 {
         let shown = self.shown.and_then(|map_id| self.worlds.number(map_id));
         shown.unwrap_or_else(|| self.current_map())
@@ -139,11 +139,9 @@ impl Node {
     }
 }
 
-/// What is tracked on, by its id.
+/// Map or set that is tracked on, by its id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Served {
-    /// One map.
     Map(u64),
-    /// A set of maps.
     Set(u64),
 }

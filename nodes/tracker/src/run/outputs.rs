@@ -1,15 +1,14 @@
-//! What the node publishes.
+//! Publishers of the node.
 
 use messages::{AttentionHeader, PoseHeader, Stamp, topic};
 use transport::{Graph, Peers, Publisher, TransportError, monotonic_ns};
 
-/// The node's publishers.
 pub(super) struct Outputs {
     poses: Publisher<topic::Tracked>,
     attention: Publisher<topic::Attention>,
-    /// Most poses a second that odometry carries on.
+    /// Largest number of extrapolated poses per second.
     rate: f64,
-    /// When the last pose was sent.
+    /// Time of the last pose sent.
     sent_ns: i64,
 }
 
@@ -23,25 +22,25 @@ impl Outputs {
         })
     }
 
-    /// Those who get what is asked for.
+    /// Returns the processes that receive search requests.
     pub(super) fn asked(&self) -> Peers {
         self.attention.subscribers()
     }
 
-    /// Asks for a search of a scan.
+    /// Requests a search of a scan.
     pub(super) fn ask(&self, stamp: Stamp) -> Result<(), TransportError> {
         let mut loan = self.attention.loan(0)?;
         *loan.header_mut() = AttentionHeader { stamp };
         loan.send()
     }
 
-    /// Whether a pose that odometry carried on may be sent now.
+    /// Returns true if an extrapolated pose may be sent now.
     pub(super) fn is_due(&self) -> bool {
         let since_ns = monotonic_ns() - self.sent_ns;
         self.rate > 0.0 && since_ns as f64 >= 1e9 / self.rate
     }
 
-    /// Sends a pose, with the reason in words.
+    /// Publishes a pose with its reason in words.
     pub(super) fn pose(
         &mut self,
         mut header: PoseHeader,

@@ -1,4 +1,4 @@
-//! Asking for searches, and waiting for what they find.
+//! Requests searches and waits for their results.
 
 use std::time::Instant;
 
@@ -10,8 +10,8 @@ use super::outputs::Outputs;
 use super::turn::{SEARCH_WAIT, Since, Turn};
 use super::{Node, TrackerError};
 
-/// Who takes part in a search: who takes requests, and who sends what was found. A search
-/// dies with either, and another process in its place knows nothing of it.
+/// Processes that take part in a search: those that receive requests, and those that send results.
+/// A search ends with any of them, and a process that replaces it does not know the request.
 #[derive(Debug, Default)]
 pub(super) struct Searchers {
     asked: Peers,
@@ -32,15 +32,15 @@ impl Searchers {
 }
 
 impl Node {
-    /// Asks for a search of a scan.
+    /// Requests a search of a scan.
     pub(super) fn ask(&mut self, inputs: &Inputs, stamp: Stamp) -> Result<(), TransportError> {
-        // Whoever comes after this and does not get the request is seen to be new.
+        // A process that starts later and misses the request is then detected as new.
         self.searchers = Searchers::now(inputs, &self.outputs);
         self.outputs.ask(stamp)
     }
 
-    /// Goes on with a scan as soon as the search for scan `of` has an answer, or will have
-    /// none; whether it did.
+    /// Continues with a scan once the search for scan `of` is answered, or will not be; returns
+    /// true if it did.
     pub(super) fn wait_for_search(
         &mut self,
         inputs: &Inputs,
@@ -49,8 +49,8 @@ impl Node {
     ) -> Result<bool, TrackerError> {
         let has_come = self.answers.of(of).is_some();
         if !has_come && Searchers::now(inputs, &self.outputs).any_new_since(&self.searchers) {
-            // The answer to this may be that the scan is not known any more: that counts as no
-            // search, and the next key scan is searched.
+            // The answer may be that the scan is no longer known: that counts as no search, and the
+            // next key scan is searched.
             self.ask(inputs, of)?;
             self.is_silent = false;
             let since = Since::now(self.looks);
@@ -58,7 +58,7 @@ impl Node {
             self.turn = Turn::Search { scan, of, since };
             return Ok(false);
         }
-        // Scans are searched in their order, by whoever searches all of them, too.
+        // Scans are searched in order, even by a searcher that searches all of them.
         let is_lost = self.answers.any_after(of);
         let is_over = is_lost || self.is_silent || since.is_over(SEARCH_WAIT, self.looks);
         if !has_come && !is_over {

@@ -1,4 +1,4 @@
-//! What the scan whose turn it is waits for.
+//! State of the current scan.
 
 use std::time::{Duration, Instant};
 
@@ -6,15 +6,15 @@ use messages::{ScanHeader, Stamp};
 
 use super::TICK;
 
-/// A scan waits this long for a search: the slowest search of a map that is as large
-/// as one may be takes less on a slow computer. What comes later is lost.
+/// Longest wait for a search: even on a slow computer, the slowest search of the largest map takes
+/// less. Later results are lost.
 pub(super) const SEARCH_WAIT: Duration = Duration::from_secs(5);
 
-/// Since when something is waited for.
+/// Start of a wait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Since {
     at: Instant,
-    /// How often the node had looked then.
+    /// Number of checks at that time.
     looks: u32,
 }
 
@@ -24,23 +24,23 @@ impl Since {
         Since { at, looks }
     }
 
-    /// Whether that is long ago by the clock and by how often the node has looked since, a
-    /// few times at least: after a computer was suspended, the clock alone says that it is,
-    /// and nobody had time to send anything.
+    /// Returns true if the wait is over by the clock and by the number of checks since its start,
+    /// at least two. After a suspend the clock alone would say so, although no process had time to
+    /// send anything.
     pub(super) fn is_over(&self, wait: Duration, looks: u32) -> bool {
         let least = (wait.as_millis() / TICK.as_millis() / 4).max(2) as u32;
         self.at.elapsed() >= wait && looks.wrapping_sub(self.looks) >= least
     }
 }
 
-/// Where the node is with a scan.
+/// State of the current scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Turn {
-    /// There is none.
+    /// There is no current scan.
     Idle,
-    /// It waits for odometry.
+    /// The scan waits for odometry.
     Odometry { scan: ScanHeader, since: Since },
-    /// It waits for what a search finds for a scan.
+    /// The scan waits for the search result of scan `of`.
     Search {
         scan: ScanHeader,
         of: Stamp,

@@ -1,4 +1,4 @@
-//! The node as a process: scans, odometry and what searches find go in, poses come out.
+//! Tests of the node as a process: scans, odometry and search results go in, poses come out.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -33,7 +33,7 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
         } = world.step(6 + 2 * number, of, None);
         assert!(was_asked && !pose.is_unique(), "{number}: {pose:?}");
     }
-    // What finds nothing is a search all the same.
+    // A search without results still counts as a search.
     let states = [22, 24, 26].map(|x| world.step(x, id, None).pose.state);
     assert_eq!(
         states.last(),
@@ -74,7 +74,7 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
         );
         match kept {
             true => node.stop(),
-            // What cannot be written in the end is said with the exit code.
+            // A failure to write at the end gives a non-zero exit code.
             false => {
                 node.interrupt();
                 assert_eq!(node.exit_code(), Some(1));
@@ -89,7 +89,7 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
     );
 }
 
-/// Two floors that look alike.
+/// Returns two floors that look alike.
 fn floors() -> Vec<Drawn> {
     let floor = |name| Drawn {
         name,
@@ -98,7 +98,7 @@ fn floors() -> Vec<Drawn> {
     vec![floor("ground"), floor("first")]
 }
 
-/// The same after somebody has edited the one with this number.
+/// Returns the floors after the one with this number was edited.
 fn edited(number: usize) -> Vec<Drawn> {
     let mut floors = floors();
     floors[number].rows = with_a_box(&HALL);
@@ -119,7 +119,7 @@ fn what_was_found_on_the_set_before_makes_no_pose_unique() {
         "{states:?}"
     );
     world.serve_set(&edited(1));
-    // The search goes on on the maps before until all are prepared.
+    // The search still uses the old maps until all new ones are prepared.
     for x in [14, 16, 18, 20, 22] {
         let Step {
             pose, was_asked, ..
@@ -145,7 +145,7 @@ fn what_is_said_of_the_pose_is_about_the_map_that_is_shown() {
     let [ground, first] = ids(&floors())[..] else {
         unreachable!("there are two floors");
     };
-    // The other floor leads, and has not for long enough to be shown.
+    // The other floor leads, but not for long enough to be displayed.
     let pose = world.step(6, searched, Some(first)).pose;
     assert_eq!((pose.map_id, pose.is_unique()), (first, false));
     world.say(InitialPoseKind::Believed, 8);
@@ -181,10 +181,10 @@ fn a_pose_on_a_floor_that_was_edited_is_tried_and_the_old_one_goes_out_no_more()
     world.say(InitialPoseKind::Believed, 6);
     let pose = world.step(6, searched(&floors()), None).pose;
     assert!(pose.is_unique());
-    /// Of a second, in which the robot goes on by half of a step.
+    /// Half a second, in which the robot moves by half a step.
     const HALF: i64 = 500_000_000;
     let pause = || std::thread::sleep(Duration::from_millis(50));
-    // Odometry carries the pose on.
+    // Odometry extrapolates the pose.
     pause();
     world.send_odometry(7, HALF);
     pause();
@@ -214,7 +214,7 @@ fn hints_leave_the_pose_that_is_believed() {
     world.say(InitialPoseKind::Believed, 6);
     assert!(world.step(6, id, Some(id)).pose.is_unique());
     for x in (8..24).step_by(2) {
-        // Where the robot is, again and again, and elsewhere.
+        // Hints at the robot's place and elsewhere, several times.
         for _ in 0..5 {
             world.say(InitialPoseKind::Hint, x);
         }

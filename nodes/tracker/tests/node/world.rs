@@ -1,5 +1,4 @@
-//! Drawn maps, and the node's neighbours: who serves maps and sends scans and odometry, and who
-//! answers what is to be searched.
+//! Drawn maps and the node's neighbours: publishers of maps, scans and odometry, and a searcher.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -17,7 +16,7 @@ use messages::{
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, Publisher, Subscriber, TransportError, monotonic_ns};
 
-/// No two places of it look alike.
+/// A hall in which no two places look alike.
 pub(crate) const HALL: [&str; 14] = [
     "########################################",
     "#......................................#",
@@ -35,16 +34,16 @@ pub(crate) const HALL: [&str; 14] = [
     "########################################",
 ];
 const CELL_M: f64 = 0.25;
-/// The robot drives along this row, counted from below.
+/// Row along which the robot drives, counted from below.
 const ROW: usize = 6;
 
-/// A map that is drawn so.
+/// Map from a drawing.
 pub(crate) struct Drawn {
     pub(crate) name: &'static str,
     pub(crate) rows: Vec<&'static str>,
 }
 
-/// The same rows with a box in a corner.
+/// Returns the same rows with a box in a corner.
 pub(crate) fn with_a_box(rows: &[&'static str]) -> Vec<&'static str> {
     let mut rows = rows.to_vec();
     rows[1] = "#....................................###";
@@ -70,27 +69,25 @@ impl Drawn {
     }
 }
 
-/// Ids of maps.
 pub(crate) fn ids(maps: &[Drawn]) -> Vec<u64> {
     maps.iter().map(|map| map.header().map_id).collect()
 }
 
-/// What a search on all of them has for its id.
+/// Returns the id of a search on all of these maps.
 pub(crate) fn searched(maps: &[Drawn]) -> u64 {
     searched_id(ids(maps))
 }
 
-/// What came of a scan.
+/// Result of a scan.
 pub(crate) struct Step {
-    /// Of the scan.
     pub(crate) pose: PoseHeader,
-    /// Poses before it that odometry carried on.
+    /// Poses before it that were extrapolated by odometry.
     pub(crate) carried: Vec<PoseHeader>,
-    /// Whether a search of it was asked for.
+    /// True if a search of the scan was requested.
     pub(crate) was_asked: bool,
 }
 
-/// The node's neighbours.
+/// Neighbours of the node.
 pub(crate) struct World {
     sets: Option<Publisher<topic::Maps>>,
     maps: Publisher<topic::Map>,
@@ -121,14 +118,14 @@ impl World {
         }
     }
 
-    /// A map that is served alone.
+    /// Creates a world with a map that is served alone.
     pub(crate) fn of_map(isolated: &Isolated, map: &Drawn) -> Self {
         let world = World::new(isolated, false);
         world.serve_map(map);
         world
     }
 
-    /// A set, of which the first map is shown.
+    /// Creates a world with a set whose first map is displayed.
     pub(crate) fn of_set(isolated: &Isolated, maps: &[Drawn]) -> Self {
         let world = World::new(isolated, true);
         world.serve_set(maps);
@@ -163,13 +160,13 @@ impl World {
         node
     }
 
-    /// Where the robot is in this column.
+    /// Returns the robot's pose in this column.
     pub(crate) fn pose_at(&self, x: usize) -> Pose {
         let metres = |cell: usize| CELL_M * (cell as f64 + 0.5);
         Pose::new(metres(x), metres(ROW), 0.0)
     }
 
-    /// Says where the robot is: in this column.
+    /// Publishes an initial pose in this column.
     pub(crate) fn say(&self, kind: InitialPoseKind, x: usize) {
         let mut loan = self.initial_poses.loan(0).unwrap();
         *loan.header_mut() = InitialPose {
@@ -181,7 +178,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// So long after the last scan; a second later comes the next one.
+    /// Returns a stamp this long after the last scan; the next scan is a second later.
     fn stamp(&self, later_ns: i64) -> Stamp {
         Stamp {
             measured_ns: 1_000_000_000 * self.counter.get() as i64 + later_ns,
@@ -190,7 +187,7 @@ impl World {
         }
     }
 
-    /// Sends odometry: the robot is in this column so long after the last scan.
+    /// Publishes odometry with the robot in this column, this long after the last scan.
     pub(crate) fn send_odometry(&self, x: usize, later_ns: i64) {
         let mut loan = self.odometry.loan(0).unwrap();
         *loan.header_mut() = Odometry {
@@ -220,8 +217,8 @@ impl World {
         stamp
     }
 
-    /// Sends odometry and the scan in a column. What is to be searched is answered: this was
-    /// searched, and the robot found where it is on a map with this id, or nowhere.
+    /// Publishes odometry and the scan in a column. A requested search is answered with the id
+    /// `searched` and the robot's place on map `found_on`, or no place.
     pub(crate) fn step(&self, x: usize, searched: u64, found_on: Option<u64>) -> Step {
         self.counter.set(self.counter.get() + 1);
         self.send_odometry(x, 0);
@@ -283,7 +280,7 @@ impl World {
     }
 }
 
-/// What a laser with a beam a degree all around reads in the hall.
+/// Returns the ranges of a laser with one beam per degree all around, in the hall.
 fn ranges(x: usize) -> Vec<f32> {
     let hall = Drawn {
         name: "",

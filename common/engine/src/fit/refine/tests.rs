@@ -28,7 +28,7 @@ const TRUTH: GridPose = GridPose {
     heading: 0.3,
 };
 
-/// What a laser at the pose reads: the way to the middle of the walls.
+/// Scan of a laser at the pose, with readings up to the middle of the walls.
 fn scan(rows: &[&str], pose: GridPose) -> Ends {
     let map = distance_field(rows);
     let end = |beam: i32| {
@@ -98,14 +98,14 @@ fn what_no_beam_shows_stays_as_it_was() {
         ..pose
     };
     let refined = map.refine(&ends, start, false, &FitConfig::default());
-    // Ends at the corridor's far ends say a little about x.
+    // Ends at the corridor's far ends constrain x a little.
     assert!((refined.pose.x - 13.0).abs() < 0.5, "{:?}", refined.pose);
     assert!((refined.pose.y - 2.5).abs() < 0.1);
     assert!(refined.curvature[(0, 0)] < 0.05 * refined.curvature[(1, 1)]);
 }
 
-/// The deviations that walls which err add to those of a pose, by how the distances
-/// of its ends grow.
+/// Standard deviations that errors of walls add to a pose, given the derivatives of its ends'
+/// distances.
 fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
     let (mut lane_sums, mut walls) = (LaneSums::default(), Walls::default());
     for slope in pulls {
@@ -132,17 +132,16 @@ fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
 
 #[test]
 fn a_wall_that_is_off_moves_the_pose_however_many_beams_end_there() {
-    // One wall, ahead along x: the pose is off by what the wall is.
+    // One wall, ahead along x: the pose is off by as much as the wall.
     for beams in [10, 1000] {
         let one = vec![[1.0, 0.0, 0.0]; beams];
         assert!((by_walls(&one, 0.0)[0] - 0.5).abs() < 1e-6);
         assert!((by_walls(&one, 1.2)[0] - 1.3).abs() < 1e-6);
     }
-    // Two that face each other are each off for themselves: the mean of both is
-    // off by 1/√2 of that.
+    // Two walls that face each other are off independently: their mean is off by 1/√2 of that.
     let both = [[[1.0, 0.0, 0.0]; 40], [[-1.0, 0.0, 0.0]; 40]].concat();
     assert!((by_walls(&both, 0.0)[0] - 0.5 / 2f64.sqrt()).abs() < 1e-6);
-    // Parts of a wall that runs almost along an axis are one wall.
+    // Parts of a wall that is almost parallel to an axis are one wall.
     let bent = [[[1.0, 0.1, 0.0]; 40], [[1.0, -0.1, 0.0]; 40]].concat();
     assert!((by_walls(&bent, 0.0)[0] - 0.5).abs() < 0.01);
 }

@@ -6,9 +6,9 @@ use super::{Best, Place, Places, SAME_M, SAME_RADIANS};
 use crate::tracking::transition::other_side;
 
 impl Places {
-    /// Where the place that is believed, or else leads, lies in a transition, the robot may be
-    /// on its other side just as well: what scans said before says nothing of that, and what
-    /// this one says counts alone. So it stays, however badly scans before fitted there.
+    /// Adds the other side of a transition as a place, if the believed or else the leading place is
+    /// in one: the robot may be on either side. Earlier scans say nothing about this, so only the
+    /// current scan counts, and the place stays however badly earlier scans fitted there.
     pub(super) fn add_across(
         &mut self,
         transitions: &[Transition],
@@ -43,9 +43,8 @@ impl Places {
         }
     }
 
-    /// Where the best leads over all places on other maps, it is decided whether the robot went
-    /// through a transition, and none of the places is the other side of another any more. They
-    /// are in order.
+    /// Ends the crossing once the best place leads over all places on other maps: then no place is
+    /// the other side of another any more. The places must be sorted.
     pub(super) fn decide_crossing(&mut self) {
         let Some(best) = self.kept.first().copied() else {
             return;

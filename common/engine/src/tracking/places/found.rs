@@ -1,4 +1,4 @@
-//! What a search found, beside the places that are kept.
+//! Places that a search found, added to the places that are kept.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,22 +7,22 @@ use crate::tracking::driven_path::DrivenPath;
 use crate::tracking::place::Candidate;
 use crate::tracking::seen::{Fitted, Seen, information, squared_deviations};
 
-/// What a search adds to the deviations of a prediction in the gate: half its cell and
-/// heading, and the steps of its fit.
+/// Standard deviations that a search adds to a prediction in the gate, in metres and radians: half
+/// its cell and heading, and the steps of its fit.
 const GATE_M: f64 = 0.1;
 const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// A candidate in the gate that scores better by this much, and by this much a squared
-/// deviation, is where the place is.
+/// Score by which a candidate in the gate must be better to replace the place's pose: a constant,
+/// and an amount per squared deviation.
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Natural logarithm of the odds against a place that earlier searches did not find.
+/// Log odds against a place that earlier searches did not find.
 const LATE: f64 = 3.5;
 
 impl Places {
-    /// Takes what a search found for the scan. Of places far behind, a search has a bound of the
-    /// score alone, and here each is weighed against places that are kept.
+    /// Takes the places that a search found for this scan. They are scored again, because a search
+    /// gives only an upper bound of the score of places far behind.
     pub(in crate::tracking) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|found| {
@@ -37,8 +37,7 @@ impl Places {
         }));
     }
 
-    /// Takes what a search found for an earlier scan, from where the robot has gone a
-    /// way since.
+    /// Takes the places that a search found for an earlier scan; `path` is the path since then.
     pub(in crate::tracking) fn take_ahead(
         &mut self,
         seen: &[Seen<'_>],
@@ -86,8 +85,8 @@ impl Places {
             }));
     }
 
-    /// Adds the candidates that are at no place that is kept. Each begins with the weight of
-    /// "nowhere", of which it was a part; but searches before did not find it, if there were any.
+    /// Adds the candidates that are at none of the places kept. Each starts with the weight of
+    /// "nowhere", to which it belonged until now, or less if earlier searches did not find it.
     pub(super) fn add_new(&mut self, best: Best<'_>) {
         let is_first = self.kept.is_empty();
         let top = self.leading().map_or(0.0, |place| place.log_weight);
@@ -111,7 +110,7 @@ impl Places {
                 ..Place::born(id, (map, &found), log_weight)
             });
         }
-        // The first look says of "nowhere" what a later one does.
+        // The first scan changes the weight of "nowhere" as a later one does.
         if let Some(score) = self.leading().filter(|_| is_first).map(|place| place.last) {
             self.nowhere += self.nowhere_by(score);
         }

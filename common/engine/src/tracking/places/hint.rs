@@ -1,4 +1,5 @@
-//! A pose at which somebody says that the robot is, beside the place that is believed.
+//! Hints: poses at which an operator or another process expects the robot, in addition to the
+//! believed place.
 
 use geometry::{Covariance, Pose};
 use nalgebra::Matrix3;
@@ -7,21 +8,21 @@ use super::{Best, EXPECTED, Fitted, GATE, Places};
 use crate::tracking::driven_path::DrivenPath;
 use crate::tracking::seen::{Seen, information, squared_deviations};
 
-/// Poses so near a hint are what it says, metres and radians; so are those within 95 % of its
-/// ellipse, squared deviations of three axes.
+/// Poses this near a hint agree with it, in metres and radians; so do those in its 95 % ellipse
+/// (squared deviation over three axes).
 const NEAR_M: f64 = 0.5;
 const NEAR_RADIANS: f64 = 10.0 * std::f64::consts::PI / 180.0;
 const WITHIN_95: f64 = 7.8;
 
-/// Scores of one place differ by less from scan to scan.
+/// Variation of the score of one place from scan to scan.
 const BETTER: f64 = 0.05;
 
-/// A pose at which somebody says that the robot is.
+/// A pose at which an operator or another process expects the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::tracking) struct Hint {
     /// Number of the map.
     pub map: u32,
-    /// The pose and its covariance.
+    /// Pose and covariance in the map.
     pub at: (Pose, Matrix3<f64>),
 }
 
@@ -33,13 +34,13 @@ impl Hint {
         }
     }
 
-    /// Whether it says nothing else than that the robot is at this pose of a map.
+    /// True if a pose on a map agrees with the hint.
     pub(in crate::tracking) fn is_near(&self, (map, pose): (u32, Pose)) -> bool {
         self.map == map
             && (self.at.0.is_within(pose, NEAR_M, NEAR_RADIANS) || self.off(pose) < WITHIN_95)
     }
 
-    /// Whether a pose lies in its ellipse, as wide as a search may be off.
+    /// True if a pose on a map is in the hint's ellipse, widened by the error of a search.
     pub(super) fn holds(&self, (map, pose): (u32, Pose)) -> bool {
         self.map == map && self.off(pose) < GATE
     }
@@ -48,7 +49,7 @@ impl Hint {
         squared_deviations(pose, self.at.0, &information(&self.at.1))
     }
 
-    /// The hint after the robot went this way.
+    /// Returns the hint after the robot drove this path.
     #[must_use]
     pub(in crate::tracking) fn after(&self, path: &DrivenPath, noise: f64) -> Self {
         Hint {
@@ -58,8 +59,7 @@ impl Hint {
     }
 }
 
-/// A hint that is as likely as other places, and the log weight with which places in its
-/// ellipse begin.
+/// A hint that is as likely as other places, and the initial log weight of places in its ellipse.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WeighedHint {
     pub(super) hint: Hint,
@@ -67,8 +67,8 @@ pub(super) struct WeighedHint {
 }
 
 impl Places {
-    /// Whether the robot may be at a hint rather than at the place of this number, by the last
-    /// scan alone.
+    /// True if, by the last scan alone, the robot may be at a hint rather than at the believed
+    /// place.
     pub(in crate::tracking) fn may_be_at(
         &self,
         hint: &Hint,
@@ -78,8 +78,8 @@ impl Places {
         self.fit_hint(hint, seen, believed).is_some()
     }
 
-    /// Has the next [`Places::weigh`] weigh a hint against the place of this number. Other places
-    /// in its ellipse, whether they are kept or a search found them, are as likely.
+    /// Makes the next [`Places::weigh`] weigh a hint against the believed place. Other places in
+    /// its ellipse, kept or found by a search, become as likely as the hint.
     pub(in crate::tracking) fn expect_beside(
         &mut self,
         hint: Hint,
@@ -97,14 +97,15 @@ impl Places {
         }
     }
 
-    /// Where the scan fits at a hint, and the log weight of places there before it; none where
-    /// the scan says more against it than the hint says for it. The whole of that counts: the
-    /// place that is believed has been confirmed by scans before.
+    /// Fits the scan at a hint and returns the fit and its log weight. `None` if the scan is more
+    /// evidence against the hint than the hint is for itself; that evidence is not capped, since
+    /// earlier scans have confirmed the believed place.
     fn fit_hint(&self, hint: &Hint, seen: &[Seen<'_>], believed: u32) -> Option<(Fitted, f64)> {
         let believed = self.get(believed)?;
         let on_map = &seen[hint.map as usize];
         let fitted = on_map.settle_turned(hint.at, on_map.settle(hint.at));
-        // Once more from there, for the hint draws a fit to itself; or where a search found it.
+        // The hint draws a fit to itself, so the fit is repeated from there; fits of the search
+        // count too.
         let again = on_map.settle((fitted.pose, hint.at.1));
         let found = self.candidates.iter().filter(|(map, _)| *map == hint.map);
         let found = found.map(|(_, found)| *found).chain([again]);
@@ -120,7 +121,7 @@ impl Places {
         };
         let best = Best { score, map, seen };
         let log_weight = EXPECTED - self.nowhere_by(fitted.score) - self.behind(best, at);
-        // Near the place that is believed it is another answer where the scan fits better.
+        // A pose near the believed place is a different answer only if the scan fits better there.
         let is_other = believed.is_apart_from((hint.map, fitted.pose))
             || fitted.score > believed.last + BETTER;
         let with_scan = log_weight + self.against(best, at);

@@ -1,4 +1,4 @@
-//! Scans that see nothing, as of a laser that is covered.
+//! Scans without usable beams, as of a covered laser.
 
 use super::*;
 
@@ -33,12 +33,13 @@ fn a_robot_that_sees_nothing_goes_on_by_odometry_and_is_doubtful_once_it_may_be_
         report.covariance[(0, 0)].sqrt() > deviation.hypot(0.25),
         "{report:?}"
     );
-    // The next scan that sees something finds it there.
+    // The next usable scan finds the robot there.
     let end = start.then(Pose::new(2.0, 0.0, 0.0));
     building.step(&mut tracker, end, Some(step));
     assert!(is_at(&tracker, end), "{:?}", tracker.report());
     assert_eq!(tracker.report().state, TrackState::Unique);
-    // After 2.1 m its heading errs by 7.5 degrees: two of them do not single out a place.
+    // After 2.1 m the heading has a standard deviation of 7.5 degrees; two of them do not single
+    // out a place.
     let states: Vec<_> = (0..14).map(|_| see_nothing(&mut tracker).state).collect();
     assert_eq!(states[..9], [TrackState::Unique; 9]);
     assert_eq!(states[11..], [TrackState::Doubtful; 3]);

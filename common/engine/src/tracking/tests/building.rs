@@ -13,7 +13,7 @@ pub(super) struct Building {
     pub(super) space: Space,
 }
 
-/// Ragged walls, so that it does not count as drawn.
+/// Makes a building. Its walls must be ragged, so that its map does not count as drawn.
 pub(super) fn building(rows: &[&str]) -> Building {
     let (width, height) = (rows[0].len(), rows.len());
     let cells: Vec<u8> = rows
@@ -41,7 +41,7 @@ pub(super) fn building(rows: &[&str]) -> Building {
 }
 
 impl Building {
-    /// What a laser reads at a pose, all around, to a centimetre.
+    /// Ranges of a laser at a pose, all around, to a centimetre.
     pub(super) fn ranges(&self, pose: Pose) -> Vec<f32> {
         let read = |beam: usize| {
             let bearing = -PI + 2.0 * PI * beam as f64 / BEAMS as f64;
@@ -113,7 +113,7 @@ impl Building {
         }
     }
 
-    /// Gives a tracker the scan at a pose; returns what was needed.
+    /// Gives a tracker the scan at a pose; returns the search that was needed.
     pub(super) fn step(&self, tracker: &mut Tracker, truth: Pose, moved: Option<Pose>) -> Need {
         let (ends, fit) = (self.ends(truth), FitConfig::default());
         let seen = self.seen(&ends, &fit);
@@ -123,7 +123,7 @@ impl Building {
         need
     }
 
-    /// A tracker that believes that the robot is here, where it is.
+    /// A tracker that believes the true pose of the robot.
     pub(super) fn believed(&self, truth: Pose) -> Tracker {
         let (ends, fit) = (self.ends(truth), FitConfig::default());
         let mut tracker = Tracker::new(TrackingConfig::default());
@@ -145,7 +145,7 @@ impl Building {
     }
 }
 
-/// A corridor with a niche; no two places look alike.
+/// A corridor with a niche, in which no two places look alike.
 pub(super) const UNLIKE: [&str; 22] = [
     "##################################################",
     "#................................................#",
@@ -171,7 +171,7 @@ pub(super) const UNLIKE: [&str; 22] = [
     "##################################################",
 ];
 
-/// Looks the same when it is turned by half.
+/// A building that looks the same when turned by half a turn.
 pub(super) const ALIKE: [&str; 12] = [
     "########################################",
     "#......................................#",

@@ -1,8 +1,8 @@
-//! A map that was drawn beside one that was measured.
+//! A drawn map next to a measured one.
 
 use super::*;
 
-/// What somebody drew of [`UNLIKE`]: straight walls, and some of what stands there.
+/// A drawing of [`UNLIKE`]: straight walls, and some of the objects.
 const DRAWN: [&str; 22] = [
     "##################################################",
     "#................................................#",
@@ -35,7 +35,7 @@ fn a_drawn_map_may_be_right_where_a_measured_one_fits_better() {
     let (mut pose, mut moved) = (START, None);
     for number in 0..8 {
         let mut ranges = maps[1].ranges(pose);
-        // So much of a scan is never as on a map.
+        // This share of a scan never agrees with a map.
         ranges.iter_mut().step_by(9).for_each(|range| *range *= 0.7);
         let (ends, fit) = (maps[1].ends_of(&ranges), FitConfig::default());
         let seen = [0, 1].map(|map: usize| maps[map].seen(&ends, &fit));

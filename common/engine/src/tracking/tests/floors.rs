@@ -1,10 +1,10 @@
-//! Two floors, between which a lift goes.
+//! Two floors connected by a lift.
 
 use messages::Transition;
 
 use super::*;
 
-/// The floor above: its lift is at the same place.
+/// The floor above, with its lift at the same position.
 const ABOVE: [&str; 22] = [
     "##################################################",
     "#................................................#",
@@ -30,10 +30,10 @@ const ABOVE: [&str; 22] = [
     "##################################################",
 ];
 
-/// Where the lift is, on the way of a robot that drives from [`START`].
+/// Pose of the lift, on the path of a robot that drives from [`START`].
 const LIFT: Pose = Pose::new(3.5, 0.8, 0.0);
 
-/// The side of its region.
+/// Side of the lift's region, in metres.
 const SIDE_M: f64 = 0.8;
 
 fn transition(at: [Pose; 2], size_m: [f64; 2]) -> Transition {
@@ -44,7 +44,7 @@ fn transition(at: [Pose; 2], size_m: [f64; 2]) -> Transition {
     }
 }
 
-/// The straight walls of these floors are no drawing's.
+/// Settings without the tolerance for drawn maps, for the straight walls of these floors.
 fn measured() -> FitConfig {
     FitConfig {
         drawn_doubt: 0.0,
@@ -52,7 +52,7 @@ fn measured() -> FitConfig {
     }
 }
 
-/// The maps of a set, by their numbers.
+/// Maps of a set, by number.
 struct Floors(Vec<Building>);
 
 impl Floors {
@@ -60,7 +60,7 @@ impl Floors {
         Floors(floors.iter().map(|rows| building(rows)).collect())
     }
 
-    /// Of a robot that knows the lift.
+    /// A tracker that knows the lift.
     fn tracker() -> Tracker {
         let lift = transition([LIFT; 2], [SIDE_M; 2]);
         Tracker::new(TrackingConfig::default()).with_transitions(vec![lift])
@@ -71,7 +71,6 @@ impl Floors {
         self.see(tracker, &self.0[floor].ranges(truth), moved);
     }
 
-    /// Gives a tracker a scan.
     fn see(&self, tracker: &mut Tracker, ranges: &[f32], moved: Option<Pose>) {
         let (ends, fit) = (self.0[0].ends_of(ranges), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
@@ -87,7 +86,7 @@ impl Floors {
         tracker.finish(&seen, found.as_deref());
     }
 
-    /// Starts a tracker at a pose of the first floor that is believed.
+    /// Starts a tracker at a trusted pose on the first floor.
     fn start_at(&self, tracker: &mut Tracker, pose: Pose) {
         let (ends, fit) = (self.0[0].ends(pose), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
@@ -96,8 +95,8 @@ impl Floors {
         self.step(tracker, (0, pose), Some(Pose::IDENTITY));
     }
 
-    /// Drives straight on by steps of 0.3 m, on a floor, and turns there if it is to; the
-    /// states on the way, each with its map.
+    /// Drives straight on by steps of 0.3 m on a floor, then turns; returns the states on the way,
+    /// each with its map.
     fn drive(
         &self,
         tracker: &mut Tracker,
@@ -134,9 +133,9 @@ fn into_the_lift(floors: &Floors, tracker: &mut Tracker) -> Pose {
     pose
 }
 
-/// The robot goes up in the lift, in which it is here, and drives out: it is followed, and found.
+/// The robot goes up in the lift and drives out; checks that it is tracked and found.
 fn goes_up(floors: &Floors, tracker: &mut Tracker, pose: Pose) {
-    // It stands while it goes up.
+    // The robot stands while the lift goes up.
     floors.step(tracker, (1, pose), Some(Pose::IDENTITY));
     let (end, states) = floors.drive(tracker, (1, pose), (4, 6));
     assert!(!states.contains(&(TrackState::Unique, 0)), "{states:?}");
@@ -181,7 +180,7 @@ fn floors_that_look_alike_leave_a_doubt() {
     assert!(!after.iter().any(is_unique), "{states:?}");
 }
 
-/// The floor above as somebody has drawn it who began elsewhere: turned by half, and shifted.
+/// The floor above, drawn with another origin: turned by half a turn and shifted.
 fn turned(rows: &[&str]) -> Vec<String> {
     let turn = |row: &&str| "#####".to_owned() + &row.chars().rev().collect::<String>();
     let mut turned: Vec<_> = rows.iter().rev().map(turn).collect();
@@ -190,7 +189,7 @@ fn turned(rows: &[&str]) -> Vec<String> {
     turned
 }
 
-/// Where a pose of the floor lies on that map.
+/// Converts a pose on the floor to that map.
 fn on_turned(pose: Pose, rows: &[&str]) -> Pose {
     let side = |cells: usize| RESOLUTION_M * cells as f64;
     let from_corner = Pose::new(side(5 + rows[0].len()), side(2 + rows.len()), PI);
@@ -215,7 +214,7 @@ fn a_ride_that_is_over_leads_to_no_third_map() {
     floors.step(&mut tracker, (1, pose), Some(Pose::IDENTITY));
     let (_, states) = floors.drive(&mut tracker, (1, pose), (4, 6));
     assert_eq!(states.last(), Some(&(TrackState::Unique, 1)), "{states:?}");
-    // Carried to a building in which two places look alike.
+    // The robot is carried to a building in which two places look alike.
     let elsewhere = Pose::new(1.0, 0.8, 0.0);
     floors.step(&mut tracker, (2, elsewhere), Some(Pose::IDENTITY));
     let (_, states) = floors.drive(&mut tracker, (2, elsewhere), (5, 6));
@@ -233,7 +232,7 @@ fn a_floor_that_is_on_no_map_is_not_taken_for_one_that_is() {
     let mut states = Vec::new();
     for step in straight.chain(turn) {
         pose = pose.then(step);
-        // Of its walls, some are where the floor above has them.
+        // Some of its walls are where the floor above has them.
         let mut ranges = floors.0[1].ranges(pose);
         for nine in ranges.chunks_mut(9) {
             nine[..4].iter_mut().for_each(|range| *range *= 1.6);
@@ -248,7 +247,7 @@ fn a_floor_that_is_on_no_map_is_not_taken_for_one_that_is() {
     );
 }
 
-/// A hall in whose middle the walls are farther than those of the other floors.
+/// A hall whose walls are farther from its middle than those of the other floors.
 fn hall() -> Vec<String> {
     let row = |y: usize| match y {
         0 | 59 => "#".repeat(120),

@@ -1,13 +1,13 @@
-//! Hints: where somebody says that the robot is.
+//! Hints: poses at which the robot is expected.
 
 use super::*;
 
-/// As wide as what an operator points at, in so small a building.
+/// Covariance of a pose that an operator points at in such a small building.
 fn pointed() -> Covariance {
     Covariance::from_deviations(0.3, 0.3, 0.2)
 }
 
-/// The same place in the building that looks the same when it is turned by half.
+/// The corresponding pose in the other half of the symmetric building [`ALIKE`].
 fn twin(pose: Pose) -> Pose {
     let (width, height) = (ALIKE[0].len() as f64, ALIKE.len() as f64);
     let (x, y) = (
@@ -17,8 +17,8 @@ fn twin(pose: Pose) -> Pose {
     Pose::new(x, y, pose.yaw + PI)
 }
 
-/// Gives a tracker the scan of a robot that stands, with the answers to all searches in time;
-/// what was needed.
+/// Gives a tracker the scan of a standing robot, and the answers to all searches in time; returns
+/// the search that was needed.
 fn stand(building: &Building, tracker: &mut Tracker, truth: Pose) -> Need {
     let (ends, fit) = (building.ends(truth), FitConfig::default());
     let seen = building.seen(&ends, &fit);
@@ -49,7 +49,7 @@ fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
     building.step(&mut wrong, START, None);
     assert_eq!(wrong.report().state, TrackState::Searching);
     building.drive(&mut wrong, START, 4);
-    // It is one of the two that look alike, or none is believed.
+    // It is one of the two places that look alike, or none is believed.
     assert_ne!(wrong.report().state, TrackState::Unique);
 }
 

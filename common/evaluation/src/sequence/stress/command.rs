@@ -1,4 +1,4 @@
-//! Goes through the variants of each drive, and prints.
+//! Evaluates the variants of each drive, and prints the figures.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,8 +18,8 @@ use super::variants::{Stress, Variant};
 use crate::EvaluationError;
 use crate::trust::Trust;
 
-/// Evaluates the variants of one file after another. A file that cannot be evaluated is
-/// reported on standard error, and the next one follows.
+/// Evaluates the variants of one file after another. A file that cannot be evaluated is reported on
+/// standard error, and the next one follows.
 ///
 /// # Errors
 /// The other map cannot be read, or output cannot be written.
@@ -63,7 +63,7 @@ pub(in super::super) fn evaluate(
     Ok(code)
 }
 
-/// Whether the file misses no requirement.
+/// Returns true if the file misses no requirement.
 fn one(
     (bag, file_name): (&Path, &str),
     json: bool,
@@ -150,7 +150,7 @@ fn words(wrong: &Wrong) -> String {
     format!("{start}, Unique and wrong at scan {}: {off}", wrong.scan)
 }
 
-/// Draws the drive until the first wrong moment.
+/// Draws the drive up to the first wrong moment.
 fn picture(
     folder: &Path,
     (name, variant): (&str, &str),

@@ -1,4 +1,4 @@
-//! A map as somebody draws it: walls are straight lines, and furniture is left out.
+//! Redraws a map as by hand: walls become straight lines, and furniture is left out.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use ::map::OccupancyGrid;
 use super::map::{FREE, WALL, index, walls};
 use super::material::Change;
 
-/// What stands by itself and is smaller than this is furniture, metres.
+/// Isolated groups of cells smaller than this count as furniture, metres.
 const FURNITURE_M: f64 = 1.5;
 
-/// No wall is shorter than this, metres, and none has larger gaps.
+/// Shortest wall, and largest gap within a wall, metres.
 const SHORTEST_M: f64 = 0.3;
 const GAP_M: f64 = 0.3;
 
-/// Cells that lie so near to a line are of that wall, metres.
+/// Distance within which cells belong to a line, metres.
 const NEAR_M: f64 = 0.12;
 
-/// Directions of lines that are looked at.
+/// Number of line directions in the Hough transform.
 const DIRECTIONS: usize = 90;
 
 type Cell = (u32, u32);
 
-/// Draws the map again.
+/// Replaces the walls of the map by straight lines.
 pub(super) fn draw(map: &mut OccupancyGrid) -> Change<()> {
     let lines = lines(&large(&walls(map), map.resolution_m), map.resolution_m);
     for (x, y) in walls(map) {
@@ -41,7 +41,7 @@ pub(super) fn draw(map: &mut OccupancyGrid) -> Change<()> {
     Ok(())
 }
 
-/// Cells of all that is as large as a wall: of groups whose cells lie two apart at most.
+/// Returns the cells of all groups as large as a wall. Cells up to two apart are a group.
 fn large(walls: &[Cell], resolution_m: f64) -> Vec<Cell> {
     let mut left: BTreeMap<Cell, ()> = walls.iter().map(|&cell| (cell, ())).collect();
     let mut large = Vec::new();
@@ -68,8 +68,8 @@ fn large(walls: &[Cell], resolution_m: f64) -> Vec<Cell> {
     large
 }
 
-/// Straight walls, from end to end: the longest first, each by the cells that no longer one
-/// has (a Hough transform).
+/// Returns the end points of straight walls, longest first; each cell belongs to one wall only (a
+/// greedy Hough transform).
 fn lines(walls: &[Cell], resolution_m: f64) -> Vec<((f64, f64), (f64, f64))> {
     let mut bins: BTreeMap<(usize, i64), Vec<usize>> = BTreeMap::new();
     let normals: Vec<(f64, f64)> = (0..DIRECTIONS)
@@ -100,7 +100,7 @@ fn lines(walls: &[Cell], resolution_m: f64) -> Vec<((f64, f64), (f64, f64))> {
             continue;
         };
         cells.retain(|&i| is_left[i]);
-        // Cells that longer walls took put it behind others.
+        // Longer walls took some of its cells, so it moves back in the order.
         if cells.len() < size {
             by_size.entry(cells.len()).or_default().push(bin);
             continue;

@@ -1,4 +1,4 @@
-//! The figures of one variant of a drive.
+//! Figures of one variant of a drive.
 
 use serde::Serialize;
 
@@ -8,25 +8,25 @@ use super::super::starts::Starts;
 use crate::text::{number, percent, share};
 use crate::trust::Said;
 
-/// Shares are 0..=1; docs/tracking.md explains each.
+/// Figures of one variant. Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Figures {
     pub(super) bag: String,
     pub(super) variant: &'static str,
     pub(super) starts: u64,
     pub(super) wrong_starts: u64,
-    /// Scans whose truth is known, after all starts and while followed.
+    /// Number of scans with a known truth, after all starts and while followed.
     pub(super) scans: u64,
     pub(super) unique_scans: u64,
     pub(super) wrong_scans: u64,
     pub(super) losses: u64,
     pub(super) right: After,
     pub(super) rms_m: Option<f64>,
-    /// The probabilities of the poses, and how many of those were within 1 m and 25°.
+    /// Probabilities of the poses, and how many of these were within 1 m and 25°.
     pub(super) probabilities: Vec<Said>,
 }
 
-/// Shares of the starts after this many metres.
+/// Shares of the starts, by metres after the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct After {
     #[serde(rename = "5")]
@@ -66,12 +66,10 @@ impl Figures {
         }
     }
 
-    /// As a line of JSON.
     pub(super) fn json(&self) -> String {
         json::object(self)
     }
 
-    /// The names of the columns.
     pub(super) fn header() -> String {
         format!(
             "  {:<22}{:>7}{:>7}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n",
@@ -88,7 +86,6 @@ impl Figures {
         )
     }
 
-    /// As a row of a table.
     pub(super) fn row(&self) -> String {
         format!(
             "  {:<22}{:>7}{:>7}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n",

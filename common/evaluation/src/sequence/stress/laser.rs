@@ -1,4 +1,4 @@
-//! Changes of the readings, whatever stands in the world.
+//! Changes of the readings that do not depend on the world.
 
 use std::f32::consts::{PI, TAU};
 
@@ -9,11 +9,10 @@ use ros::LaserScan;
 use super::material::Material;
 use super::material::{Change, Means};
 
-/// A laser that is off by so much, metres to its left and degrees.
+/// Error of the laser's mount: metres to the left, and degrees.
 const OFF: (f32, f32) = (0.05, 2.0);
 
-/// Ranges of a covered laser in the first and second half of the drive, and how they
-/// spread, metres.
+/// Ranges of a covered laser in the first and second half of the drive, and their spread, metres.
 const COVERED_M: [f32; 2] = [1.0, 0.5];
 const SPREAD_M: f32 = 0.01;
 
@@ -30,7 +29,7 @@ fn each(it: &mut Material, mut change: impl FnMut(&mut LaserScan)) {
     }
 }
 
-/// Bearings have the other sign; no pose is right.
+/// Mirrors the bearings; no pose is right.
 pub(super) fn mirror(it: &mut Material) -> Change<()> {
     each(it, |scan| {
         scan.angle_min = -scan.angle_min;
@@ -41,8 +40,8 @@ pub(super) fn mirror(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// The laser looks back, and nothing says so. The truth stays, so that a base that is
-/// found turned is wrong.
+/// Turns the laser by 180° without changing its mount. The truth stays, so a base that is found
+/// turned is wrong.
 pub(super) fn turn(it: &mut Material) -> Change<()> {
     each(it, |scan| {
         let by = if scan.angle_min > 0.0 { -PI } else { PI };
@@ -52,7 +51,7 @@ pub(super) fn turn(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// The laser sits a little elsewhere than is said.
+/// Moves and turns the laser slightly from its stated mount.
 pub(super) fn shift(it: &mut Material) -> Change<()> {
     each(it, |scan| {
         let turn = OFF.1.to_radians();
@@ -72,7 +71,7 @@ pub(super) fn shift(it: &mut Material) -> Change<()> {
             } else {
                 beyond
             };
-            // A little before the first beam is the first beam.
+            // An angle just before the first beam rounds to the first beam.
             let steps = along / scan.angle_increment.abs();
             let beam = if TAU / scan.angle_increment.abs() - steps < 0.5 {
                 0.0
@@ -89,7 +88,7 @@ pub(super) fn shift(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// From mid-drive on the same scan comes with fresh stamps.
+/// Repeats the same scan with new stamps from mid-drive on.
 pub(super) fn freeze(it: &mut Material) -> Change<()> {
     let middle = it.steps.len() / 2;
     let (before, after) = it.steps.split_at_mut(middle);
@@ -108,7 +107,6 @@ pub(super) fn freeze(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// Something sits on the laser.
 pub(super) fn cover(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let (mut number, scans) = (0, it.steps.len());
     for step in &mut it.steps {
@@ -124,7 +122,7 @@ pub(super) fn cover(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     Ok(())
 }
 
-/// The laser sees this much, in the middle of what it saw.
+/// Narrows the field of view to its middle part.
 pub(super) fn narrow(it: &mut Material, degrees: f32) -> Change<()> {
     let mut is_narrowed = false;
     each(it, |scan| {
@@ -143,7 +141,7 @@ pub(super) fn narrow(it: &mut Material, degrees: f32) -> Change<()> {
     is_narrowed.then_some(()).ok_or("it sees no more than that")
 }
 
-/// The laser sees so far.
+/// Limits the maximum range.
 pub(super) fn shorten(it: &mut Material, metres: f32) -> Change<()> {
     each(it, |scan| {
         scan.range_max = scan.range_max.min(metres);
@@ -153,7 +151,7 @@ pub(super) fn shorten(it: &mut Material, metres: f32) -> Change<()> {
     Ok(())
 }
 
-/// The laser has about so many beams.
+/// Reduces the number of beams to about `beams`.
 pub(super) fn thin(it: &mut Material, beams: usize) -> Change<()> {
     let mut is_thinned = false;
     each(it, |scan| {
@@ -167,13 +165,13 @@ pub(super) fn thin(it: &mut Material, beams: usize) -> Change<()> {
     is_thinned.then_some(()).ok_or("it has no more beams")
 }
 
-/// Readings have normal errors of this deviation, metres.
+/// Adds normal errors with this standard deviation to the readings, metres.
 pub(super) fn add_noise(it: &mut Material, means: &mut Means<'_>, sigma_m: f32) -> Change<()> {
     each(it, |scan| noise(scan, means, sigma_m));
     Ok(())
 }
 
-/// Adds errors to a scan.
+/// Adds normal errors to the readings of one scan.
 pub(super) fn noise(scan: &mut LaserScan, means: &mut Means<'_>, sigma_m: f32) {
     for range in scan.ranges.iter_mut().filter(|range| range.is_finite()) {
         let error: f32 = StandardNormal.sample(&mut means.rng);
@@ -181,7 +179,7 @@ pub(super) fn noise(scan: &mut LaserScan, means: &mut Means<'_>, sigma_m: f32) {
     }
 }
 
-/// Some readings are anything below the true range, as in rain or dust.
+/// Replaces some readings by random shorter ones, as in rain or dust.
 pub(super) fn return_early(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     each(it, |scan| {
         for range in &mut scan.ranges {

@@ -7,40 +7,39 @@ use rand::RngExt;
 use super::material::Material;
 use super::material::{Change, Means};
 
-/// Occupancy from which a cell is a wall, per cent, and what is drawn.
+/// Occupancy from which a cell counts as a wall, per cent, and the values that are drawn.
 const WALL_FROM: u8 = 65;
 pub(super) const WALL: u8 = 100;
 pub(super) const FREE: u8 = 0;
 
-/// Walls are erased in discs of this radius, metres.
+/// Radius of the discs in which walls are erased, metres.
 const ERASED_M: f64 = 0.5;
 
-/// Sides of pieces of furniture, metres; one is added for so many square metres of free
-/// floor, no nearer to the robot's way than this.
+/// Side lengths of furniture (metres), free floor per piece (m²), and distance of the pieces from
+/// the robot's path (metres).
 const SIDES_M: std::ops::Range<f64> = 0.3..1.2;
 const FLOOR_M2: f64 = 10.0;
 const FROM_WAY_M: f64 = 0.4;
 
-/// Whether a cell is a wall.
 pub(super) fn is_wall(cell: u8) -> bool {
     (WALL_FROM..UNKNOWN).contains(&cell)
 }
 
-/// Column and row of all walls.
+/// Column and row of each wall cell.
 pub(super) fn walls(map: &OccupancyGrid) -> Vec<(u32, u32)> {
     let cells = (0u32..).zip(&map.cells);
     let walls = cells.filter(|&(_, &cell)| is_wall(cell));
     walls.map(|(i, _)| (i % map.width, i / map.width)).collect()
 }
 
-/// Index of a cell that lies on the map.
+/// Index of a cell; `None` outside the map.
 pub(super) fn index(map: &OccupancyGrid, column: i64, row: i64) -> Option<usize> {
     let (width, height) = (i64::from(map.width), i64::from(map.height));
     let is_inside = (0..width).contains(&column) && (0..height).contains(&row);
     is_inside.then(|| (row * width + column) as usize)
 }
 
-/// Makes a share of the walls free, piece by piece.
+/// Erases a share of the walls, disc by disc.
 pub(super) fn erase(it: &mut Material, means: &mut Means<'_>, share: f64) -> Change<()> {
     let map = &mut it.map;
     let walls = walls(map);
@@ -65,13 +64,13 @@ fn disc(reach: i64) -> impl Iterator<Item = (i64, i64)> {
     square.filter(move |(dx, dy)| dx * dx + dy * dy <= reach * reach)
 }
 
-/// Puts boxes on the free floor, where the robot does not drive.
+/// Puts boxes on the free floor, away from the robot's path.
 pub(super) fn furnish(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let map = &mut it.map;
     let free = map.cells.iter().filter(|&&cell| cell == FREE).count();
     let floor_m2 = free as f64 * map.resolution_m * map.resolution_m;
     let mut left = (floor_m2 / FLOOR_M2).ceil() as u32;
-    // Most places are refused in a corridor.
+    // In a corridor most positions are rejected.
     for _ in 0..100 * left {
         if left == 0 {
             break;
@@ -116,7 +115,7 @@ pub(super) fn halve(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// Makes the map larger, and the truth with it.
+/// Scales the map, and the truth with it.
 pub(super) fn enlarge(it: &mut Material, factor: f64) -> Change<()> {
     it.map.resolution_m *= factor;
     let map_from_grid = it.map.map_from_grid;
@@ -139,7 +138,7 @@ pub(super) fn mirror(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// Takes the map of another building; no pose is right on it.
+/// Replaces the map by that of another building; no pose is right on it.
 pub(super) fn exchange(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let other = means.other_map.filter(|other| other.id() != it.map.id());
     let other = other.ok_or("no other map is at hand: give --other-map or a second recording")?;
@@ -148,7 +147,7 @@ pub(super) fn exchange(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     Ok(())
 }
 
-/// Makes cells as large as this; one that holds a wall is one.
+/// Enlarges the cells to this side; a cell with any wall becomes a wall.
 pub(super) fn coarsen(it: &mut Material, side_m: f64) -> Change<()> {
     let map = &it.map;
     if map.resolution_m > 0.99 * side_m {

@@ -1,4 +1,4 @@
-//! A drive in memory, before it is searched. Variants change a copy of it.
+//! A drive in memory, before the search. Variants change a copy of it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,41 +13,41 @@ use recording::{GroundTruth, Kind, Recording};
 use super::super::drive::{self, Moment};
 use crate::EvaluationError;
 
-/// Random numbers and maps for a change.
+/// Random numbers and another map for a change.
 pub(super) struct Means<'a> {
     pub(super) rng: Xoshiro256PlusPlus,
-    /// The map of another building.
+    /// Map of another building.
     pub(super) other_map: Option<&'a OccupancyGrid>,
 }
 
-/// Why a variant says nothing about a drive.
+/// Result of a change; the error is the reason why the variant does not apply to a drive.
 pub(super) type Change<T> = Result<T, &'static str>;
 
-/// A map, and all that a robot measured on it.
+/// A map, and all measurements of a drive on it.
 #[derive(Clone)]
 pub(super) struct Material {
     pub(super) map: OccupancyGrid,
     pub(super) steps: Vec<Step>,
     pub(super) odometry: Vec<Odometry>,
-    /// Whether no pose is right.
+    /// True if no pose is right.
     pub(super) is_nowhere: bool,
-    /// Starts lie within so many metres of the drive's beginning.
+    /// Starts are within this distance from the beginning of the drive, in metres.
     pub(super) starts_until_m: f64,
 }
 
-/// A scan and where it was taken.
+/// A scan and its pose.
 #[derive(Clone)]
 pub(super) struct Step {
     pub(super) scan: TakenScan,
     pub(super) truth: Option<Pose>,
-    /// The truth, or between those before and after it.
+    /// The truth, interpolated where it is not known.
     pub(super) map_from_laser: Pose,
-    /// Metres along the drive until here.
+    /// Distance travelled so far, in metres.
     pub(super) gone_m: f64,
 }
 
 impl Material {
-    /// Reads a recording, and the scans of its session, on a map.
+    /// Reads a recording, and the scans of its session.
     ///
     /// # Errors
     /// The recording cannot be read.
@@ -58,7 +58,7 @@ impl Material {
         (truths, ignored): (&BTreeMap<i64, GroundTruth>, &BTreeSet<u64>),
     ) -> Result<Self, EvaluationError> {
         let mut odometry = Vec::new();
-        // As a session does: where several channels could be meant, none is.
+        // Like a session, uses no odometry if several channels could be it.
         if let Ok(Some(topic)) = recording.topic(Kind::Odometry) {
             each_odometry(recording, &topic, |one| odometry.push(*one))?;
         }
@@ -85,7 +85,7 @@ impl Material {
     /// Searches all scans.
     ///
     /// # Errors
-    /// The clock fails.
+    /// The CPU clock cannot be read.
     pub(super) fn search(
         &self,
         session: &mut Session<'_>,
@@ -109,7 +109,7 @@ impl Material {
         Ok(moments)
     }
 
-    /// Moments that were searched before, with this odometry.
+    /// Copies of moments with their search results, and with this odometry.
     ///
     /// # Errors
     /// The recording cannot be read.
@@ -123,7 +123,7 @@ impl Material {
         let mut left = moments.iter_mut().peekable();
         for step in &self.steps {
             let by_odometry = session.by_odometry(&step.scan)?;
-            // A scan that was refused has no moment.
+            // A rejected scan has no moment.
             if let Some(moment) = left.next_if(|moment| moment.stamp_ns == step.scan.stamp_ns) {
                 moment.by_odometry = by_odometry;
             }
@@ -132,7 +132,7 @@ impl Material {
         Ok(moments)
     }
 
-    /// Notes how far the robot had gone at each scan.
+    /// Fills in the distance travelled at each scan.
     pub(super) fn measure(&mut self, moments: &[Moment]) {
         for step in &mut self.steps {
             let stamp_ns = step.scan.stamp_ns;
@@ -141,13 +141,13 @@ impl Material {
         }
     }
 
-    /// Metres from the first scan to the last.
+    /// Distance travelled from the first scan to the last, in metres.
     pub(super) fn length_m(&self) -> f64 {
         self.steps.last().map_or(0.0, |last| last.gone_m)
     }
 }
 
-/// The true pose at a time, between those that are known.
+/// True pose at a time, interpolated between known ones.
 fn between(truths: &BTreeMap<i64, GroundTruth>, stamp_ns: i64) -> Pose {
     let before = truths.range(..=stamp_ns).next_back();
     let after = truths.range(stamp_ns..).next();

@@ -1,7 +1,6 @@
-//! `backcast evaluate --sequence --stress`: drives with something changed, made in memory.
-//! For each variant the map, the scans, the odometry or the motion differ from the
-//! recording's, and what the tracker says is judged as on the drive itself. The same seed
-//! gives the same variants.
+//! `backcast evaluate --sequence --stress`: drives with a change made in memory. Each variant
+//! changes the map, the scans, the odometry or the motion of the recording, and the tracker is
+//! judged as on the drive itself. The same seed gives the same variants.
 
 mod command;
 mod drawn;

@@ -1,4 +1,4 @@
-//! Changes of how the robot moves.
+//! Changes of the robot's motion.
 
 use ::map::UNKNOWN;
 use geometry::Pose;
@@ -10,22 +10,22 @@ use super::map::walls;
 use super::material::{Change, Means};
 use super::material::{Material, Step};
 
-/// A robot that stands, scans and their noise, metres.
+/// Number of scans of a robot that stands still, and their noise in metres.
 const STANDS: usize = 1000;
 const NOISE_M: f32 = 0.03;
 
-/// The drive begins off the map for at most so many metres, and a third of the drive.
+/// Longest part of the drive off the map, in metres; at most a third of the drive.
 const OFF_MAP_M: f64 = 15.0;
 
-/// The robot is carried away after so many metres, or quarters of the drive; a tracker has
-/// so many scans to notice.
+/// Distance between kidnappings, in metres, at most a quarter of the drive; and the number of scans
+/// that a tracker has to notice.
 const CARRIED_M: f64 = 15.0;
 const TO_NOTICE: usize = 2;
 
-/// No scan comes for the last of these seconds, each time that all of them are over.
+/// Duration of each silence, and its period, in seconds.
 const SILENT_S: (f64, f64) = (10.0, 40.0);
 
-/// Measures at one place for long, and the odometry says so.
+/// Repeats measurements at one place, with odometry that agrees.
 pub(super) fn stand(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let middle = it.steps.len() / 2;
     let known = it
@@ -67,8 +67,8 @@ pub(super) fn stand(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     Ok(())
 }
 
-/// Begins on floor that the map does not have: what lies nearer to the first part of the
-/// drive than to the rest is unknown.
+/// Starts the drive off the map: makes all cells unknown that are nearer to its first part than to
+/// the rest.
 pub(super) fn start_off_map(it: &mut Material) -> Change<()> {
     let off_map_m = OFF_MAP_M.min(it.length_m() / 3.0);
     let until = it.steps.partition_point(|step| step.gone_m <= off_map_m);
@@ -103,8 +103,8 @@ pub(super) fn start_off_map(it: &mut Material) -> Change<()> {
     }
 }
 
-/// Is carried elsewhere again and again, while the odometry says that it stands: the drive
-/// is cut in pieces, which follow each other in another order.
+/// Kidnaps the robot repeatedly while its odometry reports no motion: cuts the drive into pieces
+/// and reorders them.
 pub(super) fn carry_away(moments: &mut Vec<Moment>) -> Change<()> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let piece_m = CARRIED_M.min(total / 4.0);
@@ -120,7 +120,7 @@ pub(super) fn carry_away(moments: &mut Vec<Moment>) -> Change<()> {
         return Err("the drive has one scan");
     };
     let half = pieces.len() / 2;
-    // From each piece of the first half to one of the second and back: never to a neighbour.
+    // Alternates between pieces of the first and second half, never neighbours.
     let order = (0..half).flat_map(|i| [pieces[half + i], pieces[i]]);
     let mut carried: Vec<Moment> = Vec::with_capacity(moments.len());
     for piece in order {
@@ -146,7 +146,7 @@ pub(super) fn carry_away(moments: &mut Vec<Moment>) -> Change<()> {
     Ok(())
 }
 
-/// Has no scans for a while, again and again.
+/// Removes the scans of regular silent periods.
 pub(super) fn silence(moments: &mut Vec<Moment>) -> Change<()> {
     let (all, first_ns) = (
         moments.len(),

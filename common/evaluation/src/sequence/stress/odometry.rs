@@ -5,22 +5,22 @@ use std::f64::consts::FRAC_PI_2;
 use geometry::Pose;
 use messages::Odometry;
 
-/// So late comes what is late, nanoseconds.
+/// Delay of late stamps, in nanoseconds.
 const LATE_NS: i64 = 300_000_000;
 
-/// The first sample of the second half of the drive.
+/// Index of the first sample in the second half of the drive.
 fn middle(odometry: &[Odometry]) -> usize {
     let stamp = |one: Option<&Odometry>| one.map_or(0, |one| one.stamp.measured_ns);
     let (first, last) = (stamp(odometry.first()), stamp(odometry.last()));
     odometry.partition_point(|one| one.stamp.measured_ns < first + (last - first) / 2)
 }
 
-/// Ends in mid-drive.
+/// Ends the odometry in mid-drive.
 pub(super) fn end(odometry: &mut Vec<Odometry>) {
     odometry.truncate(middle(odometry));
 }
 
-/// Gives the same pose from mid-drive on.
+/// Repeats the same pose from mid-drive on.
 pub(super) fn freeze(odometry: &mut [Odometry]) {
     let from = middle(odometry);
     let Some(last) = odometry.get(from).copied() else {
@@ -31,31 +31,31 @@ pub(super) fn freeze(odometry: &mut [Odometry]) {
     }
 }
 
-/// Says always that the robot is where it began.
+/// Reports the initial pose throughout.
 pub(super) fn zero(odometry: &mut Vec<Odometry>) {
     for one in odometry {
         one.odom_from_child = Pose::IDENTITY.into();
     }
 }
 
-/// Turns by a tenth too much.
+/// Turns 10 % too much.
 pub(super) fn turn_more(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(step.x, step.y, 1.1 * step.yaw));
 }
 
-/// Takes forwards for backwards.
+/// Swaps forwards and backwards.
 pub(super) fn reverse(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(-step.x, step.y, step.yaw));
 }
 
-/// Has stamps that are late.
+/// Delays the stamps.
 pub(super) fn delay(odometry: &mut Vec<Odometry>) {
     for one in odometry {
         one.stamp.measured_ns += LATE_NS;
     }
 }
 
-/// Is about a frame that is turned by 90° on the robot.
+/// Reports a frame that is turned by 90° on the robot.
 pub(super) fn turn_frame(odometry: &mut Vec<Odometry>) {
     for one in odometry {
         let turned = Pose::from(one.odom_from_child).then(Pose::new(0.0, 0.0, FRAC_PI_2));
@@ -63,7 +63,7 @@ pub(super) fn turn_frame(odometry: &mut Vec<Odometry>) {
     }
 }
 
-/// Changes how the robot moved from each sample to the next.
+/// Applies a change to the motion between consecutive samples.
 fn each_step(odometry: &mut [Odometry], change: impl Fn(Pose) -> Pose) {
     let poses: Vec<Pose> = odometry.iter().map(|o| o.odom_from_child.into()).collect();
     let Some(&first) = poses.first() else { return };

@@ -15,7 +15,7 @@ fn other_map() -> OccupancyGrid {
     OccupancyGrid::from_parts(2, 1, 0.05, Pose::IDENTITY, vec![0, 100]).unwrap()
 }
 
-/// A room of 20 by 8 m with a pillar, through which a robot drives for 8 m.
+/// A room of 20 by 8 m with a pillar, and a drive of 8 m through it.
 fn material() -> Material {
     let (width, height) = (400, 160);
     let cells = (0..width * height).map(|i| {
@@ -74,7 +74,7 @@ fn material() -> Material {
     }
 }
 
-/// What a variant makes of the room; `None` where it changes moments.
+/// Applies a variant to the room; `None` if it changes no material.
 fn made(variant: &Variant, seed: u64) -> Option<Material> {
     let (mut material, other) = (material(), other_map());
     let mut means = variant.means(seed, Some(&other));
@@ -121,13 +121,13 @@ fn a_seed_decides_all_of_a_variant() {
             continue;
         };
         let is_same = |a: &Material, b: &Material| {
-            // Readings may be infinite, and are never not a number here.
+            // Readings may be infinite, but are never NaN here.
             a.map == b.map && a.odometry == b.odometry && scans(a) == scans(b)
         };
         assert!(is_same(&a, &b), "{}", variant.name);
         by_seed += u32::from(!is_same(&a, &c));
     }
-    // Erased twice, furniture, covered, noise twice, people thrice, glass twice, short
+    // Erased twice, furniture, covered, noise twice, people three times, glass twice, short
     // returns, standing.
     assert_eq!(by_seed, 13);
 }
@@ -167,7 +167,7 @@ fn shares_are_those_of_the_names() {
     let walls = |it: &Material| it.map.cells.iter().filter(|&&cell| cell == 100).count() as f64;
     for (name, share) in [("map-erased-10", 0.1), ("map-erased-30", 0.3)] {
         let erased = 1.0 - walls(&made(name)) / walls(&before);
-        // The last disc may erase 80 of 2200 cells too many.
+        // The last disc may erase up to 80 of 2200 cells too many.
         assert!((share..share + 0.04).contains(&erased), "{name}: {erased}");
     }
     let hidden = |name: &str| {

@@ -1,4 +1,4 @@
-//! One variant of a drive, made and judged.
+//! Creates and judges one variant of a drive.
 
 use engine::tracking::TrackingConfig;
 use offline::{Accepted, Options, Session, World};
@@ -14,7 +14,7 @@ use super::material::{Change, Means};
 use super::variants::{Variant, Way};
 use crate::EvaluationError;
 
-/// A drive that has been read and searched as it was recorded.
+/// A drive that has been read and searched as recorded.
 pub(super) struct Recorded<'a> {
     pub(super) recording: &'a Recording,
     pub(super) options: &'a Options,
@@ -23,32 +23,32 @@ pub(super) struct Recorded<'a> {
     pub(super) progress: &'a Progress,
 }
 
-/// A variant as it was judged.
+/// Results of a variant.
 pub(super) struct Trial {
     pub(super) starts: Starts,
     pub(super) followed: Followed,
     pub(super) first_wrong: Option<Wrong>,
-    /// The map that was searched.
+    /// Map that was searched.
     pub(super) map: ::map::OccupancyGrid,
 }
 
 /// The first moment that was Unique and wrong.
 pub(super) struct Wrong {
-    /// The scan of the start; `None` while the drive was followed from the truth.
+    /// Scan of the start; `None` if the drive was followed from the truth.
     pub(super) start: Option<usize>,
     pub(super) scan: usize,
-    /// Metres and degrees; infinite where no pose is right.
+    /// Error in metres and degrees; infinite if no pose is right.
     pub(super) off: (f64, f64),
-    /// What was said until then.
+    /// Moments and results up to this one.
     pub(super) moments: Vec<Moment>,
     pub(super) said: Vec<Said>,
 }
 
 impl Recorded<'_> {
-    /// Makes a variant and judges it; or why it says nothing.
+    /// Creates and judges a variant, or returns the reason why it does not apply.
     ///
     /// # Errors
-    /// The changed map cannot be used, or the clock fails.
+    /// The changed map cannot be used, or the CPU clock cannot be read.
     pub(super) fn judge(
         &self,
         session: &mut Session<'_>,
@@ -100,7 +100,7 @@ fn judge(
     let chosen = starts::choose(&moments[..within], count);
     let starts = starts::evaluate(world, moments, &chosen, config)?;
     let followed = match material.is_nowhere {
-        // There is no truth to begin with.
+        // Without a truth there is no pose to start from.
         true => Followed::default(),
         false => follow::evaluate(world, moments, config, variant.puts_back())?,
     };

@@ -1,4 +1,4 @@
-//! All variants, by their names.
+//! List of all variants.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
@@ -13,27 +13,26 @@ use super::super::drive::{Moment, connect};
 use super::material::{Change, Material, Means};
 use super::{drawn, laser, map, motion, odometry, world};
 
-/// A drive with something changed.
 pub(super) struct Variant {
     pub(super) name: &'static str,
     pub(super) way: Way,
 }
 
-/// How a variant is made.
+/// Stage at which a variant changes the drive.
 #[derive(Clone, Copy)]
 pub(super) enum Way {
-    /// As it was recorded.
+    /// No change.
     Undisturbed,
-    /// The map or the scans change, and all is searched again.
+    /// Changes the map or the scans; everything is searched again.
     Drive(fn(&mut Material, &mut Means<'_>) -> Change<()>),
-    /// The odometry alone changes.
+    /// Changes only the odometry.
     Odometry(fn(&mut Vec<Odometry>)),
-    /// The moments change after they were searched.
+    /// Changes the moments after the search.
     Moments(fn(&mut Vec<Moment>) -> Change<()>),
 }
 
 impl Variant {
-    /// Means of this variant alone, so that it is the same in every list.
+    /// Random numbers seeded by this variant's name, so that they do not depend on the list.
     pub(super) fn means<'a>(&self, seed: u64, other_map: Option<&'a OccupancyGrid>) -> Means<'a> {
         let mut hasher = DefaultHasher::new();
         (seed, self.name).hash(&mut hasher);
@@ -43,8 +42,7 @@ impl Variant {
         }
     }
 
-    /// Whether a robot that is lost is put back to the truth: not where it is to find
-    /// itself again.
+    /// True if a lost robot is put back to the truth; false if it must recover by itself.
     pub(super) fn puts_back(&self) -> bool {
         self.name != CARRIED_AWAY
     }
@@ -70,7 +68,6 @@ const fn moments(name: &'static str, change: fn(&mut Vec<Moment>) -> Change<()>)
     Variant { name, way }
 }
 
-/// Those whose map is changed.
 const MAP: &[Variant] = &[
     drive("map-drawn", |it, _| drawn::draw(&mut it.map)),
     drive("map-erased-10", |it, means| map::erase(it, means, 0.1)),
@@ -85,7 +82,6 @@ const MAP: &[Variant] = &[
     drive("map-cells-20cm", |it, _| map::coarsen(it, 0.2)),
 ];
 
-/// Those whose scans are changed.
 const LASER: &[Variant] = &[
     drive("laser-mirrored", |it, _| laser::mirror(it)),
     drive("laser-turned-180", |it, _| laser::turn(it)),
@@ -114,7 +110,6 @@ const LASER: &[Variant] = &[
     drive("short-returns", laser::return_early),
 ];
 
-/// Those whose odometry is changed.
 const ODOMETRY: &[Variant] = &[
     odometry("odometry-none", Vec::clear),
     odometry("odometry-ends", odometry::end),
@@ -130,7 +125,6 @@ const ODOMETRY: &[Variant] = &[
     odometry("odometry-other-frame", odometry::turn_frame),
 ];
 
-/// Those whose motion is changed.
 const MOTION: &[Variant] = &[
     drive("stands-1000", motion::stand),
     drive("starts-off-map", |it, _| motion::start_off_map(it)),
@@ -152,17 +146,16 @@ const GROUPS: [(&str, &[Variant]); 5] = [
     ("motion", MOTION),
 ];
 
-/// The variants that are asked for, in the order of the tables above.
+/// Selection of variants, in the order of the tables above.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Stress {
-    /// Those with these names, and those of these groups.
+    /// Names of variants and groups.
     Of(Vec<String>),
-    /// All; a file came in the place of a list.
+    /// All variants; the option's value was a file instead of a list.
     AllOf(PathBuf),
 }
 
 impl Stress {
-    /// Those that are asked for.
     pub(super) fn variants(&self) -> Vec<&'static Variant> {
         let is_meant = |group: &str, name: &str| match self {
             Stress::AllOf(_) => true,
@@ -181,7 +174,7 @@ impl Stress {
 impl FromStr for Stress {
     type Err = String;
 
-    /// Reads names with commas between them, or one file.
+    /// Parses a comma-separated list of names, or takes the path of an existing file.
     fn from_str(text: &str) -> Result<Self, String> {
         let variants = || GROUPS.iter().flat_map(|(_, variants)| variants.iter());
         let is_known = |name: &&str| {

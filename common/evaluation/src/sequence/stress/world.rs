@@ -1,4 +1,4 @@
-//! People and glass: changes that stand in the world, or walk with the robot.
+//! People and glass: changes that stand in the world, or move with the robot.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -10,40 +10,40 @@ use simulation::Obstacles;
 use super::material::Material;
 use super::material::{Change, Means};
 
-/// A person who stands is a disc of this radius, so far from a laser; none is nearer to the
-/// robot's way.
+/// Radius of a standing person (a disc), distance from the laser, and distance from the robot's
+/// path, all in metres.
 const RADIUS_M: f64 = 0.2;
 const STANDS_M: std::ops::Range<f64> = 0.7..3.0;
 const FROM_WAY_M: f64 = 0.5;
 
-/// Most places that are tried for people.
+/// Maximum number of positions tried for people.
 const MAX_TRIES: u32 = 1000;
 
-/// Farther away a person hides next to nothing.
+/// Distance beyond which a person is ignored, metres.
 const SEEN_M: f64 = 8.0;
 
-/// A crowd: so far from the laser, one for so much of the view, degrees, and how they sway
-/// to both sides and how fast, radians and radians a scan.
+/// A crowd: distance from the laser (metres), degrees of view per person, and amplitude and speed
+/// of its sway (radians, and radians per scan).
 const CROWD_M: std::ops::Range<f64> = 0.6..1.2;
 const CROWD_DEG: f64 = 30.0;
 const SWAY: (f64, f64) = (0.15, 0.05);
 
-/// Walls are of glass by squares of this side, metres; this share of them. A beam goes on
-/// so far behind a wall.
+/// Side of the wall squares that are glass or not (metres), share of glass (per cent), and distance
+/// after which a beam through glass continues (metres).
 const GLASS_M: f64 = 1.0;
 const GLASS: u64 = 25;
 const BEHIND_M: f64 = 0.3;
 
 type Place = (f64, f64);
 
-/// The bearing of a reading, radians, as seen from above.
+/// Bearing of a reading, in radians, seen from above.
 fn bearing(scan: &TakenScan, i: usize) -> f64 {
     let message = &scan.message;
     let side = if scan.upside_down { -1.0 } else { 1.0 };
     side * (f64::from(message.angle_min) + i as f64 * f64::from(message.angle_increment))
 }
 
-/// Changes the scans of all lasers, by where each was taken.
+/// Changes the scans of all lasers, given the pose of each.
 fn each(it: &mut Material, mut change: impl FnMut(&mut TakenScan, Pose)) {
     for step in &mut it.steps {
         let at = step.map_from_laser;
@@ -56,19 +56,19 @@ fn each(it: &mut Material, mut change: impl FnMut(&mut TakenScan, Pose)) {
     }
 }
 
-/// How far a beam goes to the first of these people, seen from the laser.
+/// Range of a beam to the nearest of these people, in the laser's frame.
 fn range_to(people: &[Place], bearing: f64) -> f64 {
     let (sin, cos) = bearing.sin_cos();
     let ranges = people.iter().filter_map(|&(x, y)| {
         let (along, across) = (x * cos + y * sin, y * cos - x * sin);
-        // Not a number where the beam misses.
+        // NaN if the beam misses.
         let range = along - (RADIUS_M * RADIUS_M - across * across).sqrt();
         (range > 0.0).then_some(range)
     });
     ranges.fold(f64::INFINITY, f64::min)
 }
 
-/// Puts people, seen from the laser, before it; the share of the beams that they hide.
+/// Puts people, in the laser's frame, before it; returns the share of the beams that they hide.
 fn hide(scan: &mut TakenScan, people: &[Place]) -> f64 {
     let mut hidden = 0;
     for i in 0..scan.message.ranges.len() {
@@ -83,17 +83,17 @@ fn hide(scan: &mut TakenScan, people: &[Place]) -> f64 {
     f64::from(hidden) / scan.message.ranges.len().max(1) as f64
 }
 
-/// People near a laser, seen from it.
+/// People near a laser, in its frame.
 fn seen_from(people: &[Place], at: Pose) -> Vec<Place> {
     let from = at.inverse();
     let seen = people.iter().map(|&(x, y)| from.transform(x, y));
     seen.filter(|(x, y)| x.hypot(*y) < SEEN_M).collect()
 }
 
-/// People stand along the way and hide this share of the beams, all scans together.
+/// Puts people along the path until they hide this share of the beams of all scans.
 pub(super) fn stand_people(it: &mut Material, means: &mut Means<'_>, share: f64) -> Change<()> {
     let mut people = Vec::new();
-    // Scans that differ little need not all be looked at.
+    // A hundred scans are enough to estimate the share.
     let every = it.steps.len().div_ceil(100).max(1);
     let looked_at: Vec<usize> = (0..it.steps.len()).step_by(every).collect();
     for _ in 0..MAX_TRIES {
@@ -112,7 +112,7 @@ pub(super) fn stand_people(it: &mut Material, means: &mut Means<'_>, share: f64)
     Ok(())
 }
 
-/// The share of the beams of a scan that people hide.
+/// Share of a scan's beams that people hide.
 fn hidden_at(it: &Material, i: usize, people: &[Place]) -> f64 {
     let step = &it.steps[i];
     hide(
@@ -121,7 +121,7 @@ fn hidden_at(it: &Material, i: usize, people: &[Place]) -> f64 {
     )
 }
 
-/// A place that a scan sees to be free, off the way of the robot.
+/// Returns a position that a scan sees as free, away from the robot's path.
 fn person_near(it: &Material, means: &mut Means<'_>, i: usize) -> Option<Place> {
     let (step, beams) = (&it.steps[i], it.steps[i].scan.message.ranges.len());
     let beam = means.rng.random_range(0..beams.max(1));
@@ -137,7 +137,7 @@ fn person_near(it: &Material, means: &mut Means<'_>, i: usize) -> Option<Place> 
     is_free.then_some(place)
 }
 
-/// A crowd walks along with the robot, around it.
+/// Surrounds the robot by a crowd that moves along.
 pub(super) fn walk_along(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let people: Vec<[f64; 3]> = (0..(360.0 / CROWD_DEG) as u32)
         .map(|i| {
@@ -162,7 +162,7 @@ pub(super) fn walk_along(it: &mut Material, means: &mut Means<'_>) -> Change<()>
     Ok(())
 }
 
-/// Some walls are of glass: they return nothing, or what lies behind them.
+/// Makes some walls glass: beams return nothing or, if `is_clear`, the obstacle behind.
 pub(super) fn glaze(it: &mut Material, means: &mut Means<'_>, is_clear: bool) -> Change<()> {
     let salt: u64 = means.rng.random();
     let is_glass = |(x, y): Place| {

@@ -22,32 +22,31 @@ use super::super::{
 };
 use crate::{LauncherError, installed::is_ours};
 
-/// A node that failed so often in a row is shown as one that fails.
+/// Number of failures in a row from which a node is reported as failing.
 const FAILURES_SHOWN: u32 = 3;
-/// Most bytes of its last line that are shown.
+/// Longest part of its last line that is shown, in bytes.
 const LINE_SHOWN: usize = 400;
 
-/// A node, and what became of its processes so far.
+/// A node with the history of its processes.
 pub(super) struct Member {
     pub(super) node: Node,
     pub(super) essential: bool,
     pub(super) restarts: Restarts,
     pub(super) pulse: Pulse,
     pub(super) state: State,
-    /// When its process was started last.
+    /// Start of its last process.
     pub(super) started: Option<Instant>,
-    /// How often it was started again, and how its last process ended.
+    /// Number of restarts, and exit status of the last process that ended.
     pub(super) restarted: u64,
     pub(super) last_end: Option<ExitStatus>,
-    /// The last line that its processes wrote on standard error.
+    /// Last line of standard error.
     pub(super) last_line: Arc<Mutex<String>>,
-    /// Somebody wants its process to end and another one to follow.
+    /// True if a user asked for a restart that is still due.
     pub(super) wanted_anew: bool,
-    /// Whether it said so with its exit code.
+    /// True if the exit code of its last process says that it lost data.
     pub(super) lost_data: bool,
 }
 
-/// Whether its process runs.
 pub(super) enum State {
     /// To be started at this time.
     Due(Instant),
@@ -56,10 +55,10 @@ pub(super) enum State {
 }
 
 impl Member {
-    /// It is to be started at `now`.
+    /// Creates the member; it is due at `now`.
     ///
     /// # Errors
-    /// The node does not say as it should whether the graph needs it.
+    /// The node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
     pub(super) fn new(node: Node, now: Instant) -> Result<Self, LauncherError> {
         Ok(Member {
             essential: is_essential(&node)?,
@@ -90,7 +89,7 @@ impl Member {
             Ok(process) => process,
             Err(source) => return self.not_started(source, folder, now),
         };
-        // The console need not have it.
+        // Logged in the graph only, not on the console.
         let started = format!("{} runs as process {}", self.node.id, process.pid());
         log_in_graph(LogLevel::Info, &started);
         self.restarted += u64::from(self.started.is_some());
@@ -100,7 +99,7 @@ impl Member {
         Ok(())
     }
 
-    /// What ran before can be started another time: memory or processes were short.
+    /// Retries a node that has run before: memory or processes may be short. Otherwise fails.
     fn not_started(
         &mut self,
         source: io::Error,
@@ -128,8 +127,8 @@ impl Member {
         })
     }
 
-    /// Returns whether the process has ended, after deciding what follows; shared memory has room,
-    /// or is full.
+    /// Returns true if the process has ended, after deciding what follows. `has_room` says that
+    /// shared memory is not full.
     pub(super) fn look_after(
         &mut self,
         now: Instant,
@@ -165,7 +164,7 @@ impl Member {
                 });
             }
         };
-        // Once while it lasts: ends for want of memory are not counted.
+        // Warns once per row of failures; `Starved` is not counted in the row.
         if ended != Ended::Starved
             && self.restarts.in_a_row() == FAILURES_SHOWN
             && let Some(sentence) = self.fails(now)
@@ -175,8 +174,8 @@ impl Member {
         Ok(true)
     }
 
-    /// For how long the process has done its work, as far as it says so; one that lived for the
-    /// window of its restarts is no new start that fails.
+    /// Time for which the process has been at work. If it does not report, or has lived for the
+    /// whole restart window, its lifetime counts.
     fn worked(&self, now: Instant) -> Duration {
         let lived = self.started.map_or(Duration::ZERO, |started| now - started);
         match self.pulse.at_work_for(now) {
@@ -185,7 +184,7 @@ impl Member {
         }
     }
 
-    /// A sentence on a node that fails each time that it is started.
+    /// Returns a sentence if the node has failed several times in a row and has not recovered.
     pub(super) fn fails(&self, now: Instant) -> Option<String> {
         let is_running = matches!(self.state, State::Running(_));
         let has_recovered = is_running && self.worked(now) >= Restarts::RECOVERED_AFTER;
@@ -226,7 +225,7 @@ impl Member {
         }
     }
 
-    /// What does not report any more does not work any more, or is stopped.
+    /// Kills the process if its health messages are overdue: it hangs or is stopped.
     fn end_if_hung(&mut self, now: Instant) -> Result<(), LauncherError> {
         let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
         else {
@@ -236,7 +235,7 @@ impl Member {
         warn(&format!(
             "{id} sent no heartbeat for {seconds} s and is killed"
         ));
-        // Its end is seen later; until then it is not ended again.
+        // Its end is handled later; until then it is not killed again.
         self.pulse.restart_timeout(now);
         let killed = process.signal(Signal::SIGKILL);
         killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
@@ -253,7 +252,7 @@ impl Member {
     }
 }
 
-/// Who did all that could be done, and lost data, would not do better again.
+/// A node that lost data has still done its work: a restart would do no better.
 fn how_ended(status: ExitStatus) -> Ended {
     if status.success() || lost_data(status) {
         Ended::Well
@@ -264,7 +263,7 @@ fn how_ended(status: ExitStatus) -> Ended {
     }
 }
 
-/// Whether a process said so.
+/// True if the exit code says that the process lost data.
 pub(super) fn lost_data(status: ExitStatus) -> bool {
     status.code() == Some(LOST_DATA.into())
 }

@@ -1,5 +1,5 @@
-//! A drawn world, and the node's neighbours: who sends it maps, boundaries and
-//! scans, and who takes its votes.
+//! Drawn world and the node's neighbours: publishers of maps, boundaries and scans, and a
+//! subscriber to the votes.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -24,7 +24,7 @@ use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 
-/// A room with a pillar: no pose in it looks like another.
+/// A room with a pillar, in which no two poses look alike.
 pub(crate) const ROOM: [&str; 9] = [
     "################",
     "#..............#",
@@ -37,7 +37,7 @@ pub(crate) const ROOM: [&str; 9] = [
     "#######.........",
 ];
 
-/// Turned, so that a confusion of grid and map would show.
+/// Rotated, so that a confusion of grid and map frames would show.
 pub(crate) const FRAME: GridFrame = GridFrame {
     resolution_m: 0.25,
     map_from_grid: Pose::new(3.0, -1.0, 0.5),
@@ -54,7 +54,7 @@ pub(crate) fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-/// The map that is drawn so.
+/// Returns the header of the map in this drawing.
 pub(crate) fn map_header(rows: &[&str]) -> MapHeader {
     let mut header = MapHeader {
         width: rows[0].len() as u32,
@@ -76,13 +76,13 @@ pub(crate) fn grid(rows: &[&str]) -> Grid {
     Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap()
 }
 
-/// The engine, asked directly.
+/// Returns the engine's localizer for comparison.
 pub(crate) fn localizer(rows: &[&str], prior: Prior) -> Localizer {
     let grid = grid(rows);
     Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
 }
 
-/// What a laser with a beam a degree all around reads at a pose of the grid.
+/// Returns the ranges of a laser with one beam per degree all around, at a pose of the grid.
 pub(crate) fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> {
     let grid = grid(rows);
     let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
@@ -95,7 +95,7 @@ pub(crate) fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> 
     beams.collect()
 }
 
-/// The scan of [`World::ask`], as the engine takes it.
+/// Returns the scan of [`World::ask`] in the engine's type.
 pub(crate) fn scan(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -PI,
@@ -106,7 +106,7 @@ pub(crate) fn scan(ranges: &[f32]) -> Scan<'_> {
     }
 }
 
-/// The node's neighbours.
+/// Neighbours of the node.
 pub(crate) struct World {
     pub(crate) graph: Graph,
     pub(crate) maps: Publisher<topic::Map>,
@@ -114,7 +114,7 @@ pub(crate) struct World {
     pub(crate) scans: Publisher<topic::Scan>,
     pub(crate) votes: Subscriber<topic::Votes>,
     pub(crate) health: Subscriber<topic::Health>,
-    /// Of the next scan.
+    /// Counter of the next scan.
     pub(crate) counter: Cell<u64>,
 }
 
@@ -132,7 +132,6 @@ impl World {
         }
     }
 
-    /// The node.
     pub(crate) fn start(&self, arguments: &[&str]) -> NodeProcess {
         NodeProcess::start(env!("CARGO_BIN_EXE_accumulator"), &self.graph, arguments)
     }
@@ -160,12 +159,12 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Sends a scan and waits for its votes; fails if votes of another one come.
+    /// Publishes a scan and waits for its votes; fails if votes of another scan arrive.
     pub(crate) fn ask(&self, ranges: &[f32]) -> (VotesHeader, Vec<Vote>) {
         self.ask_with(ranges, |_| {})
     }
 
-    /// As [`World::ask`], with a header that `change` has been at.
+    /// Like [`World::ask`], with a header modified by `change`.
     pub(crate) fn ask_with(
         &self,
         ranges: &[f32],
@@ -200,7 +199,7 @@ impl World {
         answer
     }
 
-    /// Waits until the node says that it is in `state`.
+    /// Waits until the node reports `state`.
     pub(crate) fn wait_until(&self, state: NodeState) -> (HealthHeader, String) {
         wait_for_health(&self.graph, &self.health, |report| {
             report.state == state as u32

@@ -1,5 +1,4 @@
-//! A room drawn in source, scans that a laser would take in it, and recordings
-//! of them.
+//! A drawn room, simulated scans in it, and recordings of them.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,7 +20,7 @@ use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// An L-shaped room with a pillar, lowest y first: no pose looks like another.
+/// An L-shaped room with a pillar, lowest y first, in which no two poses look alike.
 const ROOM: [&str; 12] = [
     "####################",
     "#..................#",
@@ -40,11 +39,11 @@ const ROOM: [&str; 12] = [
 pub(crate) const RESOLUTION_M: f64 = 0.25;
 pub(crate) const MAP_FROM_GRID: Pose = Pose::new(3.0, -1.0, 0.5);
 pub(crate) const BASE_FROM_LASER: Pose = Pose::new(0.5, 0.0, 0.25);
-/// From the yaw of the odometry to the heading in the map, degrees.
+/// Offset from the yaw of the odometry to the heading in the map, degrees.
 pub(crate) const ODOMETRY_OFFSET_DEG: f64 = 30.0;
 pub(crate) const SECOND_NS: i64 = 1_000_000_000;
 
-/// Column, row and heading in degrees of the grid's frame.
+/// Column, row and heading in degrees, in the grid's frame.
 pub(crate) type Place = (i64, i64, usize);
 
 pub(crate) const HERE: Place = (5, 3, 40);
@@ -57,7 +56,7 @@ pub(crate) fn room() -> OccupancyGrid {
     OccupancyGrid::from_parts(width, height, RESOLUTION_M, MAP_FROM_GRID, cells.collect()).unwrap()
 }
 
-/// Where the laser truly is at the centre of a cell.
+/// Returns the true pose of the laser at the centre of a cell.
 pub(crate) fn map_from_laser((x, y, heading): Place) -> Pose {
     let frame = GridFrame {
         resolution_m: RESOLUTION_M,
@@ -67,7 +66,7 @@ pub(crate) fn map_from_laser((x, y, heading): Place) -> Pose {
     frame.map_from_cells(x as f64 + 0.5, y as f64 + 0.5, heading)
 }
 
-/// What a laser with a beam a degree all around reads there, without noise.
+/// Returns the scan of a laser with one beam per degree all around, without noise.
 pub(crate) fn scan(second: i32, (x, y, heading): Place) -> LaserScan {
     let room = room();
     let (width, height) = (room.width as usize, room.height as usize);
@@ -106,7 +105,7 @@ pub(crate) fn truth_at(second: i32, place: Place) -> (&'static str, Message) {
     ("/ground_truth", Message::PoseStamped(message))
 }
 
-/// Odometry of the base, which is turned against the laser.
+/// Returns odometry of the base, which is rotated relative to the laser.
 pub(crate) fn odometry_at(second: i32, place: Place) -> (&'static str, Message) {
     let offset = ODOMETRY_OFFSET_DEG.to_radians();
     let yaw = map_from_laser(place).yaw - BASE_FROM_LASER.yaw - offset;
@@ -144,7 +143,7 @@ fn header(second: i32, frame: &str) -> ros::Header {
     )
 }
 
-/// Writes the messages a second apart.
+/// Records the messages one second apart.
 pub(crate) fn record(path: &Path, messages: &[(&str, Message)]) {
     let mut writer = RecordingWriter::create(path, Packing::Zstd).unwrap();
     for (second, (topic, message)) in (0..).zip(messages) {
@@ -153,7 +152,7 @@ pub(crate) fn record(path: &Path, messages: &[(&str, Message)]) {
     writer.finish().unwrap();
 }
 
-/// The program, its arguments as typed in a shell, its output in pipes.
+/// Returns the command with these shell arguments, and with pipes for its output.
 pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_backcast"));
     command
@@ -165,7 +164,7 @@ pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
     command
 }
 
-/// Runs to the end: exit code, standard output, standard error.
+/// Runs to the end; returns exit code, standard output and standard error.
 pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
     let Output {
         status,
@@ -176,12 +175,12 @@ pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
     (status.code().unwrap(), text(stdout), text(stderr))
 }
 
-/// The recordings of the repository.
+/// Returns the folder of the repository's recordings.
 pub(crate) fn recordings() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../recordings"))
 }
 
-/// The keys of a JSON object, sorted.
+/// Returns the sorted keys of a JSON object.
 pub(crate) fn keys(object: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = object
         .as_object()
@@ -193,29 +192,29 @@ pub(crate) fn keys(object: &Value) -> Vec<&str> {
     keys
 }
 
-/// A folder with `r.mcap`.
+/// Creates a folder with the recording `r.mcap`.
 pub(crate) fn folder(messages: &[(&str, Message)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     record(&folder.path().join("r.mcap"), messages);
     folder
 }
 
-/// Locates the scans of `r.mcap`, which must go well; returns the lines.
+/// Locates the scans of `r.mcap`, asserts success, and returns the lines.
 pub(crate) fn lines(folder: &Path, options: &str) -> Vec<String> {
     let (code, stdout, stderr) = run(folder, &format!("locate --bag r.mcap {options}"));
-    // In a pipe there is no bar, and nothing else was to be said.
+    // In a pipe there is no progress bar, and no other output is expected.
     assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
     stdout.lines().map(ToOwned::to_owned).collect()
 }
 
-/// As [`lines`], read from JSON.
+/// Like [`lines`], parsed from JSON.
 pub(crate) fn objects(folder: &Path, options: &str) -> Vec<Value> {
     let lines = lines(folder, &format!("--json {options}"));
     let parsed = lines.iter().map(|line| serde_json::from_str(line));
     parsed.map(Result::unwrap).collect()
 }
 
-/// The word that a row holds in a column.
+/// Returns the word in a column of a row.
 pub(crate) fn word(row: &str, column: usize) -> String {
     let word = row.split_whitespace().nth(column);
     word.unwrap().to_owned()

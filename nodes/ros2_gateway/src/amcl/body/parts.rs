@@ -1,4 +1,4 @@
-//! What the node has while it is configured: what it takes and what it publishes.
+//! Inputs and outputs of the node while it is configured.
 
 use messages::{InitialPose, InitialPoseKind};
 use ros::{Empty, Nothing};
@@ -20,20 +20,20 @@ use crate::outlet::Rules;
 use crate::rmw::{Member, Seen, Service, Watch};
 use crate::seeding::Seeding;
 
-/// From the configuration to the cleanup.
+/// Inputs and outputs that exist from configuration to cleanup.
 pub(super) struct Parts {
     watch: Watch,
     incoming: Incoming,
-    /// Where parameters say that time is that of a simulation.
+    /// Open if the parameter `use_sim_time` is true.
     clock: Option<SimClock>,
     hints: Hints,
     nomotion: Service<Empty>,
     outgoing: Outgoing,
     frames: Frames,
     saved: SavedPose,
-    /// Where the robot was when it was on last, until the tracker says whether it needs that.
+    /// Saved pose of the last run, until the tracker's first pose shows if it is needed.
     offered: Option<InitialPose>,
-    /// Never asked: nobody else's filter is seeded.
+    /// Needed by [`Incoming`], and never asked: no particle filter is seeded.
     seeding: Seeding,
 }
 
@@ -72,7 +72,7 @@ impl Parts {
         })
     }
 
-    /// Takes what has come, and what somebody says of where the robot is.
+    /// Handles the robot's messages; an initial pose among them goes to `pending`.
     pub(super) fn take(
         &mut self,
         member: &Member,
@@ -92,12 +92,12 @@ impl Parts {
             .step(&mut self.frames, &mut self.seeding, report)?;
         self.look(member, report)?;
         self.hints.take(&self.frames, map_frame, pending, report)?;
-        // Each scan is an update, also while the robot stands.
+        // Each scan is an update anyway, even while the robot stands still.
         self.nomotion.serve(report, |_| Nothing::default())?;
         Ok(())
     }
 
-    /// Who publishes something else than is taken.
+    /// Reports publishers whose messages cannot be received.
     fn look(&mut self, member: &Member, report: &mut Report) -> Result<(), TransportError> {
         report.dropped(self.watch.dropped());
         while let Some(seen) = self.watch.next(member) {
@@ -108,12 +108,12 @@ impl Parts {
         Ok(())
     }
 
-    /// Keeps a pose for a tracker that has none: one that believes a pose would forget it.
+    /// Keeps the saved pose for a tracker without a pose: one that believes a pose would forget it.
     pub(super) fn offer(&mut self, saved: Option<InitialPose>) {
         self.offered = saved;
     }
 
-    /// What there is to be waited for.
+    /// Returns the inputs to wait for.
     pub(super) fn taken(&self) -> Taken<'_> {
         Taken {
             incoming: &self.incoming,
@@ -122,7 +122,8 @@ impl Parts {
         }
     }
 
-    /// Hands on what is pending, and sends what there is: while the node is active.
+    /// Hands on the pending pose and sends the graph's results to the robot, while the node is
+    /// active.
     pub(super) fn send(
         &mut self,
         said: &Said,
@@ -153,7 +154,7 @@ impl Parts {
                 let offered = self.offered.take().filter(|_| !header.is_believed());
                 *pending = pending.take().or(offered);
             }
-            // Each scan has its transform, also where several are answered at once.
+            // Each scan gets its transform, even if several results arrive at once.
             outgoing.tick(map_frame, parameters, report)?;
         }
         while let Some(sample) = said.hypotheses.receive()? {
@@ -174,7 +175,7 @@ impl Parts {
         }
     }
 
-    /// Is active no more: forgets what it would send again, and saves the last pose.
+    /// Ends the active state: forgets what would be sent again, and saves the last pose.
     pub(super) fn rest(&mut self, parameters: &Parameters, map_frame: &str) {
         self.outgoing.rest();
         let left = self.saved.left(parameters.number("save_pose_rate"));
@@ -197,7 +198,7 @@ fn save(
     }
 }
 
-/// What is done to scans and maps.
+/// Returns the rules for scans and maps that the parameters set.
 fn rules(parameters: &Parameters) -> Rules {
     let limit = |name: &str| Some(parameters.number(name) as f32).filter(|limit| *limit > 0.0);
     Rules {

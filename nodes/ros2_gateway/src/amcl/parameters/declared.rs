@@ -1,30 +1,30 @@
-//! The parameters of AMCL: what each holds, what it means here, and which mean nothing.
+//! The parameters of AMCL: types, defaults and meanings here; some have no meaning.
 
 use super::Value;
 
-/// A parameter.
+/// Declaration of a parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Declared {
     pub(super) name: &'static str,
     pub(super) default: Plain,
     pub(super) meaning: &'static str,
     pub(super) counts: Counts,
-    /// The least and the most, of a number.
+    /// Smallest and largest value of a number.
     pub(super) range: Option<(f64, f64)>,
 }
 
-/// When a parameter counts.
+/// When a parameter takes effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Counts {
-    /// At once when it is set.
+    /// Once it is set.
     Always,
-    /// When the node starts.
+    /// At the start of the node; it cannot be set later.
     AtStart,
     /// Never; `meaning` says why.
     Never,
 }
 
-/// A value that is written in the source.
+/// Default value, as written in the source.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Plain {
     Bool(bool),
@@ -51,10 +51,10 @@ const MOTION: &str = "how odometry errs is learned from scans, not set";
 const SENSOR: &str = "how scans are judged is set at the nodes of the graph (--help of each)";
 const EVERY_SCAN: &str = "every scan counts";
 
-/// The file of the saved pose: who may set parameters over the network names no files.
+/// File of the saved pose; it cannot be set over the network, so that other nodes name no files.
 pub(crate) const FILE: &str = "saved_pose_filepath";
 
-/// All of them.
+/// All parameters, sorted by name.
 pub(super) const ALL: &[Declared] = &[
     never("alpha1", Double(0.2), MOTION),
     never("alpha2", Double(0.2), MOTION),

@@ -58,7 +58,7 @@ fn what_cannot_be_set_says_why() {
             "{result:?}"
         );
     }
-    // To what it is already, as tools do that restore what they saved.
+    // Setting the current value is allowed: tools that restore saved values do so.
     let same: ParameterValue = (&Value::Text("odom".into())).into();
     assert!(parameters.set("odom_frame_id", &same).successful);
 }

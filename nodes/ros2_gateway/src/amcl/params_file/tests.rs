@@ -2,7 +2,7 @@ use geometry::Pose;
 
 use super::*;
 
-/// As `nav2_bringup` has it, with what others have beside it.
+/// The parameters of `nav2_bringup`, along with those of other nodes.
 const NAV2: &str = "
 amcl:
   ros__parameters:
@@ -86,7 +86,7 @@ fn wildcards_and_namespaces_name_the_node() {
     }
     let nested = "r2:\n  amcl:\n    ros__parameters:\n      odom_frame_id: found\n";
     assert_eq!(frame(nested, "/r2/amcl"), "found");
-    // A name counts before a wildcard, wherever it stands.
+    // A name overrides a wildcard, no matter which comes first.
     for text in [
         of("amcl", "name") + &of("/**", "any"),
         of("/**", "any") + &of("amcl", "name"),

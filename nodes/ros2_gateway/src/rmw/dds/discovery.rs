@@ -1,10 +1,10 @@
-//! Who may be found: the variables of ROS that say so.
+//! Discovery settings from the environment variables of ROS.
 
 use std::net::{IpAddr, Ipv4Addr};
 
 use rustdds::DomainParticipantBuilder;
 
-/// Where other nodes are looked for.
+/// Range in which other nodes are discovered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Range {
     /// In all networks of this machine, by multicast.
@@ -15,8 +15,8 @@ enum Range {
     Off,
 }
 
-/// A participant's settings by `ROS_AUTOMATIC_DISCOVERY_RANGE`, and `ROS_LOCALHOST_ONLY`,
-/// which counts before it.
+/// Returns a participant's settings, from `ROS_AUTOMATIC_DISCOVERY_RANGE` and `ROS_LOCALHOST_ONLY`;
+/// the latter takes precedence.
 pub(super) fn builder(domain: u16) -> DomainParticipantBuilder {
     let variable = |name| std::env::var(name).unwrap_or_default();
     let range = range(

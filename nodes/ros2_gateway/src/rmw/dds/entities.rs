@@ -6,16 +6,16 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// The topic, without the prefix that others have.
+/// Topic of these messages, without the prefix that others have.
 pub(super) const TOPIC: &str = "ros_discovery_info";
 
-/// Its type.
+/// Type of these messages.
 pub(super) const TYPE: &str = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
 /// The number of an endpoint.
 pub(super) type Gid = [u8; 16];
 
-/// How numbers are written.
+/// Format of endpoint numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Humble,
@@ -32,7 +32,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// Namespace and name.
+    /// Returns namespace and name.
     pub(super) fn whole_name(&self) -> String {
         format!("{}/{}", self.namespace.trim_end_matches('/'), self.name)
     }
@@ -52,7 +52,7 @@ struct NodeInfo<G> {
     writers: Vec<G>,
 }
 
-/// The message of a participant with one node, in CDR.
+/// Encodes the message of a participant with one node, in CDR.
 pub(super) fn encode(format: Format, participant: Gid, node: &Node) -> Result<Vec<u8>, String> {
     match format {
         Format::Iron => encode_as(|gid| gid, participant, node),
@@ -60,7 +60,7 @@ pub(super) fn encode(format: Format, participant: Gid, node: &Node) -> Result<Ve
     }
 }
 
-/// The nodes of a message, and how their numbers are written where there is a node.
+/// Decodes the nodes of a message; the format of their numbers is known only if there is a node.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Option<Format>, Vec<Node>), String> {
     // Numbers of 16 bytes read as of 24 leave the number of nodes to be letters of a name, and so
     // more nodes than there are bytes. The other way round, it is the zeros that fill up the first.
@@ -133,7 +133,7 @@ mod tests {
             let (found, nodes) = decode(&bytes).unwrap();
             assert_eq!((found, nodes), (Some(format), vec![node.clone()]));
             for length in 0..bytes.len() - 8 {
-                // What is cut may still be a message of no node, with bytes left over.
+                // A message that was cut may still be one of no node, with bytes left over.
                 let nodes = decode(&bytes[..length]).map_or(Vec::new(), |(_, nodes)| nodes);
                 assert_eq!(nodes, [], "{format:?} {length}");
             }

@@ -14,13 +14,13 @@ use super::{discovery, entities, quality};
 use crate::rmw::Keeping;
 use crate::{Config, GatewayError};
 
-/// Most bytes of what a participant says of its nodes.
+/// Largest size of a participant's message about its nodes, bytes.
 const MAX_INFO_BYTES: usize = 1 << 20;
 
-/// Participants whose nodes are remembered until they are looked at.
+/// Number of such messages that are queued until the next tick.
 const MAX_INFOS: usize = 256;
 
-/// A node of ROS, as others see it, for as long as this lives.
+/// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
     domain: u32,
     node: Rc<Node>,
@@ -30,7 +30,7 @@ pub(crate) struct Member {
 }
 
 impl Member {
-    /// Joins by the names of the configuration. A robot that is not there is no error.
+    /// Joins under the names of the configuration. A missing robot is no error.
     pub(crate) fn join(config: &Config) -> Result<Self, GatewayError> {
         let domain = config.domain()?;
         let id = u16::try_from(domain).unwrap_or(u16::MAX);
@@ -51,12 +51,11 @@ impl Member {
         })
     }
 
-    /// The robot's domain.
     pub(crate) fn domain(&self) -> u32 {
         self.domain
     }
 
-    /// Exchanges with other nodes who has which topics.
+    /// Exchanges lists of nodes and their topics with other participants.
     pub(crate) fn tick(&self) {
         self.node.tick();
     }
@@ -69,7 +68,7 @@ impl Member {
         &self.participant
     }
 
-    /// Sends bytes by these names of DDS.
+    /// Opens a writer of bytes for these names of DDS.
     pub(super) fn writer(
         &self,
         (topic, kind): (&str, &str),
@@ -79,7 +78,7 @@ impl Member {
         writer(&self.publisher, &topic)
     }
 
-    /// Receives messages of at most `max_bytes` by these names of DDS, which the log calls
+    /// Opens a reader of messages of at most `max_bytes` for these names of DDS; the log calls it
     /// `name`.
     pub(super) fn reader(
         &self,
@@ -94,7 +93,7 @@ impl Member {
     }
 }
 
-/// What is between a participant and its topics.
+/// Participant, publisher and subscriber.
 type Parts<'a> = (
     &'a DomainParticipant,
     &'a rustdds::Publisher,

@@ -1,4 +1,4 @@
-//! ROS 2 as Fast DDS and Cyclone DDS (humble and later) put it on RTPS, by crate `rustdds`.
+//! ROS 2 on RTPS, compatible with Fast DDS and Cyclone DDS (humble and later), by crate `rustdds`.
 //!
 //! | what | topic | type |
 //! |---|---|---|
@@ -7,8 +7,8 @@
 //! | its responses | `rr/a/bReply` | `….srv.dds_::Name_Response_` |
 //! | nodes and their endpoints | `ros_discovery_info` | `rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_` |
 //!
-//! Messages are CDR. Threads of `rustdds` receive them and keep as many as the depth of the
-//! topic; they are decoded on the thread that owns the graph.
+//! Messages are CDR. Threads of `rustdds` receive them and queue at most the depth of the topic;
+//! they are decoded on the thread that owns the graph.
 
 mod discovery;
 mod entities;

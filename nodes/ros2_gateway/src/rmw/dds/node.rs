@@ -12,10 +12,10 @@ use super::entities::{self, Format, Gid};
 use super::raw::{Raw, fields};
 use super::reader::Reader;
 
-/// Endpoints of others whose nodes are known; a large robot has some thousand.
+/// Largest number of endpoints of others whose nodes are known; a large robot has some thousand.
 const MAX_NAMES: usize = 16384;
 
-/// Published for as long as it lives.
+/// The gateway's node, published until it is dropped.
 pub(super) struct Node {
     participant: Gid,
     infos: Reader,
@@ -25,10 +25,10 @@ pub(super) struct Node {
 
 struct State {
     own: entities::Node,
-    /// As other nodes write it; nothing is published before one has come.
+    /// Format of other nodes; nothing is published before it is known.
     format: Option<Format>,
     is_changed: bool,
-    /// The nodes of endpoints.
+    /// Names of nodes by endpoint.
     names: BTreeMap<Gid, String>,
 }
 
@@ -80,12 +80,12 @@ impl Node {
         Shown { node, gid }
     }
 
-    /// The node that an endpoint belongs to, if it has said so.
+    /// Returns the node that an endpoint belongs to, if that is known.
     pub(super) fn name_of(&self, endpoint: GUID) -> Option<String> {
         self.state.borrow().names.get(&endpoint.to_bytes()).cloned()
     }
 
-    /// Takes what other nodes have said, and says what has changed here.
+    /// Takes the messages of other nodes, and publishes changes of this one.
     pub(super) fn tick(&self) {
         let mut state = self.state.borrow_mut();
         while let Some(sample) = self.infos.next() {

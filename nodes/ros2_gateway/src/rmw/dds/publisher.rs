@@ -14,7 +14,6 @@ use super::raw::{Raw, fields};
 use crate::GatewayError;
 use crate::rmw::{Keeping, description};
 
-/// Sends messages.
 pub(crate) struct Publisher<M> {
     topic: String,
     writer: DataWriter<Bytes, Raw>,
@@ -23,8 +22,8 @@ pub(crate) struct Publisher<M> {
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Opens it. Where messages that were sent are not taken in time, one that blocks waits a
-    /// moment before it drops the next.
+    /// Opens the topic. If earlier messages are not taken in time, one that blocks waits a moment
+    /// before it drops the next one.
     pub(crate) fn open(
         member: &Member,
         topic: &str,

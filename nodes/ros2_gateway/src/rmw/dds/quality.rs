@@ -1,14 +1,14 @@
-//! The quality of service of a topic in the words of DDS.
+//! The quality of service of a topic, as policies of DDS.
 
 use rustdds::policy::{Durability, History, Reliability, ResourceLimits};
 use rustdds::{Duration, QosPolicies, QosPolicyBuilder};
 
 use crate::rmw::Keeping;
 
-/// How long a message that must arrive waits for a network that is slow.
+/// Time that a message that must arrive waits for a slow network.
 const MAX_BLOCKING: Duration = Duration::from_millis(100);
 
-/// Of a topic that is published.
+/// Returns the policies of a topic that is published.
 pub(super) fn offered((keeping, depth): (Keeping, usize), blocks: bool) -> QosPolicies {
     let wait = match blocks {
         true => MAX_BLOCKING,
@@ -17,8 +17,8 @@ pub(super) fn offered((keeping, depth): (Keeping, usize), blocks: bool) -> QosPo
     common((keeping, depth), wait).build()
 }
 
-/// Of a topic that is subscribed to; `rustdds` keeps so many messages of all senders
-/// together.
+/// Returns the policies of a topic that is subscribed to; `rustdds` keeps at most `depth` messages
+/// of all senders together.
 pub(super) fn requested((keeping, depth): (Keeping, usize)) -> QosPolicies {
     let depth_i32 = i32::try_from(depth).unwrap_or(i32::MAX);
     common((keeping, depth), MAX_BLOCKING)
@@ -48,7 +48,7 @@ fn reliable(max_blocking_time: Duration) -> Reliability {
     Reliability::Reliable { max_blocking_time }
 }
 
-/// In the words of ROS.
+/// Describes the policies in the words of ROS.
 pub(super) fn in_words(quality: &QosPolicies) -> String {
     let reliability = match quality.is_reliable() {
         true => "reliable",

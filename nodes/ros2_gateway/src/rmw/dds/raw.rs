@@ -9,12 +9,12 @@ use rustdds::no_key::{Decode, DeserializerAdapter, SerializerAdapter};
 /// Bytes before the fields of a message in CDR.
 pub(super) const HEADER: usize = 4;
 
-/// A message that came.
+/// A received message.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Payload {
-    /// With its header.
+    /// The message with its header.
     Cdr(Vec<u8>),
-    /// The bytes of one that is longer than allowed.
+    /// Size of a message that is longer than allowed, bytes.
     TooLong(usize),
 }
 
@@ -49,7 +49,7 @@ impl DeserializerAdapter<Payload> for Raw {
     }
 }
 
-/// Copies messages of at most so many bytes.
+/// Decoder that copies messages of at most this many bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AtMost(pub(super) usize);
 
@@ -73,7 +73,7 @@ impl Decode<'_, Payload> for AtMost {
     }
 }
 
-/// The fields of a message in CDR, little-endian, that has its header.
+/// Removes the header of a message in little-endian CDR.
 pub(super) fn fields(cdr: Vec<u8>) -> Bytes {
     let mut bytes = Bytes::from(cdr);
     bytes.split_off(HEADER.min(bytes.len()))

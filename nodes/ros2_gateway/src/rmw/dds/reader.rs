@@ -10,7 +10,6 @@ use rustdds::{GUID, SampleIdentity};
 use super::raw::{AtMost, Payload, Raw};
 use crate::GatewayError;
 
-/// Receives.
 pub(super) struct Reader {
     topic: String,
     reader: SimpleDataReader<Payload, Raw>,
@@ -18,13 +17,12 @@ pub(super) struct Reader {
     max_bytes: usize,
 }
 
-/// A message.
 pub(super) struct Sample {
-    /// With the header of CDR.
+    /// Message with the header of CDR.
     pub(super) bytes: Vec<u8>,
     /// The publisher, and the message's number among its messages.
     pub(super) identity: SampleIdentity,
-    /// What it refers to, as its sender says.
+    /// Identity of the message to which this one refers, as given by its sender.
     pub(super) related: Option<SampleIdentity>,
 }
 
@@ -38,7 +36,7 @@ impl Wake for GraphWaker {
 }
 
 impl Reader {
-    /// Of a topic that is called `topic` in the log; wakes the graph if there is a waker.
+    /// Reads a topic that is called `topic` in the log; wakes the graph if there is a waker.
     pub(super) fn new(
         topic: &str,
         reader: SimpleDataReader<Payload, Raw>,
@@ -60,12 +58,12 @@ impl Reader {
         self.reader.guid()
     }
 
-    /// The next that waits, or why it cannot be taken.
+    /// Returns the next message, or the reason why it cannot be taken.
     pub(super) fn next(&self) -> Option<Result<Sample, GatewayError>> {
         if let Some(next) = self.take() {
             return Some(next);
         }
-        // The waker counts once. What came between the two looks woke nobody.
+        // The waker fires once. A message that came between the two looks woke no one.
         self.reader.drain_read_notifications();
         self.reader.set_waker(Some(self.waker.clone()));
         self.take()

@@ -1,7 +1,7 @@
 //! A service: each request has one response.
 //!
-//! A response says which request it answers: on Fast DDS beside the message, on Cyclone DDS
-//! by 16 bytes before its fields, which are those of the request.
+//! A response names the request that it answers: on Fast DDS outside the message, on Cyclone DDS by
+//! 16 bytes before its fields, which are copied from the request.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
@@ -25,22 +25,22 @@ use super::{Member, quality};
 use crate::GatewayError;
 use crate::rmw::{Keeping, call, description};
 
-/// Requests that wait, of all clients together, and responses.
+/// Largest number of queued requests, of all clients together, and of queued responses.
 const MAX_WAITING: usize = 128;
 
-/// How long a response waits for a client whose reader is not known yet.
+/// Time that a response waits for a client whose reader is not known yet.
 const MATCHING: Duration = Duration::from_secs(2);
 
-/// How long after its discovery a reader is certainly sent what is written.
+/// Time after its discovery from which a reader is certainly sent what is written.
 const SETTLED: Duration = Duration::from_millis(20);
 
-/// What participants of Cyclone DDS have first in their numbers.
+/// First bytes of the numbers of Cyclone DDS participants.
 const CYCLONE: [u8; 2] = [0x01, 0x10];
 
-/// The bytes before the fields, on Cyclone DDS.
+/// Number of bytes before the fields, on Cyclone DDS.
 const CALL: usize = 16;
 
-/// Offers the service as long as it lives.
+/// Offers the service until it is dropped.
 pub(crate) struct Service<S> {
     topic: String,
     participant: DomainParticipant,
@@ -53,14 +53,14 @@ pub(crate) struct Service<S> {
 
 #[derive(Default)]
 struct State {
-    /// Readers of responses, and when they were first seen.
+    /// Readers of responses, and when each was first seen.
     readers: BTreeMap<GUID, Instant>,
     waiting: VecDeque<Response>,
 }
 
 struct Response {
     fields: Bytes,
-    /// The request, by its client's own number or that of its reader.
+    /// Identity of the request, by its client's writer or reader.
     request: SampleIdentity,
     since: Instant,
 }
@@ -94,8 +94,7 @@ impl<S: RosService> Service<S> {
         })
     }
 
-    /// Answers the calls that wait by what `respond` says, and counts them; returns how
-    /// many were answered.
+    /// Answers the queued calls with `respond`, and counts them; returns the number of answers.
     pub(crate) fn serve(
         &self,
         report: &mut Report,
@@ -191,7 +190,7 @@ impl<S: RosService> Service<S> {
 }
 
 impl State {
-    /// Whether the response is to be sent: its client's reader is there, or does not come.
+    /// True if the response is to be sent: its client's reader is there, or has not come in time.
     fn is_due(&self, response: &Response) -> bool {
         let client = response.request.writer_guid;
         let mut readers = self.readers.iter();
@@ -206,7 +205,7 @@ impl State {
     }
 }
 
-/// The request's number, by which its client knows it again. Clients on Fast DDS say the
+/// Returns the identity by which the client recognises its request. Clients on Fast DDS give the
 /// number of the reader that waits for the response, and leave out that of the message.
 fn called(request: &Sample) -> SampleIdentity {
     let own = request.identity;

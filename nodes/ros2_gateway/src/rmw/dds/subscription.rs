@@ -13,7 +13,6 @@ use crate::GatewayError;
 use crate::rmw::received::{Received, Senders};
 use crate::rmw::{Keeping, description};
 
-/// Receives messages.
 pub(crate) struct Subscription<M> {
     topic: String,
     reader: Reader,
@@ -48,7 +47,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    /// Most messages that can wait.
+    /// Returns the largest number of queued messages.
     pub(crate) fn depth(&self) -> usize {
         self.depth
     }

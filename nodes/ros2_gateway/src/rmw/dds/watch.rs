@@ -1,4 +1,4 @@
-//! Who comes to the robot's domain, by the discovery of DDS.
+//! Watch of the robot's domain, by the discovery of DDS.
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -16,41 +16,40 @@ use crate::rmw::expected::{Endpoint, Expected};
 use crate::rmw::type_info::TypeInfo;
 use crate::waiting::Publishing;
 
-/// For so long an endpoint waits for what is said of its quality of service.
+/// Time that an endpoint waits for reports about its quality of service.
 const SETTLED: Duration = Duration::from_millis(50);
 
-/// For so long it waits for the name of its node.
+/// Time that an endpoint waits for the name of its node.
 const NAMED: Duration = Duration::from_secs(3);
 
 /// The first bytes of an endpoint's number are those of its participant.
 const PARTICIPANT: usize = 12;
 
-/// Watches the endpoints.
 pub(crate) struct Watch {
     listener: DomainParticipantStatusListener,
-    /// The participant's number.
+    /// Number of the participant.
     own: [u8; 16],
     pub(in crate::rmw) expected: Expected,
-    /// Whether those were looked at who were there before.
+    /// True once the endpoints that were there before were looked at.
     has_begun: bool,
-    /// What was looked at once: discovery says everything again and again.
+    /// Endpoints that were looked at: discovery repeats everything.
     known: BTreeSet<GUID>,
     pending: Vec<Pending>,
 }
 
-/// An endpoint of which not everything is known yet.
+/// An endpoint that is not fully known yet.
 struct Pending {
     guid: GUID,
     since: Instant,
     is_publisher: bool,
     topic: String,
     info: TypeInfo,
-    /// The qualities that are offered and requested, where these differ too much.
+    /// Offered and requested quality of service, if they do not match.
     mismatch: Option<[String; 2]>,
 }
 
 impl Watch {
-    /// Reports subscribers of `subscribed`.
+    /// Opens a watch that reports subscribers of `subscribed`.
     pub(crate) fn open(member: &Member, subscribed: &str) -> Self {
         let listener = member.participant().status_listener();
         Watch {
@@ -68,12 +67,12 @@ impl Watch {
         self.expected.expect::<M>(topic)
     }
 
-    /// How the topic is published, by whoever does so as it is taken.
+    /// Returns the kind of the topic's publisher; a matching one counts before others.
     pub(crate) fn publishing(&self, topic: &str) -> Publishing {
         self.expected.publishing(topic)
     }
 
-    /// The next that is of interest.
+    /// Returns the next event of interest.
     pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.begin(member);
@@ -104,7 +103,7 @@ impl Watch {
         self.settle(member)
     }
 
-    /// Looks at those who were there before.
+    /// Adds the endpoints that were there before.
     fn begin(&mut self, member: &Member) {
         for reader in member.participant().discovered_readers() {
             let data = &reader.subscription_topic_data;
@@ -123,7 +122,7 @@ impl Watch {
         self.add(endpoint.guid, is_publisher, names, &endpoint.user_data);
     }
 
-    /// Has an endpoint looked at that is of interest.
+    /// Queues an endpoint that is of interest.
     fn add(
         &mut self,
         guid: GUID,
@@ -151,7 +150,7 @@ impl Watch {
         }
     }
 
-    /// The next endpoint of which all is known, or that has waited enough.
+    /// Returns the next event of an endpoint that is fully known, or has waited long enough.
     fn settle(&mut self, member: &Member) -> Option<Seen> {
         let mut index = 0;
         while let Some(pending) = self.pending.get(index) {
@@ -197,7 +196,8 @@ impl Watch {
     }
 }
 
-/// The type hash that an endpoint says beside its type, as `typehash=RIHS01_…;`, if it does.
+/// Returns the type hash in an endpoint's user data, given as `typehash=RIHS01_…;`, if there is
+/// one.
 fn type_hash(user_data: &[u8]) -> String {
     let text = String::from_utf8_lossy(user_data);
     let hash = text

@@ -1,11 +1,11 @@
-//! What goes along with each message and each call.
+//! Attachment of each message and each call.
 //!
 //! | bytes | field |
 //! |---|---|
 //! | 8 | sequence number, little-endian, counted up by its publisher |
-//! | 8 | when it was sent, nanoseconds since 1970, little-endian |
+//! | 8 | time of sending, nanoseconds since 1970, little-endian |
 //! | 1 | 16, the length of what follows |
-//! | 16 | who sent it |
+//! | 16 | sender |
 //!
 //! Early versions of `rmw_zenoh` wrote names between the fields; that is refused.
 
@@ -14,12 +14,12 @@ use zenoh_ext::{ZDeserializer, ZSerializer};
 
 use crate::GatewayError;
 
-/// Who sent a message, which one it is, and when.
+/// Sender, sequence number and time of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Attachment {
     pub(crate) sequence: i64,
     pub(crate) sent_ns: i64,
-    /// The publisher or client, by the hash of its token.
+    /// Publisher or client: the hash of its token.
     pub(crate) sender: [u8; 16],
 }
 

@@ -20,13 +20,13 @@ use crate::rmw::Keeping;
 use crate::rmw::type_info::TypeInfo;
 use crate::{Config, GatewayError};
 
-/// What all tokens begin with.
+/// Prefix of all tokens.
 const TOKENS: &str = "@ros2_lv";
 
-/// What ROS 2 Humble writes in the place of a type's hash.
+/// Text that ROS 2 Humble writes in the place of a type's hash.
 const NO_HASH: &str = "TypeHashNotSupported";
 
-/// What an endpoint is.
+/// Kind of an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Publisher,
@@ -44,34 +44,34 @@ impl Kind {
     }
 }
 
-/// A node of ROS, as others see it, for as long as this lives.
+/// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
     session: Session,
     domain: u32,
     /// Namespace and name.
     node: String,
-    /// The same, mangled.
+    /// Namespace and name, mangled.
     who: String,
     routers: Routers,
     _token: LivelinessToken,
-    /// The node itself has the first number.
+    /// Number of the next entity; the node itself has 0.
     next: AtomicUsize,
 }
 
-/// A topic or service that the node sends, takes or offers.
+/// A topic that the node sends or takes, or a service that it offers.
 pub(super) struct Endpoint {
     pub(super) key: String,
-    /// The key by which nodes of ROS 2 Humble have it.
+    /// Key that nodes of ROS 2 Humble use.
     pub(super) humble_key: String,
     pub(super) topic: String,
-    /// By which others know who sends.
+    /// Identifies the sender of a message.
     pub(super) sender: [u8; 16],
     token: String,
 }
 
 impl Member {
-    /// Opens the session, which may take until a router is there, and joins; none once the
-    /// stop flag is set.
+    /// Opens the session, which waits for a router if need be, and joins; `None` once the stop flag
+    /// is set.
     pub(crate) fn join(
         graph: &Graph,
         config: &Config,
@@ -101,7 +101,7 @@ impl Member {
         }))
     }
 
-    /// Routers that are missing; empty where all are there.
+    /// Returns the missing routers; empty if all are there.
     pub(crate) fn missing(&self) -> String {
         self.routers.missing(&self.session)
     }
@@ -110,17 +110,16 @@ impl Member {
         &self.session
     }
 
-    /// The node's whole name.
+    /// Returns the full name of the node.
     pub(super) fn node(&self) -> &str {
         &self.node
     }
 
-    /// The robot's domain.
     pub(crate) fn domain(&self) -> u32 {
         self.domain
     }
 
-    /// Tokens of all that is on the domain.
+    /// Returns the key expression of all tokens on the domain.
     pub(super) fn tokens(&self) -> String {
         format!("{TOKENS}/{}/**", self.domain)
     }
@@ -146,13 +145,13 @@ impl Member {
             key: format!("{of_type}/{}", info.hash),
             humble_key: format!("{of_type}/{NO_HASH}"),
             topic: topic.to_owned(),
-            // As rmw_zenoh makes it: both halves, the lower one first.
+            // Computed as in rmw_zenoh: both halves, the lower one first.
             sender: XxHash3_128::oneshot(token.as_bytes()).to_le_bytes(),
             token,
         }
     }
 
-    /// Shows it to others, once it is there.
+    /// Shows the endpoint to others, once it is ready.
     pub(super) fn show(&self, endpoint: &Endpoint) -> Result<LivelinessToken, GatewayError> {
         declare(&self.session, &endpoint.token)
     }
@@ -167,8 +166,8 @@ fn mangled(name: &str) -> String {
     name.replace('/', "%")
 }
 
-/// Reliability, durability, history, deadline, lifespan and liveliness; what is as ROS
-/// has it anyway is left out.
+/// Encodes reliability, durability, history, deadline, lifespan and liveliness; values that are the
+/// defaults of ROS are left out.
 fn encoded((keeping, depth): (Keeping, usize)) -> String {
     let start = match keeping {
         Keeping::Fresh => "2:",
@@ -178,7 +177,7 @@ fn encoded((keeping, depth): (Keeping, usize)) -> String {
     format!("{start}:,{depth}:,:,:,,")
 }
 
-/// What another's token says.
+/// Content of another node's token.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Token {
     pub(super) session: String,

@@ -1,17 +1,17 @@
-//! ROS 2 as `rmw_zenoh` puts it on Zenoh.
+//! ROS 2 on Zenoh, with the keys and tokens of `rmw_zenoh`.
 //!
 //! | what | where |
 //! |---|---|
 //! | messages of a topic | `<domain>/<topic>/<type>/<type hash>`, CDR, with an [`Attachment`] |
 //! | calls of a service | queries of `<domain>/<service>/<type>/<type hash>` |
-//! | who is there | liveliness tokens `@ros2_lv/<domain>/<session>/<node>/<entity>/<kind>/…` |
+//! | nodes and their endpoints | liveliness tokens `@ros2_lv/<domain>/<session>/<node>/<entity>/<kind>/…` |
 //!
-//! Humble writes `TypeHashNotSupported` for each hash. What it sends is taken, and what is sent is
-//! on its keys as well: it costs next to nothing where nobody listens.
+//! Humble writes `TypeHashNotSupported` for each hash. The gateway takes its messages, and
+//! publishes on its keys as well: that costs next to nothing without a listener.
 //!
-//! What a message is made of stands in crate `ros`, hashes are made by
-//! `hiroz-schema`. Its sister `hiroz-protocol`, which writes the same keys and tokens,
-//! builds with all transports of Zenoh alone, of which most are not wanted here.
+//! The crate `ros` has the definitions of messages, and `hiroz-schema` makes the hashes. Its sister
+//! `hiroz-protocol`, which writes the same keys and tokens, builds only with all transports of
+//! Zenoh, most of which are not wanted here.
 
 mod attachment;
 mod entity;

@@ -17,10 +17,9 @@ use super::{Attachment, Member};
 use crate::GatewayError;
 use crate::rmw::{Keeping, description};
 
-/// Sends messages.
 pub(crate) struct Publisher<M> {
     endpoint: Endpoint,
-    /// For nodes that know the type's hash, and for those of ROS 2 Humble.
+    /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     sinks: [Sink; 2],
     _token: LivelinessToken,
     sequence: i64,
@@ -28,15 +27,15 @@ pub(crate) struct Publisher<M> {
 }
 
 enum Sink {
-    /// Nobody gets a message who joins later.
+    /// Late subscribers get no message.
     Volatile(ZenohPublisher<'static>),
-    /// Who joins later gets the last ones.
+    /// Late subscribers get the last messages.
     Kept(AdvancedPublisher<'static>),
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Opens it. Where the network is slow, one that blocks waits until Zenoh closes the
-    /// connection, and others drop the message.
+    /// Opens the topic. On a slow network, one that blocks waits until Zenoh closes the connection;
+    /// others drop the message.
     pub(crate) fn open(
         member: &Member,
         topic: &str,
@@ -49,8 +48,8 @@ impl<M: RosMessage> Publisher<M> {
         };
         Self::with(member, topic, quality, |key| {
             let publisher = member.session().declare_publisher(key);
-            // Not express: each message would take one of the two batches of its
-            // priority, so that a third at once is dropped, and Zenoh may go on to drop.
+            // Not express: each message would take one of the two batches of its priority, so that
+            // a third one at once is dropped, and Zenoh may go on dropping.
             let publisher = publisher.congestion_control(congestion);
             Ok(match quality {
                 (Keeping::Fresh | Keeping::Reliable, _) => Sink::Volatile(publisher.wait()?),
@@ -58,9 +57,9 @@ impl<M: RosMessage> Publisher<M> {
                     let publisher = publisher
                         .advanced()
                         .cache(CacheConfig::default().max_samples(depth))
-                        // Else each message would need a time by Zenoh's clock.
+                        // Otherwise each message would need a time of Zenoh's clock.
                         .sample_miss_detection(MissDetectionConfig::default())
-                        // By which subscribers that were connected late ask for what they
+                        // Lets subscribers that were connected late ask for the messages they
                         // missed.
                         .publisher_detection();
                     Sink::Kept(publisher.wait()?)
@@ -83,7 +82,7 @@ impl<M: RosMessage> Publisher<M> {
             _token: member.show(&endpoint)?,
             endpoint,
             sinks,
-            // As rmw_zenoh counts.
+            // Sequence numbers of rmw_zenoh begin with 1.
             sequence: 1,
             message: PhantomData,
         })

@@ -17,14 +17,14 @@ use super::{Attachment, Member};
 use crate::GatewayError;
 use crate::rmw::{Keeping, call, description};
 
-/// Calls that wait for their answer; more are turned away.
+/// Largest number of queued calls; more are turned away.
 const MAX_WAITING: usize = 16;
 
-/// Offers the service as long as it lives.
+/// Offers the service until it is dropped.
 pub(crate) struct Service<S> {
     topic: String,
     calls: Arc<ArrayQueue<Query>>,
-    /// For clients that know the type's hash, and for those of ROS 2 Humble.
+    /// One for clients that know the type's hash, and one for those of ROS 2 Humble.
     _queryables: [Queryable<()>; 2],
     _token: LivelinessToken,
     service: PhantomData<S>,
@@ -33,7 +33,7 @@ pub(crate) struct Service<S> {
 impl<S: RosService> Service<S> {
     pub(crate) fn open(graph: &Graph, member: &Member, topic: &str) -> Result<Self, GatewayError> {
         let info = description::of_service(S::NAME, S::REQUEST, S::RESPONSE)?;
-        // As ROS has it for services.
+        // Default quality of service of ROS for services.
         let quality = (Keeping::Reliable, 10);
         let endpoint = member.endpoint(Kind::Service, topic, &info, quality);
         let calls = Arc::new(ArrayQueue::new(MAX_WAITING));
@@ -41,7 +41,7 @@ impl<S: RosService> Service<S> {
             let (calls, waker) = (Arc::clone(&calls), graph.waker()?);
             let put = move |call: Query| {
                 if let Err(call) = calls.push(call) {
-                    // Where this fails, the caller has gone.
+                    // This fails only if the caller has gone.
                     let _ = call.reply_err("busy").wait();
                 }
                 waker.wake();
@@ -60,8 +60,7 @@ impl<S: RosService> Service<S> {
         })
     }
 
-    /// Answers the calls that wait by what `respond` says, and counts them; returns how
-    /// many were answered.
+    /// Answers the queued calls with `respond`, and counts them; returns the number of answers.
     pub(crate) fn serve(
         &self,
         report: &mut Report,
@@ -73,7 +72,7 @@ impl<S: RosService> Service<S> {
             match self.answer(&call, &mut respond) {
                 Ok(()) => answered += 1,
                 Err(error) => {
-                    // Where this fails, the caller has gone.
+                    // This fails only if the caller has gone.
                     let _ = call.reply_err(error.to_string()).wait();
                     report.refused(&error)?;
                 }
@@ -91,7 +90,7 @@ impl<S: RosService> Service<S> {
         let payload = query.payload().unwrap_or(&none).to_bytes();
         let attachment = Attachment::decode(&self.topic, query.attachment().unwrap_or(&none))?;
         let response = call::answer::<S>(&self.topic, &payload, respond)?;
-        // The caller knows its call again by number and sender.
+        // The caller recognises its call by number and sender.
         let attachment = Attachment {
             sent_ns: wall_ns(),
             ..attachment

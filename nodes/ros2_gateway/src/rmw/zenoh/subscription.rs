@@ -1,7 +1,7 @@
 //! A topic from the robot.
 //!
-//! What is lost is counted: here for want of limits, and before by the sender's own
-//! numbers.
+//! Losses are counted: those of the queue here by its limits, and those on the way by the sequence
+//! numbers of the sender.
 
 use std::marker::PhantomData;
 
@@ -18,10 +18,9 @@ use crate::GatewayError;
 use crate::rmw::received::{Received, Senders};
 use crate::rmw::{Keeping, description};
 
-/// Receives messages.
 pub(crate) struct Subscription<M> {
     topic: String,
-    /// Of nodes that know the type's hash, and of those of ROS 2 Humble.
+    /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     queues: [Queue; 2],
     senders: Senders,
     received: bool,
@@ -30,7 +29,7 @@ pub(crate) struct Subscription<M> {
 }
 
 impl<M: RosMessage + DeserializeOwned> Subscription<M> {
-    /// Takes messages of at most `max_bytes`; `depth` of them wait.
+    /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -60,13 +59,12 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    /// Messages that were lost because the queue was full since the last call.
+    /// Returns the number of messages lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         self.queues.iter().map(Queue::dropped).sum()
     }
 
-    /// Most messages that can wait: who takes no more at once keeps no other topic
-    /// waiting, however fast they come.
+    /// Returns the largest number of queued messages.
     pub(crate) fn depth(&self) -> usize {
         self.queues
             .iter()
@@ -74,7 +72,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             .sum()
     }
 
-    /// Why a message was not let in at all, for each such.
+    /// Returns an error for each message that was too long to be queued.
     pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
         let mut queues = self.queues.iter();
         let (found, most) = queues
@@ -98,7 +96,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     }
 
     fn decode(&mut self, sample: &Sample, lost: &mut u64) -> Result<M, GatewayError> {
-        // Scripts that speak Zenoh alone may leave it out.
+        // Scripts that use plain Zenoh may leave it out.
         if let Some(bytes) = sample.attachment() {
             let attachment = Attachment::decode(&self.topic, bytes)?;
             let Attachment {

@@ -1,4 +1,4 @@
-//! Who comes to the robot's domain, by the tokens of its nodes.
+//! Watch of the robot's domain, by the tokens of its nodes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,10 +18,9 @@ use crate::rmw::Seen;
 use crate::rmw::expected::{Endpoint, Expected};
 use crate::waiting::Publishing;
 
-/// Tokens that wait: a large robot has some hundred.
+/// Largest number of queued tokens: a large robot has some hundred.
 const MAX_WAITING: usize = 4096;
 
-/// Watches the tokens.
 pub(crate) struct Watch {
     tokens: Arc<ArrayQueue<String>>,
     dropped: Arc<AtomicU64>,
@@ -30,7 +29,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Reports subscribers of `subscribed`.
+    /// Opens a watch that reports subscribers of `subscribed`.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -64,22 +63,22 @@ impl Watch {
         })
     }
 
-    /// Also reports publishers of `topic` that publish anything but `M`.
+    /// Also reports publishers of `topic` with another type than `M`.
     pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
         self.expected.expect::<M>(topic)
     }
 
-    /// How the topic is published, by whoever does so as it is taken.
+    /// Returns the kind of the topic's publisher; a matching one counts before others.
     pub(crate) fn publishing(&self, topic: &str) -> Publishing {
         self.expected.publishing(topic)
     }
 
-    /// Tokens that were not looked at since the last call: there were too many.
+    /// Returns the number of tokens dropped since the last call because there were too many.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped.swap(0, Ordering::Relaxed)
     }
 
-    /// The next that is of interest. A token that cannot be read is of no interest.
+    /// Returns the next event of interest; a token that cannot be read is none.
     pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
         let mine = member.session().zid().to_string();
         while let Some(key) = self.tokens.pop() {
@@ -98,15 +97,15 @@ impl Watch {
     }
 }
 
-/// Each node publishes this topic.
+/// Topic that each node publishes.
 const EVENTS: &str = "/parameter_events";
 
-/// Whether somebody else is a node of this name.
+/// True if the token shows that another process has a node of this name.
 fn is_second(token: &Token, node: &str) -> bool {
     token.node == node && token.kind == Kind::Publisher.code() && token.topic == EVENTS
 }
 
-/// The topic that a token is of; services are of no interest.
+/// Returns the topic of a token; nodes and services have none.
 fn endpoint(token: Token) -> Option<Endpoint> {
     let is_publisher = token.kind == Kind::Publisher.code();
     if !is_publisher && token.kind != Kind::Subscription.code() {
