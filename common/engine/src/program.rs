@@ -167,23 +167,6 @@ impl ScanProgram {
         self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
     }
 
-    /// Replaces the program by some of another's beams.
-    pub(crate) fn take_some(&mut self, of: &ScanProgram, is_taken: impl Fn(usize) -> bool) {
-        self.bearings.clear();
-        self.tapers.clear();
-        self.profiles.clear();
-        self.profiles.extend_from_slice(&of.profiles);
-        self.classes = of.classes;
-        self.highest_possible = 0;
-        for i in (0..of.beams()).filter(|&i| is_taken(i)) {
-            let tapers = &of.tapers[i * of.classes..][..of.classes];
-            self.tapers.extend_from_slice(tapers);
-            self.bearings.push(of.bearings[i]);
-            self.highest_possible += u32::from(of.peak(i));
-        }
-        self.bearing_rounding = of.bearing_rounding;
-    }
-
     /// Number of beams that vote and are no longer than the grid; the paper's m.
     #[must_use]
     pub fn beams(&self) -> usize {
@@ -210,11 +193,6 @@ impl ScanProgram {
     pub(crate) fn peak(&self, i: usize) -> u16 {
         let profile = self.taper(i, 0).profile;
         profile.first().map_or(0, |&peak| u16::from(peak))
-    }
-
-    /// Largest number of votes of all beams together that may end on the grid.
-    pub(crate) fn most_votes(&self) -> u32 {
-        (0..self.beams()).map(|i| u32::from(self.peak(i))).sum()
     }
 
     /// Votes of a pose with which every beam agrees fully, including beams too long for the grid;

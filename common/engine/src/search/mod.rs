@@ -15,14 +15,14 @@
 //! ```
 //!
 //! Alternatives below the floor come from the blocks with the highest bounds. Where bounds do
-//! not distinguish blocks, every pose is counted instead (`beam_sampling`).
+//! not distinguish blocks, every pose is counted instead (`counting`).
 //!
 //! Each folder imports only those before it: `index`, what is known of a map; `bounds`,
 //! how many votes a block can have; `leaves`, how many a pose has; `task`, what threads
-//! share; `beam_sampling`, counting every pose; `plan`, the order of a search.
+//! share; `counting`, counting every pose; `plan`, the order of a search.
 
-mod beam_sampling;
 mod bounds;
+mod counting;
 mod index;
 mod leaves;
 mod plan;

@@ -4,7 +4,7 @@ use super::alternatives::{self, Alternatives};
 use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
-use crate::search::beam_sampling::{self, BeamSampling};
+use crate::search::counting;
 use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, least_close, most_candidates};
 
@@ -15,8 +15,7 @@ pub(in crate::search) struct Attempt<'a> {
     pub program: &'a ScanProgram,
     pub scratches: &'a mut [descent::Scratch],
     pub alternatives: &'a mut alternatives::Scratch,
-    pub sampling: &'a mut BeamSampling,
-    pub shares: &'a mut [beam_sampling::Share],
+    pub shares: &'a mut [counting::Share],
     pub stop: &'a dyn Fn() -> bool,
 }
 
@@ -70,7 +69,7 @@ impl Attempt<'_> {
     /// Finds them by counting every pose; `None` if it was asked to stop.
     pub(in crate::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
         let what = (&self.task, self.program);
-        self.sampling.count(what, self.shares, found, self.stop)
+        counting::count(what, self.shares, found, self.stop)
     }
 
     /// Adds the candidates that are wanted below what was found, however bounding the

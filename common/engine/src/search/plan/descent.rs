@@ -10,7 +10,6 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::queue::{Block, Level};
-use crate::search::beam_sampling;
 use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
@@ -39,8 +38,7 @@ impl<'a> Descent<'a> {
         (part, parts): (usize, usize),
     ) -> Self {
         scratch.start(task);
-        let (counting, most_steps) = (beam_sampling::likely_cost(task), task.config.most_steps());
-        let budget = Budget::new(task.brute_force, counting, most_steps, parts);
+        let budget = Budget::new(task.brute_force, task.config.most_steps(), parts);
         let mut descent = Descent {
             task,
             scratch,

@@ -5,9 +5,9 @@ use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::bounds::set_program::SetProgram;
+use crate::search::counting;
 use crate::search::index::SearchIndex;
 use crate::search::task::lead::Lead;
 use crate::search::task::{Shared, Task};
@@ -24,8 +24,7 @@ pub struct Workspace {
     scratches: Vec<descent::Scratch>,
     alternatives: alternatives::Scratch,
     /// For counting every pose, the shares one for each thread.
-    sampling: BeamSampling,
-    shares: Vec<beam_sampling::Share>,
+    shares: Vec<counting::Share>,
     pub(in crate::search) bounding: Bounding,
 }
 
@@ -111,20 +110,18 @@ impl SearchIndex {
             shared,
             scratches,
             alternatives,
-            sampling,
             shares,
             ..
         } = workspace;
         let simd = Simd::new(instruction_set);
         let task = Task::new(shared, simd, self, grid, scan, (config, lead));
         scratches.resize_with(threads, descent::Scratch::default);
-        shares.resize_with(threads, beam_sampling::Share::default);
+        shares.resize_with(threads, counting::Share::default);
         Attempt {
             task,
             program: scan.0,
             scratches,
             alternatives,
-            sampling,
             shares,
             stop,
         }

@@ -39,7 +39,7 @@ pub(in crate::search) struct Budget {
     most: f64,
     /// When the search ends, done or not.
     limit: f64,
-    /// What counting every pose costs.
+    /// Cost of counting every pose.
     counting: f64,
     spent: f64,
     /// When to look again.
@@ -132,19 +132,13 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of `parts` of a search, which takes `most_steps` at most. Counting
-    /// every pose costs such a share of brute force.
-    pub(in crate::search) fn new(
-        brute_force: Cost,
-        counting: f64,
-        most_steps: f64,
-        parts: usize,
-    ) -> Self {
+    /// Returns the budget of one of `parts` of a search, which takes `most_steps` at most.
+    pub(in crate::search) fn new(brute_force: Cost, most_steps: f64, parts: usize) -> Self {
         let brute_force = brute_force.0 / parts as f64;
         Budget {
-            most: brute_force * counting * HOPELESS,
+            most: brute_force * HOPELESS,
             limit: most_steps / parts as f64,
-            counting: brute_force * counting,
+            counting: brute_force,
             spent: 0.0,
             next: brute_force * FIRST_LOOK,
             taken: [(0.0, 0.0); LEVELS],
@@ -210,7 +204,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, f64::INFINITY, 2);
+        let mut budget = Budget::new(Cost(2.0 * 3_550.0 / HOPELESS), f64::INFINITY, 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -228,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
-        let mut budget = Budget::new(Cost(1.0), 1.0, f64::INFINITY, 1);
+        let mut budget = Budget::new(Cost(1.0), f64::INFINITY, 1);
         assert!(!budget.prefers_leaves(), "nothing was done");
         budget.spend(0, Cost(100.0));
         assert!(budget.prefers_leaves());
@@ -240,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_search_ends_where_its_limit_is_used_up() {
-        let mut budget = Budget::new(Cost(1000.0), 0.5, 600.0, 2);
+        let mut budget = Budget::new(Cost(500.0), 600.0, 2);
         budget.spend(0, Cost(60.0));
         assert!(budget.is_up() && !budget.is_used_up(239.0), "of 300");
         assert!(budget.is_used_up(240.0));
