@@ -34,26 +34,7 @@ pub fn load_within(
     yaml: impl AsRef<Path>,
     note: impl FnMut(&UnknownKey),
 ) -> Result<OccupancyGrid, MapError> {
-    load_from(yaml.as_ref(), limit, note)
-}
-
-/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
-/// user.
-///
-/// # Errors
-/// See [`load`].
-pub fn load_noting(
-    yaml: impl AsRef<Path>,
-    note: impl FnMut(&UnknownKey),
-) -> Result<OccupancyGrid, MapError> {
-    load_from(yaml.as_ref(), MemoryLimit::NONE, note)
-}
-
-fn load_from(
-    yaml: &Path,
-    limit: MemoryLimit,
-    note: impl FnMut(&UnknownKey),
-) -> Result<OccupancyGrid, MapError> {
+    let yaml = yaml.as_ref();
     let text = read_text(yaml)?;
     let description = Description::parse(&text, yaml)?;
     description.unknown.iter().for_each(note);
@@ -69,6 +50,18 @@ fn load_from(
     )?;
     limit.check_grid(&grid)?;
     Ok(grid)
+}
+
+/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
+/// user.
+///
+/// # Errors
+/// See [`load`].
+pub fn load_noting(
+    yaml: impl AsRef<Path>,
+    note: impl FnMut(&UnknownKey),
+) -> Result<OccupancyGrid, MapError> {
+    load_within(MemoryLimit::NONE, yaml, note)
 }
 
 /// Returns a function that converts an error of reading the image.
@@ -135,18 +128,7 @@ fn read_image(
     let claim = kind::claim(&bytes, path)?;
     limit.check(claim.sides)?;
     let allowed = claim.most_bytes.min(MAX_IMAGE_BYTES);
-    let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
-    file.take(rest)
-        .read_to_end(&mut bytes)
-        .map_err(&unreadable)?;
-    let found = bytes.len() as u64;
-    if found > allowed {
-        return Err(MapError::FileSize {
-            path: path.to_owned(),
-            found,
-            allowed,
-        });
-    }
+    read_rest(file, &mut bytes, allowed, path, unreadable)?;
     Ok(bytes)
 }
 
@@ -176,12 +158,23 @@ fn read_file(
 ) -> Result<Vec<u8>, MapError> {
     let file = File::open(path).map_err(&unreadable)?;
     let mut bytes = Vec::new();
+    read_rest(file, &mut bytes, allowed, path, unreadable)?;
+    Ok(bytes)
+}
+
+/// Reads the rest of a file of which `bytes` are known, with at most `allowed` bytes in all.
+fn read_rest(
+    file: File,
+    bytes: &mut Vec<u8>,
+    allowed: u64,
+    path: &Path,
+    unreadable: impl Fn(io::Error) -> MapError,
+) -> Result<(), MapError> {
     // Reading one byte more than allowed detects a file that is too large, even without a known
     // size.
-    let found = file
-        .take(allowed + 1)
-        .read_to_end(&mut bytes)
-        .map_err(&unreadable)? as u64;
+    let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
+    file.take(rest).read_to_end(bytes).map_err(unreadable)?;
+    let found = bytes.len() as u64;
     if found > allowed {
         return Err(MapError::FileSize {
             path: path.to_owned(),
@@ -189,7 +182,7 @@ fn read_file(
             allowed,
         });
     }
-    Ok(bytes)
+    Ok(())
 }
 
 #[cfg(test)]
