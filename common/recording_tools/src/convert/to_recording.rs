@@ -6,8 +6,8 @@ use std::io::{BufRead, Seek, Write};
 use recording::write::RecordingWriter;
 use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
 use ros::{
-    self, Header, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist,
-    TwistWithCovariance, Vector3,
+    self, Header, PoseStamped, TfMessage, Time, Transform, TransformStamped, Twist,
+    TwistWithCovariance,
 };
 use transport::with_causes;
 
@@ -209,14 +209,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         let transform = |(frame, pose): &(String, geometry::Pose)| TransformStamped {
             header: Header::new(stamp, "base_link"),
             child_frame_id: frame.clone(),
-            transform: Transform {
-                translation: Vector3 {
-                    x: pose.x,
-                    y: pose.y,
-                    z: 0.0,
-                },
-                rotation: Quaternion::from_yaw(pose.yaw),
-            },
+            transform: Transform::from_planar(*pose),
         };
         let transforms = self.mounts.iter().map(transform).collect();
         self.write(
