@@ -27,11 +27,10 @@ mod tests {
     use dataflow::Node;
 
     use super::*;
+    use crate::run::testing::parsed;
 
     fn added_to(nodes: &str) -> Result<Node, LauncherError> {
-        let text = format!("nodes: [{nodes}]");
-        let topics = dataflow::Topics::default();
-        let mut dataflow = dataflow::parse(&text, &topics).unwrap();
+        let mut dataflow = parsed(&format!("nodes: [{nodes}]"));
         add(&mut dataflow)?;
         Ok(dataflow.nodes.pop().unwrap())
     }
