@@ -27,7 +27,7 @@ pub use error::MapError;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;
 pub use limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
-pub use load::{image_of, load, load_noting, load_within};
+pub use load::{image_of, load, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
 pub use save::save;
 pub use set::{

@@ -21,11 +21,12 @@ const MAX_IMAGE_BYTES: u64 = 1 << 31;
 /// # Errors
 /// A file does not exist or is invalid.
 pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
-    load_noting(yaml, |_| {})
+    load_within(MemoryLimit::NONE, yaml, |_| {})
 }
 
-/// Like [`load_noting`], but fails if the graph cannot hold the map. This is checked with the sides
-/// before memory is allocated, and again with the cells to be searched.
+/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
+/// user. Fails if the graph cannot hold the map, which is checked with the sides before memory is
+/// allocated, and again with the cells to be searched.
 ///
 /// # Errors
 /// See [`load`]; also [`MapError::Memory`].
@@ -50,18 +51,6 @@ pub fn load_within(
     )?;
     limit.check_grid(&grid)?;
     Ok(grid)
-}
-
-/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
-/// user.
-///
-/// # Errors
-/// See [`load`].
-pub fn load_noting(
-    yaml: impl AsRef<Path>,
-    note: impl FnMut(&UnknownKey),
-) -> Result<OccupancyGrid, MapError> {
-    load_within(MemoryLimit::NONE, yaml, note)
 }
 
 /// Returns a function that converts an error of reading the image.
@@ -279,7 +268,7 @@ mod tests {
         let folder = folder(&yaml, "floor.pgm", b"P5 1 1 255\n\x00");
         let mut notes = Vec::new();
         let path = folder.path().join("floor.yaml");
-        let map = load_noting(&path, |key| notes.push(key.to_string())).unwrap();
+        let map = load_within(MemoryLimit::NONE, &path, |key| notes.push(key.to_string())).unwrap();
         assert_eq!(map.cells, [100]);
         let place = |line: u32, key: &str| {
             let path = path.display();

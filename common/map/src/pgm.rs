@@ -258,10 +258,7 @@ mod tests {
 
     #[test]
     fn absurd_sizes_are_refused_before_anything_is_reserved() {
-        assert_eq!(
-            refusal(b"P5 31623 31623 255\n"),
-            "floor.pgm claims 31623 x 31623 cells; allowed: sides of 1..=32767 and at most 400000000 cells"
-        );
+        assert!(refusal(b"P5 31623 31623 255\n").contains("claims 31623 x 31623 cells"));
         for header in ["P5 0 3 255\n", "P2 3 0 255\n", "P5 32768 1 255\n"] {
             assert!(refusal(header.as_bytes()).contains("claims"), "{header}");
         }

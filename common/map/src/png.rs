@@ -272,10 +272,7 @@ mod tests {
             bytes[20..24].copy_from_slice(&height.to_be_bytes());
             pixels(&bytes).unwrap_err().to_string()
         };
-        assert_eq!(
-            claim(31_623, 31_623),
-            "floor.png claims 31623 x 31623 cells; allowed: sides of 1..=32767 and at most 400000000 cells"
-        );
+        assert!(claim(31_623, 31_623).contains("claims 31623 x 31623 cells"));
         assert!(claim(0, 1).contains("claims 0 x 1 cells"));
         assert!(claim(u32::MAX, u32::MAX).contains("claims"));
         // Allowed, but deflate cannot compress that much into so few bytes.
