@@ -195,12 +195,14 @@ mod tests {
         parse(&format!("nodes:\n{nodes}"), &TOPICS)
     }
 
+    /// Checks place and kind of each problem, and the offending value.
     fn check(nodes: &[&str], expected: &[&str]) {
-        let said: Vec<_> = match read(nodes) {
-            Ok(_) => Vec::new(),
-            Err(problems) => problems.iter().map(ToString::to_string).collect(),
-        };
-        assert_eq!(said, expected);
+        let said = read(nodes).unwrap_err();
+        assert_eq!(said.len(), expected.len(), "{said:?}");
+        for (said, expected) in said.iter().zip(expected) {
+            let said = said.to_string();
+            assert!(said.starts_with(expected), "{said}\n{expected}");
+        }
     }
 
     #[test]
@@ -220,23 +222,20 @@ mod tests {
     fn ids_are_unique() {
         check(
             &["id: a", "id: b", "id: a"],
-            &["4:19: a second node with the id `a`, first used in line 2; ids are unique"],
+            &["4:19: a second node with the id `a`"],
         );
     }
 
     #[test]
     fn ports_name_topics_once() {
-        check(
-            &["id: a, outputs: [scam, scan, scan]"],
-            &[
-                "2:32: there is no topic `scam`; allowed are scan, votes, health",
-                "2:44: the output `scan` is listed a second time; each may be listed once",
-            ],
+        let (scam, twice) = (
+            "2:32: there is no topic `scam`",
+            "2:44: the output `scan` is listed",
         );
-        check(
-            &["id: a, outputs: [scan]", "id: b, inputs: {image: a/scan}"],
-            &["3:31: there is no topic `image`; allowed are scan, votes, health"],
-        );
+        check(&["id: a, outputs: [scam, scan, scan]"], &[scam, twice]);
+        let sender = "id: a, outputs: [scan]";
+        let image = "3:31: there is no topic `image`; allowed are scan, votes, health";
+        check(&[sender, "id: b, inputs: {image: a/scan}"], &[image]);
     }
 
     #[test]
@@ -276,42 +275,34 @@ mod tests {
 
     #[test]
     fn a_topic_has_one_sender() {
+        let nodes = ["a", "b"].map(|id| format!("id: {id}, outputs: [scan, health]"));
         check(
-            &[
-                "id: a, outputs: [scan, health]",
-                "id: b, outputs: [scan, health]",
-            ],
-            &[
-                "3:32: `scan` is already sent by `a`, and a topic has one sender in a graph; \
-               remove it from one of them",
-            ],
+            &[&nodes[0], &nodes[1]],
+            &["3:32: `scan` is already sent by `a`"],
         );
     }
 
     #[test]
     fn wires_lead_to_an_output_of_the_same_name() {
-        let sender = "id: a, outputs: [scan, votes]";
-        check(
-            &[sender, "id: b, inputs: {scan: a}"],
-            &["3:37: the input `scan` comes from `a`; allowed is `node/topic`"],
+        let receiver = |inputs: &str, expected: &str| {
+            let receiver = format!("id: b, inputs: {{{inputs}}}");
+            check(&["id: a, outputs: [scan, votes]", &receiver], &[expected]);
+        };
+        receiver(
+            "scan: a",
+            "3:37: the input `scan` comes from `a`; allowed is",
         );
-        check(
-            &[sender, "id: b, inputs: {scan: c/scan}"],
-            &["3:37: the input `scan` comes from `c`, which is no node; the nodes are a, b"],
+        receiver(
+            "scan: c/scan",
+            "3:37: the input `scan` comes from `c`, which is no node",
         );
-        check(
-            &[sender, "id: b, inputs: {health: a/health}"],
-            &[
-                "3:39: the input `health` takes `health` from `a`, which does not list it; \
-               its outputs are scan, votes",
-            ],
+        receiver(
+            "health: a/health",
+            "3:39: the input `health` takes `health` from `a`",
         );
-        check(
-            &[sender, "id: b, inputs: {scan: a/votes}"],
-            &[
-                "3:37: the input `scan` takes the topic `votes`; nodes find topics by the names \
-               of their ports, so write `votes: a/votes`",
-            ],
+        receiver(
+            "scan: a/votes",
+            "3:37: the input `scan` takes the topic `votes`",
         );
         check(
             &["id: a, outputs: [scan], inputs: {scan: a/scan}"],

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use crate::{CacheError, IndexCache, folder};
 
 /// Options of the index cache.
-#[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct IndexCacheConfig {
     /// Folder that caches prepared maps, so that the same map with the same settings is read the
     /// next time instead of prepared: a folder that only this user can use, created if it is
@@ -30,15 +30,6 @@ pub enum CachePlace {
     User,
     /// Another folder.
     Folder(PathBuf),
-}
-
-impl Default for IndexCacheConfig {
-    fn default() -> Self {
-        IndexCacheConfig {
-            index_cache: None,
-            index_cache_limit: 2000,
-        }
-    }
 }
 
 impl IndexCacheConfig {
@@ -88,7 +79,8 @@ mod tests {
 
     #[test]
     fn a_folder_is_named_or_the_default_or_none() {
-        assert_eq!(config(""), IndexCacheConfig::default());
+        let given = config("");
+        assert_eq!((given.index_cache, given.index_cache_limit), (None, 2000));
         let place = |arguments: &str| config(arguments).index_cache.unwrap();
         assert_eq!(place("--index-cache off"), CachePlace::Off);
         assert_eq!(place("--index-cache user"), CachePlace::User);

@@ -130,21 +130,16 @@ fn receivers(dataflow: &Dataflow, topic: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dataflow::{Topics, parse};
+    use crate::run::testing::parsed;
 
     #[test]
     fn the_picture_shows_wires_from_both_ends() {
-        let topics = Topics {
-            names: &["scan", "votes"],
-            shared: &[],
-            several: &[],
-        };
         let text = "nodes:
   - {id: a, path: x, outputs: [scan]}
   - {id: b, path: y, inputs: {scan: a/scan}, outputs: [votes], restart_policy: on-failure, max_restarts: 3}
 ";
         assert_eq!(
-            picture(&parse(text, &topics).unwrap()),
+            picture(&parsed(text)),
             "a (x)
     -> scan           b
 b (y, restarted on failure up to 3 times)

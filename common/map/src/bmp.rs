@@ -10,8 +10,7 @@ use image::codecs::bmp::BmpDecoder;
 use image::{ColorType, ImageDecoder};
 
 use crate::MapError;
-use crate::claim::{Claim, HEAD_BYTES};
-use crate::limits::size_is_allowed;
+use crate::claim::{Claim, HEAD_BYTES, check_size};
 use crate::raster::{Channels, Raster, Samples};
 
 /// First bytes of every such file.
@@ -23,14 +22,9 @@ const MAX_RUN: u64 = 255;
 /// Reads the header of a file that begins with `head`.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let Some(claims) = Claims::read(head) else {
-        return Ok(Claim {
-            sides: (0, 0),
-            most_bytes: HEAD_BYTES,
-        });
+        return Ok(Claim::NONE);
     };
-    if !size_is_allowed(claims.width, claims.height) {
-        return Err(size(path, claims.width, claims.height));
-    }
+    check_size(path, claims.width, claims.height)?;
     let pixels = (u64::from(claims.width) + 1) * u64::from(claims.height);
     Ok(Claim {
         sides: (claims.width, claims.height),
@@ -49,9 +43,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     }
     let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
-    if !size_is_allowed(width, height) {
-        return Err(size(path, width, height));
-    }
+    check_size(path, width, height)?;
     let channels = match decoder.color_type() {
         ColorType::Rgba8 => Channels::RgbAlpha,
         // The decoder returns all others, including palettes, as RGB.
@@ -114,9 +106,7 @@ impl Claims {
 
     fn check(&self, bytes: &[u8], path: &Path) -> Result<(), MapError> {
         let (width, height) = (self.width, self.height);
-        if !size_is_allowed(width, height) {
-            return Err(size(path, width, height));
-        }
+        check_size(path, width, height)?;
         let needed = match self.is_packed {
             true => (u64::from(width) * u64::from(height) * 2).div_ceil(MAX_RUN),
             // Rows are padded to 32 bits.
@@ -133,14 +123,6 @@ impl Claims {
             });
         }
         Ok(())
-    }
-}
-
-fn size(path: &Path, width: u32, height: u32) -> MapError {
-    MapError::ImageSize {
-        path: path.to_owned(),
-        width,
-        height,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::MapError;
+use crate::limits::size_is_allowed;
 
 /// Number of bytes read to check the header; no header is longer.
 pub(crate) const HEAD_BYTES: u64 = 64 << 10;
@@ -20,12 +21,32 @@ const OTHERS: &[(&[u8], &str)] = &[
 ];
 
 /// Size of an image according to its header.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Claim {
     /// Width and height in pixels; 0 if the header is cut off.
     pub(crate) sides: (u32, u32),
     /// Largest valid file size in bytes.
     pub(crate) most_bytes: u64,
+}
+
+/// Checks the sides of an image against the limits.
+pub(crate) fn check_size(path: &Path, width: u32, height: u32) -> Result<(), MapError> {
+    if size_is_allowed(width, height) {
+        return Ok(());
+    }
+    let path = path.to_owned();
+    Err(MapError::ImageSize {
+        path,
+        width,
+        height,
+    })
+}
+
+impl Claim {
+    /// Size of an image whose header is cut off.
+    pub(crate) const NONE: Claim = Claim {
+        sides: (0, 0),
+        most_bytes: HEAD_BYTES,
+    };
 }
 
 /// Returns the error for an unsupported format.

@@ -7,30 +7,29 @@ use crate::claim::{Claim, wrong_kind};
 use crate::raster::Raster;
 use crate::{MapError, bmp, pgm, png};
 
+type Read<T> = fn(&[u8], &Path) -> Result<T, MapError>;
+
+/// Returns the readers of the header and of the whole image by its first bytes.
+fn readers(head: &[u8], path: &Path) -> Result<(Read<Claim>, Read<Raster>), MapError> {
+    if head.starts_with(png::SIGNATURE) {
+        Ok((png::claim, png::decode))
+    } else if head.starts_with(b"P2") || head.starts_with(b"P5") {
+        Ok((pgm::claim, pgm::decode))
+    } else if head.starts_with(bmp::SIGNATURE) {
+        Ok((bmp::claim, bmp::decode))
+    } else {
+        Err(wrong_kind(head, path))
+    }
+}
+
 /// Decodes an image of any supported format; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
-    if bytes.starts_with(png::SIGNATURE) {
-        png::decode(bytes, path)
-    } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
-        pgm::decode(bytes, path)
-    } else if bytes.starts_with(bmp::SIGNATURE) {
-        bmp::decode(bytes, path)
-    } else {
-        Err(wrong_kind(bytes, path))
-    }
+    readers(bytes, path)?.1(bytes, path)
 }
 
 /// Reads the header of an image that begins with `head`; `path` is for errors.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
-    if head.starts_with(png::SIGNATURE) {
-        png::claim(head, path)
-    } else if head.starts_with(b"P2") || head.starts_with(b"P5") {
-        pgm::claim(head, path)
-    } else if head.starts_with(bmp::SIGNATURE) {
-        bmp::claim(head, path)
-    } else {
-        Err(wrong_kind(head, path))
-    }
+    readers(head, path)?.0(head, path)
 }
 
 #[cfg(test)]

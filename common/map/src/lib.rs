@@ -27,9 +27,8 @@ pub use error::MapError;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;
 pub use limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
-pub use load::{image_of, load, load_noting, load_within};
+pub use load::{image_of, load, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
-pub use rules::Mode;
 pub use save::save;
 pub use set::{
     MAX_MAPS, MapFile, MapSet, Transition, list_of, set_of, set_of_files, set_of_noting,

@@ -21,11 +21,12 @@ const MAX_IMAGE_BYTES: u64 = 1 << 31;
 /// # Errors
 /// A file does not exist or is invalid.
 pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
-    load_noting(yaml, |_| {})
+    load_within(MemoryLimit::NONE, yaml, |_| {})
 }
 
-/// Like [`load_noting`], but fails if the graph cannot hold the map. This is checked with the sides
-/// before memory is allocated, and again with the cells to be searched.
+/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
+/// user. Fails if the graph cannot hold the map, which is checked with the sides before memory is
+/// allocated, and again with the cells to be searched.
 ///
 /// # Errors
 /// See [`load`]; also [`MapError::Memory`].
@@ -34,26 +35,7 @@ pub fn load_within(
     yaml: impl AsRef<Path>,
     note: impl FnMut(&UnknownKey),
 ) -> Result<OccupancyGrid, MapError> {
-    load_from(yaml.as_ref(), limit, note)
-}
-
-/// Like [`load`], and calls `note` for each unknown key of the description, to be shown to the
-/// user.
-///
-/// # Errors
-/// See [`load`].
-pub fn load_noting(
-    yaml: impl AsRef<Path>,
-    note: impl FnMut(&UnknownKey),
-) -> Result<OccupancyGrid, MapError> {
-    load_from(yaml.as_ref(), MemoryLimit::NONE, note)
-}
-
-fn load_from(
-    yaml: &Path,
-    limit: MemoryLimit,
-    note: impl FnMut(&UnknownKey),
-) -> Result<OccupancyGrid, MapError> {
+    let yaml = yaml.as_ref();
     let text = read_text(yaml)?;
     let description = Description::parse(&text, yaml)?;
     description.unknown.iter().for_each(note);
@@ -135,18 +117,7 @@ fn read_image(
     let claim = kind::claim(&bytes, path)?;
     limit.check(claim.sides)?;
     let allowed = claim.most_bytes.min(MAX_IMAGE_BYTES);
-    let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
-    file.take(rest)
-        .read_to_end(&mut bytes)
-        .map_err(&unreadable)?;
-    let found = bytes.len() as u64;
-    if found > allowed {
-        return Err(MapError::FileSize {
-            path: path.to_owned(),
-            found,
-            allowed,
-        });
-    }
+    read_rest(file, &mut bytes, allowed, path, unreadable)?;
     Ok(bytes)
 }
 
@@ -176,12 +147,23 @@ fn read_file(
 ) -> Result<Vec<u8>, MapError> {
     let file = File::open(path).map_err(&unreadable)?;
     let mut bytes = Vec::new();
+    read_rest(file, &mut bytes, allowed, path, unreadable)?;
+    Ok(bytes)
+}
+
+/// Reads the rest of a file of which `bytes` are known, with at most `allowed` bytes in all.
+fn read_rest(
+    file: File,
+    bytes: &mut Vec<u8>,
+    allowed: u64,
+    path: &Path,
+    unreadable: impl Fn(io::Error) -> MapError,
+) -> Result<(), MapError> {
     // Reading one byte more than allowed detects a file that is too large, even without a known
     // size.
-    let found = file
-        .take(allowed + 1)
-        .read_to_end(&mut bytes)
-        .map_err(&unreadable)? as u64;
+    let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
+    file.take(rest).read_to_end(bytes).map_err(unreadable)?;
+    let found = bytes.len() as u64;
     if found > allowed {
         return Err(MapError::FileSize {
             path: path.to_owned(),
@@ -189,7 +171,7 @@ fn read_file(
             allowed,
         });
     }
-    Ok(bytes)
+    Ok(())
 }
 
 #[cfg(test)]
@@ -286,7 +268,7 @@ mod tests {
         let folder = folder(&yaml, "floor.pgm", b"P5 1 1 255\n\x00");
         let mut notes = Vec::new();
         let path = folder.path().join("floor.yaml");
-        let map = load_noting(&path, |key| notes.push(key.to_string())).unwrap();
+        let map = load_within(MemoryLimit::NONE, &path, |key| notes.push(key.to_string())).unwrap();
         assert_eq!(map.cells, [100]);
         let place = |line: u32, key: &str| {
             let path = path.display();

@@ -6,6 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
+use messages::FREE_TO;
+
 use crate::{MapError, OccupancyGrid};
 
 /// Memory of all nodes of a graph for each cell of any map, in bytes: the message, a copy in each
@@ -21,9 +23,6 @@ const BYTES_OF_ALL: u64 = 64 << 20;
 
 /// Cells along a side of a search block.
 const BLOCK: usize = 4;
-
-/// Occupancy up to which cells are free: the default of the cell rules.
-const FREE_TO: u8 = 25;
 
 /// Default distance from free cells up to which poses are searched, in metres.
 const REACH_M: f64 = 1.0;

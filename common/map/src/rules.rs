@@ -14,7 +14,7 @@ const OCCUPIED: u8 = 100;
 
 /// Conversion of the shades of an image to occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mode {
+pub(crate) enum Mode {
     /// Occupied, free or unknown by the thresholds.
     #[default]
     Trinary,
@@ -97,10 +97,14 @@ fn shade(colour: &[u16; 3], alpha: Option<u16>) -> f64 {
 mod tests {
     use super::*;
 
-    const MAP_SAVER: Thresholds = Thresholds {
-        occupied: 0.65,
-        free: 0.196,
-    };
+    fn rules(mode: Mode, negate: bool, occupied: f64, free: f64) -> Rules {
+        let thresholds = Thresholds { occupied, free };
+        Rules {
+            mode,
+            negate,
+            thresholds,
+        }
+    }
 
     fn grey(value: u8) -> Pixel {
         Pixel {
@@ -115,11 +119,7 @@ mod tests {
 
     #[test]
     fn trinary_knows_three_values() {
-        let mut rules = Rules {
-            mode: Mode::Trinary,
-            negate: false,
-            thresholds: MAP_SAVER,
-        };
+        let mut rules = rules(Mode::Trinary, false, 0.65, 0.196);
         // 205 is the shade of unknown in map_saver: 50/255 is just above 0.196.
         assert_eq!(
             cells(rules, &[0, 89, 90, 205, 206, 254, 255]),
@@ -134,14 +134,7 @@ mod tests {
 
     #[test]
     fn a_shade_exactly_at_a_threshold_is_not_beyond_it() {
-        let rules = Rules {
-            mode: Mode::Trinary,
-            negate: true,
-            thresholds: Thresholds {
-                occupied: 204.0 / 255.0,
-                free: 51.0 / 255.0,
-            },
-        };
+        let rules = rules(Mode::Trinary, true, 204.0 / 255.0, 51.0 / 255.0);
         assert_eq!(
             cells(rules, &[50, 51, 52, 203, 204, 205]),
             [0, 255, 255, 255, 255, 100]
@@ -150,14 +143,7 @@ mod tests {
 
     #[test]
     fn scale_interpolates_and_transparent_is_unknown() {
-        let rules = Rules {
-            mode: Mode::Scale,
-            negate: true,
-            thresholds: Thresholds {
-                occupied: 1.0,
-                free: 0.0,
-            },
-        };
+        let rules = rules(Mode::Scale, true, 1.0, 0.0);
         // 255 is not above 1.0, so it is interpolated to 100; 127/255 is 49.8 %.
         assert_eq!(cells(rules, &[0, 51, 127, 128, 255]), [0, 20, 50, 50, 100]);
         let faint = Pixel {
@@ -174,14 +160,7 @@ mod tests {
 
     #[test]
     fn scale_rounds_halves_to_even() {
-        let rules = Rules {
-            mode: Mode::Scale,
-            negate: true,
-            thresholds: Thresholds {
-                occupied: 1.0,
-                free: 0.0,
-            },
-        };
+        let rules = rules(Mode::Scale, true, 1.0, 0.0);
         // 0.125 * 100 and 0.375 * 100 are exact halves: 12.5 and 37.5.
         assert_eq!(rules.between_thresholds(0.125), 12);
         assert_eq!(rules.between_thresholds(0.375), 38);
@@ -190,11 +169,7 @@ mod tests {
     #[test]
     fn raw_takes_values_up_to_a_hundred_and_ignores_negate_and_alpha() {
         for negate in [false, true] {
-            let rules = Rules {
-                mode: Mode::Raw,
-                negate,
-                thresholds: MAP_SAVER,
-            };
+            let rules = rules(Mode::Raw, negate, 0.65, 0.196);
             assert_eq!(
                 cells(rules, &[0, 1, 99, 100, 101, 255]),
                 [0, 1, 99, 100, 255, 255]
@@ -213,14 +188,7 @@ mod tests {
             colour: [FULL, FULL, 0],
             alpha: Some(0),
         };
-        let rules = |mode| Rules {
-            mode,
-            negate: false,
-            thresholds: Thresholds {
-                occupied: 0.45,
-                free: 0.4,
-            },
-        };
+        let rules = |mode| rules(mode, false, 0.45, 0.4);
         // (1 + 1 + 0 + 0) / 4 is half occupied; without alpha it is a third.
         assert_eq!(rules(Mode::Trinary).occupancy(pixel), 100);
         let opaque = Pixel {

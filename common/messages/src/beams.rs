@@ -40,35 +40,19 @@ pub struct Beam {
     pub fate: u32,
 }
 
-/// Result of comparing a beam with the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum BeamFate {
-    /// It ends at an obstacle of the map.
-    Hit = 0,
-    /// It ends in free space: at an object that is not in the map.
-    Short = 1,
-    /// It passes through an obstacle of the map.
-    Through = 2,
-    /// It ends behind unknown space, where it cannot be compared.
-    Unknown = 3,
-    /// It has no return, or one from beyond the map.
-    NoReturn = 4,
-}
-
-impl BeamFate {
-    /// Returns the fate with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [
-            Self::Hit,
-            Self::Short,
-            Self::Through,
-            Self::Unknown,
-            Self::NoReturn,
-        ]
-        .into_iter()
-        .find(|fate| *fate as u32 == code)
+crate::codes! {
+    /// Result of comparing a beam with the map.
+    pub enum BeamFate: u32 {
+        /// It ends at an obstacle of the map.
+        Hit = 0,
+        /// It ends in free space: at an object that is not in the map.
+        Short = 1,
+        /// It passes through an obstacle of the map.
+        Through = 2,
+        /// It ends behind unknown space, where it cannot be compared.
+        Unknown = 3,
+        /// It has no return, or one from beyond the map.
+        NoReturn = 4,
     }
 }
 
@@ -80,11 +64,5 @@ mod tests {
     mod beam {
         use super::*;
         crate::pin_layout!(Beam, size 16, align 4, { bearing: 0, range_m: 4, weight: 8, fate: 12 });
-    }
-
-    #[test]
-    fn codes_name_their_fate() {
-        assert_eq!(BeamFate::from_code(4), Some(BeamFate::NoReturn));
-        assert_eq!(BeamFate::from_code(5), None);
     }
 }

@@ -37,23 +37,13 @@ pub struct FieldHeader {
     pub heading: f64,
 }
 
-/// Meaning of the pixels of a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum FieldKind {
-    /// Intensity of the cell at the known heading.
-    Exact = 0,
-    /// Upper bound on the intensities of all poses in the block, over all headings.
-    UpperBound = 1,
-}
-
-impl FieldKind {
-    /// Returns the kind with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Exact, Self::UpperBound]
-            .into_iter()
-            .find(|k| *k as u32 == code)
+crate::codes! {
+    /// Meaning of the pixels of a field.
+    pub enum FieldKind: u32 {
+        /// Intensity of the cell at the known heading.
+        Exact = 0,
+        /// Upper bound on the intensities of all poses in the block, over all headings.
+        UpperBound = 1,
     }
 }
 

@@ -41,47 +41,19 @@ impl HealthHeader {
     pub const ERROR_CAPACITY: usize = 1024;
 }
 
-/// State of a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum NodeState {
-    /// Running, but without something it needs: a map, a boundary, a device.
-    Waiting = 0,
-    /// Able to answer its inputs.
-    Ready = 1,
-    /// Works, but not as it should; the last error says why.
-    Degraded = 2,
-    /// About to end.
-    Stopped = 3,
-    /// Busy with work that may take longer than the report interval; it does not answer meanwhile.
-    Busy = 4,
-}
-
-impl NodeState {
-    /// Returns the name for display.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Ready => "ready",
-            Self::Degraded => "degraded",
-            Self::Stopped => "stopped",
-            Self::Busy => "busy",
-        }
-    }
-
-    /// Returns the state with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [
-            Self::Waiting,
-            Self::Ready,
-            Self::Degraded,
-            Self::Stopped,
-            Self::Busy,
-        ]
-        .into_iter()
-        .find(|s| *s as u32 == code)
+crate::codes! {
+    /// State of a node.
+    pub enum NodeState: u32 {
+        /// Running, but without something it needs: a map, a boundary, a device.
+        Waiting = 0 => "waiting",
+        /// Able to answer its inputs.
+        Ready = 1 => "ready",
+        /// Works, but not as it should; the last error says why.
+        Degraded = 2 => "degraded",
+        /// About to end.
+        Stopped = 3 => "stopped",
+        /// Busy with work that may take longer than the report interval; it does not answer meanwhile.
+        Busy = 4 => "busy",
     }
 }
 

@@ -83,39 +83,18 @@ pub struct Hypothesis {
     pub map_id: u64,
 }
 
-/// Conclusion from a scan about the pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Verdict {
-    /// There are no usable beams: the scan was empty, was rejected, or does not match the map at
-    /// all.
-    NoScan = 0,
-    /// One place fits, and no other fits nearly as well.
-    Unique = 1,
-    /// Several places fit about as well.
-    Ambiguous = 2,
-    /// Even the best place fits badly: the map may be wrong.
-    PoorFit = 3,
-}
-
-impl Verdict {
-    /// Returns the verdict with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [Self::NoScan, Self::Unique, Self::Ambiguous, Self::PoorFit]
-            .into_iter()
-            .find(|v| *v as u32 == code)
-    }
-
-    /// Returns the name for logs and tables.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Verdict::NoScan => "NoScan",
-            Verdict::Unique => "Unique",
-            Verdict::Ambiguous => "Ambiguous",
-            Verdict::PoorFit => "PoorFit",
-        }
+crate::codes! {
+    /// Conclusion from a scan about the pose.
+    pub enum Verdict: u32 {
+        /// There are no usable beams: the scan was empty, was rejected, or does not match the map at
+        /// all.
+        NoScan = 0 => "NoScan",
+        /// One place fits, and no other fits nearly as well.
+        Unique = 1 => "Unique",
+        /// Several places fit about as well.
+        Ambiguous = 2 => "Ambiguous",
+        /// Even the best place fits badly: the map may be wrong.
+        PoorFit = 3 => "PoorFit",
     }
 }
 

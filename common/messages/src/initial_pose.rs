@@ -27,25 +27,15 @@ pub struct InitialPose {
     pub covariance: [f64; 9],
 }
 
-/// Kind of an initial pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u64)]
-pub enum InitialPoseKind {
-    /// The robot is probably at the pose: it is tried first, and scans must confirm it.
-    Hint = 0,
-    /// The robot is at the pose: it is believed at once, until scans contradict it.
-    Believed = 1,
-    /// The robot may be anywhere: the tracker forgets its pose.
-    Anywhere = 2,
-}
-
-impl InitialPoseKind {
-    /// Returns the kind with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u64) -> Option<Self> {
-        [Self::Hint, Self::Believed, Self::Anywhere]
-            .into_iter()
-            .find(|kind| *kind as u64 == code)
+crate::codes! {
+    /// Kind of an initial pose.
+    pub enum InitialPoseKind: u64 {
+        /// The robot is probably at the pose: it is tried first, and scans must confirm it.
+        Hint = 0,
+        /// The robot is at the pose: it is believed at once, until scans contradict it.
+        Believed = 1,
+        /// The robot may be anywhere: the tracker forgets its pose.
+        Anywhere = 2,
     }
 }
 
@@ -55,15 +45,4 @@ mod tests {
     crate::pin_layout!(InitialPose, size 128, align 8, {
         stamp: 0, kind: 24, map_from_base: 32, covariance: 56,
     });
-
-    #[test]
-    fn codes_are_found_again() {
-        for code in 0..3 {
-            assert_eq!(
-                InitialPoseKind::from_code(code).map(|k| k as u64),
-                Some(code)
-            );
-        }
-        assert_eq!(InitialPoseKind::from_code(3), None);
-    }
 }

@@ -8,6 +8,49 @@
 
 #![warn(missing_docs)]
 
+/// Declares an enum that messages hold as its code, and optionally the names of its values.
+macro_rules! codes {
+    (
+        $(#[$attribute:meta])*
+        pub enum $name:ident: $code:ident {
+            $($(#[$comment:meta])* $value:ident = $number:literal $(=> $text:literal)?,)+
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[repr($code)]
+        pub enum $name {
+            $($(#[$comment])* $value = $number,)+
+        }
+
+        impl $name {
+            /// Returns the value with this code, if there is one.
+            #[must_use]
+            pub fn from_code(code: $code) -> Option<Self> {
+                match code {
+                    $($number => Some(Self::$value),)+
+                    _ => None,
+                }
+            }
+        }
+
+        crate::codes!(@names $name, $($value $($text)?),+);
+    };
+    (@names $name:ident, $($value:ident $text:literal),+) => {
+        impl $name {
+            /// Returns the name for logs and tables.
+            #[must_use]
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$value => $text,)+
+                }
+            }
+        }
+    };
+    (@names $($without:tt)+) => {};
+}
+pub(crate) use codes;
+
 mod attention;
 mod beams;
 mod boundary;

@@ -35,27 +35,18 @@ impl LogHeader {
     pub const TEXT_CAPACITY: usize = 1024;
 }
 
-/// Severity of a line, with the codes of `rcl_interfaces/Log`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u32)]
-pub enum LogLevel {
-    /// Useful to developers.
-    Debug = 10,
-    /// Normal operation.
-    Info = 20,
-    /// A problem with which the node continues.
-    Warn = 30,
-    /// The node cannot do its task.
-    Error = 40,
-}
-
-impl LogLevel {
-    /// Returns the level with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Debug, Self::Info, Self::Warn, Self::Error]
-            .into_iter()
-            .find(|level| *level as u32 == code)
+crate::codes! {
+    /// Severity of a line, with the codes of `rcl_interfaces/Log`.
+    #[derive(PartialOrd, Ord)]
+    pub enum LogLevel: u32 {
+        /// Useful to developers.
+        Debug = 10,
+        /// Normal operation.
+        Info = 20,
+        /// A problem with which the node continues.
+        Warn = 30,
+        /// The node cannot do its task.
+        Error = 40,
     }
 }
 
@@ -65,10 +56,4 @@ mod tests {
     crate::pin_layout!(LogHeader, size 72, align 8, {
         node: 0, written_ns: 32, wall_ns: 40, counter: 48, dropped: 56, level: 64, pid: 68,
     });
-
-    #[test]
-    fn codes_name_their_level() {
-        assert_eq!(LogLevel::from_code(40), Some(LogLevel::Error));
-        assert_eq!(LogLevel::from_code(50), None);
-    }
 }

@@ -90,44 +90,25 @@ impl PoseHeader {
     }
 }
 
-/// State of the tracker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum TrackState {
-    /// The robot has not been found yet.
-    Searching = 0,
-    /// One place is left, and the scans fit there.
-    Unique = 1,
-    /// The pose is kept, but something contradicts it.
-    Doubtful = 2,
-    /// The robot was found before, but scans say that it is no longer at the pose.
-    Lost = 3,
+crate::codes! {
+    /// State of the tracker.
+    pub enum TrackState: u32 {
+        /// The robot has not been found yet.
+        Searching = 0 => "Searching",
+        /// One place is left, and the scans fit there.
+        Unique = 1 => "Unique",
+        /// The pose is kept, but something contradicts it.
+        Doubtful = 2 => "Doubtful",
+        /// The robot was found before, but scans say that it is no longer at the pose.
+        Lost = 3 => "Lost",
+    }
 }
 
 impl TrackState {
-    /// Returns the state with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Searching, Self::Unique, Self::Doubtful, Self::Lost]
-            .into_iter()
-            .find(|state| *state as u32 == code)
-    }
-
     /// True if the tracker believes a place.
     #[must_use]
     pub fn is_believed(self) -> bool {
         matches!(self, Self::Unique | Self::Doubtful)
-    }
-
-    /// Returns the name for logs and tables.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            TrackState::Searching => "Searching",
-            TrackState::Unique => "Unique",
-            TrackState::Doubtful => "Doubtful",
-            TrackState::Lost => "Lost",
-        }
     }
 }
 
@@ -137,47 +118,27 @@ impl std::fmt::Display for TrackState {
     }
 }
 
-/// Reason for the state of the tracker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum TrackReason {
-    /// No scan has been answered yet.
-    NoScan = 0,
-    /// No map has been received yet.
-    NoMap = 1,
-    /// One place leads clearly, and the scan fits there.
-    OnePlace = 2,
-    /// Several places fit.
-    SeveralPlaces = 3,
-    /// One place leads, but not by enough yet.
-    TooEarly = 4,
-    /// The scan does not fit at the expected pose.
-    PoorFit = 5,
-    /// Laser and odometry disagree about the motion of the robot.
-    OdometryJump = 6,
-    /// Scans fit better at another place.
-    AnotherPlace = 7,
-    /// No place on the map fits.
-    NoPlace = 8,
-}
-
-impl TrackReason {
-    /// Returns the reason with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [
-            Self::NoScan,
-            Self::NoMap,
-            Self::OnePlace,
-            Self::SeveralPlaces,
-            Self::TooEarly,
-            Self::PoorFit,
-            Self::OdometryJump,
-            Self::AnotherPlace,
-            Self::NoPlace,
-        ]
-        .into_iter()
-        .find(|reason| *reason as u32 == code)
+crate::codes! {
+    /// Reason for the state of the tracker.
+    pub enum TrackReason: u32 {
+        /// No scan has been answered yet.
+        NoScan = 0,
+        /// No map has been received yet.
+        NoMap = 1,
+        /// One place leads clearly, and the scan fits there.
+        OnePlace = 2,
+        /// Several places fit.
+        SeveralPlaces = 3,
+        /// One place leads, but not by enough yet.
+        TooEarly = 4,
+        /// The scan does not fit at the expected pose.
+        PoorFit = 5,
+        /// Laser and odometry disagree about the motion of the robot.
+        OdometryJump = 6,
+        /// Scans fit better at another place.
+        AnotherPlace = 7,
+        /// No place on the map fits.
+        NoPlace = 8,
     }
 }
 
@@ -191,24 +152,4 @@ mod tests {
         places: 312, from_scan: 316, pose_known: 320, mount_known: 324, odom_known: 328,
         odom_frame: 336,
     });
-
-    #[test]
-    fn codes_are_found_again() {
-        for code in 0..4 {
-            assert_eq!(
-                TrackState::from_code(code).map(|state| state as u32),
-                Some(code)
-            );
-        }
-        for code in 0..9 {
-            assert_eq!(
-                TrackReason::from_code(code).map(|reason| reason as u32),
-                Some(code)
-            );
-        }
-        assert_eq!(
-            (TrackState::from_code(4), TrackReason::from_code(9)),
-            (None, None)
-        );
-    }
 }

@@ -97,28 +97,18 @@ impl VotesHeader {
     pub const CUT: u32 = 2;
 }
 
-/// Outcome of a search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum SearchOutcome {
-    /// The best pose was found, and it has votes.
-    Found = 0,
-    /// The scan is valid but no beam could vote: no returns, or the map explains no reading.
-    NoVotes = 1,
-    /// The scan was rejected; the sender's health has the reason.
-    Refused = 2,
-    /// The scan is kept, and searched if `attention` requests it. No hypotheses follow; the
-    /// counters of these messages show losses.
-    NotAsked = 3,
-}
-
-impl SearchOutcome {
-    /// Returns the outcome with this code, if there is one.
-    #[must_use]
-    pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Found, Self::NoVotes, Self::Refused, Self::NotAsked]
-            .into_iter()
-            .find(|o| *o as u32 == code)
+crate::codes! {
+    /// Outcome of a search.
+    pub enum SearchOutcome: u32 {
+        /// The best pose was found, and it has votes.
+        Found = 0,
+        /// The scan is valid but no beam could vote: no returns, or the map explains no reading.
+        NoVotes = 1,
+        /// The scan was rejected; the sender's health has the reason.
+        Refused = 2,
+        /// The scan is kept, and searched if `attention` requests it. No hypotheses follow; the
+        /// counters of these messages show losses.
+        NotAsked = 3,
     }
 }
 
@@ -157,12 +147,5 @@ mod tests {
     mod vote {
         use super::*;
         crate::pin_layout!(Vote, size 8, align 2, { x: 0, y: 2, heading: 4, intensity: 6 });
-    }
-
-    #[test]
-    fn codes_name_their_outcome() {
-        assert_eq!(SearchOutcome::from_code(2), Some(SearchOutcome::Refused));
-        assert_eq!(SearchOutcome::from_code(3), Some(SearchOutcome::NotAsked));
-        assert_eq!(SearchOutcome::from_code(4), None);
     }
 }

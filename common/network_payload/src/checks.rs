@@ -91,17 +91,13 @@ pub(crate) fn readings(_: &ReadingsHeader, readings: &[Reading]) -> Checked {
 pub(crate) fn field(header: &FieldHeader, pixels: &[u16]) -> Checked {
     let refuse = Refuse::on::<topic::Field>();
     refuse.unless_finite("heading", header.heading)?;
-    refuse.unless_known("kind", header.kind, FieldKind::from_code(header.kind))?;
+    refuse.unless_known("kind", header.kind, FieldKind::from_code)?;
     refuse.unless_count("pixels", pixels.len(), area(header.width, header.height))
 }
 
 pub(crate) fn hypotheses(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Checked {
     let refuse = Refuse::on::<topic::Hypotheses>();
-    refuse.unless_known(
-        "verdict",
-        header.verdict,
-        Verdict::from_code(header.verdict),
-    )?;
+    refuse.unless_known("verdict", header.verdict, Verdict::from_code)?;
     refuse.unless_finite("confidence", header.confidence.into())?;
     refuse.unless_finite("inlier_share", header.inlier_share.into())?;
     for hypothesis in hypotheses {
@@ -109,9 +105,7 @@ pub(crate) fn hypotheses(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -
         refuse.unless_pose("map_from_base", hypothesis.map_from_base)?;
         refuse.unless_finite("score", hypothesis.score.into())?;
         refuse.unless_finite("probability", hypothesis.probability.into())?;
-        for value in hypothesis.covariance {
-            refuse.unless_finite("covariance", value)?;
-        }
+        refuse.unless_all_finite("covariance", &hypothesis.covariance)?;
     }
     Ok(())
 }
@@ -126,21 +120,13 @@ pub(crate) fn particles(_: &ParticlesHeader, particles: &[Particle]) -> Checked 
 
 pub(crate) fn tracked(header: &PoseHeader, words: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::Tracked>();
-    refuse.unless_known("state", header.state, TrackState::from_code(header.state))?;
-    refuse.unless_known(
-        "reason",
-        header.reason,
-        TrackReason::from_code(header.reason),
-    )?;
+    refuse.unless_known("state", header.state, TrackState::from_code)?;
+    refuse.unless_known("reason", header.reason, TrackReason::from_code)?;
     refuse.unless_pose("map_from_laser", header.map_from_laser)?;
     refuse.unless_pose("map_from_base", header.map_from_base)?;
     refuse.unless_pose("map_from_odom", header.map_from_odom)?;
-    for value in header.laser_covariance {
-        refuse.unless_finite("laser_covariance", value)?;
-    }
-    for value in header.base_covariance {
-        refuse.unless_finite("base_covariance", value)?;
-    }
+    refuse.unless_all_finite("laser_covariance", &header.laser_covariance)?;
+    refuse.unless_all_finite("base_covariance", &header.base_covariance)?;
     refuse.unless_finite("since_m", header.since_m)?;
     refuse.unless_finite("probability", header.probability)?;
     refuse.unless_finite("lead", header.lead)?;
@@ -154,12 +140,9 @@ pub(crate) fn attention(_: &AttentionHeader, items: &[u8]) -> Checked {
 
 pub(crate) fn initial_pose(header: &InitialPose, items: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::InitialPoseTopic>();
-    let kind = InitialPoseKind::from_code(header.kind);
-    refuse.unless_known("kind", header.kind, kind)?;
+    refuse.unless_known("kind", header.kind, InitialPoseKind::from_code)?;
     refuse.unless_pose("map_from_base", header.map_from_base)?;
-    for value in header.covariance {
-        refuse.unless_finite("covariance", value)?;
-    }
+    refuse.unless_all_finite("covariance", &header.covariance)?;
     refuse.unless_count("items", items.len(), 0)
 }
 
@@ -194,13 +177,13 @@ pub(crate) fn save(_: &SaveHeader, items: &[u8]) -> Checked {
 
 pub(crate) fn health(header: &HealthHeader, error: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::Health>();
-    refuse.unless_known("state", header.state, NodeState::from_code(header.state))?;
+    refuse.unless_known("state", header.state, NodeState::from_code)?;
     refuse.unless_text("last error", error, HealthHeader::ERROR_CAPACITY)
 }
 
 pub(crate) fn log(header: &LogHeader, line: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::Log>();
-    refuse.unless_known("level", header.level, LogLevel::from_code(header.level))?;
+    refuse.unless_known("level", header.level, LogLevel::from_code)?;
     refuse.unless_text("line", line, LogHeader::TEXT_CAPACITY)
 }
 
@@ -227,9 +210,12 @@ impl Refuse {
     }
 
     fn unless_pose(&self, field: &'static str, pose: Pose2) -> Checked {
-        [pose.x, pose.y, pose.yaw]
-            .into_iter()
-            .try_for_each(|value| self.unless_finite(field, value))
+        self.unless_all_finite(field, &[pose.x, pose.y, pose.yaw])
+    }
+
+    fn unless_all_finite(&self, field: &'static str, values: &[f64]) -> Checked {
+        let mut values = values.iter();
+        values.try_for_each(|&value| self.unless_finite(field, value))
     }
 
     fn unless_count(&self, field: &'static str, found: usize, header: u64) -> Checked {
@@ -239,13 +225,13 @@ impl Refuse {
         self.refuse(field, &found, format!("{header}, as the header says"))
     }
 
-    fn unless_known<K: Copy>(
+    fn unless_known<C: Copy + Into<u64>, K>(
         &self,
         field: &'static str,
-        code: impl Into<u64>,
-        known: Option<K>,
+        code: C,
+        from_code: impl Fn(C) -> Option<K>,
     ) -> Checked {
-        if known.is_some() {
+        if from_code(code).is_some() {
             return Ok(());
         }
         self.refuse(

@@ -17,13 +17,13 @@ pub trait Wire:
     /// Largest payload in bytes, both uncompressed and as received.
     const MAX_BYTES: usize;
     /// True if payloads are compressed.
-    const COMPRESSED: bool;
+    const COMPRESSED: bool = false;
     /// True if late joiners on another machine get the newest sample: for messages that hold until
     /// the next one.
-    const KEPT: bool;
+    const KEPT: bool = false;
     /// True if the publisher computes it only while it has subscribers, so that relays subscribe
     /// only on request.
-    const ON_DEMAND: bool;
+    const ON_DEMAND: bool = false;
 
     /// Checks for contradictions and invalid numbers.
     ///
@@ -50,9 +50,7 @@ macro_rules! wire {
             impl Wire for topic::$topic {
                 const SCHEMA: &'static str = $schema;
                 const MAX_BYTES: usize = $bytes;
-                const COMPRESSED: bool = wire!(@compressed $($trait)*);
-                const KEPT: bool = wire!(@kept $($trait)*);
-                const ON_DEMAND: bool = wire!(@on_demand $($trait)*);
+                $(const $trait: bool = true;)*
                 fn check(
                     header: &Self::Header,
                     items: &[Self::Item],
@@ -75,27 +73,18 @@ macro_rules! wire {
             None
         }
     };
-    (@compressed) => { false };
-    (@compressed compressed $($rest:ident)*) => { true };
-    (@compressed $other:ident $($rest:ident)*) => { wire!(@compressed $($rest)*) };
-    (@on_demand) => { false };
-    (@on_demand on_demand $($rest:ident)*) => { true };
-    (@on_demand $other:ident $($rest:ident)*) => { wire!(@on_demand $($rest)*) };
-    (@kept) => { false };
-    (@kept kept $($rest:ident)*) => { true };
-    (@kept $other:ident $($rest:ident)*) => { wire!(@kept $($rest)*) };
 }
 
 wire! {
     Scan = "Scan/v2", MIB, scan, [stamp.entered_ns];
     OdometryTopic = "Odometry/v2", 4 * KIB, odometry, [stamp.entered_ns];
-    Map = "Map/v2", 64 * MIB, map, [stamp.entered_ns], compressed, kept;
-    Boundary = "Boundary/v2", 32 * MIB, boundary, [stamp.entered_ns], compressed, kept;
-    Maps = "Maps/v1", 64 * MIB, maps, [stamp.entered_ns], compressed, kept;
+    Map = "Map/v2", 64 * MIB, map, [stamp.entered_ns], COMPRESSED, KEPT;
+    Boundary = "Boundary/v2", 32 * MIB, boundary, [stamp.entered_ns], COMPRESSED, KEPT;
+    Maps = "Maps/v1", 64 * MIB, maps, [stamp.entered_ns], COMPRESSED, KEPT;
     VotesByMap = "VotesByMap/v1", MIB, votes_by_map, [stamp.entered_ns];
     Votes = "Votes/v6", 16 * MIB, votes, [stamp.entered_ns];
     Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
-    Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
+    Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], COMPRESSED, ON_DEMAND;
     Hypotheses = "Hypotheses/v4", MIB, hypotheses, [stamp.entered_ns, sent_ns];
     Particles = "Particles/v1", 32 * MIB, particles, [stamp.entered_ns];
     Tracked = "Pose/v1", 4 * KIB, tracked, [stamp.entered_ns, sent_ns];
@@ -103,7 +92,7 @@ wire! {
     InitialPoseTopic = "InitialPose/v2", 4 * KIB, initial_pose, [stamp.entered_ns];
     Beams = "Beams/v1", MIB, beams, [stamp.entered_ns];
     GroundTruthTopic = "GroundTruth/v2", 4 * KIB, ground_truth, [stamp.entered_ns];
-    Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], kept;
+    Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], KEPT;
     Save = "Save/v1", 4 * KIB, save, [stamp.entered_ns];
     Health = "Health/v1", 4 * KIB, health, [sent_ns];
     Log = "Log/v1", 4 * KIB, log, [written_ns];

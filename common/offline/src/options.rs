@@ -136,7 +136,7 @@ impl Options {
 
     fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {
         if !recording::is_recording(file) {
-            let grid = map::load_noting(file, |key| say(&key.to_string()))?;
+            let grid = map::load_within(map::MemoryLimit::NONE, file, |key| say(&key.to_string()))?;
             return Ok(grid);
         }
         if let Some(other) = recordings.iter().find(|path| is_map(path)) {

@@ -81,10 +81,7 @@ impl Content {
     /// # Errors
     /// If it cannot be read.
     pub(crate) fn of(path: &Path) -> Result<Self, RecordingError> {
-        let unreadable = |source| RecordingError::Open {
-            path: path.to_owned(),
-            source,
-        };
+        let unreadable = RecordingError::open(path);
         let mut start = Vec::new();
         let file = File::open(path).map_err(unreadable)?;
         file.take(START)

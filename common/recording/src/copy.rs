@@ -4,8 +4,8 @@ use std::io::{Seek, Write};
 use std::path::Path;
 
 use crate::content::Content;
-use crate::write::{RecordingWriter, definition};
-use crate::{Kind, Recording, RecordingError, unpack};
+use crate::write::{RecordingWriter, definition_in};
+use crate::{Recording, RecordingError, unpack};
 
 /// True if [`Recording::open`] may be able to read it: a file with suitable content, or a folder.
 #[must_use]
@@ -43,9 +43,7 @@ pub fn write_bag<W: Write + Seek>(
         let record = record?;
         let channel = record.channel;
         let schema = &*channel.schema;
-        let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
-        let text = definitions.get(schema).map(String::as_str);
-        let text = text.or(own.map(definition)).unwrap_or_default();
+        let text = definition_in(definitions.get(schema), schema);
         // A message that cannot be decompressed is copied unchanged: its reader gets the error.
         let body = unpack::message(&record.body).unwrap_or((&*record.body).into());
         writer.write_bytes(

@@ -1,7 +1,7 @@
 //! Errors of reading, using and writing a recording.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ros::ConversionError;
 
@@ -140,6 +140,16 @@ pub enum RecordingError {
         /// Message of the system or the library, or the rule that is broken.
         reason: String,
     },
+}
+
+impl RecordingError {
+    /// Returns a function that converts an error of reading the file.
+    pub(crate) fn open(path: &Path) -> impl Fn(io::Error) -> Self + Copy {
+        move |source| RecordingError::Open {
+            path: path.to_owned(),
+            source,
+        }
+    }
 }
 
 fn listed(found: &[String]) -> String {

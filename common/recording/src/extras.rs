@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use mcap::records::Record;
+use serde::Serialize;
 
 use crate::Damage;
 use crate::parse::parse;
@@ -42,7 +43,7 @@ impl AttachedFile {
 }
 
 /// Named key-value entries.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct MetadataRecord {
     /// Name; several records may have the same.
     pub name: String,

@@ -61,7 +61,7 @@ impl RecordedFile {
                 Ok(mapped)
             }
             _ => {
-                let file = File::open(place).map_err(|error| unreadable(&listed.path, error))?;
+                let file = File::open(place).map_err(RecordingError::open(&listed.path))?;
                 RecordedFile::mapped(&listed.path, &file)
             }
         }
@@ -72,7 +72,7 @@ impl RecordedFile {
         // SAFETY: the map is only read. If another process writes to the file, bytes change under
         // the reader, which checks each of them as untrusted input; if one truncates it, the system
         // ends this process.
-        let map = unsafe { Mmap::map(file) }.map_err(|source| unreadable(path, source))?;
+        let map = unsafe { Mmap::map(file) }.map_err(RecordingError::open(path))?;
         RecordedFile::new(path.to_owned(), Bytes::Mapped(map))
     }
 
@@ -122,13 +122,6 @@ fn damaged(path: PathBuf, damage: Damage) -> RecordingError {
         path,
         readable: 0,
         damage,
-    }
-}
-
-fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
-    RecordingError::Open {
-        path: path.to_owned(),
-        source,
     }
 }
 

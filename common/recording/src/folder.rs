@@ -34,10 +34,7 @@ pub(crate) struct Listed {
 /// # Errors
 /// If there is no such file, or a folder does not clearly define its files.
 pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
-    let unreadable = |source| RecordingError::Open {
-        path: path.to_owned(),
-        source,
-    };
+    let unreadable = RecordingError::open(path);
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         let metadata = path.join(METADATA);
         // A recorder that was killed leaves an empty one.
@@ -79,10 +76,7 @@ struct Counted {
 
 impl Information {
     fn read(metadata: &Path) -> Result<Self, RecordingError> {
-        let text = std::fs::read_to_string(metadata).map_err(|source| RecordingError::Open {
-            path: metadata.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(metadata).map_err(RecordingError::open(metadata))?;
         let description: Description = serde_saphyr::from_str(&text).map_err(|error| {
             let error = error.to_string();
             let error = error.lines().next().unwrap_or_default();
@@ -133,16 +127,17 @@ fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut paths = names.flat_map(|name: &Path| {
         let path = folder.join(name);
         let endings = PACKED.into_iter().chain(PACKED_OTHERWISE);
-        let packed: Vec<PathBuf> = endings.map(|ending| with_ending(&path, ending)).collect();
+        let packed = endings.map(|ending| with_ending(&path, &format!(".{ending}")));
+        let packed: Vec<PathBuf> = packed.collect();
         let unpacked = without_ending(&path);
         [path].into_iter().chain(packed).chain(unpacked)
     });
     paths.find(|path| path.is_file())
 }
 
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
+/// Appends to the name of a file.
+pub(crate) fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
-    name.push(".");
     name.push(ending);
     name.into()
 }
@@ -165,10 +160,7 @@ fn described(path: &Path, folder: &Path) -> Option<u64> {
 
 /// Returns the parts of a folder without a description.
 fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
-    let unreadable = |source| RecordingError::Open {
-        path: folder.to_owned(),
-        source,
-    };
+    let unreadable = RecordingError::open(folder);
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         paths.push(entry.map_err(unreadable)?.path());

@@ -247,12 +247,7 @@ impl Recording {
     /// # Errors
     /// If several channels qualify.
     pub fn topic(&self, kind: Kind) -> Result<Option<Arc<str>>, RecordingError> {
-        if let Some(topic) = self.preferred.get(&kind) {
-            return Ok(Some(topic.clone()));
-        }
-        let channels: Vec<&Channel> = self.channels().collect();
-        let channel = topics::choose(&channels, kind, &self.path)?;
-        Ok(channel.map(|channel| channel.topic.clone()))
+        self.topic_renamed(kind, |topic| Some(topic.to_owned()))
     }
 
     /// Same as [`Recording::topic`] with renamed channels: `name_of` returns the new name of a
@@ -293,12 +288,18 @@ impl Recording {
     /// # Errors
     /// If there is none, or several qualify.
     pub fn required_topic(&self, kind: Kind) -> Result<Arc<str>, RecordingError> {
+        self.topic(kind)?.ok_or_else(|| self.no_topic(kind))
+    }
+
+    /// Error of a recording without a channel of a kind.
+    #[must_use]
+    pub fn no_topic(&self, kind: Kind) -> RecordingError {
         let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
-        self.topic(kind)?.ok_or_else(|| RecordingError::NoTopic {
+        RecordingError::NoTopic {
             path: self.path.clone(),
             kind,
             found: self.channels().map(describe).collect(),
-        })
+        }
     }
 
     /// Schema texts that the files contain, by schema name.
@@ -341,8 +342,8 @@ fn opened(listed: &[Listed]) -> Result<Vec<RecordedFile>, RecordingError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sample;
     use crate::write::Packing;
-    use crate::{Record, sample};
 
     #[test]
     fn channels_are_listed_with_their_counts() {
@@ -365,18 +366,5 @@ mod tests {
             ]
         );
         assert_eq!(recording.messages(), 3 * scans + 3);
-    }
-
-    #[test]
-    fn a_file_opens_as_its_bytes_do() {
-        let folder = tempfile::TempDir::new().unwrap();
-        let path = folder.path().join("r.mcap");
-        std::fs::write(&path, sample::bytes(Packing::Zstd)).unwrap();
-        let opened = Recording::open(&path).unwrap();
-        let records: Vec<Record> = opened.records().map(Result::unwrap).collect();
-        assert_eq!(records, sample::records());
-        std::fs::write(&path, b"").unwrap();
-        let empty = Recording::open(&path).unwrap_err().to_string();
-        assert!(empty.contains("starts with nothing"), "{empty}");
     }
 }

@@ -54,10 +54,7 @@ pub(crate) fn file(
     path: &Path,
     allows: impl FnOnce(&[u8]) -> Result<(), RecordingError>,
 ) -> Result<NamedTempFile, RecordingError> {
-    let unreadable = |source| RecordingError::Open {
-        path: path.to_owned(),
-        source,
-    };
+    let unreadable = RecordingError::open(path);
     let packed = File::open(path).map_err(unreadable)?;
     let size = packed.metadata().map_err(unreadable)?.len();
     let most = size.saturating_mul(MAX_FACTOR).saturating_add(MAX_BESIDE);

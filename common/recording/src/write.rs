@@ -288,6 +288,13 @@ fn is_latched(kind: Kind) -> bool {
 }
 
 /// Schema text of a kind.
+/// Returns the text of a schema: that of a file, or ours for a known kind; else nothing.
+pub(crate) fn definition_in<'a>(of_file: Option<&'a String>, schema: &str) -> &'a str {
+    let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
+    let text = of_file.map(String::as_str);
+    text.or(own.map(definition)).unwrap_or_default()
+}
+
 pub(crate) fn definition(kind: Kind) -> &'static str {
     match kind {
         Kind::Scan => LaserScan::DEFINITION,

@@ -6,7 +6,6 @@
 //! `poses` publishes messages other than scans, and `waiting` waits for nodes. Publishing scans is
 //! left to the node. Ranges are passed on exactly as they were recorded.
 
-mod convert;
 mod error;
 mod order;
 mod poses;

@@ -7,12 +7,10 @@ use std::sync::Arc;
 
 use geometry::Mount;
 use messages::{GroundTruth, Name, Odometry, ScanHeader};
-use recording::{Channel, Kind, Message, Mounted, Record, Recording, RecordingError, Records};
-use ros::lasers;
-use ros::measurements::scan_header;
+use recording::{Kind, Message, Mounted, Record, Recording, RecordingError, Records};
+use ros::{lasers, measurements};
 
 use crate::PlaybackError;
-use crate::convert::Place;
 use crate::selection::Selection;
 
 /// A message of the graph with its log time.
@@ -85,12 +83,7 @@ impl Channels {
     /// If there are no scans, or several channels qualify.
     pub fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
         let topic = |kind| recording.topic_renamed(kind, |topic| selection.name_of(topic));
-        let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
-        let no_scans = || RecordingError::NoTopic {
-            path: recording.path().to_owned(),
-            kind: Kind::Scan,
-            found: recording.channels().map(describe).collect(),
-        };
+        let no_scans = || recording.no_topic(Kind::Scan);
         Ok(Channels {
             scans: vec![(topic(Kind::Scan)?.ok_or_else(no_scans)?, Name::new(""))],
             odometry: topic(Kind::Odometry)?,
@@ -177,23 +170,28 @@ impl<'a> Source<'a> {
     }
 
     fn convert(&mut self, record: Record) -> Result<Option<Timed>, PlaybackError> {
-        let place = Place {
-            topic: &record.topic,
+        let unusable = |reason| PlaybackError::Message {
+            topic: (*record.topic).into(),
             log_time_ns: record.log_time_ns,
+            reason,
         };
         let content = match record.message {
             Message::Scan(scan) => {
-                let frame = place.name(&scan.header.frame_id)?;
+                let frame = measurements::frame(&scan.header.frame_id).map_err(unusable)?;
                 let mount = self.mount(&scan.header.frame_id)?;
                 let header = ScanHeader {
                     laser: self.channels.laser(&record.topic),
-                    ..scan_header(&scan, frame, mount)
+                    ..measurements::scan_header(&scan, frame, mount)
                 };
                 Content::Scan(Box::new(header), scan.ranges)
             }
-            Message::Odometry(message) => Content::Odometry(Box::new(place.odometry(&message)?)),
+            Message::Odometry(message) => {
+                let odometry = measurements::odometry(&message).map_err(unusable)?;
+                Content::Odometry(Box::new(odometry))
+            }
             Message::PoseStamped(message) => {
-                Content::GroundTruth(Box::new(place.ground_truth(&message)?))
+                let truth = measurements::ground_truth(&message).map_err(unusable)?;
+                Content::GroundTruth(Box::new(truth))
             }
             Message::Map(_) | Message::StaticTransforms(_) => return Ok(None),
         };

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::RosMessage;
 use super::definition::{definition, part};
-use super::service::Nothing;
-use super::{RosMessage, RosService};
+use super::service::{Nothing, service};
 
 /// `lifecycle_msgs/msg/State`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -52,9 +52,6 @@ lifecycle_msgs/State goal_state
     );
 }
 
-#[derive(Debug)]
-pub enum ChangeState {}
-
 /// Requests a transition: by label, or if that is empty, by id.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ChangeStateRequest {
@@ -68,16 +65,12 @@ pub struct ChangeStateResponse {
     pub success: bool,
 }
 
-impl RosService for ChangeState {
-    const NAME: &'static str = "lifecycle_msgs/srv/ChangeState";
-    const REQUEST: &'static str = definition!("lifecycle_msgs/Transition transition\n", Transition);
-    const RESPONSE: &'static str = "bool success\n";
-    type Request = ChangeStateRequest;
-    type Response = ChangeStateResponse;
-}
-
-#[derive(Debug)]
-pub enum GetState {}
+service!(
+    ChangeState,
+    "lifecycle_msgs/srv/ChangeState",
+    ChangeStateRequest: definition!("lifecycle_msgs/Transition transition\n", Transition),
+    ChangeStateResponse: "bool success\n",
+);
 
 /// Current state.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -85,32 +78,24 @@ pub struct GetStateResponse {
     pub current_state: State,
 }
 
-impl RosService for GetState {
-    const NAME: &'static str = "lifecycle_msgs/srv/GetState";
-    const REQUEST: &'static str = "";
-    const RESPONSE: &'static str = definition!("lifecycle_msgs/State current_state\n", State);
-    type Request = Nothing;
-    type Response = GetStateResponse;
-}
-
-#[derive(Debug)]
-pub enum GetAvailableStates {}
+service!(
+    GetState,
+    "lifecycle_msgs/srv/GetState",
+    Nothing: "",
+    GetStateResponse: definition!("lifecycle_msgs/State current_state\n", State),
+);
 
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GetAvailableStatesResponse {
     pub available_states: Vec<State>,
 }
 
-impl RosService for GetAvailableStates {
-    const NAME: &'static str = "lifecycle_msgs/srv/GetAvailableStates";
-    const REQUEST: &'static str = "";
-    const RESPONSE: &'static str = definition!("lifecycle_msgs/State[] available_states\n", State);
-    type Request = Nothing;
-    type Response = GetAvailableStatesResponse;
-}
-
-#[derive(Debug)]
-pub enum GetAvailableTransitions {}
+service!(
+    GetAvailableStates,
+    "lifecycle_msgs/srv/GetAvailableStates",
+    Nothing: "",
+    GetAvailableStatesResponse: definition!("lifecycle_msgs/State[] available_states\n", State),
+);
 
 /// Transitions from the current state, or all of them.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -118,10 +103,11 @@ pub struct GetAvailableTransitionsResponse {
     pub available_transitions: Vec<TransitionDescription>,
 }
 
-impl RosService for GetAvailableTransitions {
-    const NAME: &'static str = "lifecycle_msgs/srv/GetAvailableTransitions";
-    const REQUEST: &'static str = "";
-    const RESPONSE: &'static str = concat!(
+service!(
+    GetAvailableTransitions,
+    "lifecycle_msgs/srv/GetAvailableTransitions",
+    Nothing: "",
+    GetAvailableTransitionsResponse: concat!(
         "lifecycle_msgs/TransitionDescription[] available_transitions\n",
         part!(
             "\
@@ -133,7 +119,5 @@ lifecycle_msgs/State goal_state
         ),
         part!(Transition),
         part!(State),
-    );
-    type Request = Nothing;
-    type Response = GetAvailableTransitionsResponse;
-}
+    ),
+);

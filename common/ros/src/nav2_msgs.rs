@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::definition::definition;
-use super::service::Nothing;
-use super::{Header, Pose, PoseWithCovarianceStamped, RosMessage, RosService};
+use super::service::{Nothing, service};
+use super::{Header, Pose, PoseWithCovarianceStamped, RosMessage};
 
 /// `nav2_msgs/msg/ParticleCloud`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -40,18 +40,16 @@ float64 weight
     );
 }
 
-#[derive(Debug)]
-pub enum SetInitialPose {}
-
 /// Pose of the robot, as on topic `initialpose`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetInitialPoseRequest {
     pub pose: PoseWithCovarianceStamped,
 }
 
-impl RosService for SetInitialPose {
-    const NAME: &'static str = "nav2_msgs/srv/SetInitialPose";
-    const REQUEST: &'static str = definition!(
+service!(
+    SetInitialPose,
+    "nav2_msgs/srv/SetInitialPose",
+    SetInitialPoseRequest: definition!(
         "geometry_msgs/PoseWithCovarianceStamped pose\n",
         "\
 geometry_msgs/PoseWithCovarianceStamped
@@ -60,8 +58,6 @@ geometry_msgs/PoseWithCovariance pose
 ",
         Header,
         PoseWithCovariance,
-    );
-    const RESPONSE: &'static str = "";
-    type Request = SetInitialPoseRequest;
-    type Response = Nothing;
-}
+    ),
+    Nothing: "",
+);

@@ -54,33 +54,34 @@ impl OccupancyGridMsg {
     /// Converts a grid to a message with an empty header.
     #[must_use]
     pub fn from_grid(grid: &OccupancyGrid) -> Self {
-        OccupancyGridMsg {
-            header: Header::default(),
-            info: MapMetaData {
-                map_load_time: Time::default(),
-                resolution: grid.resolution_m as f32,
-                width: grid.width,
-                height: grid.height,
-                origin: Pose::from_planar(grid.map_from_grid),
-            },
-            // Unknown is 255 in the grid and -1 in the message: the same bits.
-            data: grid.cells.iter().map(|&cell| cell as i8).collect(),
-        }
+        let origin = Pose::from_planar(grid.map_from_grid);
+        let sides = (grid.width, grid.height);
+        Self::of_cells(grid.resolution_m, sides, origin, &grid.cells)
     }
 
     /// Converts a map of the graph to a message with an empty header and load time.
     #[must_use]
     pub fn of_map(map: &MapHeader, cells: &[u8]) -> Self {
+        let origin = planar::pose(map.map_from_grid.into());
+        Self::of_cells(map.resolution_m, (map.width, map.height), origin, cells)
+    }
+
+    fn of_cells(
+        resolution_m: f64,
+        (width, height): (u32, u32),
+        origin: Pose,
+        cells: &[u8],
+    ) -> Self {
         OccupancyGridMsg {
             header: Header::default(),
             info: MapMetaData {
-                resolution: map.resolution_m as f32,
-                width: map.width,
-                height: map.height,
-                origin: planar::pose(map.map_from_grid.into()),
-                ..MapMetaData::default()
+                map_load_time: Time::default(),
+                resolution: resolution_m as f32,
+                width,
+                height,
+                origin,
             },
-            // The same bits, as above.
+            // Unknown is 255 in the grid and -1 in the message: the same bits.
             data: cells.iter().map(|&cell| cell.cast_signed()).collect(),
         }
     }

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::definition::{definition, part};
-use super::{RosMessage, RosService, Time};
+use super::service::service;
+use super::{RosMessage, Time};
 
 /// `rcl_interfaces/msg/ParameterType`: type of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,26 +163,18 @@ pub struct SetParametersRequest {
 const NAMES: &str = "string[] names\n";
 const PARAMETERS: &str = definition!("rcl_interfaces/Parameter[] parameters\n", Parameter);
 
-#[derive(Debug)]
-pub enum GetParameters {}
-
 /// Values of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParametersResponse {
     pub values: Vec<ParameterValue>,
 }
 
-impl RosService for GetParameters {
-    const NAME: &'static str = "rcl_interfaces/srv/GetParameters";
-    const REQUEST: &'static str = NAMES;
-    const RESPONSE: &'static str =
-        definition!("rcl_interfaces/ParameterValue[] values\n", ParameterValue);
-    type Request = ParameterNames;
-    type Response = GetParametersResponse;
-}
-
-#[derive(Debug)]
-pub enum GetParameterTypes {}
+service!(
+    GetParameters,
+    "rcl_interfaces/srv/GetParameters",
+    ParameterNames: NAMES,
+    GetParametersResponse: definition!("rcl_interfaces/ParameterValue[] values\n", ParameterValue),
+);
 
 /// Types of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -190,16 +183,12 @@ pub struct GetParameterTypesResponse {
     pub types: Vec<u8>,
 }
 
-impl RosService for GetParameterTypes {
-    const NAME: &'static str = "rcl_interfaces/srv/GetParameterTypes";
-    const REQUEST: &'static str = NAMES;
-    const RESPONSE: &'static str = "uint8[] types\n";
-    type Request = ParameterNames;
-    type Response = GetParameterTypesResponse;
-}
-
-#[derive(Debug)]
-pub enum SetParameters {}
+service!(
+    GetParameterTypes,
+    "rcl_interfaces/srv/GetParameterTypes",
+    ParameterNames: NAMES,
+    GetParameterTypesResponse: "uint8[] types\n",
+);
 
 /// Result for each parameter, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -207,19 +196,15 @@ pub struct SetParametersResponse {
     pub results: Vec<SetParametersResult>,
 }
 
-impl RosService for SetParameters {
-    const NAME: &'static str = "rcl_interfaces/srv/SetParameters";
-    const REQUEST: &'static str = PARAMETERS;
-    const RESPONSE: &'static str = definition!(
+service!(
+    SetParameters,
+    "rcl_interfaces/srv/SetParameters",
+    SetParametersRequest: PARAMETERS,
+    SetParametersResponse: definition!(
         "rcl_interfaces/SetParametersResult[] results\n",
         SetParametersResult
-    );
-    type Request = SetParametersRequest;
-    type Response = SetParametersResponse;
-}
-
-#[derive(Debug)]
-pub enum SetParametersAtomically {}
+    ),
+);
 
 /// Result for all parameters: either all are set or none.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -227,19 +212,15 @@ pub struct SetParametersAtomicallyResponse {
     pub result: SetParametersResult,
 }
 
-impl RosService for SetParametersAtomically {
-    const NAME: &'static str = "rcl_interfaces/srv/SetParametersAtomically";
-    const REQUEST: &'static str = PARAMETERS;
-    const RESPONSE: &'static str = definition!(
+service!(
+    SetParametersAtomically,
+    "rcl_interfaces/srv/SetParametersAtomically",
+    SetParametersRequest: PARAMETERS,
+    SetParametersAtomicallyResponse: definition!(
         "rcl_interfaces/SetParametersResult result\n",
         SetParametersResult
-    );
-    type Request = SetParametersRequest;
-    type Response = SetParametersAtomicallyResponse;
-}
-
-#[derive(Debug)]
-pub enum ListParameters {}
+    ),
+);
 
 /// Request for names of parameters.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -255,23 +236,19 @@ pub struct ListParametersResponse {
     pub result: ListParametersResult,
 }
 
-impl RosService for ListParameters {
-    const NAME: &'static str = "rcl_interfaces/srv/ListParameters";
-    const REQUEST: &'static str = "string[] prefixes\nuint64 depth\n";
-    const RESPONSE: &'static str = definition!(
+service!(
+    ListParameters,
+    "rcl_interfaces/srv/ListParameters",
+    ListParametersRequest: "string[] prefixes\nuint64 depth\n",
+    ListParametersResponse: definition!(
         "rcl_interfaces/ListParametersResult result\n",
         "\
 rcl_interfaces/ListParametersResult
 string[] names
 string[] prefixes
 ",
-    );
-    type Request = ListParametersRequest;
-    type Response = ListParametersResponse;
-}
-
-#[derive(Debug)]
-pub enum DescribeParameters {}
+    ),
+);
 
 /// Descriptions of parameters, in the order of the request.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -279,10 +256,11 @@ pub struct DescribeParametersResponse {
     pub descriptors: Vec<ParameterDescriptor>,
 }
 
-impl RosService for DescribeParameters {
-    const NAME: &'static str = "rcl_interfaces/srv/DescribeParameters";
-    const REQUEST: &'static str = NAMES;
-    const RESPONSE: &'static str = concat!(
+service!(
+    DescribeParameters,
+    "rcl_interfaces/srv/DescribeParameters",
+    ParameterNames: NAMES,
+    DescribeParametersResponse: concat!(
         "rcl_interfaces/ParameterDescriptor[] descriptors\n",
         part!(
             "\
@@ -313,7 +291,5 @@ int64 to_value
 uint64 step
 "
         ),
-    );
-    type Request = ParameterNames;
-    type Response = DescribeParametersResponse;
-}
+    ),
+);

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::RosService;
 use super::definition::part;
+use super::service::service;
 
 /// Type of a field.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -55,9 +55,6 @@ pub struct KeyValue {
     pub value: String,
 }
 
-#[derive(Debug)]
-pub enum GetTypeDescription {}
-
 /// Request for the description of a type.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetTypeDescriptionRequest {
@@ -79,14 +76,15 @@ pub struct GetTypeDescriptionResponse {
     pub extra_information: Vec<KeyValue>,
 }
 
-impl RosService for GetTypeDescription {
-    const NAME: &'static str = "type_description_interfaces/srv/GetTypeDescription";
-    const REQUEST: &'static str = "\
+service!(
+    GetTypeDescription,
+    "type_description_interfaces/srv/GetTypeDescription",
+    GetTypeDescriptionRequest: "\
 string type_name
 string type_hash
 bool include_type_sources true
-";
-    const RESPONSE: &'static str = concat!(
+",
+    GetTypeDescriptionResponse: concat!(
         "\
 bool successful
 string failure_reason
@@ -140,7 +138,5 @@ string key
 string value
 "
         ),
-    );
-    type Request = GetTypeDescriptionRequest;
-    type Response = GetTypeDescriptionResponse;
-}
+    ),
+);

@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use messages::{HealthHeader, LogHeader, ScanHeader, Topic, topic};
+use messages::{GroundTruth, HealthHeader, LogHeader, Odometry, ScanHeader, Topic, topic};
 use transport::{GapCounter, Graph, Input, Subscriber, TransportError, monotonic_ns};
 
-use crate::Transcript;
+use crate::{Entries, Transcript, TranscriptError};
 
 /// Receiver of a transcript.
 pub trait Listener {
@@ -42,41 +42,24 @@ pub trait Listener {
 
 /// Subscribers of all topics of a transcript.
 pub struct Inputs {
-    map: Counted<topic::Map>,
-    odometry: Counted<topic::OdometryTopic>,
-    truths: Counted<topic::GroundTruthTopic>,
+    map: Subscriber<topic::Map>,
+    odometry: Subscriber<topic::OdometryTopic>,
+    odometry_gaps: RefCell<GapCounter>,
+    truths: Subscriber<topic::GroundTruthTopic>,
+    truth_gaps: RefCell<GapCounter>,
     scans: Subscriber<topic::Scan>,
     /// By laser, because each laser counts its own scans.
     scan_gaps: RefCell<BTreeMap<String, GapCounter>>,
-    votes: Counted<topic::Votes>,
-    field: Option<Counted<topic::Field>>,
-    hypotheses: Counted<topic::Hypotheses>,
-    particles: Counted<topic::Particles>,
-    poses: Counted<topic::Tracked>,
-    beams: Counted<topic::Beams>,
-    health: Counted<topic::Health>,
+    votes: Subscriber<topic::Votes>,
+    field: Option<Subscriber<topic::Field>>,
+    hypotheses: Subscriber<topic::Hypotheses>,
+    particles: Subscriber<topic::Particles>,
+    poses: Subscriber<topic::Tracked>,
+    beams: Subscriber<topic::Beams>,
+    health: Subscriber<topic::Health>,
     log: Subscriber<topic::Log>,
     /// By process, because each process counts its own lines.
     log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
-}
-
-/// A subscriber that counts missed samples.
-struct Counted<T: Topic> {
-    subscriber: Subscriber<T>,
-    gaps: RefCell<GapCounter>,
-}
-
-impl<T: Topic> Counted<T> {
-    fn open(graph: &Graph) -> Result<Self, TransportError> {
-        Ok(Counted {
-            subscriber: graph.subscriber()?,
-            gaps: RefCell::default(),
-        })
-    }
-
-    fn lost_before(&self, counter: u64) -> u64 {
-        self.gaps.borrow_mut().lost_before(counter)
-    }
 }
 
 impl Inputs {
@@ -87,18 +70,20 @@ impl Inputs {
     /// If the graph fails.
     pub fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
         Ok(Inputs {
-            map: Counted::open(graph)?,
-            odometry: Counted::open(graph)?,
-            truths: Counted::open(graph)?,
+            map: graph.subscriber()?,
+            odometry: graph.subscriber()?,
+            odometry_gaps: RefCell::default(),
+            truths: graph.subscriber()?,
+            truth_gaps: RefCell::default(),
             scans: graph.subscriber()?,
             scan_gaps: RefCell::default(),
-            votes: Counted::open(graph)?,
-            field: field.then(|| Counted::open(graph)).transpose()?,
-            hypotheses: Counted::open(graph)?,
-            particles: Counted::open(graph)?,
-            poses: Counted::open(graph)?,
-            beams: Counted::open(graph)?,
-            health: Counted::open(graph)?,
+            votes: graph.subscriber()?,
+            field: field.then(|| graph.subscriber()).transpose()?,
+            hypotheses: graph.subscriber()?,
+            particles: graph.subscriber()?,
+            poses: graph.subscriber()?,
+            beams: graph.subscriber()?,
+            health: graph.subscriber()?,
             log: graph.subscriber()?,
             log_gaps: RefCell::default(),
         })
@@ -107,21 +92,18 @@ impl Inputs {
     /// Inputs for the event loop.
     #[must_use]
     pub fn all(&self) -> Vec<&dyn Input> {
-        let field = self
-            .field
-            .as_ref()
-            .map(|field| -> &dyn Input { &field.subscriber });
+        let field = self.field.as_ref().map(|field| -> &dyn Input { field });
         let others: [&dyn Input; 11] = [
-            &self.map.subscriber,
-            &self.odometry.subscriber,
-            &self.truths.subscriber,
+            &self.map,
+            &self.odometry,
+            &self.truths,
             &self.scans,
-            &self.votes.subscriber,
-            &self.hypotheses.subscriber,
-            &self.particles.subscriber,
-            &self.poses.subscriber,
-            &self.beams.subscriber,
-            &self.health.subscriber,
+            &self.votes,
+            &self.hypotheses,
+            &self.particles,
+            &self.poses,
+            &self.beams,
+            &self.health,
             &self.log,
         ];
         others.into_iter().chain(field).collect()
@@ -132,117 +114,93 @@ impl Inputs {
     /// # Errors
     /// If the graph or the listener fails.
     pub fn take<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
-        while let Some(map) = self.map.subscriber.receive()? {
-            let outcome = to
-                .transcript()
-                .entries
-                .map(map.header(), map.items(), monotonic_ns());
-            to.transcript().taken(0, outcome)?;
-        }
+        take_each(&self.map, to, no_loss, |entries, map, cells| {
+            entries.map(map, cells, monotonic_ns())
+        })?;
         self.take_measurements(to)?;
         self.take_answers(to)?;
-        while let Some(report) = self.health.subscriber.receive()? {
+        while let Some(report) = self.health.receive()? {
             let (header, error) = (report.header(), report.items());
-            let outcome = to
-                .transcript()
-                .entries
-                .health(header, error, monotonic_ns());
+            let entries = &mut to.transcript().entries;
+            let outcome = entries.health(header, error, monotonic_ns());
             to.transcript().taken(0, outcome)?;
             to.reported(header)?;
         }
-        while let Some(line) = self.log.receive()? {
-            let header = line.header();
-            let lost = self.lines_lost_before(header);
-            let outcome = to.transcript().entries.log(header, line.items());
-            to.transcript().taken(lost, outcome)?;
-        }
-        Ok(())
-    }
-
-    fn scans_lost_before(&self, scan: &ScanHeader) -> u64 {
-        let mut gaps = self.scan_gaps.borrow_mut();
-        let gaps = gaps.entry(scan.laser.to_string()).or_default();
-        gaps.lost_before(scan.stamp.counter)
-    }
-
-    fn lines_lost_before(&self, line: &LogHeader) -> u64 {
-        let mut gaps = self.log_gaps.borrow_mut();
-        gaps.entry(line.pid).or_default().lost_before(line.counter)
+        let lost = |line: &LogHeader| {
+            let mut gaps = self.log_gaps.borrow_mut();
+            gaps.entry(line.pid).or_default().lost_before(line.counter)
+        };
+        take_each(&self.log, to, lost, Entries::log)
     }
 
     fn take_measurements<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
-        while let Some(sample) = self.odometry.subscriber.receive()? {
-            let lost = self.odometry.lost_before(sample.header().stamp.counter);
-            let outcome = to.transcript().entries.odometry(sample.header());
-            to.transcript().taken(lost, outcome)?;
-        }
-        while let Some(sample) = self.truths.subscriber.receive()? {
-            let lost = self.truths.lost_before(sample.header().stamp.counter);
-            let outcome = to.transcript().entries.ground_truth(sample.header());
-            to.transcript().taken(lost, outcome)?;
-        }
-        while let Some(sample) = self.scans.receive()? {
-            let header = sample.header();
-            let lost = self.scans_lost_before(header);
-            let outcome = to.transcript().entries.scan(header, sample.items());
-            to.transcript().taken(lost, outcome)?;
-        }
-        Ok(())
+        let lost = |odometry: &Odometry| {
+            let mut gaps = self.odometry_gaps.borrow_mut();
+            gaps.lost_before(odometry.stamp.counter)
+        };
+        take_each(&self.odometry, to, lost, |entries, odometry, _| {
+            entries.odometry(odometry)
+        })?;
+        let lost = |truth: &GroundTruth| {
+            let mut gaps = self.truth_gaps.borrow_mut();
+            gaps.lost_before(truth.stamp.counter)
+        };
+        take_each(&self.truths, to, lost, |entries, truth, _| {
+            entries.ground_truth(truth)
+        })?;
+        let lost = |scan: &ScanHeader| {
+            let mut gaps = self.scan_gaps.borrow_mut();
+            let gaps = gaps.entry(scan.laser.to_string()).or_default();
+            gaps.lost_before(scan.stamp.counter)
+        };
+        take_each(&self.scans, to, lost, Entries::scan)
     }
 
     /// Answers carry the stamps of their scans, so a gap in their counters may be an unanswered
     /// scan; it is not counted as a loss. A listener that is too slow for answers is also too slow
     /// for scans, which are counted.
     fn take_answers<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
-        while let Some(sample) = self.votes.subscriber.receive()? {
-            let outcome = to
-                .transcript()
-                .entries
-                .votes(sample.header(), sample.items());
-            to.transcript().taken(0, outcome)?;
-        }
+        take_each(&self.votes, to, no_loss, Entries::votes)?;
         // Images that come too fast are skipped on purpose.
-        while let Some(sample) = self
-            .field
-            .as_ref()
-            .map_or(Ok(None), |f| f.subscriber.receive())?
-        {
-            let outcome = to
-                .transcript()
-                .entries
-                .field(sample.header(), sample.items());
-            to.transcript().taken(0, outcome)?;
+        if let Some(field) = &self.field {
+            take_each(field, to, no_loss, Entries::field)?;
         }
-        if self.poses.subscriber.has_publishers() {
+        if self.poses.has_publishers() {
             to.transcript().entries.expect_tracker();
         }
-        while let Some(sample) = self.hypotheses.subscriber.receive()? {
+        while let Some(sample) = self.hypotheses.receive()? {
             let header = sample.header();
             let outcome = to.transcript().entries.hypotheses(header, sample.items());
             to.transcript().taken(0, outcome)?;
             to.judged(header.verdict)?;
         }
-        while let Some(sample) = self.particles.subscriber.receive()? {
-            let outcome = to
-                .transcript()
-                .entries
-                .particles(sample.header(), sample.items());
-            to.transcript().taken(0, outcome)?;
-        }
-        while let Some(sample) = self.poses.subscriber.receive()? {
+        take_each(&self.particles, to, no_loss, Entries::particles)?;
+        while let Some(sample) = self.poses.receive()? {
             let header = sample.header();
-            let entries = &mut to.transcript().entries;
-            let outcome = entries.tracked(header, sample.items());
+            let outcome = to.transcript().entries.tracked(header, sample.items());
             to.transcript().taken(0, outcome)?;
             to.tracked(header.state)?;
         }
-        while let Some(sample) = self.beams.subscriber.receive()? {
-            let outcome = to
-                .transcript()
-                .entries
-                .beams(sample.header(), sample.items());
-            to.transcript().taken(0, outcome)?;
-        }
-        Ok(())
+        take_each(&self.beams, to, no_loss, Entries::beams)
     }
+}
+
+/// Adds all pending samples of a topic to the transcript, and the number that was lost before each.
+fn take_each<T: Topic, L: Listener>(
+    from: &Subscriber<T>,
+    to: &mut L,
+    lost_before: impl Fn(&T::Header) -> u64,
+    add: impl Fn(&mut Entries, &T::Header, &[T::Item]) -> Result<(), TranscriptError>,
+) -> Result<(), L::Error> {
+    while let Some(sample) = from.receive()? {
+        let header = sample.header();
+        let outcome = add(&mut to.transcript().entries, header, sample.items());
+        to.transcript().taken(lost_before(header), outcome)?;
+    }
+    Ok(())
+}
+
+/// Number of lost samples of a topic whose gaps are not losses.
+fn no_loss<H>(_: &H) -> u64 {
+    0
 }

@@ -22,15 +22,3 @@ pub fn wall_ns() -> i64 {
         i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn never_runs_backwards() {
-        let first = monotonic_ns();
-        assert!(first > 0);
-        assert!(monotonic_ns() >= first);
-    }
-}

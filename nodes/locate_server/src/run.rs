@@ -67,7 +67,7 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
     let mut maps = Vec::new();
     let files = config.files().map_err(|source| failed(set, source))?;
     for MapFile { name, yaml, .. } in files {
-        let grid = map::load_noting(&yaml, |key| tracing::warn!("{key}"));
+        let grid = map::load_within(map::MemoryLimit::NONE, &yaml, |key| tracing::warn!("{key}"));
         let grid = grid.map_err(|source| failed(&yaml, source))?;
         let map = SearchedMap::new(name, &grid, config.cells, how.clone());
         maps.push(map.map_err(|source| LocateError::UnusableMap { path: yaml, source })?);

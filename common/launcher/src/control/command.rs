@@ -14,7 +14,7 @@ use transport::{GraphName, control_socket, graphs_of_others, is_launched, runnin
 
 use super::text;
 use crate::LauncherError;
-use crate::run::control::{Answer, Question, Status, ask};
+use crate::run::control::{Answer, Question, Status, ask, no_node};
 
 /// Longest time that a graph may take to stop, and the polling interval.
 const STOPPED_WITHIN: Duration = Duration::from_secs(30);
@@ -149,17 +149,10 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
 /// # Errors
 /// The graph has no such node; the message lists its nodes.
 pub(super) fn known_node(graph: &GraphName, node: &str) -> Result<(), LauncherError> {
-    let ids: Vec<String> = status_of(graph)?
-        .nodes
-        .into_iter()
-        .map(|node| node.id)
-        .collect();
-    match ids.iter().any(|id| id == node) {
+    let nodes = status_of(graph)?.nodes;
+    match nodes.iter().any(|known| known.id == node) {
         true => Ok(()),
-        false => Err(LauncherError::Usage(format!(
-            "there is no node {node}: allowed are {}",
-            ids.join(", ")
-        ))),
+        false => Err(LauncherError::Usage(no_node(node, &nodes))),
     }
 }
 

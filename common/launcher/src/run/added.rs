@@ -1,9 +1,41 @@
 //! Helpers for our nodes that are added to a graph without being in its descriptor.
 
-use dataflow::{Command, Dataflow};
+use dataflow::{Command, Dataflow, Node, Place, Restart};
+
+use crate::LauncherError;
+
+/// Creates a node of the executable `id` next to those of the graph, without arguments and wires.
+pub(crate) fn node(dataflow: &Dataflow, id: &str, build: Vec<Command>) -> Node {
+    Node {
+        id: id.to_owned(),
+        path: path(dataflow, id),
+        path_place: Place::START,
+        args: Vec::new(),
+        env: Vec::new(),
+        build,
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        streams: Vec::new(),
+        restart: Restart::ON_FAILURE,
+    }
+}
+
+/// Checks that the graph has no node of the executable `id`, which `option` adds.
+///
+/// # Errors
+/// The graph has one already.
+pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> Result<(), LauncherError> {
+    let is_same = |node: &Node| node.id == id || node.executable() == id;
+    if dataflow.nodes.iter().any(is_same) {
+        return Err(LauncherError::Usage(format!(
+            "{option} adds a node `{id}`, but the graph has one already"
+        )));
+    }
+    Ok(())
+}
 
 /// Returns the path of `executable` in the folder of the graph's first executable.
-pub(crate) fn path(dataflow: &Dataflow, executable: &str) -> String {
+fn path(dataflow: &Dataflow, executable: &str) -> String {
     let folder = dataflow
         .nodes
         .iter()
@@ -40,27 +72,29 @@ pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
 /// Returns the first cargo build command with `executable` as its only package: for an executable
 /// that takes long to build and is not built with the others.
 pub(crate) fn build_alone(dataflow: &Dataflow, executable: &str) -> Vec<Command> {
-    let is_build = |command: &&Command| {
-        command.program == "cargo" && command.args.first().is_some_and(|first| first == "build")
-    };
     let like = dataflow.nodes.iter().flat_map(|node| &node.build);
-    let Some(mut build) = like.clone().find(is_build).cloned() else {
+    let Some(mut build) = like.clone().find(|command| is_build(command)).cloned() else {
         return Vec::new();
     };
-    let mut names_package = false;
+    let mut is_before_name = false;
     build.args.retain(|arg| {
-        let is_name = std::mem::take(&mut names_package);
-        names_package = arg == "--package" || arg == "-p";
-        !is_name && !names_package
+        let is_name = std::mem::replace(&mut is_before_name, names_package(arg));
+        !is_name && !is_before_name
     });
     let package = ["--package", executable].map(str::to_owned);
     build.args.extend(package);
     vec![build]
 }
 
+fn is_build(command: &Command) -> bool {
+    command.program == "cargo" && command.args.first().is_some_and(|first| first == "build")
+}
+
+/// True if it is a cargo build of named packages.
 fn is_cargo(command: &Command) -> bool {
-    let names_packages = |arg: &String| arg == "--package" || arg == "-p";
-    command.program == "cargo"
-        && command.args.first().is_some_and(|first| first == "build")
-        && command.args.iter().any(names_packages)
+    is_build(command) && command.args.iter().any(names_package)
+}
+
+fn names_package(arg: &String) -> bool {
+    arg == "--package" || arg == "-p"
 }

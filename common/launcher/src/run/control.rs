@@ -153,3 +153,9 @@ pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     BufReader::new(&stream).read_line(&mut line)?;
     Ok(serde_json::from_str(&line)?)
 }
+
+/// Reason for rejecting a node that the graph does not have.
+pub fn no_node(node: &str, nodes: &[NodeStatus]) -> String {
+    let ids: Vec<&str> = nodes.iter().map(|node| node.id.as_str()).collect();
+    format!("there is no node {node}: allowed are {}", ids.join(", "))
+}

@@ -3,7 +3,7 @@
 //! Its executable is next to those of the graph. It subscribes to every topic by itself and needs
 //! no wires; no node waits for it.
 
-use dataflow::{Dataflow, Node, Place, Restart};
+use dataflow::Dataflow;
 
 use super::added;
 use crate::LauncherError;
@@ -15,36 +15,22 @@ const SERVER: &str = "foxglove_server";
 /// # Errors
 /// The graph has such a server already.
 pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), LauncherError> {
-    let is_server = |node: &Node| node.id == SERVER || node.executable() == SERVER;
-    if dataflow.nodes.iter().any(is_server) {
-        let problem = "--foxglove adds a node `foxglove_server`, but the graph has one already";
-        return Err(LauncherError::Usage(problem.to_owned()));
-    }
-    let node = Node {
-        id: SERVER.to_owned(),
-        path: added::path(dataflow, SERVER),
-        path_place: Place::START,
-        args: Vec::new(),
-        env: Vec::new(),
-        build: added::build_alone(dataflow, SERVER),
-        inputs: Vec::new(),
-        outputs: Vec::new(),
-        streams: Vec::new(),
-        // Viewers reconnect by themselves.
-        restart: Restart::ON_FAILURE,
-    };
-    dataflow.nodes.push(node);
+    added::check_new(dataflow, "--foxglove", SERVER)?;
+    // It may be restarted, as viewers reconnect by themselves.
+    let build = added::build_alone(dataflow, SERVER);
+    dataflow.nodes.push(added::node(dataflow, SERVER, build));
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
+    use dataflow::Node;
+
     use super::*;
+    use crate::run::testing::parsed;
 
     fn added_to(nodes: &str) -> Result<Node, LauncherError> {
-        let text = format!("nodes: [{nodes}]");
-        let topics = dataflow::Topics::default();
-        let mut dataflow = dataflow::parse(&text, &topics).unwrap();
+        let mut dataflow = parsed(&format!("nodes: [{nodes}]"));
         add(&mut dataflow)?;
         Ok(dataflow.nodes.pop().unwrap())
     }

@@ -72,12 +72,7 @@ impl Journal {
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let line = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
-            let text = if self.json {
-                json::object(&line)
-            } else {
-                line.text()
-            };
-            return self.output.line(text);
+            return self.output.line(shown(self.json, &line, Line::text));
         };
         let due = rows.answer(header.stamp, line);
         self.print(&due)
@@ -96,12 +91,7 @@ impl Journal {
     fn print(&mut self, rows: &[Row]) -> Reader {
         let mut reader = Reader::Reads;
         for row in rows {
-            let text = if self.json {
-                json::object(row)
-            } else {
-                row.text()
-            };
-            reader = self.output.line(text);
+            reader = self.output.line(shown(self.json, row, Row::text));
         }
         reader
     }
@@ -125,11 +115,8 @@ impl Journal {
         self.print(&rest.unwrap_or_default());
         if wanted {
             let last = Last { summary: &summary };
-            self.output.line(if self.json {
-                json::object(&last)
-            } else {
-                summary.text()
-            });
+            let text = shown(self.json, &last, |last| last.summary.text());
+            self.output.line(text);
         }
         let unprinted = self.output.finish(patience)?;
         if unprinted > 0 {
@@ -140,5 +127,12 @@ impl Journal {
             );
         }
         Ok(summary)
+    }
+}
+
+fn shown<T: Serialize>(json: bool, value: &T, text: impl Fn(&T) -> String) -> String {
+    match json {
+        true => json::object(value),
+        false => text(value),
     }
 }

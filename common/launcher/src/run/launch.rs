@@ -307,10 +307,7 @@ impl ControlPort {
                         note(&format!("{node} is restarted from another terminal"));
                         Answer::Done
                     } else {
-                        let nodes = crew.status(now);
-                        let ids: Vec<_> = nodes.iter().map(|node| node.id.as_str()).collect();
-                        let ids = ids.join(", ");
-                        Answer::Refused(format!("there is no node {node}: allowed are {ids}"))
+                        Answer::Refused(control::no_node(&node, &crew.status(now)))
                     }
                 }
             };

@@ -27,7 +27,7 @@ mod report;
 mod summary;
 pub mod supervision;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 pub mod tracker;
 mod tracking;
 mod watch;

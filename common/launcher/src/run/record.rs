@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use dataflow::{Dataflow, Node, Place, Restart};
+use dataflow::Dataflow;
 
 use super::added;
 use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
@@ -48,19 +48,10 @@ pub(crate) fn add(
             .iter()
             .map(|file| argument("--attach", &file.to_string_lossy())),
     );
-    let node = Node {
-        id: RECORDER.to_owned(),
-        path: added::path(dataflow, RECORDER),
-        path_place: Place::START,
-        args,
-        env: Vec::new(),
-        build: added::build(dataflow, RECORDER),
-        inputs: Vec::new(),
-        outputs: Vec::new(),
-        streams: Vec::new(),
-        // A restarted recorder continues in another file.
-        restart: Restart::ON_FAILURE,
-    };
+    let build = added::build(dataflow, RECORDER);
+    // It may be restarted, and continues in another file.
+    let mut node = added::node(dataflow, RECORDER, build);
+    node.args = args;
     for source in &mut dataflow.nodes {
         if PLAYERS.contains(&source.executable()) {
             add_to_list(source, "--wait-for", RECORDER);
@@ -71,11 +62,7 @@ pub(crate) fn add(
 }
 
 fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<(), LauncherError> {
-    let is_recorder = |node: &Node| node.id == RECORDER || node.executable() == RECORDER;
-    if dataflow.nodes.iter().any(is_recorder) {
-        let problem = "--record adds a node `recorder`, but the graph has one already";
-        return Err(LauncherError::Usage(problem.to_owned()));
-    }
+    added::check_new(dataflow, "--record", RECORDER)?;
     let is_whole =
         options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
     if is_whole && output.exists() {

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use dataflow::{Dataflow, Input, Node, Place, Restart};
+use dataflow::{Dataflow, Input, Node, Restart};
 use messages::{Topic, topic};
 
 use super::added;
@@ -77,18 +77,14 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         true => Vec::new(),
         false => vec![format!("--wait-for={}", takers.join(","))],
     };
+    let build = added::build(dataflow, REPLAYER);
     Node {
-        id: REPLAYER.to_owned(),
-        path: added::path(dataflow, REPLAYER),
-        path_place: Place::START,
         args,
-        env: Vec::new(),
-        build: added::build(dataflow, REPLAYER),
         inputs,
         outputs: MEASUREMENTS.map(str::to_owned).into(),
-        streams: Vec::new(),
         // A restarted replayer would start from the beginning.
         restart: Restart::DEFAULT,
+        ..added::node(dataflow, REPLAYER, build)
     }
 }
 

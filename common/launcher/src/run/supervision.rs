@@ -390,9 +390,7 @@ mod tests {
     fn what_only_shows_is_not_essential_unless_the_descriptor_says_so() {
         let essential = |node: &str| {
             let text = format!("nodes: [{{id: n, {node}}}]");
-            let nodes = dataflow::parse(&text, &dataflow::Topics::default())
-                .unwrap()
-                .nodes;
+            let nodes = parsed(&text).nodes;
             is_essential(&nodes[0]).map_err(|error| error.to_string())
         };
         assert_eq!(essential("path: bin/accumulator"), Ok(true));

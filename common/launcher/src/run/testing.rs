@@ -3,7 +3,7 @@
 use dataflow::Dataflow;
 
 /// Parses a descriptor with the topics of the graph.
-pub(super) fn parsed(text: &str) -> Dataflow {
+pub(crate) fn parsed(text: &str) -> Dataflow {
     let topics = dataflow::Topics {
         names: messages::topic::NAMES,
         shared: &[],

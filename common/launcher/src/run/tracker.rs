@@ -84,6 +84,7 @@ fn trackers(dataflow: &mut Dataflow) -> impl Iterator<Item = &mut Node> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::testing::parsed;
 
     fn settled(player: &str) -> Vec<Vec<String>> {
         let text = format!(
@@ -94,11 +95,7 @@ mod tests {
   - {{id: t, path: bin/tracker, args: --rate 10 --max-beams 60, inputs: {{scan: r/scan}}, outputs: [attention]}}
 "
         );
-        let topics = dataflow::Topics {
-            names: topic::NAMES,
-            ..dataflow::Topics::default()
-        };
-        let mut dataflow = dataflow::parse(&text, &topics).unwrap();
+        let mut dataflow = parsed(&text);
         settle(&mut dataflow);
         dataflow.nodes.into_iter().map(|node| node.args).collect()
     }

@@ -20,6 +20,7 @@ use tempfile::TempDir;
 
 use super::{damaged, refused};
 use crate::RecordingError;
+use crate::folder::with_ending;
 
 pub(super) struct Database {
     pub(super) connection: Connection,
@@ -31,13 +32,7 @@ pub(super) struct Database {
 
 /// Path of the log of a database in WAL mode.
 pub(super) fn log_of(path: &Path) -> PathBuf {
-    beside(path, "-wal")
-}
-
-fn beside(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    name.into()
+    with_ending(path, "-wal")
 }
 
 impl Database {
@@ -46,7 +41,7 @@ impl Database {
         let failed = |error: rusqlite::Error| refused(path, error.to_string());
         let has_content =
             |beside: &PathBuf| std::fs::metadata(beside).is_ok_and(|found| found.len() > 0);
-        let logs = ["-wal", "-journal"].map(|ending| beside(place, ending));
+        let logs = ["-wal", "-journal"].map(|ending| with_ending(place, ending));
         let copy = match logs.iter().any(has_content) {
             true => Some(copied(path, place, &logs)?),
             false => None,
@@ -96,7 +91,7 @@ impl Database {
             .connection
             .query_row("PRAGMA page_size", (), |row| row.get(0))
             .map_err(failed)?;
-        let length = std::fs::metadata(place).map_err(|error| unreadable(path, error))?;
+        let length = std::fs::metadata(place).map_err(RecordingError::open(path))?;
         match length.len().checked_rem(page.into()) {
             Some(0) => Ok(()),
             _ => Err(damaged(path, "it ends within a page")),
@@ -137,7 +132,7 @@ fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, Rec
     std::fs::copy(place, &copy).map_err(no_room)?;
     writable(&copy).map_err(no_room)?;
     for (log, ending) in logs.iter().zip(["-wal", "-journal"]) {
-        let copy = beside(&copy, ending);
+        let copy = with_ending(&copy, ending);
         if log.is_file() {
             std::fs::copy(log, &copy).map_err(no_room)?;
             writable(&copy).map_err(no_room)?;
@@ -188,18 +183,11 @@ const WAL_VERSIONS: [u8; 2] = [2, 2];
 
 fn is_in_wal_mode(path: &Path, place: &Path) -> Result<bool, RecordingError> {
     let mut header = Vec::new();
-    let file = File::open(place).map_err(|error| unreadable(path, error))?;
+    let file = File::open(place).map_err(RecordingError::open(path))?;
     file.take(20)
         .read_to_end(&mut header)
-        .map_err(|error| unreadable(path, error))?;
+        .map_err(RecordingError::open(path))?;
     Ok(header.get(18..20) == Some(&WAL_VERSIONS[..]))
-}
-
-fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
-    RecordingError::Open {
-        path: path.to_owned(),
-        source,
-    }
 }
 
 #[cfg(test)]

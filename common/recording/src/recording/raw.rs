@@ -39,8 +39,9 @@ pub struct RawRecords<'a> {
 }
 
 /// A message that waits for its turn.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Pending {
-    /// Sort key: log time, file, block, index within the block.
+    /// Sort key: log time, file, block, index within the block; never equal.
     order: (i64, usize, usize, usize),
     publish_time_ns: u64,
     channel: u16,
@@ -165,25 +166,5 @@ impl<'a> Iterator for RawRecords<'a> {
                 Some(Err(self.end(damage)))
             }
         }
-    }
-}
-
-impl PartialEq for Pending {
-    fn eq(&self, other: &Self) -> bool {
-        self.order == other.order
-    }
-}
-
-impl Eq for Pending {}
-
-impl PartialOrd for Pending {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Pending {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.order.cmp(&other.order)
     }
 }

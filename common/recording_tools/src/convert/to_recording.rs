@@ -6,8 +6,8 @@ use std::io::{BufRead, Seek, Write};
 use recording::write::RecordingWriter;
 use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
 use ros::{
-    self, Header, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist,
-    TwistWithCovariance, Vector3,
+    self, Header, PoseStamped, TfMessage, Time, Transform, TransformStamped, Twist,
+    TwistWithCovariance,
 };
 use transport::with_causes;
 
@@ -114,7 +114,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
             self.odometry_at(ns, stamp, poses.robot, (0.0, 0.0))?;
         }
         self.report.scans += 1;
-        self.write(&topic, ns, &Message::Scan(message))
+        Ok(self.writer.write(&topic, ns, &Message::Scan(message))?)
     }
 
     /// Writes the true pose of the laser, or its mount.
@@ -152,7 +152,9 @@ impl<W: Write + Seek> Conversion<'_, W> {
             header: Header::new(stamp, "map"),
             pose: ros::Pose::from_planar(laser),
         };
-        self.write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))
+        Ok(self
+            .writer
+            .write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))?)
     }
 
     fn odometry(&mut self, odometry: &Odometry, number: u64) -> Result<(), RecordingToolsError> {
@@ -187,7 +189,9 @@ impl<W: Write + Seek> Conversion<'_, W> {
             },
         };
         self.report.odometry += 1;
-        self.write(ODOM, ns, &Message::Odometry(Box::new(message)))
+        Ok(self
+            .writer
+            .write(ODOM, ns, &Message::Odometry(Box::new(message)))?)
     }
 
     /// Writes the mount of a laser from the first line that has it.
@@ -209,30 +213,14 @@ impl<W: Write + Seek> Conversion<'_, W> {
         let transform = |(frame, pose): &(String, geometry::Pose)| TransformStamped {
             header: Header::new(stamp, "base_link"),
             child_frame_id: frame.clone(),
-            transform: Transform {
-                translation: Vector3 {
-                    x: pose.x,
-                    y: pose.y,
-                    z: 0.0,
-                },
-                rotation: Quaternion::from_yaw(pose.yaw),
-            },
+            transform: Transform::from_planar(*pose),
         };
         let transforms = self.mounts.iter().map(transform).collect();
-        self.write(
+        Ok(self.writer.write(
             TF_STATIC,
             ns,
             &Message::StaticTransforms(TfMessage { transforms }),
-        )
-    }
-
-    fn write(
-        &mut self,
-        topic: &str,
-        ns: i64,
-        message: &Message,
-    ) -> Result<(), RecordingToolsError> {
-        Ok(self.writer.write(topic, ns, message)?)
+        )?)
     }
 }
 

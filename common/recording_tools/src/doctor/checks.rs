@@ -38,17 +38,17 @@ pub(super) fn all(
 ) -> Vec<Finding> {
     let checks = [
         damage(recording),
-        undecodable(survey),
+        survey.channels.iter().filter_map(undecodable).collect(),
         topics(recording, survey, given.is_some()),
         map(recording),
         mount(recording, survey),
         frames(survey),
         stamps(survey),
-        gaps(survey),
+        survey.of_kind(Kind::Scan).filter_map(gaps).collect(),
         scans(survey),
-        durations(survey),
-        units(survey),
-        mended(survey),
+        survey.of_kind(Kind::Scan).filter_map(durations).collect(),
+        survey.of_kind(Kind::Scan).filter_map(units).collect(),
+        survey.channels.iter().filter_map(mended).collect(),
         truths(recording, survey),
         order(recording),
         Drive::of(recording).map_or_else(Vec::new, |drive| sensors::all(&drive)),
@@ -78,15 +78,12 @@ fn damage(recording: &Recording) -> Vec<Finding> {
     damage.into_iter().collect()
 }
 
-fn undecodable(survey: &Survey) -> Vec<Finding> {
-    let finding = |(topic, seen): (&String, &Seen)| {
-        let reason = seen.first_reason.as_ref()?;
-        let count = seen.undecodable;
-        Some(Finding::lost(format!(
-            "{topic}: {count} messages do not decode; the first: {reason}"
-        )))
-    };
-    survey.channels.iter().filter_map(finding).collect()
+fn undecodable((topic, seen): (&String, &Seen)) -> Option<Finding> {
+    let reason = seen.first_reason.as_ref()?;
+    let count = seen.undecodable;
+    Some(Finding::lost(format!(
+        "{topic}: {count} messages do not decode; the first: {reason}"
+    )))
 }
 
 /// Checks that topics are unambiguous, and that there are scans and a map.
@@ -269,22 +266,19 @@ fn stamps(survey: &Survey) -> Vec<Finding> {
     found
 }
 
-fn gaps(survey: &Survey) -> Vec<Finding> {
-    let finding = |(topic, seen): (&String, &Seen)| {
-        let steps = seen.steps_ns();
-        let (usual, longest) = (*steps.get(steps.len() / 2)?, *steps.last()?);
-        let gaps = steps
-            .iter()
-            .filter(|step| **step > GAP_FACTOR.saturating_mul(usual))
-            .count();
-        let (usual, longest) = (usual as f64 * 1e-9, longest as f64 * 1e-9);
-        (gaps > 0).then(|| {
-            Finding::note(format!(
-                "{topic}: {gaps} gaps, the longest of {longest:.2} s where {usual:.2} s is usual"
-            ))
-        })
-    };
-    survey.of_kind(Kind::Scan).filter_map(finding).collect()
+fn gaps((topic, seen): (&String, &Seen)) -> Option<Finding> {
+    let steps = seen.steps_ns();
+    let (usual, longest) = (*steps.get(steps.len() / 2)?, *steps.last()?);
+    let gaps = steps
+        .iter()
+        .filter(|step| **step > GAP_FACTOR.saturating_mul(usual))
+        .count();
+    let (usual, longest) = (usual as f64 * 1e-9, longest as f64 * 1e-9);
+    (gaps > 0).then(|| {
+        Finding::note(format!(
+            "{topic}: {gaps} gaps, the longest of {longest:.2} s where {usual:.2} s is usual"
+        ))
+    })
 }
 
 fn scans(survey: &Survey) -> Vec<Finding> {
@@ -309,34 +303,28 @@ fn scans(survey: &Survey) -> Vec<Finding> {
 }
 
 /// Checks that a scan ends before the next ones begin.
-fn durations(survey: &Survey) -> Vec<Finding> {
-    let finding = |(topic, seen): (&String, &Seen)| {
-        let (longest, step_s) = (seen.longest?, seen.usual_step_s()?);
-        let time_increment = longest.time_increment_s;
-        (longest.scan_s > MAX_STEPS * step_s).then(|| {
-            Finding::problem(format!(
-                "{topic}: with a time_increment of {time_increment:?} s a scan takes longer than \
-                 the {step_s:.2} s to the next: the driver must set it to the seconds from one \
-                 beam to the next, or to 0"
-            ))
-        })
-    };
-    survey.of_kind(Kind::Scan).filter_map(finding).collect()
+fn durations((topic, seen): (&String, &Seen)) -> Option<Finding> {
+    let (longest, step_s) = (seen.longest?, seen.usual_step_s()?);
+    let time_increment = longest.time_increment_s;
+    (longest.scan_s > MAX_STEPS * step_s).then(|| {
+        Finding::problem(format!(
+            "{topic}: with a time_increment of {time_increment:?} s a scan takes longer than \
+             the {step_s:.2} s to the next: the driver must set it to the seconds from one \
+             beam to the next, or to 0"
+        ))
+    })
 }
 
 /// Checks that ranges are in metres.
-fn units(survey: &Survey) -> Vec<Finding> {
-    let finding = |(topic, seen): (&String, &Seen)| {
-        let middle_m = seen.first_middle_m?;
-        (2 * seen.unreachable > seen.stamps_ns.len() as u64).then(|| {
-            Finding::problem(format!(
-                "{topic}: half of the readings are beyond {middle_m:.0} m: they are in \
-                 millimetres; the driver must divide ranges, range_min and range_max by 1000, for \
-                 those of a LaserScan are in metres"
-            ))
-        })
-    };
-    survey.of_kind(Kind::Scan).filter_map(finding).collect()
+fn units((topic, seen): (&String, &Seen)) -> Option<Finding> {
+    let middle_m = seen.first_middle_m?;
+    (2 * seen.unreachable > seen.stamps_ns.len() as u64).then(|| {
+        Finding::problem(format!(
+            "{topic}: half of the readings are beyond {middle_m:.0} m: they are in \
+             millimetres; the driver must divide ranges, range_min and range_max by 1000, for \
+             those of a LaserScan are in metres"
+        ))
+    })
 }
 
 /// Checks for many ranges with exactly the largest value, by which some drivers report that nothing
@@ -362,15 +350,12 @@ fn pile(topic: &str, seen: &Seen) -> Option<Finding> {
 }
 
 /// Reports orientations that had to be corrected.
-fn mended(survey: &Survey) -> Vec<Finding> {
-    let finding = |(topic, seen): (&String, &Seen)| {
-        let first = seen.first_mend?;
-        let count = seen.mended;
-        Some(Finding::note(format!(
-            "{topic}: {count} orientations are mended; of the first, {first}"
-        )))
-    };
-    survey.channels.iter().filter_map(finding).collect()
+fn mended((topic, seen): (&String, &Seen)) -> Option<Finding> {
+    let first = seen.first_mend?;
+    let count = seen.mended;
+    Some(Finding::note(format!(
+        "{topic}: {count} orientations are mended; of the first, {first}"
+    )))
 }
 
 /// Checks that true poses are valid and belong to scans.

@@ -10,6 +10,8 @@ use geometry::Pose;
 use offline::each_odometry;
 use recording::{Kind, Message, Recording};
 
+use super::survey::as_taken;
+
 /// Largest number of scans that are matched: minutes of a laser of 10 Hz, seconds of computing.
 const MAX_MATCHED: usize = 2000;
 
@@ -118,16 +120,9 @@ impl Drive {
                 })
             });
             drive.child_from_laser = child_from_laser;
-            let as_measured = Scan {
-                angle_min: scan.angle_min.into(),
-                angle_increment: scan.angle_increment.into(),
-                range_min_m: scan.range_min,
-                range_max_m: scan.range_max,
-                ranges: &scan.ranges,
-            };
             drive.add_scan(
                 scan.header.stamp.as_ns(),
-                as_measured.seen_from_above(is_upside_down),
+                as_taken(scan).seen_from_above(is_upside_down),
             );
         }
         Some(drive)

@@ -209,7 +209,8 @@ fn middle(ranges: &[f32]) -> Option<f32> {
 }
 
 /// Converts to the engine's type.
-fn as_taken(scan: &LaserScan) -> Scan<'_> {
+/// Converts to a scan of the engine, as measured.
+pub(super) fn as_taken(scan: &LaserScan) -> Scan<'_> {
     Scan {
         angle_min: scan.angle_min.into(),
         angle_increment: scan.angle_increment.into(),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use recording::{Kind, Recording};
+use recording::{Kind, MetadataRecord, Recording};
 use serde::Serialize;
 
 /// Statistics of a recording. Stamps are nanoseconds since 1970.
@@ -19,7 +19,7 @@ pub(crate) struct Contents {
     pub taken: BTreeMap<&'static str, String>,
     /// Reasons why the choice of a topic is ambiguous.
     pub unclear: Vec<String>,
-    pub metadata: Vec<Metadata>,
+    pub metadata: Vec<MetadataRecord>,
     pub attachments: Vec<Attachment>,
     /// Damage of the file; everything else describes the part before it.
     pub damage: Option<String>,
@@ -33,12 +33,6 @@ pub(crate) struct Channel {
     pub messages: u64,
     /// Messages per second over the whole recording; `None` for fewer than two messages.
     pub hz: Option<f64>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct Metadata {
-    pub name: String,
-    pub entries: BTreeMap<String, String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -64,7 +58,7 @@ impl Contents {
             channels: channels(recording, seconds),
             taken: taken(recording),
             unclear: unclear(recording),
-            metadata: recording.metadata().iter().map(metadata).collect(),
+            metadata: recording.metadata().to_vec(),
             attachments: recording.attachments().iter().map(attachment).collect(),
             damage: damage(recording),
         }
@@ -114,13 +108,6 @@ fn channels(recording: &Recording, seconds: f64) -> Vec<Channel> {
     let mut channels: Vec<Channel> = recording.channels().map(channel).collect();
     channels.sort_by(|a, b| a.topic.cmp(&b.topic));
     channels
-}
-
-fn metadata(record: &recording::MetadataRecord) -> Metadata {
-    Metadata {
-        name: record.name.clone(),
-        entries: record.entries.clone(),
-    }
 }
 
 fn attachment(file: &recording::AttachedFile) -> Attachment {

@@ -53,7 +53,9 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         let reason = format!("{file} is there already; --force overwrites it");
         return Err(RecordingToolsError::Usage(reason));
     }
-    let map = map::load_noting(&config.map, |key| say(&key.to_string()))?;
+    let map = map::load_within(map::MemoryLimit::NONE, &config.map, |key| {
+        say(&key.to_string());
+    })?;
     let drive = Drive::new(&map, &config.path, &config.drive)?;
     let messages = Messages::new(&config.drive, drive.bearings());
     let start_ns = config.start_time * SECOND_NS;

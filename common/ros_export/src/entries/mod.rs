@@ -224,10 +224,7 @@ impl Entries {
             return Ok(());
         }
         self.waiting_map = Some(message);
-        match self.clock_ns(now_ns) {
-            Some(ns) => self.release(ns),
-            None => Ok(()),
-        }
+        self.release_by_clock(now_ns)
     }
 
     /// Adds an intensity image; one of an unknown map is left out.
@@ -255,10 +252,7 @@ impl Entries {
         now_ns: i64,
     ) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_health, *report, error);
-        match self.clock_ns(now_ns) {
-            Some(ns) => self.release(ns),
-            None => Ok(()),
-        }
+        self.release_by_clock(now_ns)
     }
 
     /// Adds a line of a node's log, at the time when it was written.
@@ -267,10 +261,7 @@ impl Entries {
     /// If the time of the measurements is outside the times of ROS, or it cannot be encoded in CDR.
     pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_log, *line, text);
-        match self.clock_ns(line.written_ns) {
-            Some(ns) => self.release(ns),
-            None => Ok(()),
-        }
+        self.release_by_clock(line.written_ns)
     }
 
     /// Converts all waiting samples at `wall_ns`, in nanoseconds since 1970, if there was no
@@ -282,11 +273,14 @@ impl Entries {
         self.release(wall_ns)
     }
 
-    /// Converts the host's time to the clock of the measurements.
-    fn clock_ns(&self, now_ns: i64) -> Option<i64> {
-        let newest = self.newest?;
+    /// Converts the waiting samples at the host's time, on the clock of the measurements, if there
+    /// was any.
+    fn release_by_clock(&mut self, now_ns: i64) -> Result<(), TranscriptError> {
+        let Some(newest) = self.newest else {
+            return Ok(());
+        };
         let since_ns = now_ns.saturating_sub(newest.entered_ns).max(0);
-        Some(newest.measured_ns.saturating_add(since_ns))
+        self.release(newest.measured_ns.saturating_add(since_ns))
     }
 
     /// Checks the stamp of a measurement; the first one releases the waiting samples.
