@@ -93,7 +93,7 @@ impl Incoming {
                 sizes.0,
             )?,
             outlet: Outlet::open(graph, config, &topics.scans)?,
-            odom_frame: config.odom_frame.clone(),
+            odom_frame: config.odom_frame().to_owned(),
             odometry_ns: None,
             map_frame: None,
             mended: BTreeSet::new(),
