@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use messages::{HypothesesHeader, Hypothesis, Vote, VotesHeader, topic};
-use transport::testing::{Isolated, NodeProcess};
+use transport::testing::Isolated;
 use transport::{Flow, Graph, Subscriber, TransportError};
 
 use crate::executables;
@@ -54,9 +54,7 @@ pub fn of_graph_fed_by(
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();
     let hypotheses = graph.subscriber::<topic::Hypotheses>().unwrap();
-    let start = |name: &str, arguments: &[&str]| {
-        NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
-    };
+    let start = |name: &str, arguments: &[&str]| executables::start(name, &graph, arguments);
     let mut nodes = vec![
         start("map_server", &["--map", map.to_str().unwrap()]),
         start("boundary_extractor", &[]),

@@ -1,13 +1,13 @@
 //! axe-core, which finds accessibility problems of a page. It is not part of this repository: npm
 //! fetches it when a test first needs it.
 
-use std::fs::File;
 use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
 
 use crate::browser::Browser;
+use crate::{attempt, locked_folder};
 
 const PACKAGE: &str = "axe-core@4.14.1";
 
@@ -17,11 +17,7 @@ const PACKAGE: &str = "axe-core@4.14.1";
 /// # Errors
 /// Returns the output of the command that failed, for example without npm or a network.
 pub fn script() -> Result<String, String> {
-    let test = std::env::current_exe().unwrap();
-    let target = test.ancestors().nth(3).unwrap();
-    let folder = target.join(PACKAGE);
-    let lock = File::create(folder.with_extension("lock")).unwrap();
-    lock.lock().unwrap();
+    let (folder, _lock) = locked_folder(PACKAGE);
     let script = folder.join("package/axe.min.js");
     if let Ok(text) = std::fs::read_to_string(&script) {
         return Ok(text);
@@ -34,15 +30,7 @@ pub fn script() -> Result<String, String> {
 }
 
 fn run(folder: &Path, program: &str, arguments: &[&str]) -> Result<(), String> {
-    let command = format!("{program} {}", arguments.join(" "));
-    let mut process = Command::new(program);
-    let outcome = process.args(arguments).current_dir(folder).output();
-    let outcome = outcome.map_err(|error| format!("{command}: {error}"))?;
-    if outcome.status.success() {
-        return Ok(());
-    }
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    Err(format!("{command}: {}\n{said}", outcome.status))
+    attempt(Command::new(program).args(arguments).current_dir(folder))
 }
 
 /// Returns the violations of WCAG 2.2, level AA, and of axe's best practices on the current page: a

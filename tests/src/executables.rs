@@ -5,17 +5,33 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use transport::testing::allow_long;
+use transport::Graph;
+use transport::testing::{NodeProcess, allow_long};
 
 /// Returns the path of an executable, built in the profile of the tests.
 #[must_use]
 pub fn path(name: &str) -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
-    // The tests are in `<target>/<profile>/deps`, executables one folder above.
-    let test = std::env::current_exe().unwrap();
-    let folder = test.ancestors().nth(2).unwrap();
-    BUILT.get_or_init(|| allow_long(|| build(folder)));
+    let folder = folder();
+    BUILT.get_or_init(|| allow_long(|| build(&folder)));
     folder.join(name)
+}
+
+/// Starts a node in a graph.
+#[must_use]
+pub fn start(name: &str, graph: &Graph, arguments: &[&str]) -> NodeProcess {
+    NodeProcess::start(path(name).to_str().unwrap(), graph, arguments)
+}
+
+/// Returns the folder of the executables: the tests are in `<target>/<profile>/deps`.
+fn folder() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.ancestors().nth(2).unwrap().to_owned()
+}
+
+/// Returns cargo's target folder.
+pub(crate) fn target() -> PathBuf {
+    folder().with_file_name("")
 }
 
 /// Returns the command, with prepared maps cached next to the executables and not in the user's own

@@ -20,40 +20,83 @@ pub mod recorded;
 pub mod robot;
 pub mod world;
 
+use std::fs::File;
 use std::path::PathBuf;
 use std::process::Command;
 
 use serde_json::Value;
 
-/// Returns the folder of recordings of other robots, if there is one.
+use crate::needs::Need;
+
+/// Returns the folder of recordings of other robots; `None` if it is missing, which is reported for
+/// this test.
 #[must_use]
-pub fn evaluation_data() -> Option<PathBuf> {
-    beside_the_project("shared/data/evaluation")
+pub fn evaluation_data(test: &str) -> Option<PathBuf> {
+    beside_the_project(test, "shared/data/evaluation")
 }
 
-/// Returns the folder of faulty recordings of users, if there is one.
+/// Returns the folder of faulty recordings of users; `None` if it is missing, which is reported for
+/// this test.
 #[must_use]
-pub fn broken_recordings() -> Option<PathBuf> {
-    beside_the_project("shared/cases")
+pub fn broken_recordings(test: &str) -> Option<PathBuf> {
+    beside_the_project(test, "shared/cases")
 }
 
 /// Finds a folder next to the project, or next to a folder that contains it.
-fn beside_the_project(name: &str) -> Option<PathBuf> {
+fn beside_the_project(test: &str, name: &str) -> Option<PathBuf> {
     let folders = root().canonicalize().unwrap();
     let mut candidates = folders.ancestors().map(|f| f.join(name));
-    candidates.find(|folder| folder.is_dir())
+    let found = candidates.find(|folder| folder.is_dir());
+    if found.is_none() {
+        Need::Data.is_missing(test, &format!("no folder {name} beside the project"));
+    }
+    found
+}
+
+/// Runs a command that must succeed, and returns its output.
+#[must_use]
+pub fn text_of(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {said}");
+    String::from_utf8(output.stdout).unwrap()
 }
 
 /// Runs a command that must succeed, and returns its output as JSON.
 #[must_use]
 pub fn json_of(command: &mut Command) -> Value {
-    let output = command.output().unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    serde_json::from_slice(&output.stdout).unwrap()
+    serde_json::from_str(&text_of(command)).unwrap()
+}
+
+/// Runs a command that must succeed, and returns each line of its output as JSON.
+#[must_use]
+pub fn json_lines_of(command: &mut Command) -> Vec<Value> {
+    let text = text_of(command);
+    let rows = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    rows.collect()
+}
+
+/// Runs a command.
+///
+/// # Errors
+/// Returns what it was and what it printed if it fails.
+fn attempt(command: &mut Command) -> Result<(), String> {
+    let outcome = command.output();
+    let outcome = outcome.map_err(|error| format!("{command:?}: {error}"))?;
+    if outcome.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    Err(format!("{command:?}: {}\n{said}", outcome.status))
+}
+
+/// Locks a folder in the target folder until the file is dropped: concurrent tests wait for the one
+/// that fills it.
+fn locked_folder(name: &str) -> (PathBuf, File) {
+    let folder = executables::target().join(name);
+    let lock = File::create(folder.with_extension("lock")).unwrap();
+    lock.lock().unwrap();
+    (folder, lock)
 }
 
 /// Returns the root of the repository.

@@ -8,6 +8,8 @@
 use std::fs::OpenOptions;
 use std::io::Write;
 
+use crate::executables;
+
 /// Something that a test needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
@@ -65,13 +67,10 @@ impl Need {
             list.as_deref().unwrap_or("not set, in CI")
         );
         eprintln!("left out: {test} needs {name}: {why}");
-        // The tests are in `<target>/<profile>/deps`.
-        let test_binary = std::env::current_exe().unwrap();
-        let target = test_binary.ancestors().nth(3).unwrap();
         let mut file = OpenOptions::new()
             .create(true)
             .append(true)
-            .open(target.join("left-out.txt"))
+            .open(executables::target().join("left-out.txt"))
             .unwrap();
         let why = why.lines().next().unwrap_or_default();
         writeln!(file, "{test}: {name}: {why}").unwrap();

@@ -1,8 +1,9 @@
 //! Python with third-party libraries, for comparison.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use crate::{attempt, locked_folder};
 
 /// Returns a Python with these packages, in an environment called `name` in the target folder, once
 /// `imports` can be imported. Concurrent tests wait for the one that makes it.
@@ -10,11 +11,7 @@ use std::process::Command;
 /// # Errors
 /// Returns the output of the first command that failed, for example without a network.
 pub fn with(name: &str, packages: &[&str], imports: &str) -> Result<PathBuf, String> {
-    let test = std::env::current_exe().unwrap();
-    let target = test.ancestors().nth(3).unwrap();
-    let folder = target.join(format!("python_{name}"));
-    let lock = File::create(folder.with_extension("lock")).unwrap();
-    lock.lock().unwrap();
+    let (folder, _lock) = locked_folder(&format!("python_{name}"));
     let python = folder.join("bin/python");
     let import = format!("import {imports}");
     if run(&python, &["-c", &import]).is_ok() {
@@ -29,12 +26,5 @@ pub fn with(name: &str, packages: &[&str], imports: &str) -> Result<PathBuf, Str
 }
 
 fn run(program: &Path, arguments: &[&str]) -> Result<(), String> {
-    let command = format!("{} {}", program.display(), arguments.join(" "));
-    let outcome = Command::new(program).args(arguments).output();
-    let outcome = outcome.map_err(|error| format!("{command}: {error}"))?;
-    if outcome.status.success() {
-        return Ok(());
-    }
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    Err(format!("{command}: {}\n{said}", outcome.status))
+    attempt(Command::new(program).args(arguments))
 }

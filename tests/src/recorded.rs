@@ -12,15 +12,9 @@ use crate::executables;
 pub fn record(recording: &Path, map: &Path, output: &Path) {
     let descriptor = output.with_extension("yaml");
     std::fs::write(&descriptor, tracking_graph(recording, map)).unwrap();
-    let outcome = executables::backcast()
-        .arg("run")
-        .arg(&descriptor)
-        .args(["--rate", "max", "--record"])
-        .arg(output)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
+    let mut command = executables::backcast();
+    command.arg("run").arg(&descriptor);
+    let _ = crate::text_of(command.args(["--rate", "max", "--record"]).arg(output));
 }
 
 /// Returns the descriptor of a graph that plays `recording`, with the executables of this test run.

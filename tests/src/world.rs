@@ -1,12 +1,13 @@
 //! A recording and its map, and the engine on that map.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
 use messages::{FrameName, ScanHeader};
-use recording::{Kind, Message, Recording};
+use recording::{GroundTruth, Kind, Message, Recording};
 use ros::LaserScan;
 use ros::measurements::scan_header;
 
@@ -60,6 +61,13 @@ impl World {
     #[must_use]
     pub fn scans(&self) -> Vec<LaserScan> {
         scans_of(&self.recording())
+    }
+
+    /// Returns the true pose of the laser at each scan, by the scan's stamp in nanoseconds.
+    #[must_use]
+    pub fn truths(&self) -> BTreeMap<i64, GroundTruth> {
+        let recording = Recording::open(self.recording()).unwrap();
+        recording.ground_truths().unwrap()
     }
 }
 

@@ -104,6 +104,21 @@ impl Report {
         self.health.count_sent(1);
     }
 
+    /// Counts a message as sent, or reports why it was not.
+    ///
+    /// # Errors
+    /// The graph failed.
+    pub fn outcome(
+        &mut self,
+        sent: Result<(), impl Error + 'static>,
+    ) -> Result<(), TransportError> {
+        match sent {
+            Ok(()) => self.sent(),
+            Err(error) => self.refused(&error)?,
+        }
+        Ok(())
+    }
+
     /// Counts lost messages.
     pub fn dropped(&mut self, messages: u64) {
         self.health.count_dropped(messages);

@@ -101,10 +101,7 @@ impl Node {
         intake.take_fields()?;
         if tick {
             for granted in fleet.tick(graph, session)? {
-                match granted {
-                    Ok(()) => report.sent(),
-                    Err(error) => report.refused(&error)?,
-                }
+                report.outcome(granted)?;
             }
         }
         report.tick().map_err(FleetError::from)

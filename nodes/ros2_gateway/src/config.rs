@@ -23,7 +23,7 @@ pub struct Config {
 
     /// Searches for this many seconds (0.1 to 60) on each middleware, or on that of --rmw, and
     /// prints the scan, map, odometry and transform topics that it finds, one JSON object per line
-    #[arg(long, value_name = "SECONDS", value_parser = looking)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.1, 60.0))]
     pub look: Option<f64>,
 
     /// Domain ID of the robot, 0 to 232 [default: ROS_DOMAIN_ID, else 0]
@@ -83,8 +83,9 @@ pub struct Config {
     pub map_frame: Option<String>,
 
     /// Odometry frame, whose transforms in /tf are used if no odometry topic is published
-    #[arg(long, value_name = "FRAME", default_value = "odom", value_parser = frame)]
-    pub odom_frame: String,
+    /// [default: odom]
+    #[arg(long, value_name = "FRAME", value_parser = frame)]
+    pub odom_frame: Option<String>,
 
     /// Publishes the transform from map to odometry. Not for use along with a particle filter,
     /// which publishes it itself
@@ -92,7 +93,7 @@ pub struct Config {
     pub broadcast_tf: bool,
 
     /// Seconds by which that transform is stamped ahead of its scan, 0 to 10
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = ahead)]
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds(0.0, 10.0))]
     pub tf_ahead: f64,
 
     /// Rules for reading the cells of the robot's map, shared by all nodes.
@@ -115,15 +116,15 @@ pub struct Config {
 pub struct Names {
     /// sensor_msgs/LaserScan, in; for several lasers, repeat it for each. Hypotheses refer to the
     /// first one. The graph names lasers after their topics: front for front/scan, scan_front and
-    /// front_scan
-    #[arg(long = "scan", value_name = "NAME", default_value = "scan")]
+    /// front_scan [default: scan]
+    #[arg(long = "scan", value_name = "NAME")]
     pub scans: Vec<String>,
     /// nav_msgs/Odometry, in
     #[arg(long, value_name = "NAME", default_value = "odom")]
     pub odom: String,
-    /// nav_msgs/OccupancyGrid, transient local, in
-    #[arg(long, value_name = "NAME", default_value = "map")]
-    pub map: String,
+    /// nav_msgs/OccupancyGrid, transient local, in [default: map]
+    #[arg(long, value_name = "NAME")]
+    pub map: Option<String>,
     /// tf2_msgs/TFMessage, in and out
     #[arg(long, value_name = "NAME", default_value = "tf")]
     pub tf: String,
@@ -225,12 +226,32 @@ impl Config {
         }
     }
 
+    /// Returns the names of the scans' topics, one for each laser.
+    #[must_use]
+    pub fn scans(&self) -> Vec<String> {
+        match &*self.names.scans {
+            [] => vec!["scan".to_owned()],
+            names => names.to_vec(),
+        }
+    }
+
+    /// Returns the name of the map's topic.
+    #[must_use]
+    pub fn map(&self) -> &str {
+        self.names.map.as_deref().unwrap_or("map")
+    }
+
+    #[must_use]
+    pub fn odom_frame(&self) -> &str {
+        self.odom_frame.as_deref().unwrap_or("odom")
+    }
+
     /// Returns the mounts that the user gave, in the order of the scans; empty if there are none.
     ///
     /// # Errors
     /// If the number of mounts differs from that of lasers, or --upside-down meets several lasers.
     pub fn mounts(&self) -> Result<Vec<Mount>, GatewayError> {
-        let (mounts, lasers) = (self.mounts.len(), self.names.scans.len());
+        let (mounts, lasers) = (self.mounts.len(), self.scans().len());
         let refuse = |option, reason| Err(GatewayError::Option { option, reason });
         if mounts != 0 && mounts != lasers {
             let reason = format!("{mounts} mounts for {lasers} lasers: allowed is one for each");
@@ -291,17 +312,11 @@ fn frame(text: &str) -> Result<String, String> {
     Err(format!("it has {found} bytes, allowed are 1 to {most}"))
 }
 
-fn looking(text: &str) -> Result<f64, String> {
-    match numbers(text) {
-        Some([seconds]) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
-        _ => Err("expected are 0.1 to 60 seconds".into()),
-    }
-}
-
-fn ahead(text: &str) -> Result<f64, String> {
-    match numbers(text) {
-        Some([seconds]) if (0.0..=10.0).contains(&seconds) => Ok(seconds),
-        _ => Err("expected are 0 to 10 seconds".into()),
+/// Returns a parser of seconds in this range.
+fn seconds(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match numbers(text) {
+        Some([seconds]) if (least..=most).contains(&seconds) => Ok(seconds),
+        _ => Err(format!("expected are {least} to {most} seconds")),
     }
 }
 
@@ -334,7 +349,8 @@ mod tests {
         assert_eq!(parse(&["--domain", "7"]).unwrap().domain().unwrap(), 7);
         let config = parse(&["--bring", "scan,odometry"]).unwrap();
         assert!(!config.brings(Brought::Map) && config.brings(Brought::Odometry));
-        assert_eq!(config.names.scans, ["scan"]);
+        assert_eq!(config.scans(), ["scan"]);
+        assert_eq!((config.map(), config.odom_frame()), ("map", "odom"));
         assert_eq!(config.mounts().unwrap(), []);
     }
 

@@ -49,11 +49,7 @@ impl Diagnostics {
             let message = ros::diagnostics::of(now, health, &error);
             self.publisher.send(&message)
         });
-        match outcome {
-            Ok(()) => report.sent(),
-            Err(error) => report.refused(&error)?,
-        }
-        Ok(())
+        report.outcome(outcome)
     }
 
     /// Returns the time of the robot's clock: simulation time, else extrapolated from the newest

@@ -213,3 +213,13 @@ pub enum GatewayError {
     #[error(transparent)]
     Transport(#[from] TransportError),
 }
+
+impl GatewayError {
+    /// Returns a function that converts an error of writing a message for `topic`.
+    pub(crate) fn encoding<E: std::fmt::Display>(topic: &str) -> impl FnOnce(E) -> Self {
+        move |error| GatewayError::Encode {
+            topic: topic.to_owned(),
+            reason: error.to_string(),
+        }
+    }
+}

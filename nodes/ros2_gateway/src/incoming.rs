@@ -17,7 +17,7 @@ use crate::frames::Frames;
 use crate::outlet::{Outlet, Rules};
 use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::role::Role;
-use crate::seeding::{Belief, Seeding};
+use crate::seeding::Belief;
 use crate::topics::Topics;
 use crate::{GatewayError, Seed};
 
@@ -93,7 +93,7 @@ impl Incoming {
                 sizes.0,
             )?,
             outlet: Outlet::open(graph, config, &topics.scans)?,
-            odom_frame: config.odom_frame.clone(),
+            odom_frame: config.odom_frame().to_owned(),
             odometry_ns: None,
             map_frame: None,
             mended: BTreeSet::new(),
@@ -122,11 +122,12 @@ impl Incoming {
         self.map_frame.as_deref()
     }
 
-    /// Handles the messages since the last call: those that others need come first.
+    /// Handles the messages since the last call: those that others need come first. Poses of the
+    /// particle filter go to `on_belief`.
     pub(crate) fn step(
         &mut self,
         frames: &mut Frames,
-        seeding: &mut Seeding,
+        mut on_belief: impl FnMut(Belief),
         report: &mut Report,
     ) -> Result<(), TransportError> {
         let Incoming {
@@ -190,7 +191,7 @@ impl Incoming {
         }
         take_if(beliefs, report, |message, _| {
             let turn = message.pose.pose.orientation;
-            seeding.on_belief(Belief {
+            on_belief(Belief {
                 measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
                 map_from_base: message.pose.pose.planar()?,
             });

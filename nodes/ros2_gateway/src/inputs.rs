@@ -92,7 +92,7 @@ impl Taken<'_> {
         // In the seed role, a robot may be without odometry.
         let needs_odometry = config.amcl.role == Role::Amcl && config.brings(Brought::Odometry);
         let odometry = needs_odometry.then(|| Input {
-            from_frame: Some(&config.odom_frame),
+            from_frame: Some(config.odom_frame()),
             ..input(&topics.tf, self.incoming.odometry_sent(), false)
         });
         let map = config

@@ -29,7 +29,7 @@ const TYPES: [(&str, &str); 4] = [
 /// A topic that a node publishes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub(crate) struct Published {
-    rmw: &'static str,
+    rmw: Rmw,
     domain: u32,
     /// `scan`, `map`, `odometry` or `transforms`.
     kind: &'static str,
@@ -99,7 +99,7 @@ fn look_at(
                 continue;
             };
             found.insert(Published {
-                rmw: rmw.name(),
+                rmw,
                 domain: member.domain(),
                 kind,
                 topic,

@@ -1,24 +1,16 @@
 //! Choice of the middleware that reaches the robot.
 
 use clap::ValueEnum;
+use serde::Serialize;
 
 /// Middleware of the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Rmw {
     /// Fast DDS or Cyclone DDS
     Dds,
     /// rmw_zenoh (jazzy and later)
     Zenoh,
-}
-
-impl Rmw {
-    /// Returns the value of `--rmw` for this middleware.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Rmw::Dds => "dds",
-            Rmw::Zenoh => "zenoh",
-        }
-    }
 }
 
 /// Returns the middleware of the option `--rmw`, else that of `RMW_IMPLEMENTATION`, with the reason

@@ -18,7 +18,7 @@ use crate::topics::Topics;
 
 /// Minimum probability of a hypothesis that the filter's pose is compared with: of up to 64
 /// hypotheses, one is near any pose.
-const LIKELY: f32 = 0.01;
+pub(crate) const LIKELY: f32 = 0.01;
 
 /// Publishers to the robot.
 pub(crate) struct Outgoing {
@@ -142,11 +142,7 @@ impl Outgoing {
         if let (Some(reason), Some(pose)) = (reason, pose) {
             self.seed(reason, (pose, header.map_from_base.into()), report)?;
         }
-        let is_tied = header.odom_known == 1 && header.is_believed();
-        self.map_from_odom = is_tied.then(|| {
-            let odom = header.odom_frame.as_str().to_owned();
-            (header.map_from_odom.into(), odom)
-        });
+        self.map_from_odom = odometry_of(header);
         self.broadcast(header.stamp, map_frame, report)
     }
 
@@ -181,6 +177,15 @@ impl Outgoing {
         }
         Ok(())
     }
+}
+
+/// Returns the pose of the odometry's frame in the map, and its name, if the tracker believes one.
+pub(crate) fn odometry_of(header: &PoseHeader) -> Option<(Pose, String)> {
+    let is_tied = header.odom_known == 1 && header.is_believed();
+    is_tied.then(|| {
+        let odom = header.odom_frame.as_str().to_owned();
+        (header.map_from_odom.into(), odom)
+    })
 }
 
 fn is_unique(header: &HypothesesHeader) -> bool {

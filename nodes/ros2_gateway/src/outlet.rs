@@ -1,7 +1,8 @@
 //! Publishers of the robot's messages in the graph.
 
 use map::MemoryLimit;
-use messages::{CellRules, MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
+use messages::topic::{self, Topic};
+use messages::{CellRules, MapHeader, Name, Odometry, ScanHeader, Stamp};
 use ros::{LaserScan, OccupancyGridMsg, measurements};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use zenoh_session::Report;
@@ -10,6 +11,7 @@ use crate::GatewayError;
 use crate::checks::{check_scan, measured_ns};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
+use crate::stamps::Forward;
 use crate::topics::Scans;
 
 /// Rules that are applied to scans and maps on the way.
@@ -23,16 +25,12 @@ pub(crate) struct Rules {
     pub(crate) first_map_only: bool,
 }
 
-/// A stamp that is earlier than the last by more than this is from a clock that was set back or a
-/// recording that restarted, nanoseconds.
-const SET_BACK_NS: i64 = 1_000_000_000;
-
 /// A laser whose scans are sent.
 struct Laser {
     name: Name,
     sent: u64,
-    /// Stamp of the last scan that was sent, nanoseconds.
-    stamp_ns: Option<i64>,
+    /// Stamp of the last scan that was sent.
+    last: Forward,
     /// True once the warning of repeated scans was logged.
     repeats: bool,
 }
@@ -42,7 +40,7 @@ impl Laser {
         Laser {
             name,
             sent: 0,
-            stamp_ns: None,
+            last: Forward::default(),
             repeats: false,
         }
     }
@@ -50,8 +48,7 @@ impl Laser {
     /// True if this scan or a later one was sent before: bridges may send each scan twice.
     fn had(&self, stamp_ns: i64) -> bool {
         // Lasers without a clock always send 0.
-        let before = |last: i64| (last.saturating_sub(SET_BACK_NS)..=last).contains(&stamp_ns);
-        stamp_ns != 0 && self.stamp_ns.is_some_and(before)
+        stamp_ns != 0 && !self.last.is_later(stamp_ns)
     }
 }
 
@@ -76,19 +73,12 @@ impl Outlet {
         config: &Config,
         scans: &[Scans],
     ) -> Result<Self, TransportError> {
-        let brings = |topic| config.brings(topic).then_some(());
         Ok(Outlet {
-            scans: brings(Brought::Scan)
-                .map(|()| graph.publisher())
-                .transpose()?,
-            odometry: brings(Brought::Odometry)
-                .map(|()| graph.publisher())
-                .transpose()?,
+            scans: brought(graph, config, Brought::Scan)?,
+            odometry: brought(graph, config, Brought::Odometry)?,
+            maps: brought(graph, config, Brought::Map)?,
             memory_limit: config.memory.limit(),
             cells: config.cells,
-            maps: brings(Brought::Map)
-                .map(|()| graph.publisher())
-                .transpose()?,
             lasers: scans.iter().map(|scans| Laser::new(scans.laser)).collect(),
             odometry_sent: 0,
             maps_sent: 0,
@@ -147,7 +137,7 @@ impl Outlet {
         loan.items_mut().copy_from_slice(&message.ranges);
         loan.send()?;
         of.sent += 1;
-        of.stamp_ns = Some(stamp_ns);
+        of.last.note(stamp_ns);
         report.sent();
         Ok(())
     }
@@ -221,6 +211,15 @@ impl Outlet {
     }
 }
 
+fn brought<T: Topic>(
+    graph: &Graph,
+    config: &Config,
+    what: Brought,
+) -> Result<Option<Publisher<T>>, TransportError> {
+    let is_brought = config.brings(what);
+    is_brought.then(|| graph.publisher()).transpose()
+}
+
 fn entering(stamp: Stamp, counter: u64) -> Stamp {
     Stamp {
         entered_ns: monotonic_ns(),
@@ -238,8 +237,8 @@ mod tests {
         let mut laser = Laser::new(Name::new("front"));
         let second = 1_000_000_000;
         assert!(!laser.had(0));
-        laser.stamp_ns = Some(7 * second);
-        assert!(laser.had(7 * second) && laser.had(7 * second - 1) && laser.had(6 * second));
-        assert!(!laser.had(7 * second + 1) && !laser.had(6 * second - 1));
+        laser.last.note(7 * second);
+        assert!(laser.had(7 * second) && laser.had(7 * second - 1) && laser.had(5 * second));
+        assert!(!laser.had(7 * second + 1) && !laser.had(5 * second - 1));
     }
 }

@@ -15,7 +15,7 @@ use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::{Inputs, Taken};
 use crate::outgoing::Outgoing;
-use crate::rmw::{Member, Seen, Service, Watch};
+use crate::rmw::{Member, Service, Watch};
 use crate::role::Role;
 use crate::seeding::Seeding;
 use crate::topics::Topics;
@@ -109,8 +109,8 @@ impl Gateway {
         topics: &Topics,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        self.incoming
-            .step(&mut self.frames, &mut self.seeding, report)?;
+        let on_belief = |belief| self.seeding.on_belief(belief);
+        self.incoming.step(&mut self.frames, on_belief, report)?;
         // Between the scans and their results: a subscriber or a request that came before a scan
         // gets the initial pose from that scan.
         self.look(report)?;
@@ -165,18 +165,10 @@ impl Gateway {
 
     /// Handles newly discovered subscribers and publishers.
     fn look(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        report.dropped(self.watch.dropped());
-        while let Some(seen) = self.watch.next(&self.member) {
-            match seen {
-                Seen::Subscriber(node) => {
-                    tracing::info!(node, "subscribes to the initial pose");
-                    self.seeding.greet();
-                }
-                Seen::Publisher { .. } => {}
-                Seen::Stranger(error) => report.refused(&error)?,
-            }
-        }
-        Ok(())
+        self.watch.look(&self.member, report, |node| {
+            tracing::info!(node, "subscribes to the initial pose");
+            self.seeding.greet();
+        })
     }
 
     /// Answers requests for an initial pose.

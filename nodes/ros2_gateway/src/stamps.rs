@@ -22,8 +22,8 @@ pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     stamp.ok_or(GatewayError::Unstampable { stamp_ns })
 }
 
-/// A step back by more than this is from a clock that was set or a simulation that restarted,
-/// nanoseconds.
+/// A step back by more than this is from a clock that was set, or a simulation or recording that
+/// restarted, nanoseconds.
 const SET_BACK_NS: i64 = 2_000_000_000;
 
 /// Rejects times that are not later than the last one: transform buffers treat an older one as an
@@ -43,12 +43,22 @@ impl Forward {
     /// True if the time, nanoseconds, is later than the last one, or the clock was set back; keeps
     /// it as the last one then.
     pub(crate) fn admits(&mut self, at_ns: i64) -> bool {
-        let behind_ns = self.last_ns.saturating_sub(at_ns);
-        let is_later = !(0..=SET_BACK_NS).contains(&behind_ns);
+        let is_later = self.is_later(at_ns);
         if is_later {
-            self.last_ns = at_ns;
+            self.note(at_ns);
         }
         is_later
+    }
+
+    /// True if the time, nanoseconds, is later than the last one, or the clock was set back.
+    pub(crate) fn is_later(&self, at_ns: i64) -> bool {
+        let behind_ns = self.last_ns.saturating_sub(at_ns);
+        !(0..=SET_BACK_NS).contains(&behind_ns)
+    }
+
+    /// Keeps a time as the last one.
+    pub(crate) fn note(&mut self, at_ns: i64) {
+        self.last_ns = at_ns;
     }
 }
 

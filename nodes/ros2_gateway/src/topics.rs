@@ -48,9 +48,7 @@ impl Topics {
         // Checked here, before anything is opened: the name becomes a part of every token.
         resolve("node", config.node())?;
         let Names {
-            scans,
             odom,
-            map,
             tf,
             tf_static,
             amcl_pose,
@@ -59,11 +57,12 @@ impl Topics {
             localization,
             diagnostics,
             reinitialize,
+            ..
         } = &config.names;
         Ok(Topics {
-            scans: named(scans, |name| resolve("scan", name))?,
+            scans: named(&config.scans(), |name| resolve("scan", name))?,
             odom: resolve("odom", odom)?,
-            map: resolve("map", map)?,
+            map: resolve("map", config.map())?,
             tf: resolve("tf", tf)?,
             tf_static: resolve("tf-static", tf_static)?,
             amcl_pose: resolve("amcl-pose", amcl_pose)?,

@@ -51,23 +51,15 @@ impl Verdict {
         }
         let on_topic = in_map(from.stamp, map_frame)
             .and_then(|header| self.topic.send(&Localization::of(header, from, words)));
+        report.outcome(on_topic)?;
         let to_fleet = self.fleet.as_ref().map(|fleet| send_to(fleet, from));
-        for outcome in [Some(on_topic), to_fleet].into_iter().flatten() {
-            match outcome {
-                Ok(()) => report.sent(),
-                Err(error) => report.refused(&error)?,
-            }
-        }
-        Ok(())
+        to_fleet.map_or(Ok(()), |outcome| report.outcome(outcome))
     }
 }
 
 fn send_to(fleet: &ZenohPublisher<'static>, from: &PoseHeader) -> Result<(), GatewayError> {
     let key = fleet.key_expr();
-    let bytes = serde_json::to_vec(&vda5050::of(from)).map_err(|error| {
-        let (topic, reason) = (key.to_string(), error.to_string());
-        GatewayError::Encode { topic, reason }
-    })?;
+    let bytes = serde_json::to_vec(&vda5050::of(from)).map_err(GatewayError::encoding(key))?;
     let sent = fleet.put(bytes).wait();
     Ok(sent.map_err(KeyError::when("send on", key.as_str()))?)
 }

@@ -136,37 +136,17 @@ mod tests {
     }
 
     #[test]
-    fn a_publisher_whose_messages_cannot_be_taken_is_named() {
-        for (publishing, words) in [
-            (Publishing::OtherType, "another type"),
-            (Publishing::OtherVersion, "another version"),
+    fn what_is_wrong_with_an_input_is_named() {
+        use Publishing::{Expected, OtherType, OtherVersion};
+        for (topic, publishing, received, words) in [
+            ("/scan", OtherType, 0, "another type"),
+            ("/scan", OtherVersion, 0, "another version"),
+            ("/tf", Publishing::Nobody, 0, "no publisher"),
+            ("/tf", Expected, 0, "no transform from odom"),
+            ("/tf", Expected, 7, "no transform from odom any more"),
         ] {
-            let mut waiting = Waiting::default();
-            let scan = [input("/scan", publishing, 0)];
-            assert_eq!(waiting.look(&scan, 0), Status::Begins);
-            let status = waiting.look(&scan, 3 * S);
-            assert!(
-                matches!(status, Status::Waits(w) if w.contains(words)),
-                "{status:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn odometry_that_is_missing_among_transforms_is_named() {
-        for (publishing, received, words) in [
-            (Publishing::Nobody, 0, "/tf: no publisher"),
-            (Publishing::Expected, 0, "/tf: no transform from odom"),
-            (
-                Publishing::Expected,
-                7,
-                "/tf: no transform from odom any more",
-            ),
-        ] {
-            let mut waiting = Waiting::default();
-            let odometry = [input("/tf", publishing, received)];
-            waiting.look(&odometry, 0);
-            assert_eq!(waiting.look(&odometry, 3 * S), Status::Waits(words));
+            let why = input(topic, publishing, received).why();
+            assert!(why.contains(words), "{why}");
         }
     }
 

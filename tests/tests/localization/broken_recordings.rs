@@ -9,19 +9,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use geometry::Pose;
-use messages::{PoseHeader, TrackState};
-use tests::needs::Need;
+use messages::PoseHeader;
 use tests::world::World;
 
 use super::tracking::{by_graph, figures};
 
 /// Returns a folder of such recordings.
 fn folder(test: &str, name: &str) -> Option<PathBuf> {
-    let found = tests::broken_recordings().map(|all| all.join(name));
-    if found.is_none() {
-        Need::Data.is_missing(test, "no folder shared/cases beside the project");
-    }
-    found
+    tests::broken_recordings(test).map(|all| all.join(name))
 }
 
 /// Returns the poses of a graph with a tracker for each scan of a drive that contains its own map.
@@ -31,10 +26,6 @@ fn poses(test: &str, drive: &Path, tracker: &[&str], scans: usize) -> Vec<PoseHe
     let files = [other.as_path(), drive].map(|file| file.to_str().unwrap());
     let map = ["--map", files[0], "--recorded", files[1]];
     by_graph(test, (drive, &map), ("max", "all"), tracker, scans)
-}
-
-fn is_unique(pose: &PoseHeader) -> bool {
-    pose.state == TrackState::Unique as u32
 }
 
 #[test]
@@ -76,7 +67,7 @@ fn a_covered_laser_is_nowhere() {
     ] {
         let said = poses(tag, &folder.join(format!("{name}.mcap")), &[], 100);
         assert_eq!(
-            said.iter().filter(|pose| is_unique(pose)).count(),
+            said.iter().filter(|pose| pose.is_unique()).count(),
             0,
             "{name}"
         );
@@ -95,7 +86,7 @@ fn a_crowd_that_walks_along_does_not_carry_the_pose_away() {
         .into_iter()
         .collect();
     let said = poses("crowd", &folder.join("crowd_walks_along.mcap"), &[], 170);
-    let unique = said.iter().filter(|pose| is_unique(pose));
+    let unique = said.iter().filter(|pose| pose.is_unique());
     let mut count = 0;
     for pose in unique {
         let [x, y, yaw] = truth[&pose.stamp.measured_ns];
@@ -119,9 +110,9 @@ fn odometry_that_never_moves_is_none() {
     ] {
         let said = poses(tag, &folder.join(format!("{name}.mcap")), &[], 170);
         // By the scans alone, the pose is known a metre or two after the start.
-        let first = said.iter().position(is_unique).unwrap();
+        let first = said.iter().position(PoseHeader::is_unique).unwrap();
         assert!(first <= 15, "{name}: {first}");
-        let unique = said.iter().filter(|pose| is_unique(pose)).count();
+        let unique = said.iter().filter(|pose| pose.is_unique()).count();
         assert!(unique >= 80, "{name}: {unique}");
     }
 }
@@ -134,7 +125,7 @@ fn a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed() {
     };
     let drive = folder.join("stands_from_the_start.mcap");
     let said = |tag: &str, tracker: &[&str]| poses(tag, &drive, tracker, 300);
-    let unique = |said: &[PoseHeader]| said.iter().filter(|pose| is_unique(pose)).count();
+    let unique = |said: &[PoseHeader]| said.iter().filter(|pose| pose.is_unique()).count();
     let alone = said("stands", &[]);
     assert_eq!(unique(&alone), 0);
     let believed = said("stands-sure", &["--start", "believe"]);

@@ -14,15 +14,9 @@ use tests::{answers, executables};
 #[test]
 fn the_graph_answers_as_expected() {
     let world = World::of("malaga_corridor");
-    let outcome = executables::backcast()
-        .current_dir(tests::root())
-        .arg("regress")
-        .arg(&world.folder)
-        .output()
-        .unwrap();
-    let table = String::from_utf8_lossy(&outcome.stdout);
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{table}{said}");
+    let mut command = executables::backcast();
+    command.current_dir(tests::root());
+    let table = tests::text_of(command.arg("regress").arg(&world.folder));
     assert!(table.contains("malaga_corridor: 37 scans"), "{table}");
 }
 
@@ -61,10 +55,7 @@ fn with_known_headings_the_graph_finds_the_same_places() {
         scans.len(),
         &arguments,
     );
-    let truths = recording::Recording::open(world.recording())
-        .unwrap()
-        .ground_truths()
-        .unwrap();
+    let truths = world.truths();
     for (header, hypotheses) in &answers.hypotheses {
         let truth = truths[&header.stamp.measured_ns].pose;
         let best = Pose::from(hypotheses[0].map_from_laser);

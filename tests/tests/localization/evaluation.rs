@@ -12,10 +12,7 @@ use recording::Recording;
 use serde_json::Value;
 use tempfile::TempDir;
 use tests::executables;
-use tests::needs::Need;
 use tests::recorded::graph;
-
-const NOT_THERE: &str = "no folder shared/data/evaluation beside the project";
 
 /// Independent scans of two buildings.
 const FILES: [&str; 2] = ["fr079_queries.mcap", "seattle_queries.mcap"];
@@ -42,11 +39,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns the last line that a command prints, as JSON.
 fn last_line(command: &mut Command) -> Value {
-    let outcome = command.output().unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
-    let lines = String::from_utf8(outcome.stdout).unwrap();
-    serde_json::from_str(lines.lines().last().unwrap()).unwrap()
+    tests::json_lines_of(command).pop().unwrap()
 }
 
 fn of_graph(recording: &Path, folder: &TempDir) -> Value {
@@ -66,8 +59,7 @@ fn of_graph(recording: &Path, folder: &TempDir) -> Value {
 
 #[test]
 fn the_graph_finds_what_evaluate_finds() {
-    let Some(data) = tests::evaluation_data() else {
-        Need::Data.is_missing("the_graph_finds_what_evaluate_finds", NOT_THERE);
+    let Some(data) = tests::evaluation_data("the_graph_finds_what_evaluate_finds") else {
         return;
     };
     for file in FILES {
@@ -95,8 +87,7 @@ fn the_graph_finds_what_evaluate_finds() {
 
 #[test]
 fn a_public_building_is_found() {
-    let Some(data) = tests::evaluation_data() else {
-        Need::Data.is_missing("a_public_building_is_found", NOT_THERE);
+    let Some(data) = tests::evaluation_data("a_public_building_is_found") else {
         return;
     };
     let mut command = executables::backcast();

@@ -35,12 +35,7 @@ fn maps(text: &str) -> (TempDir, PathBuf) {
 fn located(maps: &Path, recording: &Path) -> Vec<Value> {
     let mut command = executables::backcast();
     command.args(["locate", "--json", "--maps"]).arg(maps);
-    let outcome = command.arg(recording).output().unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
-    let lines = String::from_utf8(outcome.stdout).unwrap();
-    let rows = lines.lines().map(|row| serde_json::from_str(row).unwrap());
-    rows.collect()
+    tests::json_lines_of(command.arg(recording))
 }
 
 #[test]

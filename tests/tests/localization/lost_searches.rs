@@ -66,8 +66,7 @@ impl Robot {
             "accumulator" if self.maps.is_none() => &["--search", "asked"],
             _ => &[],
         };
-        let path = executables::path(name);
-        let node = NodeProcess::start(path.to_str().unwrap(), &self.graph, arguments);
+        let node = executables::start(name, &self.graph, arguments);
         self.nodes.push((name, node));
     }
 

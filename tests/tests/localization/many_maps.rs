@@ -7,9 +7,10 @@
 
 use std::path::{Path, PathBuf};
 
+use geometry::Pose;
 use serde_json::Value;
 use tests::executables;
-use tests::needs::Need;
+use tests::world::World;
 
 /// Maps of one drive, each of which contains places of the other.
 const ONE_DRIVE: [&str; 2] = ["malaga_campus", "malaga_courtyard"];
@@ -22,11 +23,11 @@ struct Building {
 
 fn shipped() -> Vec<Building> {
     let building = |name: &str| {
-        let folder = tests::root().join("recordings").join(name);
+        let world = World::of(name);
         Building {
             name: name.to_owned(),
-            map: folder.join("map.yaml"),
-            scans: folder.join("recording.mcap"),
+            map: world.map(),
+            scans: world.recording(),
         }
     };
     let names = ["malaga_campus", "malaga_courtyard", "malaga_corridor"];
@@ -40,21 +41,15 @@ fn locate(scans: &Path, maps: &[&Path], every: usize) -> Vec<Value> {
     for map in maps {
         command.arg("--map").arg(map);
     }
-    let outcome = command.arg(scans).output().unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
-    let lines = String::from_utf8(outcome.stdout).unwrap();
-    let lines = lines
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap());
-    lines.collect()
+    tests::json_lines_of(command.arg(scans))
 }
 
 fn is_near(a: &Value, b: &Value) -> bool {
-    let of = |found: &Value, key: &str| found["hypotheses"][0][key].as_f64().unwrap();
-    let (dx, dy) = (of(a, "x") - of(b, "x"), of(a, "y") - of(b, "y"));
-    let turn = (of(a, "yaw") - of(b, "yaw")).rem_euclid(std::f64::consts::TAU);
-    dx.hypot(dy) <= 0.5 && turn.min(std::f64::consts::TAU - turn) <= 10f64.to_radians()
+    let [a, b] = [a, b].map(|found| {
+        let of = |key: &str| found["hypotheses"][0][key].as_f64().unwrap();
+        Pose::new(of("x"), of("y"), of("yaw"))
+    });
+    a.is_within(b, 0.5, 10f64.to_radians())
 }
 
 /// Compares the results on all maps together with those on the own map; returns the number of scans
@@ -98,8 +93,8 @@ fn maps_that_are_searched_together_name_the_right_one() {
 #[test]
 fn eight_buildings_that_are_searched_together_keep_what_is_right() {
     let test = "eight_buildings_that_are_searched_together_keep_what_is_right";
-    let Some(data) = tests::evaluation_data() else {
-        return Need::Data.is_missing(test, "no folder shared/data/evaluation beside the project");
+    let Some(data) = tests::evaluation_data(test) else {
+        return;
     };
     let mut buildings = shipped();
     for name in ["intel", "fr079", "csail", "aces", "seattle"] {
@@ -120,18 +115,13 @@ fn eight_buildings_that_are_searched_together_keep_what_is_right() {
     assert!(kept * 10 >= certain * 9, "{kept} of {certain}");
 }
 
-/// Returns the YAML file of a map of the repository.
-fn yaml(name: &str) -> PathBuf {
-    tests::root().join("recordings").join(name).join("map.yaml")
-}
-
 /// Makes a folder whose list names two maps, one of them with a floor.
 fn hall_and_yard() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
         "maps:\n  - {{name: hall, map: {}, floor: 2}}\n  - {{name: yard, map: {}}}\n",
-        yaml("malaga_corridor").display(),
-        yaml("malaga_courtyard").display()
+        World::of("malaga_corridor").map().display(),
+        World::of("malaga_courtyard").map().display()
     );
     std::fs::write(folder.path().join("maps.yaml"), text).unwrap();
     folder
@@ -141,14 +131,12 @@ fn hall_and_yard() -> tempfile::TempDir {
 fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
     let folder = hall_and_yard();
     let list = folder.path().join("maps.yaml");
-    let recordings = tests::root().join("recordings");
-    let scans = recordings.join("malaga_corridor/recording.mcap");
+    let world = World::of("malaga_corridor");
+    let scans = world.recording();
     for set in [folder.path(), &list] {
         let mut command = executables::backcast();
         command.args(["locate", "--json", "--every", "20", "--maps"]);
-        let outcome = command.arg(set).arg(&scans).output().unwrap();
-        let lines = String::from_utf8(outcome.stdout).unwrap();
-        let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+        let found = &tests::json_lines_of(command.arg(set).arg(&scans))[0];
         assert_eq!(
             (&found["map"], &found["floor"]),
             (&"hall".into(), &"2".into())
@@ -157,18 +145,19 @@ fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
         assert_eq!(found["verdict"], "Unique");
     }
     // A single map has no name.
-    let found = locate(&scans, &[&yaml("malaga_corridor")], 20);
+    let found = locate(&scans, &[&world.map()], 20);
     assert_eq!(found[0]["map"], Value::Null);
 }
 
 #[test]
 fn only_the_maps_that_are_named_are_searched() {
     let folder = hall_and_yard();
-    let scans = tests::root().join("recordings/malaga_corridor/recording.mcap");
+    let scans = World::of("malaga_corridor").recording();
     let on = |names: &str| {
         let mut command = executables::backcast();
         command.args(["locate", "--json", "--every", "20", "--on", names, "--maps"]);
-        command.arg(folder.path()).arg(&scans).output().unwrap()
+        command.arg(folder.path()).arg(&scans);
+        command
     };
     for (names, map) in [
         ("hall", "hall"),
@@ -176,15 +165,13 @@ fn only_the_maps_that_are_named_are_searched() {
         ("yard", "yard"),
         ("yard,2", "hall"),
     ] {
-        let outcome = on(names);
-        let lines = String::from_utf8(outcome.stdout).unwrap();
-        let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+        let found = &tests::json_lines_of(&mut on(names))[0];
         assert_eq!(found["map"], map, "{names}");
         let is_unique = found["verdict"] == "Unique";
         // On the yard's map alone the scan is not found.
         assert_eq!(is_unique, map == "hall", "{names}");
     }
-    let outcome = on("hall,attic");
+    let outcome = on("hall,attic").output().unwrap();
     assert_eq!(outcome.status.code(), Some(1));
     let said = String::from_utf8_lossy(&outcome.stderr);
     let expected = "\"attic\" is neither a map nor a floor: allowed are hall (floor 2), yard";

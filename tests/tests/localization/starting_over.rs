@@ -7,7 +7,6 @@
 
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, PoseHeader, Stamp, TrackReason, TrackState, topic};
-use recording::Recording;
 use tests::world::World;
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for};
@@ -29,10 +28,8 @@ pub(super) fn truth(robot: &Robot, counter: u64) -> Pose {
 
 /// Returns the true pose of the laser at this scan of a recording.
 pub(super) fn truth_of(world: &World, counter: u64) -> Pose {
-    let recording = Recording::open(world.recording()).unwrap();
-    let truths = recording.ground_truths().unwrap();
     let scan = &world.scans()[counter as usize];
-    truths[&scan.header.stamp.as_ns()].pose
+    world.truths()[&scan.header.stamp.as_ns()].pose
 }
 
 fn say(to: &Publisher<topic::InitialPoseTopic>, kind: InitialPoseKind, pose: Pose) {

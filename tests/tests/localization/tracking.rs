@@ -15,7 +15,7 @@ use tempfile::TempDir;
 use tests::needs::Need;
 use tests::world::World;
 use tests::{executables, python};
-use transport::testing::{Isolated, NodeProcess};
+use transport::testing::Isolated;
 use transport::{Flow, TransportError};
 
 /// Stamp, x, y, and the quaternion's z and w.
@@ -34,12 +34,7 @@ fn by_tools(recording: &Path, map: &Path) -> Track {
         "--map",
     ]);
     command.arg(map).arg("--trajectories").arg(folder.path());
-    let output = command.arg(recording).output().unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let _ = tests::text_of(command.arg(recording));
     let text = std::fs::read_to_string(folder.path().join("recording.tum")).unwrap();
     let line = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
@@ -71,9 +66,7 @@ pub(super) fn by_graph(
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
-    let start = |name: &str, arguments: &[&str]| {
-        NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
-    };
+    let start = |name: &str, arguments: &[&str]| executables::start(name, &graph, arguments);
     let nodes = [
         start("map_server", map),
         start("boundary_extractor", &[]),
@@ -187,9 +180,7 @@ pub(super) fn figures(recording: &Path, options: &[&str]) -> Value {
 
 #[test]
 fn drives_of_other_robots_are_tracked() {
-    let Some(folder) = tests::evaluation_data() else {
-        let test = "drives_of_other_robots_are_tracked";
-        Need::Data.is_missing(test, "no folder shared/data/evaluation beside the project");
+    let Some(folder) = tests::evaluation_data("drives_of_other_robots_are_tracked") else {
         return;
     };
     for (file, right) in [

@@ -36,9 +36,7 @@ fn features(options: &[&str]) -> BTreeSet<String> {
     let mut command = Command::new(env!("CARGO"));
     command.args(["tree", "--locked", "--prefix", "none", "--no-dedupe"]);
     command.args(["--format", "{p} {f}"]).args(options);
-    let output = command.current_dir(tests::root()).output().unwrap();
-    assert!(output.status.success(), "{output:?}");
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = tests::text_of(command.current_dir(tests::root()));
     text.lines().map(str::to_owned).collect()
 }
 

@@ -45,13 +45,7 @@ fn the_engine_as_a_library_brings_no_command_line_and_no_shared_memory() {
     let mut tree = Command::new(env!("CARGO"));
     tree.args(["tree", "--package", "backcast-engine"])
         .args(options);
-    let output = tree.current_dir(tests::root()).output().unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = tests::text_of(tree.current_dir(tests::root()));
     let names: BTreeSet<&str> = text
         .lines()
         .filter_map(|line| line.split(' ').next())

@@ -1,7 +1,6 @@
 //! `backcast doctor` on drives with faults, if these are available.
 
-use tests::needs::Need;
-use tests::{evaluation_data, executables};
+use tests::{broken_recordings, executables};
 
 /// File, expected words and exit code.
 const CASES: [(&str, &str, i32); 13] = [
@@ -27,9 +26,8 @@ const CASES: [(&str, &str, i32); 13] = [
 #[test]
 fn what_is_wrong_with_laser_or_odometry_is_named() {
     let test = "what_is_wrong_with_laser_or_odometry_is_named";
-    let shared = evaluation_data().and_then(|data| Some(data.parent()?.parent()?.join("cases")));
-    let Some(cases) = shared.filter(|cases| cases.is_dir()) else {
-        return Need::Data.is_missing(test, "no folder shared/cases beside the project");
+    let Some(cases) = broken_recordings(test) else {
+        return;
     };
     for (name, words, exit_code) in CASES {
         let file = cases.join(format!("{name}.mcap"));

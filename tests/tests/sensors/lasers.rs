@@ -41,9 +41,7 @@ impl Robot {
         let graph = isolated.join("test");
         let scans = graph.subscriber().unwrap();
         let health = graph.subscriber().unwrap();
-        let start = |name: &str, arguments: &[&str]| {
-            NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
-        };
+        let start = |name: &str, arguments: &[&str]| executables::start(name, &graph, arguments);
         let recording = World::of("malaga_corridor").recording();
         let recording = ["--recording", recording.to_str().unwrap()];
         let (folder, device, reader) = ends(cable);

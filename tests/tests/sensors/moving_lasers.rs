@@ -16,11 +16,7 @@ use tests::{answers, executables};
 const PATH: &str = "9,-10.9 10.5,-10.6 9,-10.9";
 
 fn backcast(arguments: &[&str]) -> String {
-    let mut command = executables::backcast();
-    let output = command.args(arguments).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    String::from_utf8(output.stdout).unwrap()
+    tests::text_of(executables::backcast().args(arguments))
 }
 
 fn simulated(folder: &TempDir, lasers: &[&str]) -> String {

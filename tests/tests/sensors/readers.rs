@@ -121,13 +121,8 @@ fn python() -> Option<PathBuf> {
 }
 
 fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
-    let outcome = Command::new(python)
-        .args(["-c", SCRIPT, reader, path.to_str().unwrap()])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert!(outcome.status.success(), "{reader}: {said}");
-    serde_json::from_slice(&outcome.stdout).unwrap()
+    let mut python = Command::new(python);
+    tests::json_of(python.args(["-c", SCRIPT, reader]).arg(path))
 }
 
 #[test]
@@ -210,23 +205,13 @@ fn bags_of_others_in_sqlite_read_as_the_recording() {
     let original = World::of("malaga_corridor").recording();
     let folder = TempDir::new().unwrap();
     let bag = folder.path().join("bag");
-    let outcome = Command::new(&python)
-        .args(["-c", BAG_SCRIPT])
-        .args([&original, &bag])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert!(outcome.status.success(), "{said}");
+    let mut writer = Command::new(&python);
+    let _ = tests::text_of(writer.args(["-c", BAG_SCRIPT]).args([&original, &bag]));
     assert_eq!(messages(&bag), messages(&original));
 
     let converted = folder.path().join("converted.mcap");
-    let outcome = executables::backcast()
-        .arg("convert")
-        .args([&bag, &converted])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
+    let mut command = executables::backcast();
+    let _ = tests::text_of(command.arg("convert").args([&bag, &converted]));
     assert_eq!(as_we_read(&converted), as_we_read(&original));
     let by_mcap = as_read_by(&python, "mcap", &converted);
     assert_eq!(by_mcap["read"], as_we_read(&original));

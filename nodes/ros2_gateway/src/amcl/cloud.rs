@@ -8,12 +8,13 @@ use messages::{HypothesesHeader, Hypothesis, PoseHeader};
 use ros::nav2_msgs::{Particle, ParticleCloud};
 use ros::{Header, planar};
 
+use crate::outgoing::LIKELY;
+
 /// Number of particles for each pose.
 const POINTS: usize = 64;
 
-/// Largest number of hypotheses shown, and their minimum probability.
+/// Largest number of hypotheses shown.
 const MOST: usize = 16;
-const LIKELY: f32 = 0.01;
 
 /// A possible pose of the robot: the pose, its covariance and its probability.
 type Place = (Pose, Covariance, f64);

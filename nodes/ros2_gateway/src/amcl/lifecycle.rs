@@ -40,35 +40,39 @@ const STATES: [(u8, &str); 11] = [
     (15, "errorprocessing"),
 ];
 
-/// Row of [`ASKED`].
-type Asked = (u8, &'static str, Primary, u8, Change, Primary);
+/// Transition that others may request.
+struct Asked {
+    id: u8,
+    label: &'static str,
+    start: Primary,
+    /// State in between.
+    way: u8,
+    change: Change,
+    goal: Primary,
+}
 
-/// Transitions that others may request: number, name, start state, state in between, meaning and
-/// goal state.
 const ASKED: [Asked; 7] = {
     use {Change as C, Primary as P};
+    const fn row(id: u8, label: &'static str, way: u8, ends: (P, P), change: C) -> Asked {
+        let (start, goal) = ends;
+        Asked {
+            id,
+            label,
+            start,
+            way,
+            change,
+            goal,
+        }
+    }
+    let (unconfigured, inactive, active) = (P::Unconfigured, P::Inactive, P::Active);
     [
-        (
-            1,
-            "configure",
-            P::Unconfigured,
-            10,
-            C::Configure,
-            P::Inactive,
-        ),
-        (2, "cleanup", P::Inactive, 11, C::Cleanup, P::Unconfigured),
-        (3, "activate", P::Inactive, 13, C::Activate, P::Active),
-        (4, "deactivate", P::Active, 14, C::Deactivate, P::Inactive),
-        (
-            5,
-            "shutdown",
-            P::Unconfigured,
-            12,
-            C::Shutdown,
-            P::Finalized,
-        ),
-        (6, "shutdown", P::Inactive, 12, C::Shutdown, P::Finalized),
-        (7, "shutdown", P::Active, 12, C::Shutdown, P::Finalized),
+        row(1, "configure", 10, (unconfigured, inactive), C::Configure),
+        row(2, "cleanup", 11, (inactive, unconfigured), C::Cleanup),
+        row(3, "activate", 13, (inactive, active), C::Activate),
+        row(4, "deactivate", 14, (active, inactive), C::Deactivate),
+        row(5, "shutdown", 12, (unconfigured, P::Finalized), C::Shutdown),
+        row(6, "shutdown", 12, (inactive, P::Finalized), C::Shutdown),
+        row(7, "shutdown", 12, (active, P::Finalized), C::Shutdown),
     ]
 };
 
@@ -122,14 +126,16 @@ impl Lifecycle {
     /// # Errors
     /// Returns the reason if the transition does not begin in this state.
     pub(crate) fn asked(&self, wanted: &Transition) -> Result<Change, String> {
-        let from_here = ASKED.iter().filter(|row| row.2 == self.state);
+        let from_here = ASKED.iter().filter(|row| row.start == self.state);
         let is_wanted = |row: &&Asked| match &*wanted.label {
-            "" => row.0 == wanted.id,
-            label => row.1 == label,
+            "" => row.id == wanted.id,
+            label => row.label == label,
         };
         let found = from_here.clone().find(is_wanted);
-        found.map(|row| row.4).ok_or_else(|| {
-            let allowed: Vec<String> = from_here.map(|r| format!("{} ({})", r.1, r.0)).collect();
+        found.map(|row| row.change).ok_or_else(|| {
+            let allowed: Vec<String> = from_here
+                .map(|r| format!("{} ({})", r.label, r.id))
+                .collect();
             let (id, label) = (wanted.id, &wanted.label);
             let (here, allowed) = (self.state().label, allowed.join(", "));
             format!("transition {id} {label:?} in state {here}: allowed are {allowed}")
@@ -143,15 +149,15 @@ impl Lifecycle {
         is_done: bool,
         timestamp: u64,
     ) -> Vec<TransitionEvent> {
-        let is_this = |r: &&Asked| r.2 == self.state && r.4 == change;
-        let Some((id, label, start, way, _, goal)) = ASKED.iter().find(is_this) else {
+        let is_this = |r: &&Asked| r.start == self.state && r.change == change;
+        let Some(row) = ASKED.iter().find(is_this) else {
             return Vec::new();
         };
         let word = if is_done { SUCCESS } else { FAILURE };
-        let end = ENDS.iter().find(|end| end.2 == *way && end.1 == word);
+        let end = ENDS.iter().find(|end| end.2 == row.way && end.1 == word);
         // A shutdown always succeeds.
-        let goal = if is_done { *goal } else { *start };
-        let first = (*id, *label, *start as u8, *way);
+        let goal = if is_done { row.goal } else { row.start };
+        let first = (row.id, row.label, row.start as u8, row.way);
         let last = end.map(|end| (end.0, end.1, end.2, goal as u8));
         self.state = goal;
         [Some(first), last]
@@ -182,7 +188,7 @@ pub(crate) fn states() -> Vec<State> {
 }
 
 pub(crate) fn graph() -> Vec<TransitionDescription> {
-    let asked = ASKED.iter().map(|r| (r.0, r.1, r.2 as u8, r.3));
+    let asked = ASKED.iter().map(|r| (r.id, r.label, r.start as u8, r.way));
     asked.chain(ENDS).map(described).collect()
 }
 

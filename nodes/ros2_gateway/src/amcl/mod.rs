@@ -134,20 +134,16 @@ fn check_saved_pose_file(parameters: &mut Parameters) -> Result<(), GatewayError
     }
 }
 
-/// Merges the parameters into the options. Options of the map's frame, the scans and the map's
-/// topic take precedence over parameters.
+/// Merges the parameters into the options. An option that was given takes precedence.
 fn applied(config: &Config, parameters: &Parameters) -> Config {
     let mut config = config.clone();
     config.seed = Seed::Never;
-    config.odom_frame = parameters.text("odom_frame_id").to_owned();
-    let map_frame = parameters.text("global_frame_id").to_owned();
-    config.map_frame.get_or_insert(map_frame);
-    let names = &mut config.names;
-    if names.scans == ["scan"] {
-        names.scans = vec![parameters.text("scan_topic").to_owned()];
-    }
-    if names.map == "map" {
-        names.map = parameters.text("map_topic").to_owned();
+    let text = |name: &str| parameters.text(name).to_owned();
+    config.map_frame.get_or_insert(text("global_frame_id"));
+    config.odom_frame.get_or_insert(text("odom_frame_id"));
+    config.names.map.get_or_insert(text("map_topic"));
+    if config.names.scans.is_empty() {
+        config.names.scans = vec![text("scan_topic")];
     }
     config
 }
@@ -173,15 +169,14 @@ mod tests {
         assert_eq!(config.node(), "amcl");
         let found = applied(&config, &parameters);
         assert_eq!(
-            (found.names.scans, &*found.names.map),
-            (vec!["front".to_owned()], "m")
+            (found.scans(), found.map(), found.odom_frame()),
+            (vec!["front".to_owned()], "m", "o")
         );
-        assert_eq!(
-            (&*found.odom_frame, found.map_frame.as_deref()),
-            ("o", Some("map"))
-        );
-        let words = ["ros2_gateway", "--as", "amcl", "--scan", "a", "--scan", "b"];
-        let config = Config::parse_from(words);
-        assert_eq!(applied(&config, &parameters).names.scans, ["a", "b"]);
+        assert_eq!(found.map_frame.as_deref(), Some("map"));
+        // Options count even if they say the same as without them.
+        let given = "ros2_gateway --as amcl --scan scan --scan b --map map --odom-frame odom";
+        let found = applied(&Config::parse_from(given.split(' ')), &parameters);
+        assert_eq!(found.scans(), ["scan", "b"]);
+        assert_eq!((found.map(), found.odom_frame()), ("map", "odom"));
     }
 }

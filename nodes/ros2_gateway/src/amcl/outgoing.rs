@@ -1,7 +1,6 @@
 //! The topics that AMCL publishes: the pose, the particle cloud and the transform from map to
 //! odometry.
 
-use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp};
 use ros::PoseWithCovarianceStamped;
 use ros::nav2_msgs::ParticleCloud;
@@ -14,6 +13,7 @@ use super::standing::Standing;
 use crate::GatewayError;
 use crate::broadcast::{Broadcaster, Sent};
 use crate::diagnostics::Diagnostics;
+use crate::outgoing::odometry_of;
 use crate::rmw::{Member, Publisher};
 use crate::stamps::in_map;
 use crate::topics::Topics;
@@ -120,11 +120,7 @@ impl Outgoing {
         // The pose of a laser is not the robot's.
         self.is_outdated &= header.is_believed();
         self.is_believed = header.is_believed() && header.mount_known == 1 && !self.is_outdated;
-        let is_tied = self.is_believed && header.odom_known == 1;
-        let found = is_tied.then(|| {
-            let odom = header.odom_frame.as_str().to_owned();
-            (Pose::from(header.map_from_odom), odom)
-        });
+        let found = odometry_of(header).filter(|_| self.is_believed);
         self.standing.on_scan(stamp, found);
         self.verdict.send(header, words, map_frame, report)?;
         let outcome = self.send_pose(header, map_frame, report);
@@ -165,11 +161,7 @@ impl Outgoing {
             self.cloud
                 .send(&cloud::of_hypotheses(in_map, header, items))
         });
-        match sent {
-            Ok(()) => report.sent(),
-            Err(error) => report.refused(&error)?,
-        }
-        Ok(())
+        report.outcome(sent)
     }
 
     /// Sends the transform if it is due.

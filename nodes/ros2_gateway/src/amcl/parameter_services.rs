@@ -129,10 +129,6 @@ impl ParameterServices {
             changed_parameters,
             ..ParameterEvent::default()
         });
-        match sent {
-            Ok(()) => report.sent(),
-            Err(error) => report.refused(&error)?,
-        }
-        Ok(())
+        report.outcome(sent)
     }
 }

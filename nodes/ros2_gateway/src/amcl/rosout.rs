@@ -50,10 +50,7 @@ impl Rosout {
                 NODE => self.logger.clone(),
                 other => format!("{}.{other}", self.logger),
             };
-            match self.publisher.send(&log) {
-                Ok(()) => report.sent(),
-                Err(error) => report.refused(&error)?,
-            }
+            report.outcome(self.publisher.send(&log))?;
         }
         Ok(())
     }

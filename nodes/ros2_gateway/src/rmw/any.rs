@@ -1,13 +1,16 @@
 //! The chosen middleware: each type wraps that of `zenoh` or that of `dds`.
 
+use std::marker::PhantomData;
+
 use ros::{RosMessage, RosService};
 use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError};
 use zenoh::Session;
 use zenoh_session::Report;
 
-use super::received::Received;
-use super::{Keeping, Seen, dds, zenoh as rmw_zenoh};
+use super::expected::Expected;
+use super::received::{Identity, Received, Senders};
+use super::{Keeping, Seen, dds, description, zenoh as rmw_zenoh};
 use crate::middleware::{self, Rmw};
 use crate::waiting::Publishing;
 use crate::{Config, GatewayError};
@@ -68,9 +71,16 @@ impl Member {
     }
 }
 
-pub(crate) enum Publisher<M> {
-    Zenoh(Box<rmw_zenoh::Publisher<M>>),
-    Dds(Box<dds::Publisher<M>>),
+/// A topic to the robot.
+pub(crate) struct Publisher<M> {
+    topic: String,
+    sink: Sink,
+    message: PhantomData<M>,
+}
+
+enum Sink {
+    Zenoh(Box<rmw_zenoh::Publisher>),
+    Dds(Box<dds::Publisher>),
 }
 
 impl<M: RosMessage> Publisher<M> {
@@ -115,29 +125,48 @@ impl<M: RosMessage> Publisher<M> {
         quality: (Keeping, usize),
         blocks: bool,
     ) -> Result<Self, GatewayError> {
-        Ok(match member {
-            Member::Zenoh(member) => {
-                let publisher = rmw_zenoh::Publisher::open(member, topic, quality, blocks)?;
-                Publisher::Zenoh(Box::new(publisher))
-            }
-            Member::Dds(member) => {
-                let publisher = dds::Publisher::open(member, topic, quality, blocks)?;
-                Publisher::Dds(Box::new(publisher))
-            }
+        let info = description::of_message::<M>()?;
+        let named = (topic, &info);
+        Ok(Publisher {
+            topic: topic.to_owned(),
+            sink: match member {
+                Member::Zenoh(member) => {
+                    let publisher = rmw_zenoh::Publisher::open(member, named, quality, blocks)?;
+                    Sink::Zenoh(Box::new(publisher))
+                }
+                Member::Dds(member) => {
+                    let publisher = dds::Publisher::open(member, named, quality, blocks)?;
+                    Sink::Dds(Box::new(publisher))
+                }
+            },
+            message: PhantomData,
         })
     }
 
     pub(crate) fn send(&mut self, message: &M) -> Result<(), GatewayError> {
-        match self {
-            Publisher::Zenoh(publisher) => publisher.send(message),
-            Publisher::Dds(publisher) => publisher.send(message),
+        let bytes = ros::cdr::encode(message).map_err(GatewayError::encoding(&self.topic))?;
+        match &mut self.sink {
+            Sink::Zenoh(publisher) => publisher.send(bytes),
+            Sink::Dds(publisher) => publisher.send(bytes),
         }
     }
 }
 
-pub(crate) enum Subscription<M> {
-    Zenoh(Box<rmw_zenoh::Subscription<M>>),
-    Dds(Box<dds::Subscription<M>>),
+/// A topic from the robot.
+///
+/// Losses are counted: those of the queue here by its limits, and those on the way by the sequence
+/// numbers of the sender.
+pub(crate) struct Subscription<M> {
+    topic: String,
+    source: Source,
+    senders: Senders,
+    received: bool,
+    message: PhantomData<M>,
+}
+
+enum Source {
+    Zenoh(Box<rmw_zenoh::Subscription>),
+    Dds(Box<dds::Subscription>),
 }
 
 impl<M: RosMessage + DeserializeOwned> Subscription<M> {
@@ -150,49 +179,69 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         depth: usize,
         max_bytes: usize,
     ) -> Result<Self, GatewayError> {
-        let quality = (keeping, depth);
-        Ok(match member {
-            Member::Zenoh(member) => Subscription::Zenoh(Box::new(rmw_zenoh::Subscription::open(
-                graph, member, topic, keeping, depth, max_bytes,
-            )?)),
-            Member::Dds(member) => Subscription::Dds(Box::new(dds::Subscription::open(
-                graph, member, topic, quality, max_bytes,
-            )?)),
+        let info = description::of_message::<M>()?;
+        let (named, quality) = ((topic, &info), (keeping, depth));
+        Ok(Subscription {
+            topic: topic.to_owned(),
+            source: match member {
+                Member::Zenoh(member) => Source::Zenoh(Box::new(rmw_zenoh::Subscription::open(
+                    graph, member, named, quality, max_bytes,
+                )?)),
+                Member::Dds(member) => Source::Dds(Box::new(dds::Subscription::open(
+                    graph, member, named, quality, max_bytes,
+                )?)),
+            },
+            senders: Senders::default(),
+            received: false,
+            message: PhantomData,
         })
     }
 
     /// Returns the number of messages lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
-        match self {
-            Subscription::Zenoh(subscription) => subscription.dropped(),
+        match &self.source {
+            Source::Zenoh(subscription) => subscription.dropped(),
             // The sequence numbers of a sender show gaps.
-            Subscription::Dds(_) => 0,
+            Source::Dds(_) => 0,
         }
     }
 
     /// Returns the largest number of queued messages: taking no more at once keeps a fast topic
     /// from blocking the others.
     pub(crate) fn depth(&self) -> usize {
-        match self {
-            Subscription::Zenoh(subscription) => subscription.depth(),
-            Subscription::Dds(subscription) => subscription.depth(),
+        match &self.source {
+            Source::Zenoh(subscription) => subscription.depth(),
+            Source::Dds(subscription) => subscription.depth(),
         }
     }
 
     /// Returns an error for each message that was too long to be queued.
     pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
-        match self {
-            Subscription::Zenoh(subscription) => subscription.next_too_long(),
+        match &self.source {
+            Source::Zenoh(subscription) => subscription.next_too_long(),
             // The error takes the place of the message.
-            Subscription::Dds(_) => None,
+            Source::Dds(_) => None,
         }
     }
 
     pub(crate) fn next(&mut self) -> Option<Received<M>> {
-        match self {
-            Subscription::Zenoh(subscription) => subscription.next(),
-            Subscription::Dds(subscription) => subscription.next(),
+        let mut lost = 0;
+        let decode = |bytes: &[u8], identity: Option<Identity>| {
+            lost = identity.map_or(0, |identity| self.senders.lost_before(identity));
+            ros::cdr::decode(bytes).map_err(|reason| GatewayError::Message {
+                topic: self.topic.clone(),
+                reason,
+            })
+        };
+        let message = match &self.source {
+            Source::Zenoh(subscription) => subscription.next(decode),
+            Source::Dds(subscription) => subscription.next(decode),
+        }?;
+        if message.is_ok() && !self.received {
+            self.received = true;
+            tracing::info!(topic = self.topic, "first message received");
         }
+        Some(Received { message, lost })
     }
 }
 
@@ -227,7 +276,13 @@ impl<S: RosService> Service<S> {
     }
 }
 
-pub(crate) enum Watch {
+/// Watch of the robot's domain.
+pub(crate) struct Watch {
+    expected: Expected,
+    discovery: Discovery,
+}
+
+enum Discovery {
     Zenoh(rmw_zenoh::Watch),
     Dds(dds::Watch),
 }
@@ -239,52 +294,65 @@ impl Watch {
         member: &Member,
         subscribed: &str,
     ) -> Result<Self, GatewayError> {
-        Ok(match member {
-            Member::Zenoh(member) => {
-                Watch::Zenoh(rmw_zenoh::Watch::open(graph, member, subscribed)?)
-            }
-            Member::Dds(member) => Watch::Dds(dds::Watch::open(member, subscribed)),
+        Ok(Watch {
+            expected: Expected::new(subscribed),
+            discovery: match member {
+                Member::Zenoh(member) => Discovery::Zenoh(rmw_zenoh::Watch::open(graph, member)?),
+                Member::Dds(member) => Discovery::Dds(dds::Watch::open(member)),
+            },
         })
     }
 
     /// Also reports publishers of `topic` whose messages cannot be received as `M`.
     pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
-        match self {
-            Watch::Zenoh(watch) => watch.expect::<M>(topic),
-            Watch::Dds(watch) => watch.expect::<M>(topic),
-        }
+        self.expected.expect::<M>(topic)
     }
 
     /// Reports publishers of all topics instead.
     pub(crate) fn expect_everything(&mut self) {
-        match self {
-            Watch::Zenoh(watch) => watch.expected.expect_everything(),
-            Watch::Dds(watch) => watch.expected.expect_everything(),
-        }
+        self.expected.expect_everything();
     }
 
     /// Returns the kind of the topic's publisher; a matching one counts before others.
     pub(crate) fn publishing(&self, topic: &str) -> Publishing {
-        match self {
-            Watch::Zenoh(watch) => watch.publishing(topic),
-            Watch::Dds(watch) => watch.publishing(topic),
-        }
+        self.expected.publishing(topic)
     }
 
     /// Returns the number of events dropped since the last call because there were too many.
     pub(crate) fn dropped(&self) -> u64 {
-        match self {
-            Watch::Zenoh(watch) => watch.dropped(),
-            Watch::Dds(_) => 0,
+        match &self.discovery {
+            Discovery::Zenoh(watch) => watch.dropped(),
+            Discovery::Dds(_) => 0,
         }
     }
 
     /// Returns the next event of interest.
     pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
-        match (self, member) {
-            (Watch::Zenoh(watch), Member::Zenoh(member)) => watch.next(member),
-            (Watch::Dds(watch), Member::Dds(member)) => watch.next(member),
+        match (&mut self.discovery, member) {
+            (Discovery::Zenoh(watch), Member::Zenoh(member)) => {
+                watch.next(member, &mut self.expected)
+            }
+            (Discovery::Dds(watch), Member::Dds(member)) => watch.next(member, &mut self.expected),
             _ => None,
         }
+    }
+
+    /// Passes new subscribers to `on_subscriber`, and reports publishers whose messages cannot be
+    /// received.
+    pub(crate) fn look(
+        &mut self,
+        member: &Member,
+        report: &mut Report,
+        mut on_subscriber: impl FnMut(String),
+    ) -> Result<(), TransportError> {
+        report.dropped(self.dropped());
+        while let Some(seen) = self.next(member) {
+            match seen {
+                Seen::Subscriber(node) => on_subscriber(node),
+                Seen::Publisher { .. } => {}
+                Seen::Stranger(error) => report.refused(&error)?,
+            }
+        }
+        Ok(())
     }
 }

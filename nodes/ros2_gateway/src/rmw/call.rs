@@ -14,17 +14,14 @@ pub(super) fn answer<S: RosService>(
     respond: impl FnOnce(S::Request) -> S::Response,
 ) -> Result<Vec<u8>, GatewayError> {
     let (found, most) = (request.len(), MAX_BYTES);
-    let topic = || topic.to_owned();
+    let named = || topic.to_owned();
     if found > most {
-        let topic = topic();
+        let topic = named();
         return Err(GatewayError::TooLong { topic, found, most });
     }
     let request = ros::cdr::decode(request).map_err(|reason| GatewayError::Message {
-        topic: topic(),
+        topic: named(),
         reason,
     })?;
-    ros::cdr::encode(&respond(request)).map_err(|error| GatewayError::Encode {
-        topic: topic(),
-        reason: error.to_string(),
-    })
+    ros::cdr::encode(&respond(request)).map_err(GatewayError::encoding(topic))
 }

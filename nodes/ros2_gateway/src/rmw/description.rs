@@ -5,6 +5,7 @@
 //! Constants and defaults do not count.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use hiroz_schema::{
     FieldDescription, FieldTypeDescription, TypeDescription, TypeDescriptionMsg, TypeId,
@@ -12,8 +13,22 @@ use hiroz_schema::{
 };
 use ros::RosMessage;
 
-use super::type_info::TypeInfo;
 use crate::GatewayError;
+
+/// Type name and hash, in the form that all middlewares use.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct TypeInfo {
+    /// Name, such as `std_msgs::msg::dds_::String_`.
+    pub(super) name: String,
+    /// Hash: `RIHS01_` and 64 digits.
+    pub(super) hash: String,
+}
+
+impl fmt::Display for TypeInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.name, self.hash)
+    }
+}
 
 /// Field that ROS puts into a message without fields.
 const DUMMY: &str = "uint8 structure_needs_at_least_one_member";
@@ -230,144 +245,62 @@ mod tests {
 
     use super::*;
 
-    fn check(info: Result<TypeInfo, GatewayError>, name: &str, hash: &str) {
-        let info = info.unwrap();
-        assert_eq!(info.name, name);
-        assert_eq!(info.hash, format!("RIHS01_{hash}"), "{name}");
+    fn service<S: RosService>() -> Result<TypeInfo, GatewayError> {
+        of_service(S::NAME, S::REQUEST, S::RESPONSE)
     }
 
-    /// The hashes are those that ROS 2 jazzy publishes with these types.
-    #[test]
-    fn messages_have_the_hashes_that_ros_gives_them() {
-        check(
-            of_message::<LaserScan>(),
-            "sensor_msgs::msg::dds_::LaserScan_",
-            "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828",
-        );
-        check(
-            of_message::<Odometry>(),
-            "nav_msgs::msg::dds_::Odometry_",
-            "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
-        );
-        check(
-            of_message::<OccupancyGridMsg>(),
-            "nav_msgs::msg::dds_::OccupancyGrid_",
-            "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7",
-        );
-        check(
-            of_message::<TfMessage>(),
-            "tf2_msgs::msg::dds_::TFMessage_",
-            "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
-        );
-        check(
-            of_message::<PoseWithCovarianceStamped>(),
-            "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_",
-            "26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e",
-        );
-        check(
-            of_message::<PoseArray>(),
-            "geometry_msgs::msg::dds_::PoseArray_",
-            "af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0",
-        );
-        check(
-            of_message::<DiagnosticArray>(),
-            "diagnostic_msgs::msg::dds_::DiagnosticArray_",
-            "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
-        );
-    }
-
-    /// The hashes are those that `rosbags` makes of the definitions.
-    #[test]
-    fn messages_in_amcls_place_have_their_hashes() {
-        check(
-            of_message::<ParticleCloud>(),
-            "nav2_msgs::msg::dds_::ParticleCloud_",
-            "193d8cb88ca2b98cd81ece15342744f054bb398ebfa8f6369914432303f42b11",
-        );
-        check(
-            of_message::<BondStatus>(),
-            "bond::msg::dds_::Status_",
-            "87eaccffa254ffffadc0b61600452e8251740f06c25659a2dbda4927fdb1f70a",
-        );
-        check(
-            of_message::<ParameterEvent>(),
-            "rcl_interfaces::msg::dds_::ParameterEvent_",
-            "043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
-        );
-        check(
-            of_message::<Clock>(),
-            "rosgraph_msgs::msg::dds_::Clock_",
-            "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564",
-        );
-        check(
-            of_message::<Localization>(),
-            "backcast_msgs::msg::dds_::Localization_",
-            "54798799c773940db42bfa44236b5f3da93c8460bc340fdaf6044ac49036447c",
-        );
-        check(
-            of_message::<TransitionEvent>(),
-            "lifecycle_msgs::msg::dds_::TransitionEvent_",
-            "d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38",
-        );
-        let whole = DescribeParameters::RESPONSE;
-        let (_, descriptor) = whole
-            .split_once("rcl_interfaces/ParameterDescriptor\n")
-            .unwrap();
+    /// Returns the type of a part of the response of this service.
+    fn parameter_descriptor() -> Result<TypeInfo, GatewayError> {
         let name = "rcl_interfaces/msg/ParameterDescriptor";
-        let mut all = parts(name, descriptor).unwrap();
+        let whole = DescribeParameters::RESPONSE;
+        let descriptor = whole.split_once("rcl_interfaces/ParameterDescriptor\n");
+        let mut all = parts(name, descriptor.unwrap().1)?;
         let main = described(name, all.remove(name).unwrap());
-        check(
-            info(name, main, all),
-            "rcl_interfaces::msg::dds_::ParameterDescriptor_",
-            "52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704",
-        );
+        info(name, main, all)
     }
 
-    #[test]
-    fn services_have_the_hashes_that_ros_gives_them() {
-        check(
-            of_service(
-                "example_interfaces/srv/AddTwoInts",
-                "int64 a\nint64 b\n",
-                "int64 sum\n",
-            ),
-            "example_interfaces::srv::dds_::AddTwoInts_",
-            "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
-        );
-    }
-
-    /// The hashes are those that `zenoh_ros2_sdk` makes of the definitions.
-    #[test]
-    fn services_of_a_managed_node_have_their_hashes() {
-        fn of<S: RosService>() -> Result<TypeInfo, GatewayError> {
-            of_service(S::NAME, S::REQUEST, S::RESPONSE)
+    fn check(types: &[(Result<TypeInfo, GatewayError>, &str, &str)]) {
+        for (info, kind, hash) in types {
+            let info = info.as_ref().unwrap();
+            let (package, name) = kind.split_once(' ').unwrap();
+            assert_eq!(info.name, format!("{package}::dds_::{name}_"));
+            assert_eq!(info.hash, format!("RIHS01_{hash}"), "{name}");
         }
-        check(
-            of::<ChangeState>(),
-            "lifecycle_msgs::srv::dds_::ChangeState_",
-            "356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5",
-        );
-        check(
-            of::<GetParameters>(),
-            "rcl_interfaces::srv::dds_::GetParameters_",
-            "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
-        );
-        check(
-            of::<DescribeParameters>(),
-            "rcl_interfaces::srv::dds_::DescribeParameters_",
-            "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
-        );
-        // This one has bounded strings.
-        check(
-            of::<GetTypeDescription>(),
-            "type_description_interfaces::srv::dds_::GetTypeDescription_",
-            "69b9c19c1021405984cc60dbbb1edceb147a6538b411d812ba6afabeed962cd5",
-        );
-        check(
-            of::<SetInitialPose>(),
-            "nav2_msgs::srv::dds_::SetInitialPose_",
-            "1f818551d505d16d89c8bf9b07121a6408de4408b7889dfda9a0db326c296153",
-        );
+    }
+
+    #[test]
+    #[rustfmt::skip]
+    fn types_have_the_hashes_that_ros_gives_them() {
+        // ROS 2 jazzy publishes these hashes with these types.
+        check(&[
+            (of_message::<LaserScan>(), "sensor_msgs::msg LaserScan", "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"),
+            (of_message::<Odometry>(), "nav_msgs::msg Odometry", "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"),
+            (of_message::<OccupancyGridMsg>(), "nav_msgs::msg OccupancyGrid", "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"),
+            (of_message::<TfMessage>(), "tf2_msgs::msg TFMessage", "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"),
+            (of_message::<PoseWithCovarianceStamped>(), "geometry_msgs::msg PoseWithCovarianceStamped", "26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e"),
+            (of_message::<PoseArray>(), "geometry_msgs::msg PoseArray", "af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0"),
+            (of_message::<DiagnosticArray>(), "diagnostic_msgs::msg DiagnosticArray", "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"),
+            (of_service("example_interfaces/srv/AddTwoInts", "int64 a\nint64 b\n", "int64 sum\n"), "example_interfaces::srv AddTwoInts", "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"),
+        ]);
+        // `rosbags` makes these hashes of the definitions.
+        check(&[
+            (of_message::<ParticleCloud>(), "nav2_msgs::msg ParticleCloud", "193d8cb88ca2b98cd81ece15342744f054bb398ebfa8f6369914432303f42b11"),
+            (of_message::<BondStatus>(), "bond::msg Status", "87eaccffa254ffffadc0b61600452e8251740f06c25659a2dbda4927fdb1f70a"),
+            (of_message::<ParameterEvent>(), "rcl_interfaces::msg ParameterEvent", "043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204"),
+            (of_message::<Clock>(), "rosgraph_msgs::msg Clock", "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564"),
+            (of_message::<Localization>(), "backcast_msgs::msg Localization", "54798799c773940db42bfa44236b5f3da93c8460bc340fdaf6044ac49036447c"),
+            (of_message::<TransitionEvent>(), "lifecycle_msgs::msg TransitionEvent", "d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38"),
+            (parameter_descriptor(), "rcl_interfaces::msg ParameterDescriptor", "52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704"),
+        ]);
+        // `zenoh_ros2_sdk` makes these hashes of the definitions.
+        check(&[
+            (service::<ChangeState>(), "lifecycle_msgs::srv ChangeState", "356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5"),
+            (service::<GetParameters>(), "rcl_interfaces::srv GetParameters", "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc"),
+            (service::<DescribeParameters>(), "rcl_interfaces::srv DescribeParameters", "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff"),
+            // This one has bounded strings.
+            (service::<GetTypeDescription>(), "type_description_interfaces::srv GetTypeDescription", "69b9c19c1021405984cc60dbbb1edceb147a6538b411d812ba6afabeed962cd5"),
+            (service::<SetInitialPose>(), "nav2_msgs::srv SetInitialPose", "1f818551d505d16d89c8bf9b07121a6408de4408b7889dfda9a0db326c296153"),
+        ]);
     }
 
     #[test]

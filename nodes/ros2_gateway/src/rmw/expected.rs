@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use ros::RosMessage;
 
-use super::description;
-use super::type_info::TypeInfo;
+use super::description::{self, TypeInfo};
 use crate::GatewayError;
 use crate::waiting::Publishing;
 

@@ -8,13 +8,21 @@ mod call;
 mod dds;
 mod description;
 mod expected;
-mod keeping;
 mod name;
 mod received;
-mod type_info;
 mod zenoh;
 
 pub(crate) use any::{Member, Publisher, Service, Subscription, Watch};
 pub(crate) use expected::Seen;
-pub(crate) use keeping::Keeping;
 pub(crate) use name::resolve;
+
+/// Reliability and durability of a topic, in the words of ROS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keeping {
+    /// Best effort, volatile: for sensors.
+    Fresh,
+    /// Reliable, volatile.
+    Reliable,
+    /// Reliable, transient local: late subscribers get the last messages of each sender.
+    Kept,
+}

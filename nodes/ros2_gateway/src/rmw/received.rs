@@ -14,6 +14,9 @@ pub(crate) struct Received<M> {
     pub(crate) lost: u64,
 }
 
+/// Sender of a message, and its number among those of the sender.
+pub(super) type Identity = ([u8; 16], i64);
+
 #[derive(Debug, Default)]
 pub(super) struct Senders {
     last: BTreeMap<[u8; 16], i64>,
@@ -21,7 +24,7 @@ pub(super) struct Senders {
 
 impl Senders {
     /// Returns the number of messages missing between the last one of this sender and this one.
-    pub(super) fn lost_before(&mut self, sender: [u8; 16], sequence: i64) -> u64 {
+    pub(super) fn lost_before(&mut self, (sender, sequence): Identity) -> u64 {
         if self.last.len() >= MAX_SENDERS && !self.last.contains_key(&sender) {
             self.last.clear();
         }

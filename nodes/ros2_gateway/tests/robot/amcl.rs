@@ -4,7 +4,7 @@ use std::path::Path;
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::client::{ask, of_scan, parameters, state, until_now};
+use super::client::{active, ask, of_scan, parameters, state, until_now};
 use super::tracked::{poses_of, send_pose, tracked};
 use super::*;
 
@@ -15,19 +15,6 @@ fn stamp(ms: i64) -> Stamp {
         entered_ns: transport::monotonic_ns(),
         counter: 0,
     }
-}
-
-/// Starts an active node in AMCL's place, with these parameters and options.
-fn active(tag: &str, namespace: &str, more: &[&str], options: &[&str]) -> Option<Joined> {
-    let file = parameters(&format!("{tag}.yaml"), more);
-    let common = [
-        "--as",
-        "amcl",
-        "--autostart",
-        "--params-file",
-        file.to_str().unwrap(),
-    ];
-    Joined::new(tag, namespace, &[&common, options].concat())
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A robot that is carried away, with the gateway in AMCL's place.
 
-use super::client::{of_scan, parameters, planar, state, until_now};
-use super::filter::engine_and_tracker;
+use super::client::{active, of_scan, planar, state, until_now};
+use super::filter::{NODES, start, wait_until_all_ready};
 use super::*;
 
 /// Pose of the laser on the recorded robot.
@@ -16,13 +16,10 @@ const CARRIED: usize = 8;
 
 #[test]
 fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
-    let file = parameters("carried.yaml", &["save_pose_rate: 0.0"]);
-    let file = file.to_str().unwrap();
-    let options = ["--as", "amcl", "--autostart", "--params-file", file];
-    let Some(mut joined) = Joined::new("ros-carried", "/", &options) else {
+    let Some(mut joined) = active("ros-carried", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
-    let nodes = engine_and_tracker(&joined.graph);
+    let nodes = start(&joined.graph, &NODES);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let robot = &mut joined.robot;
@@ -32,16 +29,8 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
         json!({ "name": "docking", "topic": "localization" }),
     );
     robot.order("arrive", json!({}));
-    for node in [
-        "boundary_extractor",
-        "accumulator",
-        "peak_extractor",
-        "tracker",
-    ] {
-        wait_until_ready(graph, node);
-    }
-    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
-    let truths = truths.ground_truths().unwrap();
+    wait_until_all_ready(graph, &NODES);
+    let truths = World::of("malaga_corridor").truths();
     let (odometry, scans) = (recorded(Kind::Odometry), scans());
     let stamp = |index: usize| scans[index].header.stamp.as_ns();
     let odom_from_base = |index: usize| match &odometry[index] {

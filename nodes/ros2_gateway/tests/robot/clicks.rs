@@ -2,8 +2,8 @@
 
 use messages::InitialPose;
 
-use super::client::{of_scan, parameters, planar};
-use super::filter::engine_and_tracker;
+use super::client::{active, of_scan, planar};
+use super::filter::{NODES, start, wait_until_all_ready};
 use super::*;
 
 /// Number of clicks between two scans, as by Simple Commander and an impatient operator.
@@ -11,29 +11,18 @@ const CLICKS: usize = 10;
 
 #[test]
 fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
-    let file = parameters("clicks.yaml", &["save_pose_rate: 0.0"]);
-    let file = file.to_str().unwrap();
-    let options = ["--as", "amcl", "--autostart", "--params-file", file];
-    let Some(mut joined) = Joined::new("ros-clicks", "/", &options) else {
+    let Some(mut joined) = active("ros-clicks", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
-    let nodes = engine_and_tracker(&joined.graph);
+    let nodes = start(&joined.graph, &NODES);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
     let robot = &mut joined.robot;
     robot.order("join", json!({ "name": "rviz" }));
     robot.order("arrive", json!({}));
-    for node in [
-        "boundary_extractor",
-        "accumulator",
-        "peak_extractor",
-        "tracker",
-    ] {
-        wait_until_ready(graph, node);
-    }
-    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
-    let truths = truths.ground_truths().unwrap();
+    wait_until_all_ready(graph, &NODES);
+    let truths = World::of("malaga_corridor").truths();
     let mount = Pose::new(0.78, 0.0, 0.0);
     let scans = scans();
     let stamp = |index: usize| scans[index].header.stamp.as_ns();

@@ -28,6 +28,24 @@ pub(super) fn parameters(name: &str, more: &[&str]) -> PathBuf {
     file
 }
 
+/// Starts an active node in AMCL's place, with these parameters and options.
+pub(super) fn active(
+    tag: &str,
+    namespace: &str,
+    more: &[&str],
+    options: &[&str],
+) -> Option<Joined> {
+    let file = parameters(&format!("{tag}.yaml"), more);
+    let common = [
+        "--as",
+        "amcl",
+        "--autostart",
+        "--params-file",
+        file.to_str().unwrap(),
+    ];
+    Joined::new(tag, namespace, &[&common, options].concat())
+}
+
 /// Calls a service and returns its response.
 pub(super) fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
     robot.order("ask", json!({ "service": service, "request": request }));

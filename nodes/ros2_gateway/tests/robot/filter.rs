@@ -1,28 +1,24 @@
 //! A particle filter that gets initial poses.
 
+use super::client::planar;
 use super::*;
 
-/// Starts the engine's nodes; they are ready once they have a map.
-pub(super) fn engine(graph: &Graph) -> Vec<NodeProcess> {
-    start(
-        graph,
-        &["boundary_extractor", "accumulator", "peak_extractor"],
-    )
-}
+/// The engine's nodes and the tracker.
+pub(super) const NODES: [&str; 4] = [
+    "boundary_extractor",
+    "accumulator",
+    "peak_extractor",
+    "tracker",
+];
 
-/// Starts the engine's nodes and the tracker.
-pub(super) fn engine_and_tracker(graph: &Graph) -> Vec<NodeProcess> {
-    let mut nodes = engine(graph);
-    nodes.extend(start(graph, &["tracker"]));
-    nodes
-}
-
-fn start(graph: &Graph, nodes: &[&str]) -> Vec<NodeProcess> {
-    let start = |name: &&str| {
-        let executable = executables::path(name);
-        NodeProcess::start(executable.to_str().unwrap(), graph, [""; 0])
-    };
+/// Starts these nodes; they are ready once they have a map.
+pub(super) fn start(graph: &Graph, nodes: &[&str]) -> Vec<NodeProcess> {
+    let start = |name: &&str| executables::start(name, graph, &[]);
     nodes.iter().map(start).collect()
+}
+
+pub(super) fn wait_until_all_ready(graph: &Graph, nodes: &[&str]) {
+    nodes.iter().for_each(|node| wait_until_ready(graph, node));
 }
 
 #[test]
@@ -30,14 +26,12 @@ fn a_particle_filter_gets_its_initial_pose() {
     let Some(mut joined) = Joined::new("ros-amcl", "/", &["--lost-beyond", "1,30"]) else {
         return;
     };
-    let nodes = engine(&joined.graph);
+    let engine = &NODES[..3];
+    let nodes = start(&joined.graph, engine);
     let robot = &mut joined.robot;
     robot.order("arrive", json!({}));
-    for node in ["boundary_extractor", "accumulator", "peak_extractor"] {
-        wait_until_ready(&joined.graph, node);
-    }
-    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
-    let truths = truths.ground_truths().unwrap();
+    wait_until_all_ready(&joined.graph, engine);
+    let truths = World::of("malaga_corridor").truths();
     let stamps: Vec<i64> = scans()
         .iter()
         .map(|scan| scan.header.stamp.as_ns())
@@ -73,9 +67,7 @@ fn a_particle_filter_gets_its_initial_pose() {
         (&seed[0]["stamp"], &seed[0]["frame"]),
         (&json!(stamps[index]), &json!("map"))
     );
-    let of = |value: &Value, i: usize| value[i].as_f64().unwrap();
-    let pose = &seed[0]["pose"];
-    let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
+    let base = planar(&seed[0]["pose"]);
     let laser = base.then(Pose::new(0.78, 0.0, 0.0));
     // The accuracy of all results on this recording.
     let truth = truths[&stamps[index]].pose;

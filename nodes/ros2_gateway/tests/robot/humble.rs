@@ -1,15 +1,12 @@
 //! A robot of ROS 2 Humble, whose types have no hashes.
 
-use super::client::{ask, of_scan, parameters, state};
+use super::client::{active, ask, of_scan, state};
 use super::tracked::{poses_of, send_pose, tracked};
 use super::*;
 
 #[test]
 fn a_robot_whose_types_have_no_hashes_is_understood_and_understands() {
-    let file = parameters("humble.yaml", &["save_pose_rate: 0.0"]);
-    let file = file.to_str().unwrap();
-    let options = ["--as", "amcl", "--autostart", "--params-file", file];
-    let Some(mut joined) = Joined::new("ros-humble", "/", &options) else {
+    let Some(mut joined) = active("ros-humble", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
     let graph = &joined.graph;

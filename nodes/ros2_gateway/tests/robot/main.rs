@@ -111,8 +111,7 @@ fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
 /// Compares a pose that other libraries have converted: quaternions give back a yaw to a few units
 /// in the last place.
 fn assert_near(found: &Value, expected: Pose) {
-    let of = |index: usize| found[index].as_f64().unwrap();
-    let found = Pose::new(of(0), of(1), of(2));
+    let found = client::planar(found);
     assert!(
         found.is_within(expected, 1e-9, 1e-9),
         "{found:?} {expected:?}"

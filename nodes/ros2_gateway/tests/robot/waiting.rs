@@ -1,6 +1,6 @@
 //! Inputs that the gateway waits for, as the page shows them.
 
-use super::client::parameters;
+use super::client::active;
 use super::*;
 
 #[test]
@@ -27,10 +27,7 @@ fn a_router_that_is_not_there_is_named_until_it_is() {
 
 #[test]
 fn inputs_that_do_not_come_are_named_and_the_node_is_ready_when_they_do() {
-    let file = parameters("waiting.yaml", &["save_pose_rate: 0.0"]);
-    let file = file.to_str().unwrap();
-    let options = ["--as", "amcl", "--autostart", "--params-file", file];
-    let Some(mut joined) = Joined::new("ros-waiting", "/", &options) else {
+    let Some(mut joined) = active("ros-waiting", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
     let graph = &joined.graph;

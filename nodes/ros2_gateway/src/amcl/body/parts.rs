@@ -17,8 +17,7 @@ use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::Taken;
 use crate::outlet::Rules;
-use crate::rmw::{Member, Seen, Service, Watch};
-use crate::seeding::Seeding;
+use crate::rmw::{Member, Service, Watch};
 
 /// Inputs and outputs that exist from configuration to cleanup.
 pub(super) struct Parts {
@@ -33,8 +32,6 @@ pub(super) struct Parts {
     saved: SavedPose,
     /// Saved pose of the last run, until the tracker's first pose shows if it is needed.
     offered: Option<InitialPose>,
-    /// Needed by [`Incoming`], and never asked: no particle filter is seeded.
-    seeding: Seeding,
 }
 
 impl Parts {
@@ -61,7 +58,6 @@ impl Parts {
         Ok(Parts {
             nomotion: Service::open(graph, member, &topics.nomotion)?,
             frames: Frames::new(config.mounts()?).with_base(base),
-            seeding: Seeding::new(config.seed, config.lost_beyond),
             saved: SavedPose::default(),
             offered: None,
             clock,
@@ -88,23 +84,12 @@ impl Parts {
             }
         }
         self.incoming.set_rules(rules(parameters));
-        self.incoming
-            .step(&mut self.frames, &mut self.seeding, report)?;
-        self.look(member, report)?;
+        // No particle filter is seeded.
+        self.incoming.step(&mut self.frames, |_| {}, report)?;
+        self.watch.look(member, report, |_| {})?;
         self.hints.take(&self.frames, map_frame, pending, report)?;
         // Each scan is an update anyway, even while the robot stands still.
         self.nomotion.serve(report, |_| Nothing::default())?;
-        Ok(())
-    }
-
-    /// Reports publishers whose messages cannot be received.
-    fn look(&mut self, member: &Member, report: &mut Report) -> Result<(), TransportError> {
-        report.dropped(self.watch.dropped());
-        while let Some(seen) = self.watch.next(member) {
-            if let Seen::Stranger(error) = seen {
-                report.refused(&error)?;
-            }
-        }
         Ok(())
     }
 

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use ros::RosMessage;
 use rustdds::{
     DomainParticipantStatusEvent as Event, DomainParticipantStatusListener, EndpointDescription,
     GUID, RTPSEntity, StatusEvented,
@@ -12,8 +11,8 @@ use rustdds::{
 use super::{Member, quality};
 use crate::GatewayError;
 use crate::rmw::Seen;
+use crate::rmw::description::TypeInfo;
 use crate::rmw::expected::{Endpoint, Expected};
-use crate::rmw::type_info::TypeInfo;
 use crate::waiting::Publishing;
 
 /// Time that an endpoint waits for reports about its quality of service.
@@ -29,7 +28,6 @@ pub(crate) struct Watch {
     listener: DomainParticipantStatusListener,
     /// Number of the participant.
     own: [u8; 16],
-    pub(in crate::rmw) expected: Expected,
     /// True once the endpoints that were there before were looked at.
     has_begun: bool,
     /// Endpoints that were looked at: discovery repeats everything.
@@ -49,38 +47,26 @@ struct Pending {
 }
 
 impl Watch {
-    /// Opens a watch that reports subscribers of `subscribed`.
-    pub(crate) fn open(member: &Member, subscribed: &str) -> Self {
+    pub(crate) fn open(member: &Member) -> Self {
         let listener = member.participant().status_listener();
         Watch {
             listener,
             own: member.participant().guid().to_bytes(),
-            expected: Expected::new(subscribed),
             has_begun: false,
             known: BTreeSet::new(),
             pending: Vec::new(),
         }
     }
 
-    /// Also reports publishers of `topic` whose messages cannot be received as `M`.
-    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
-        self.expected.expect::<M>(topic)
-    }
-
-    /// Returns the kind of the topic's publisher; a matching one counts before others.
-    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
-        self.expected.publishing(topic)
-    }
-
     /// Returns the next event of interest.
-    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
+    pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
         if !std::mem::replace(&mut self.has_begun, true) {
-            self.begin(member);
+            self.begin(member, expected);
         }
         while let Some(event) = self.listener.try_recv_status() {
             match event {
-                Event::ReaderDetected { reader } => self.add_described(false, &reader),
-                Event::WriterDetected { writer } => self.add_described(true, &writer),
+                Event::ReaderDetected { reader } => self.add_described(expected, false, &reader),
+                Event::WriterDetected { writer } => self.add_described(expected, true, &writer),
                 Event::ReaderLost { guid, .. } | Event::WriterLost { guid, .. } => {
                     self.known.remove(&guid);
                     self.pending.retain(|pending| pending.guid != guid);
@@ -100,31 +86,43 @@ impl Watch {
                 _ => {}
             }
         }
-        self.settle(member)
+        self.settle(member, expected)
     }
 
     /// Adds the endpoints that were there before.
-    fn begin(&mut self, member: &Member) {
+    fn begin(&mut self, member: &Member, expected: &Expected) {
         for reader in member.participant().discovered_readers() {
             let data = &reader.subscription_topic_data;
             let names = (data.topic_name().as_str(), data.type_name().as_str());
-            self.add(data.key(), false, names, &reader.user_data);
+            self.add(expected, data.key(), false, names, &reader.user_data);
         }
         for writer in member.participant().discovered_writers() {
             let data = &writer.publication_topic_data;
             let names = (data.topic_name.as_str(), data.type_name.as_str());
-            self.add(data.key, true, names, &writer.user_data);
+            self.add(expected, data.key, true, names, &writer.user_data);
         }
     }
 
-    fn add_described(&mut self, is_publisher: bool, endpoint: &EndpointDescription) {
+    fn add_described(
+        &mut self,
+        expected: &Expected,
+        is_publisher: bool,
+        endpoint: &EndpointDescription,
+    ) {
         let names = (&*endpoint.topic_name, &*endpoint.type_name);
-        self.add(endpoint.guid, is_publisher, names, &endpoint.user_data);
+        self.add(
+            expected,
+            endpoint.guid,
+            is_publisher,
+            names,
+            &endpoint.user_data,
+        );
     }
 
     /// Queues an endpoint that is of interest.
     fn add(
         &mut self,
+        expected: &Expected,
         guid: GUID,
         is_publisher: bool,
         (topic, kind): (&str, &str),
@@ -133,7 +131,7 @@ impl Watch {
         let is_own = guid.to_bytes()[..PARTICIPANT] == self.own[..PARTICIPANT];
         let topic = topic.strip_prefix("rt").filter(|_| !is_own);
         if let Some(topic) = topic
-            && self.expected.concerns(is_publisher, topic)
+            && expected.concerns(is_publisher, topic)
             && self.known.insert(guid)
         {
             self.pending.push(Pending {
@@ -151,7 +149,7 @@ impl Watch {
     }
 
     /// Returns the next event of an endpoint that is fully known, or has waited long enough.
-    fn settle(&mut self, member: &Member) -> Option<Seen> {
+    fn settle(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
         let mut index = 0;
         while let Some(pending) = self.pending.get(index) {
             let waited = pending.since.elapsed();
@@ -162,38 +160,38 @@ impl Watch {
             }
             let pending = self.pending.remove(index);
             let name = name.unwrap_or_else(|| "a node without a name".to_owned());
-            let seen = self.judge(pending, name);
+            let seen = judge(pending, name, expected);
             if seen.is_some() {
                 return seen;
             }
         }
         None
     }
+}
 
-    fn judge(&mut self, pending: Pending, node: String) -> Option<Seen> {
-        let Pending {
-            is_publisher,
-            topic,
-            info,
-            mismatch,
-            ..
-        } = pending;
-        if let Some([found, expected]) = mismatch {
-            self.expected.found_as(&topic, Publishing::OtherQuality);
-            return Some(Seen::Stranger(GatewayError::Stranger {
-                node,
-                topic,
-                found,
-                expected,
-            }));
-        }
-        self.expected.note(&Endpoint {
-            is_publisher,
+fn judge(pending: Pending, node: String, awaited: &mut Expected) -> Option<Seen> {
+    let Pending {
+        is_publisher,
+        topic,
+        info,
+        mismatch,
+        ..
+    } = pending;
+    if let Some([found, expected]) = mismatch {
+        awaited.found_as(&topic, Publishing::OtherQuality);
+        return Some(Seen::Stranger(GatewayError::Stranger {
             node,
             topic,
-            info,
-        })
+            found,
+            expected,
+        }));
     }
+    awaited.note(&Endpoint {
+        is_publisher,
+        node,
+        topic,
+        info,
+    })
 }
 
 /// Returns the type hash in an endpoint's user data, given as `typehash=RIHS01_…;`, if there is

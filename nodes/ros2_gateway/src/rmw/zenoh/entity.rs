@@ -17,7 +17,7 @@ use zenoh::{Session, Wait};
 use zenoh_session::{KeyError, Report, Routers};
 
 use crate::rmw::Keeping;
-use crate::rmw::type_info::TypeInfo;
+use crate::rmw::description::TypeInfo;
 use crate::{Config, GatewayError};
 
 /// Prefix of all tokens.
@@ -63,7 +63,6 @@ pub(super) struct Endpoint {
     pub(super) key: String,
     /// Key that nodes of ROS 2 Humble use.
     pub(super) humble_key: String,
-    pub(super) topic: String,
     /// Identifies the sender of a message.
     pub(super) sender: [u8; 16],
     token: String,
@@ -144,7 +143,6 @@ impl Member {
         Endpoint {
             key: format!("{of_type}/{}", info.hash),
             humble_key: format!("{of_type}/{NO_HASH}"),
-            topic: topic.to_owned(),
             // Computed as in rmw_zenoh: both halves, the lower one first.
             sender: XxHash3_128::oneshot(token.as_bytes()).to_le_bytes(),
             token,

@@ -1,8 +1,5 @@
 //! A topic to the robot.
 
-use std::marker::PhantomData;
-
-use ros::RosMessage;
 use transport::wall_ns;
 use zenoh::Wait;
 use zenoh::bytes::ZBytes;
@@ -15,15 +12,15 @@ use zenoh_session::KeyError;
 use super::entity::{Endpoint, Kind};
 use super::{Attachment, Member};
 use crate::GatewayError;
-use crate::rmw::{Keeping, description};
+use crate::rmw::Keeping;
+use crate::rmw::description::TypeInfo;
 
-pub(crate) struct Publisher<M> {
+pub(crate) struct Publisher {
     endpoint: Endpoint,
     /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     sinks: [Sink; 2],
     _token: LivelinessToken,
     sequence: i64,
-    message: PhantomData<M>,
 }
 
 enum Sink {
@@ -33,12 +30,12 @@ enum Sink {
     Kept(AdvancedPublisher<'static>),
 }
 
-impl<M: RosMessage> Publisher<M> {
+impl Publisher {
     /// Opens the topic. On a slow network, one that blocks waits until Zenoh closes the connection;
     /// others drop the message.
     pub(crate) fn open(
         member: &Member,
-        topic: &str,
+        (topic, info): (&str, &TypeInfo),
         quality: (Keeping, usize),
         blocks: bool,
     ) -> Result<Self, GatewayError> {
@@ -46,7 +43,7 @@ impl<M: RosMessage> Publisher<M> {
             true => CongestionControl::Block,
             false => CongestionControl::Drop,
         };
-        Self::with(member, topic, quality, |key| {
+        Self::with(member, (topic, info), quality, |key| {
             let publisher = member.session().declare_publisher(key);
             // Not express: each message would take one of the two batches of its priority, so that
             // a third one at once is dropped, and Zenoh may go on dropping.
@@ -70,12 +67,11 @@ impl<M: RosMessage> Publisher<M> {
 
     fn with(
         member: &Member,
-        topic: &str,
+        (topic, info): (&str, &TypeInfo),
         quality: (Keeping, usize),
         declare: impl Fn(String) -> zenoh::Result<Sink>,
     ) -> Result<Self, GatewayError> {
-        let info = description::of_message::<M>()?;
-        let endpoint = member.endpoint(Kind::Publisher, topic, &info, quality);
+        let endpoint = member.endpoint(Kind::Publisher, topic, info, quality);
         let declared = |key: &String| declare(key.clone()).map_err(KeyError::when("publish", key));
         let sinks = [declared(&endpoint.key)?, declared(&endpoint.humble_key)?];
         Ok(Publisher {
@@ -84,15 +80,11 @@ impl<M: RosMessage> Publisher<M> {
             sinks,
             // Sequence numbers of rmw_zenoh begin with 1.
             sequence: 1,
-            message: PhantomData,
         })
     }
 
-    pub(crate) fn send(&mut self, message: &M) -> Result<(), GatewayError> {
-        let bytes = ros::cdr::encode(message).map_err(|error| GatewayError::Encode {
-            topic: self.endpoint.topic.clone(),
-            reason: error.to_string(),
-        })?;
+    /// Sends a message in CDR.
+    pub(crate) fn send(&mut self, bytes: Vec<u8>) -> Result<(), GatewayError> {
         let attachment = Attachment {
             sequence: self.sequence,
             sent_ns: wall_ns(),

@@ -1,45 +1,33 @@
 //! A topic from the robot.
-//!
-//! Losses are counted: those of the queue here by its limits, and those on the way by the sequence
-//! numbers of the sender.
 
-use std::marker::PhantomData;
-
-use ros::RosMessage;
-use serde::de::DeserializeOwned;
 use transport::Graph;
 use zenoh::liveliness::LivelinessToken;
-use zenoh::sample::Sample;
 use zenoh_session::{Past, Queue, QueueLimits};
 
 use super::entity::Kind;
 use super::{Attachment, Member};
 use crate::GatewayError;
-use crate::rmw::received::{Received, Senders};
-use crate::rmw::{Keeping, description};
+use crate::rmw::Keeping;
+use crate::rmw::description::TypeInfo;
+use crate::rmw::received::Identity;
 
-pub(crate) struct Subscription<M> {
+pub(crate) struct Subscription {
     topic: String,
     /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     queues: [Queue; 2],
-    senders: Senders,
-    received: bool,
     _token: LivelinessToken,
-    message: PhantomData<M>,
 }
 
-impl<M: RosMessage + DeserializeOwned> Subscription<M> {
+impl Subscription {
     /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
-        topic: &str,
-        keeping: Keeping,
-        depth: usize,
+        (topic, info): (&str, &TypeInfo),
+        (keeping, depth): (Keeping, usize),
         max_bytes: usize,
     ) -> Result<Self, GatewayError> {
-        let info = description::of_message::<M>()?;
-        let endpoint = member.endpoint(Kind::Subscription, topic, &info, (keeping, depth));
+        let endpoint = member.endpoint(Kind::Subscription, topic, info, (keeping, depth));
         let past = match keeping {
             Keeping::Fresh | Keeping::Reliable => Past::Gone,
             Keeping::Kept => Past::Last(depth),
@@ -52,10 +40,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         Ok(Subscription {
             topic: topic.to_owned(),
             queues: [open(&endpoint.key)?, open(&endpoint.humble_key)?],
-            senders: Senders::default(),
-            received: false,
             _token: member.show(&endpoint)?,
-            message: PhantomData,
         })
     }
 
@@ -84,30 +69,18 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    pub(crate) fn next(&mut self) -> Option<Received<M>> {
+    /// Passes the next message to `decode`.
+    pub(crate) fn next<M>(
+        &self,
+        decode: impl FnOnce(&[u8], Option<Identity>) -> Result<M, GatewayError>,
+    ) -> Option<Result<M, GatewayError>> {
         let sample = self.queues.iter().find_map(Queue::next)?;
-        let mut lost = 0;
-        let message = self.decode(&sample, &mut lost);
-        if message.is_ok() && !self.received {
-            self.received = true;
-            tracing::info!(topic = self.topic, "first message received");
-        }
-        Some(Received { message, lost })
-    }
-
-    fn decode(&mut self, sample: &Sample, lost: &mut u64) -> Result<M, GatewayError> {
         // Scripts that use plain Zenoh may leave it out.
-        if let Some(bytes) = sample.attachment() {
-            let attachment = Attachment::decode(&self.topic, bytes)?;
-            let Attachment {
-                sender, sequence, ..
-            } = attachment;
-            *lost = self.senders.lost_before(sender, sequence);
-        }
-        let bytes = sample.payload().to_bytes();
-        ros::cdr::decode(&bytes).map_err(|reason| GatewayError::Message {
-            topic: self.topic.clone(),
-            reason,
-        })
+        let attachment = sample.attachment();
+        let attachment = attachment.map(|bytes| Attachment::decode(&self.topic, bytes));
+        Some(attachment.transpose().and_then(|attachment| {
+            let identity = attachment.map(|of| (of.sender, of.sequence));
+            decode(&sample.payload().to_bytes(), identity)
+        }))
     }
 }

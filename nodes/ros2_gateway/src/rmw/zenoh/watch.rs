@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam::queue::ArrayQueue;
-use ros::RosMessage;
 use transport::Graph;
 use zenoh::Wait;
 use zenoh::pubsub::Subscriber;
@@ -16,7 +15,6 @@ use super::entity::{Kind, Token};
 use crate::GatewayError;
 use crate::rmw::Seen;
 use crate::rmw::expected::{Endpoint, Expected};
-use crate::waiting::Publishing;
 
 /// Largest number of queued tokens: a large robot has some hundred.
 const MAX_WAITING: usize = 4096;
@@ -24,17 +22,11 @@ const MAX_WAITING: usize = 4096;
 pub(crate) struct Watch {
     tokens: Arc<ArrayQueue<String>>,
     dropped: Arc<AtomicU64>,
-    pub(in crate::rmw) expected: Expected,
     _subscriber: Subscriber<()>,
 }
 
 impl Watch {
-    /// Opens a watch that reports subscribers of `subscribed`.
-    pub(crate) fn open(
-        graph: &Graph,
-        member: &Member,
-        subscribed: &str,
-    ) -> Result<Self, GatewayError> {
+    pub(crate) fn open(graph: &Graph, member: &Member) -> Result<Self, GatewayError> {
         let tokens = Arc::new(ArrayQueue::new(MAX_WAITING));
         let dropped = Arc::new(AtomicU64::new(0));
         let waker = graph.waker()?;
@@ -58,19 +50,8 @@ impl Watch {
         Ok(Watch {
             tokens,
             dropped,
-            expected: Expected::new(subscribed),
             _subscriber: subscriber,
         })
-    }
-
-    /// Also reports publishers of `topic` with another type than `M`.
-    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
-        self.expected.expect::<M>(topic)
-    }
-
-    /// Returns the kind of the topic's publisher; a matching one counts before others.
-    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
-        self.expected.publishing(topic)
     }
 
     /// Returns the number of tokens dropped since the last call because there were too many.
@@ -79,7 +60,7 @@ impl Watch {
     }
 
     /// Returns the next event of interest; a token that cannot be read is none.
-    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
+    pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
         let mine = member.session().zid().to_string();
         while let Some(key) = self.tokens.pop() {
             let Some(token) = Token::read(&key).filter(|token| token.session != mine) else {
@@ -88,7 +69,7 @@ impl Watch {
             if is_second(&token, member.node()) {
                 return Some(Seen::Stranger(GatewayError::SecondNode(token.node)));
             }
-            let seen = endpoint(token).and_then(|other| self.expected.note(&other));
+            let seen = endpoint(token).and_then(|other| expected.note(&other));
             if seen.is_some() {
                 return seen;
             }
