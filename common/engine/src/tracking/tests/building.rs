@@ -87,11 +87,9 @@ impl Building {
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
         let ends = self.ends_of(ranges);
-        let places = by_fit(
-            &input,
-            (&self.distance_field, &ends),
-            &PeakConfig::default(),
-        );
+        let mut workspace = peaks::Workspace::default();
+        let fit = (&self.distance_field, &ends);
+        let places = workspace.by_fit(&input, fit, &PeakConfig::default());
         let target = Target::of(None, false);
         let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
