@@ -148,6 +148,17 @@ impl Place {
             support: self.support,
         }
     }
+
+    /// Converts a place of the target frame to one of the first laser.
+    #[must_use]
+    pub fn of_laser(&self, target: Target) -> Place {
+        let map_from_laser = target.laser(self.map_from_laser);
+        Place {
+            map_from_laser,
+            covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
+            ..*self
+        }
+    }
 }
 
 /// The target frame, whose poses are searched, with its relation to the first laser and the base.
@@ -203,19 +214,6 @@ impl Target {
     #[must_use]
     pub fn base(self, map_from_target: Pose) -> Pose {
         map_from_target.then(self.target_from_base)
-    }
-}
-
-impl Place {
-    /// Converts a place of the target frame to one of the first laser.
-    #[must_use]
-    pub fn of_laser(&self, target: Target) -> Place {
-        let map_from_laser = target.laser(self.map_from_laser);
-        Place {
-            map_from_laser,
-            covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
-            ..*self
-        }
     }
 }
 
