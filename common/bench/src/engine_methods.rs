@@ -1,5 +1,6 @@
 //! The engine's methods, as the bench calls them.
 
+use std::cmp::Reverse;
 use std::time::Instant;
 
 use benchmarks::worlds::World;
@@ -11,7 +12,7 @@ use engine::program::ScanProgram;
 use engine::scatter::Scatter;
 use engine::search::{SearchIndex, Workspace};
 use engine::sweep::FieldSweep;
-use engine::votes::{CollectConfig, VoteSet, distinct, of_field};
+use engine::votes::{CollectConfig, VoteSet, distinct};
 use messages::Vote;
 use offline::OfflineError;
 
@@ -46,21 +47,26 @@ fn pose(vote: &Vote) -> Pose {
 /// By the fields of an accumulator at some headings.
 fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'a> {
     let (mut accumulator, mut field) = (accumulator, Vec::new());
+    let width = world.grid.width();
     Box::new(move |task, headings| {
         let program = program(task)?;
-        let sets = headings.iter().filter_map(|&heading| {
+        let bests = headings.iter().filter_map(|&heading| {
             let query = Query {
                 program: &program,
                 space: task.space,
                 heading,
             };
             accumulator.fill(query, &mut field, &|| false)?;
-            Some(of_field(&field, world.grid.width(), heading as u16, ARGMAX))
+            let first_best = |(i, votes): (usize, &u16)| (*votes, Reverse(heading), Reverse(i));
+            field.iter().enumerate().map(first_best).max()
         });
         // Of equal ones the first, as the search has it.
-        let better = |a: VoteSet, b: VoteSet| if b.best > a.best { b } else { a };
-        let found = sets.reduce(better);
-        Ok(Answer::Best(found.and_then(|found| best(&found))))
+        let best = bests.max().filter(|&(votes, ..)| votes > 0);
+        Ok(Answer::Best(best.map(|(_, heading, cell)| Pose {
+            x: cell.0 % width,
+            y: cell.0 / width,
+            heading: heading.0,
+        })))
     })
 }
 

@@ -13,7 +13,7 @@ use clap::Parser;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior, Workspace};
-use engine::peaks::{PeakConfig, PeakInput, by_votes};
+use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::program::VoteConfig;
 use engine::regions::{self, Echo, RegionConfig};
 use engine::scan::Scan;
@@ -214,6 +214,7 @@ fn tally(
     reading: Reading,
 ) -> Result<Tally, EngineError> {
     let (mut tally, mut workspace) = (Tally::default(), Workspace::default());
+    let mut peaks = peaks::Workspace::default();
     for (i, last) in drive.iter().enumerate() {
         // Skips scans before the first full window.
         if last.way_m < way_m {
@@ -227,7 +228,7 @@ fn tally(
         let outcome = localizer.search_in(&mut workspace, &scan, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");
         let input = PeakInput::of(outcome, localizer.frame());
-        let found = by_votes(&input, &PeakConfig::default());
+        let found = peaks.by_votes(&input, &PeakConfig::default());
         let places = found.places.iter().take(PLACES);
         let is_right: Vec<bool> = places
             .map(|place| {

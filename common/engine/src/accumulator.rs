@@ -3,9 +3,7 @@
 //! All accumulators give the same numbers and differ only in speed.
 
 use crate::directions::Direction;
-use crate::grid::Grid;
 use crate::program::{ScanProgram, Taper};
-use crate::reference;
 use crate::space::Space;
 
 /// One scan at one heading.
@@ -41,45 +39,15 @@ pub trait Accumulator {
     ) -> Option<()>;
 }
 
-/// The slow reference: visits every cell of every ray.
-#[derive(Debug, Clone, Copy)]
-pub struct Reference<'a> {
-    /// The map.
-    pub grid: &'a Grid,
-}
-
-impl Accumulator for Reference<'_> {
-    fn fill(
-        &mut self,
-        query: Query<'_>,
-        field: &mut Vec<u16>,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<()> {
-        let Query {
-            program,
-            space,
-            heading,
-        } = query;
-        field.clear();
-        for y in 0..self.grid.height() as i64 {
-            if stop() {
-                return None;
-            }
-            let xs = 0..self.grid.width() as i64;
-            field
-                .extend(xs.map(|x| reference::intensity(self.grid, program, space, x, y, heading)));
-        }
-        Some(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
     use crate::boundary;
+    use crate::grid::Grid;
     use crate::instruction_set::InstructionSet;
+    use crate::reference;
     use crate::scatter::Scatter;
     use crate::sweep::FieldSweep;
     use crate::testing::{any_grid, any_long_grid, any_scan, space_of};
@@ -88,10 +56,7 @@ mod tests {
         let plain = reference::field(grid, query.program, query.space, query.heading);
         let boundary = boundary::extract(grid);
         let sweeps = FieldSweep::new(grid);
-        let mut all: Vec<Box<dyn Accumulator>> = vec![
-            Box::new(Reference { grid }),
-            Box::new(Scatter::new(grid, &boundary)),
-        ];
+        let mut all: Vec<Box<dyn Accumulator>> = vec![Box::new(Scatter::new(grid, &boundary))];
         for set in InstructionSet::available() {
             all.push(Box::new(sweeps.accumulator_with(set)));
         }

@@ -262,16 +262,17 @@ mod tests {
     #[test]
     fn refuses_sides_and_counts_that_cannot_be() {
         let rules = CellRules::default();
-        let error = Grid::new(0, 3, &[], rules).unwrap_err().to_string();
-        assert_eq!(
-            error,
-            "a grid of 0 x 3 cells: each side must have 1 to 32767 cells"
-        );
-        let error = Grid::new(2, 3, &[0; 5], rules).unwrap_err().to_string();
-        assert_eq!(
-            error,
-            "a grid of 2 x 3 cells came with 5 occupancies instead of 6"
-        );
+        let (width, height, cells) = (0, 3, 5);
+        let refused = Grid::new(width, height, &[], rules);
+        assert_eq!(refused, Err(EngineError::GridSides { width, height }));
+        let width = 2;
+        let refused = Grid::new(width, height, &[0; 5], rules);
+        let expected = EngineError::GridCells {
+            width,
+            height,
+            cells,
+        };
+        assert_eq!(refused, Err(expected));
         assert!(Grid::new(MAX_SIDE + 1, 1, &vec![0; MAX_SIDE + 1], rules).is_err());
     }
 

@@ -18,7 +18,7 @@ use crate::search::{self, BlockBounds, SearchIndex};
 use crate::space::Space;
 use crate::sweep;
 use crate::votes::{FieldVotes, VoteSet, VoteShare};
-pub use config::{FieldMethod, LocalizerConfig};
+pub use config::LocalizerConfig;
 use field::Fields;
 pub use preparation::Preparation;
 
@@ -344,8 +344,8 @@ impl Localizer {
             space: &self.space,
             heading: index,
         };
-        let how = (&self.grid, self.config.method);
-        if fields.fill(how, query, (sweep, field), stop).is_none() {
+        let scratch = (sweep, &mut *field);
+        if fields.fill(&self.grid, query, scratch, stop).is_none() {
             return Ok(None);
         }
         limits.clear(field, index);

@@ -118,9 +118,7 @@ impl MapSet {
             ends: best.ends(config.score),
         }))
     }
-}
 
-impl MapSet {
     fn search(
         &self,
         workspace: &mut Workspace,

@@ -121,13 +121,14 @@ impl Seed {
             covariance: Covariance(covariance),
             weight,
         } = *candidate;
-        let (x, y, heading) = frame.cells_from_map(map_from_target);
-        let mut numbers = covariance.iter().chain([&x, &y, &heading, &weight]);
+        let pose = GridPose::of(frame, map_from_target);
+        let GridPose { x, y, heading } = &pose;
+        let mut numbers = covariance.iter().chain([x, y, heading, &weight]);
         if !(numbers.all(|number| number.is_finite()) && weight >= 0.0) {
             return None;
         }
         Some(Seed {
-            pose: GridPose { x, y, heading },
+            pose,
             root: root(in_cells(frame, covariance))?,
             weight,
         })

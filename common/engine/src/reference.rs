@@ -5,7 +5,6 @@
 
 use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
-use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
 
@@ -54,25 +53,6 @@ pub fn field(grid: &Grid, program: &ScanProgram, space: &Space, heading: usize) 
     cells
         .map(|(x, y)| intensity(grid, program, space, x, y, heading))
         .collect()
-}
-
-/// Does the same within limits: 0 where no pose is searched.
-#[must_use]
-pub fn field_within(
-    limits: &Limits,
-    grid: &Grid,
-    program: &ScanProgram,
-    space: &Space,
-    heading: usize,
-) -> Vec<u16> {
-    let mut field = field(grid, program, space, heading);
-    for (i, votes) in field.iter_mut().enumerate() {
-        let (x, y) = (i % grid.width(), i / grid.width());
-        if !(limits.hold_cell(x, y) && limits.hold_heading(heading)) {
-            *votes = 0;
-        }
-    }
-    field
 }
 
 #[cfg(test)]

@@ -145,53 +145,36 @@ mod tests {
         }
     }
 
-    #[track_caller]
-    fn check(scan: Scan<'_>, expected: &str) {
-        assert_eq!(scan.check().unwrap_err().to_string(), expected);
-    }
-
     #[test]
     fn says_what_is_wrong_with_a_scan() {
         let sound = scan(&[1.0; 3]);
         assert_eq!(sound.check(), Ok(()));
-        check(scan(&[]), "the scan is empty: it has no ranges");
-        check(
-            Scan {
-                angle_increment: 0.0,
-                ..sound
-            },
-            "angle_increment is 0: it must be finite and not zero, in radians; below zero is \
-             clockwise",
-        );
-        check(
-            Scan {
-                angle_min: f64::NAN,
-                ..sound
-            },
-            "angle_min is NaN: it must be finite, in radians, within two turns",
-        );
-        check(
-            Scan {
-                range_min_m: 5.0,
-                range_max_m: 1.0,
-                ..sound
-            },
-            "range_min 5 and range_max 1: 0 <= range_min < range_max is needed, in metres",
-        );
-        check(
-            Scan {
-                angle_increment: 7.0,
-                ..sound
-            },
-            "3 beams of 7 rad cover 1.67 turns: at most one is allowed",
-        );
-        check(
-            Scan {
-                angle_increment: -7.0,
-                ..sound
-            },
-            "3 beams of -7 rad cover 1.67 turns: at most one is allowed",
-        );
+        let check = |scan: Scan<'_>, expected| assert_eq!(scan.check(), Err(expected));
+        check(scan(&[]), EngineError::EmptyScan);
+        let turned = |angle_increment| Scan {
+            angle_increment,
+            ..sound
+        };
+        check(turned(0.0), EngineError::AngleIncrement(0.0));
+        let nowhere = Scan {
+            angle_min: f64::NAN,
+            ..sound
+        };
+        assert!(matches!(nowhere.check(), Err(EngineError::AngleMin(angle)) if angle.is_nan()));
+        let (min, max) = (5.0, 1.0);
+        let limited = Scan {
+            range_min_m: min,
+            range_max_m: max,
+            ..sound
+        };
+        check(limited, EngineError::RangeLimits { min, max });
+        for increment in [7.0, -7.0] {
+            assert!(matches!(
+                turned(increment).check(),
+                Err(EngineError::FieldOfView { beams: 3, angle_increment, turns })
+                    if angle_increment == increment && (turns - 1.67).abs() < 0.01
+            ));
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
 
-use crate::grid::{CellRules, Grid, GridFrame};
+use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::limits::{HeadingInterval, Limits, LimitsConfig, Region};
 use crate::program::{ScanProgram, VoteConfig};
 use crate::reference;
@@ -113,6 +113,16 @@ pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Li
     )
 }
 
+/// Occupancies of a grid.
+pub(crate) fn occupancy_of(grid: &Grid) -> Vec<u8> {
+    let occupancy = |cell: &Cell| match cell {
+        Cell::Occupied => 100,
+        Cell::Open => 0,
+        Cell::Blocked => UNKNOWN,
+    };
+    grid.cells().iter().map(occupancy).collect()
+}
+
 /// Collects all poses by the reference implementation, as the search does.
 pub(crate) fn plain_votes(
     grid: &Grid,
@@ -134,14 +144,17 @@ pub(crate) fn plain_votes_within(
 ) -> VoteSet {
     let mut collector = Collector::new(config);
     for heading in 0..space.directions.count() {
-        let field = reference::field_within(limits, grid, program, space, heading);
+        let field = reference::field(grid, program, space, heading);
         for (i, &intensity) in field.iter().enumerate() {
             let (x, y) = (i % grid.width(), i / grid.width());
             collector.take(Vote {
                 x: x as u16,
                 y: y as u16,
                 heading: heading as u16,
-                intensity,
+                intensity: match limits.hold_cell(x, y) && limits.hold_heading(heading) {
+                    true => intensity,
+                    false => 0,
+                },
             });
         }
     }

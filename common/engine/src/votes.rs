@@ -13,7 +13,6 @@ pub use config::CollectConfig;
 pub use distinct::{DISTINCT_DEG, DISTINCT_M, distinct};
 pub(crate) use distinct::{Distinct, is_close, least_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
-pub use of_field::of_field;
 pub use share::VoteShare;
 
 /// The poses with the most votes, and the completeness of the list.

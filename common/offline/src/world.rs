@@ -256,9 +256,7 @@ impl World {
     /// The scan is rejected.
     pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
-        let frame = self.distance_field().frame;
-        let (x, y, heading) = frame.cells_from_map(map_from_laser);
-        let pose = GridPose { x, y, heading };
+        let pose = GridPose::of(self.distance_field().frame, map_from_laser);
         let classes = self
             .distance_field()
             .classes(&ends, pose, &self.peaks().fit);

@@ -4,6 +4,7 @@
 //! of: nothing that is thin is lost where many cells meet one pixel.
 
 use drawing::{Color, DrawingError, Image, Rect, Scene};
+use engine::fit::GridPose;
 use engine::grid::{CellRules, GridFrame};
 use map::OccupancyGrid;
 use offline::{frame_of, sides_of};
@@ -32,8 +33,8 @@ impl Sampler {
         let cells_per_pixel = 1.0 / (view.pixels_per_m() * frame.resolution_m);
         let looks = (1.5 * cells_per_pixel).ceil().clamp(1.0, MAX_LOOKS);
         let step = cells_per_pixel / looks;
-        let (x, y, turn) = frame.cells_from_map(view.map_from_corner());
-        let (sin, cos) = turn.sin_cos();
+        let GridPose { x, y, heading } = GridPose::of(frame, view.map_from_corner());
+        let (sin, cos) = heading.sin_cos();
         // Down in the picture is against y in the map.
         let (step_x, step_y) = ((step * cos, step * sin), (step * sin, -step * cos));
         let start = (

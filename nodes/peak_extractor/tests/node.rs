@@ -12,7 +12,7 @@ use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, DistanceField, Ends};
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
-use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
+use engine::peaks::{self, PeakConfig, PeakInput, Places};
 use engine::reference;
 use engine::scan::Scan;
 use engine::space::Space;
@@ -95,7 +95,9 @@ fn expected(searched: &Searched, frame: GridFrame) -> Places {
     let space = Space::new(360, frame.resolution_m, 16, 9).unwrap();
     let ends = Ends::new(&scan(&searched.ranges), &space, &BeamConfig::default()).unwrap();
     let input = PeakInput::of(&searched.outcome, frame);
-    by_fit(&input, (&distance_field, &ends), &PeakConfig::default())
+    let mut workspace = peaks::Workspace::default();
+    let places = workspace.by_fit(&input, (&distance_field, &ends), &PeakConfig::default());
+    places.clone()
 }
 
 /// Neighbours of the node.

@@ -15,7 +15,7 @@ use drawing::Scene;
 use engine::grid::GridFrame;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::particles::Candidate;
-use engine::peaks::{PeakConfig, PeakInput, by_votes};
+use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::space::Space;
 use engine::taper::TaperShape;
 use geometry::Pose;
@@ -207,7 +207,8 @@ impl Bench {
 
     fn candidates(&self, outcome: &Outcome) -> Vec<Candidate> {
         let input = PeakInput::of(outcome, self.localizer.frame());
-        let places = by_votes(&input, &PeakConfig::default());
+        let mut workspace = peaks::Workspace::default();
+        let places = workspace.by_votes(&input, &PeakConfig::default());
         places.places.iter().map(Candidate::from).collect()
     }
 

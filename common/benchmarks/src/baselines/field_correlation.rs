@@ -2,6 +2,7 @@
 //! obstacle (Thrun, Burgard and Fox, Probabilistic Robotics, section 6.4). It ignores obstacles
 //! along the beam.
 
+use engine::fit::distance;
 use engine::grid::Cell;
 use engine::instruction_set::InstructionSet;
 use engine::space::Space;
@@ -126,7 +127,7 @@ fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
         .map(|square| level(square, sigma_cells))
         .collect();
     let at = |square: u32| levels[square.min(most) as usize];
-    square_distances(world).into_iter().map(at).collect()
+    square_distances(world).map(at).collect()
 }
 
 fn level(square: u32, sigma_cells: f64) -> u8 {
@@ -134,61 +135,18 @@ fn level(square: u32, sigma_cells: f64) -> u8 {
     (f64::from(FULL) * height).round() as u8
 }
 
-/// Exact squared distance of each cell to the nearest boundary cell: column by column, then along
-/// each row by the lower envelope of parabolas (Felzenszwalb and Huttenlocher). The inside of
-/// obstacles does not count, since no beam ends there.
-fn square_distances(world: &World) -> Vec<u32> {
+/// Squared distance of each cell to the nearest boundary cell. The inside of obstacles does not
+/// count, since no beam ends there.
+fn square_distances(world: &World) -> impl Iterator<Item = u32> {
     let (width, height) = (world.grid.width(), world.grid.height());
-    let far = (width + height) as u32;
-    let mut columns = vec![far; width * height];
+    let mut is_boundary = vec![false; width * height];
     for cell in &world.boundary {
-        columns[usize::from(cell.y) * width + usize::from(cell.x)] = 0;
+        is_boundary[usize::from(cell.y) * width + usize::from(cell.x)] = true;
     }
-    for i in width..width * height {
-        columns[i] = columns[i].min(columns[i - width] + 1);
-    }
-    for i in (0..width * (height - 1)).rev() {
-        columns[i] = columns[i].min(columns[i + width] + 1);
-    }
-    for row in columns.chunks_exact_mut(width) {
-        spread_row(row);
-    }
-    columns
-}
-
-/// Converts distances along the columns to squared distances.
-fn spread_row(row: &mut [u32]) {
-    let squares: Vec<i64> = row.iter().map(|&d| i64::from(d) * i64::from(d)).collect();
-    // Each parabola is the lowest from this column on.
-    let mut envelope: Vec<(usize, i64)> = Vec::new();
-    for (i, &square) in squares.iter().enumerate() {
-        let from = loop {
-            let Some(&(last, since)) = envelope.last() else {
-                break 0;
-            };
-            let (a, b) = (last as i64, i as i64);
-            let from = (square + b * b - squares[last] - a * a).div_euclid(2 * (b - a)) + 1;
-            if from > since {
-                break from;
-            }
-            envelope.pop();
-        };
-        if from < row.len() as i64 {
-            envelope.push((i, from));
-        }
-    }
-    let mut next = 0;
-    for (x, distance) in row.iter_mut().enumerate() {
-        while envelope
-            .get(next + 1)
-            .is_some_and(|&(_, from)| from <= x as i64)
-        {
-            next += 1;
-        }
-        let (i, _) = envelope[next];
-        let off = x.abs_diff(i) as i64;
-        *distance = (squares[i] + off * off) as u32;
-    }
+    let distances = distance::transform(width, height, |i| is_boundary[i]);
+    // Squares that matter are small, so that rounding restores them exactly.
+    let square = |distance: f32| (distance * distance).round() as u32;
+    distances.into_iter().map(square)
 }
 
 #[cfg(test)]
@@ -206,7 +164,7 @@ mod tests {
         let boundary: Vec<usize> = places
             .map(|cell| usize::from(cell.y) * 40 + usize::from(cell.x))
             .collect();
-        for (i, distance) in square_distances(&world).into_iter().enumerate() {
+        for (i, distance) in square_distances(&world).enumerate() {
             let square = |a: usize, b: usize| a.abs_diff(b).pow(2);
             let to = |&j: &usize| square(i % 40, j % 40) + square(i / 40, j / 40);
             assert_eq!(Some(distance as usize), boundary.iter().map(to).min());

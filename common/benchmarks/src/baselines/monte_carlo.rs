@@ -2,7 +2,7 @@
 //! resampled and scattered slightly, until they have converged. The robot stands still, so the same
 //! scan is used repeatedly.
 
-use engine::fit::DistanceField;
+use engine::fit::{DistanceField, GridPose};
 use engine::grid::{Cell, CellRules, GridFrame};
 use engine::particles::Candidate;
 use engine::space::Space;
@@ -66,8 +66,6 @@ pub struct MonteCarlo {
     distance_field: DistanceField,
     sides: (usize, usize),
     config: MonteCarloConfig,
-    /// Number of updates for the last scan, and number of particles weighted in all of them.
-    effort: (usize, usize),
     /// Number of particles at the start of the last scan.
     started_with: usize,
 }
@@ -91,15 +89,8 @@ impl MonteCarlo {
                 particles,
                 ..config
             },
-            effort: (0, 0),
             started_with: 0,
         }
-    }
-
-    /// Number of updates for the last scan, and number of particles weighted in all of them.
-    #[must_use]
-    pub fn effort(&self) -> (usize, usize) {
-        self.effort
     }
 
     /// Number of particles at the start of the last scan.
@@ -130,11 +121,9 @@ impl MonteCarlo {
         mut filter: ParticleFilter,
         heading_is_known: bool,
     ) -> Option<Estimate> {
-        self.effort = (0, 0);
         self.started_with = filter.particles().len();
         for update in 1..=self.config.most_updates {
             filter.weigh(&self.distance_field, readings);
-            self.effort = (update, self.effort.1 + filter.particles().len());
             filter.resample();
             if spread_cells(filter.particles()) <= GATHERED_CELLS {
                 break;
@@ -146,10 +135,8 @@ impl MonteCarlo {
     }
 
     fn on_the_grid(&self, found: &Gathering) -> Estimate {
-        let (x, y, heading) = self
-            .distance_field
-            .frame
-            .cells_from_map(found.map_from_target);
+        let GridPose { x, y, heading } =
+            GridPose::of(self.distance_field.frame, found.map_from_target);
         Estimate {
             x: (x as usize).min(self.sides.0 - 1),
             y: (y as usize).min(self.sides.1 - 1),
@@ -236,7 +223,6 @@ fn spread_cells(particles: &[Particle]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use engine::fit::GridPose;
 
     use super::*;
 

@@ -57,13 +57,6 @@ impl PatchCorrelation {
             instructions: InstructionSet::best(),
         }
     }
-
-    /// Number of cells of the patch at a heading: the paper's k per beam, without cells that beams
-    /// share.
-    #[must_use]
-    pub fn patch_cells(&self, readings: &Readings, heading: usize) -> usize {
-        patch(readings, &self.space, heading).len()
-    }
 }
 
 impl Baseline for PatchCorrelation {

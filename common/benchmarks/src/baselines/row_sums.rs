@@ -30,16 +30,18 @@ pub(super) fn fill(
     assert!(farthest <= bytes.len(), "a row beyond the bytes");
     match instructions {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: the processor has what was detected; offsets were checked.
-        InstructionSet::Avx2 => unsafe { x86::fill_avx2(bytes, offsets, groups, sums) },
+        // SAFETY: the processor has what was detected.
+        InstructionSet::Avx2 => unsafe { fill_avx2(bytes, offsets, groups, sums) },
         _ => fill_portable(bytes, offsets, groups, sums),
     }
 }
 
+/// Inlined, so that it is compiled for each instruction set.
+#[inline(always)]
 fn fill_portable(bytes: &[u8], offsets: &[usize], groups: &[Group], sums: &mut [u16]) {
     let (blocks, _) = sums.as_chunks_mut::<BLOCK>();
     for (i, block) in blocks.iter_mut().enumerate() {
-        *block = [0; BLOCK];
+        let mut totals = [0u16; BLOCK];
         for group in groups {
             let mut sum = [0u8; BLOCK];
             for &offset in &offsets[group.start..group.end] {
@@ -48,54 +50,19 @@ fn fill_portable(bytes: &[u8], offsets: &[usize], groups: &[Group], sums: &mut [
                     .zip(row)
                     .for_each(|(sum, &byte)| *sum += byte);
             }
-            for (total, sum) in block.iter_mut().zip(sum) {
-                *total = total.saturating_add(u16::from(sum).saturating_mul(group.weight));
+            for (total, sum) in totals.iter_mut().zip(sum) {
+                let weighted = u16::from(sum).wrapping_mul(group.weight);
+                *total = total.saturating_add(weighted);
             }
         }
+        *block = totals;
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-mod x86 {
-    use std::arch::x86_64::*;
-
-    use super::{BLOCK, Group};
-
-    /// # Safety
-    /// Each offset and the length of `sums` behind it must lie within `bytes`,
-    /// and groups within `offsets`.
-    #[target_feature(enable = "avx2")]
-    pub(super) unsafe fn fill_avx2(
-        bytes: &[u8],
-        offsets: &[usize],
-        groups: &[Group],
-        sums: &mut [u16],
-    ) {
-        let (halves, _) = sums.as_chunks_mut::<{ BLOCK / 2 }>();
-        for (i, half) in halves.iter_mut().enumerate() {
-            let (mut low, mut high) = (_mm256_setzero_si256(), _mm256_setzero_si256());
-            for group in groups {
-                let mut sum = _mm256_setzero_si256();
-                for &offset in &offsets[group.start..group.end] {
-                    // SAFETY: guaranteed by the caller.
-                    let row = unsafe { bytes.as_ptr().add(offset + i * BLOCK / 2) };
-                    // SAFETY: as above; the load needs no alignment.
-                    sum = _mm256_add_epi8(sum, unsafe { _mm256_loadu_si256(row.cast()) });
-                }
-                let weight = _mm256_set1_epi16(group.weight as i16);
-                let first = _mm256_cvtepu8_epi16(_mm256_castsi256_si128(sum));
-                let second = _mm256_cvtepu8_epi16(_mm256_extracti128_si256::<1>(sum));
-                low = _mm256_adds_epu16(low, _mm256_mullo_epi16(first, weight));
-                high = _mm256_adds_epu16(high, _mm256_mullo_epi16(second, weight));
-            }
-            let to = half.as_mut_ptr();
-            // SAFETY: half a block holds 32 numbers, two stores of 16.
-            unsafe {
-                _mm256_storeu_si256(to.cast(), low);
-                _mm256_storeu_si256(to.add(BLOCK / 4).cast(), high);
-            }
-        }
-    }
+#[target_feature(enable = "avx2")]
+fn fill_avx2(bytes: &[u8], offsets: &[usize], groups: &[Group], sums: &mut [u16]) {
+    fill_portable(bytes, offsets, groups, sums);
 }
 
 #[cfg(test)]

@@ -64,21 +64,9 @@ impl ParticleFilter {
         config: ParticlesConfig,
     ) -> Result<Self, EngineError> {
         let mut filter = Self::empty(frame, config);
-        filter.seed(candidates)?;
+        let seeds = Seeds::new(frame, candidates)?;
+        filter.start(|rng| seeds.draw(rng));
         Ok(filter)
-    }
-
-    /// Restarts around candidates, see [`ParticleFilter::seeded`]; the random numbers continue.
-    ///
-    /// # Errors
-    /// There is no candidate of finite numbers; the particles are kept.
-    pub fn seed(
-        &mut self,
-        candidates: impl IntoIterator<Item = Candidate>,
-    ) -> Result<(), EngineError> {
-        let seeds = Seeds::new(self.frame, candidates)?;
-        self.start(|rng| seeds.draw(rng));
-        Ok(())
     }
 
     fn empty(frame: GridFrame, config: ParticlesConfig) -> Self {
@@ -203,15 +191,6 @@ impl ParticleFilter {
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
         &self.particles
-    }
-
-    /// Poses in the map, and weights normalized to 1.
-    pub fn poses(&self) -> impl Iterator<Item = (Pose, f64)> {
-        let total: f64 = self.particles.iter().map(|particle| particle.weight).sum();
-        self.particles.iter().map(move |Particle { pose, weight }| {
-            let pose = self.frame.map_from_cells(pose.x, pose.y, pose.heading);
-            (pose, weight / total)
-        })
     }
 }
 

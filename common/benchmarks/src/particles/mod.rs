@@ -19,8 +19,8 @@
 //! once the buffers fit the largest number of particles and bins.
 //!
 //! The filter does not detect that it is lost: no random particles are added (unlike in table 8.3
-//! of the book). A search of the whole map does that better, and its places restart the filter
-//! ([`ParticleFilter::seed`]).
+//! of the book). A search of the whole map does that better, and its places start another filter
+//! ([`ParticleFilter::seeded`]).
 
 mod beams;
 mod config;

@@ -48,7 +48,7 @@ fn config() -> ParticlesConfig {
 fn scan(distance_field: &DistanceField, pose: Pose) -> Vec<Reading> {
     /// Step along a ray in cells.
     const STEP: f64 = 0.05;
-    let (x, y, heading) = distance_field.frame.cells_from_map(pose);
+    let GridPose { x, y, heading } = GridPose::of(distance_field.frame, pose);
     let reading = |beam: i32| {
         let bearing = f64::from(beam) * TAU / 120.0;
         let (sin, cos) = (heading + bearing).sin_cos();
@@ -126,11 +126,8 @@ fn a_start_at_the_places_of_the_votes_is_right_at_once() {
     let mut filter = ParticleFilter::seeded(distance_field.frame, candidates, config()).unwrap();
     assert!(filter.particles().len() < 2000);
     check_found(drive(&mut filter, &distance_field, 0));
-    // Given another place, it starts there.
-    filter.seed([candidate(wrong, 1.0)]).unwrap();
-    let found = filter.estimate().unwrap();
-    assert!(found.map_from_target.is_within(wrong, 0.05, 0.05));
-    assert_eq!(filter.seed([]), Err(EngineError::NoStart));
+    let refused = ParticleFilter::seeded(distance_field.frame, [], config());
+    assert_eq!(refused.err(), Some(EngineError::NoStart));
 }
 
 #[test]
@@ -165,6 +162,4 @@ fn even_weights_are_not_drawn_again() {
         "nothing was seen and nothing moved"
     );
     assert_eq!(filter.effective_number(), before.len() as f64);
-    let shares: f64 = filter.poses().map(|(_, share)| share).sum();
-    assert!((shares - 1.0).abs() < 1e-9);
 }

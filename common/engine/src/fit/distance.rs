@@ -9,11 +9,8 @@ const FAR: f32 = 1e12;
 
 /// Returns the distances between cell centres in cells, row by row: 0 in marked cells, 10⁶
 /// everywhere if none is marked.
-pub(crate) fn transform(
-    width: usize,
-    height: usize,
-    is_marked: impl Fn(usize) -> bool,
-) -> Vec<f32> {
+#[must_use]
+pub fn transform(width: usize, height: usize, is_marked: impl Fn(usize) -> bool) -> Vec<f32> {
     let cells = 0..width * height;
     let mut field: Vec<f32> = cells
         .map(|i| if is_marked(i) { 0.0 } else { FAR })

@@ -70,16 +70,10 @@ fn mark_straight(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::CellRules;
+    use crate::grid::drawn;
 
     fn share_of(rows: &[&str]) -> f64 {
-        let cells: Vec<u8> = rows
-            .iter()
-            .flat_map(|row| row.bytes())
-            .map(|cell| if cell == b'#' { 100 } else { 0 })
-            .collect();
-        let grid = Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap();
-        share(&grid, 0.1)
+        share(&drawn::grid(rows), 0.1)
     }
 
     #[test]

@@ -16,7 +16,7 @@
 mod agreement;
 mod beam_class;
 mod config;
-pub(crate) mod distance;
+pub mod distance;
 mod distance_field;
 mod drawing;
 #[cfg(test)]
@@ -52,11 +52,15 @@ pub struct GridPose {
 }
 
 impl GridPose {
-    /// Converts a pose in the map.
+    /// Converts a pose in the map; the inverse of [`GridFrame::map_from_cells`].
     #[must_use]
     pub fn of(frame: GridFrame, map_pose: Pose) -> Self {
-        let (x, y, heading) = frame.cells_from_map(map_pose);
-        GridPose { x, y, heading }
+        let grid_pose = frame.map_from_grid.inverse().then(map_pose);
+        GridPose {
+            x: grid_pose.x / frame.resolution_m,
+            y: grid_pose.y / frame.resolution_m,
+            heading: grid_pose.yaw,
+        }
     }
 
     /// Difference from another pose: cells, cells and radians in `(-π, π]`.

@@ -56,18 +56,6 @@ impl GridFrame {
         let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
         Rotation2::new(self.map_from_grid.yaw).to_homogeneous() * scale
     }
-
-    /// Inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the heading in the grid's
-    /// frame.
-    #[must_use]
-    pub fn cells_from_map(&self, map_pose: Pose) -> (f64, f64, f64) {
-        let grid_pose = self.map_from_grid.inverse().then(map_pose);
-        (
-            grid_pose.x / self.resolution_m,
-            grid_pose.y / self.resolution_m,
-            grid_pose.yaw,
-        )
-    }
 }
 
 #[cfg(test)]
@@ -77,6 +65,7 @@ mod tests {
     use messages::Pose2;
 
     use super::*;
+    use crate::fit::GridPose;
 
     fn header() -> MapHeader {
         MapHeader {
@@ -106,49 +95,30 @@ mod tests {
         let refused = |change: fn(&mut MapHeader)| {
             let mut header = header();
             change(&mut header);
-            GridFrame::of(&header).unwrap_err().to_string()
+            GridFrame::of(&header).unwrap_err()
         };
-        let check = |change: fn(&mut MapHeader), expected: &str| {
-            assert_eq!(refused(change), expected);
-        };
-        check(
-            |map| map.width = 0,
-            "a grid of 0 x 20 cells: each side must have 1 to 32767 cells",
-        );
-        check(
-            |map| map.height = u32::MAX,
-            "a grid of 30 x 4294967295 cells: each side must have 1 to 32767 cells",
-        );
-        check(
-            |map| (map.width, map.height) = (32_767, 32_767),
-            "a grid of 32767 x 32767 cells: at most 400000000 cells are allowed",
-        );
-        for (resolution_m, found) in [
-            (0.0, "0"),
-            (-0.05, "-0.05"),
-            (0.000_999, "0.000999"),
-            (10.001, "10.001"),
-            (f64::NAN, "NaN"),
-            (f64::INFINITY, "inf"),
-        ] {
+        let sides = |width, height| EngineError::GridSides { width, height };
+        assert_eq!(refused(|map| map.width = 0), sides(0, 20));
+        let most = u32::MAX as usize;
+        assert_eq!(refused(|map| map.height = u32::MAX), sides(30, most));
+        let (width, height) = (32_767, 32_767);
+        let found = refused(|map| (map.width, map.height) = (32_767, 32_767));
+        assert_eq!(found, EngineError::GridSize { width, height });
+        for resolution_m in [0.0, -0.05, 0.000_999, 10.001, f64::NAN, f64::INFINITY] {
             let error = GridFrame::of(&MapHeader {
                 resolution_m,
                 ..header()
             });
-            let expected = format!("a resolution of {found} m; allowed: 0.001..=10 m");
-            assert_eq!(error.unwrap_err().to_string(), expected);
+            let is_it = |found: f64| found.to_bits() == resolution_m.to_bits();
+            assert!(matches!(error, Err(EngineError::Resolution(found)) if is_it(found)));
         }
-        check(
-            |map| map.map_from_grid.y = f64::NAN,
-            "an origin at x -1 m, y NaN m, yaw 0.5 rad; allowed: within 100000000 m, and a yaw of \
-             at most a turn",
-        );
         for change in [
             (|map| map.map_from_grid.x = 1.1e8) as fn(&mut MapHeader),
+            |map| map.map_from_grid.y = f64::NAN,
             |map| map.map_from_grid.yaw = 7.0,
             |map| map.map_from_grid.yaw = f64::NEG_INFINITY,
         ] {
-            assert!(refused(change).starts_with("an origin at"));
+            assert!(matches!(refused(change), EngineError::Origin(_)));
         }
     }
 
@@ -159,10 +129,10 @@ mod tests {
             resolution_m in 0.01..0.5f64, x in 0.0..3e4f64, y in 0.0..3e4f64, heading in -3.0..3.0f64,
         ) {
             let frame = GridFrame { resolution_m, map_from_grid: Pose::new(ox, oy, turn) };
-            let (bx, by, bh) = frame.cells_from_map(frame.map_from_cells(x, y, heading));
+            let back = GridPose::of(frame, frame.map_from_cells(x, y, heading));
             // Positions up to 15 km at 1 cm cells: a rounding is 1e-10 of a cell there.
-            proptest::prop_assert!((bx - x).abs() < 1e-7 && (by - y).abs() < 1e-7);
-            proptest::prop_assert!(geometry::angle_between(bh, heading) < 1e-12);
+            proptest::prop_assert!((back.x - x).abs() < 1e-7 && (back.y - y).abs() < 1e-7);
+            proptest::prop_assert!(geometry::angle_between(back.heading, heading) < 1e-12);
         }
     }
 

@@ -16,10 +16,8 @@ pub struct Kept {
 /// One scan, with the pose of its laser at each beam.
 #[derive(Debug, Clone, PartialEq)]
 struct KeptScan {
-    angle_min: f64,
-    angle_increment: f64,
-    range_min_m: f32,
-    range_max_m: f32,
+    /// Without its ranges.
+    scan: Scan<'static>,
     ranges: Vec<f32>,
     target_from_laser: Vec<Pose>,
 }
@@ -27,10 +25,13 @@ struct KeptScan {
 impl KeptScan {
     fn of(scan: &Scan<'_>, target_from_laser: &[Pose]) -> Self {
         KeptScan {
-            angle_min: scan.angle_min,
-            angle_increment: scan.angle_increment,
-            range_min_m: scan.range_min_m,
-            range_max_m: scan.range_max_m,
+            scan: Scan {
+                angle_min: scan.angle_min,
+                angle_increment: scan.angle_increment,
+                range_min_m: scan.range_min_m,
+                range_max_m: scan.range_max_m,
+                ranges: &[],
+            },
             ranges: scan.ranges.to_vec(),
             target_from_laser: target_from_laser.to_vec(),
         }
@@ -38,11 +39,8 @@ impl KeptScan {
 
     fn scan(&self) -> Scan<'_> {
         Scan {
-            angle_min: self.angle_min,
-            angle_increment: self.angle_increment,
-            range_min_m: self.range_min_m,
-            range_max_m: self.range_max_m,
             ranges: &self.ranges,
+            ..self.scan
         }
     }
 }

@@ -4,19 +4,6 @@ use crate::limits::LimitsConfig;
 use crate::program::VoteConfig;
 use crate::votes::CollectConfig;
 
-/// Method of counting votes at a known heading. All methods give the same votes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum FieldMethod {
-    /// The method with fewer steps, chosen for each scan.
-    #[default]
-    Auto,
-    /// Line sweeps over all cells, beam by beam.
-    Sweep,
-    /// Projection out from the boundary cells of the obstacles, as in the paper.
-    Scatter,
-}
-
 /// Settings for matching scans with the map.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
@@ -39,12 +26,6 @@ pub struct LocalizerConfig {
     /// Region and headings that are searched.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub limits: LimitsConfig,
-    /// Method of counting votes if the heading is known; the answer is the same.
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_name = "METHOD", value_enum, default_value_t)
-    )]
-    pub method: FieldMethod,
     /// Cell size of the search, metres, 0..=1: finer maps are searched at this
     /// resolution, and the places found are refined on the full map. 0 searches each
     /// map at its own resolution.
@@ -70,7 +51,6 @@ impl Default for LocalizerConfig {
             votes: VoteConfig::default(),
             collect: CollectConfig::default(),
             limits: LimitsConfig::default(),
-            method: FieldMethod::Auto,
             search_cell: 0.05,
             memory_limit: None,
         }

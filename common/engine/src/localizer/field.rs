@@ -2,7 +2,6 @@
 
 use messages::BoundaryCell;
 
-use super::config::FieldMethod;
 use crate::accumulator::{Accumulator, Query};
 use crate::boundary;
 use crate::grid::Grid;
@@ -39,17 +38,12 @@ impl Fields {
     /// returned true before the end.
     pub(super) fn fill(
         &self,
-        (grid, method): (&Grid, FieldMethod),
+        grid: &Grid,
         query: Query<'_>,
         (workspace, field): (&mut sweep::Workspace, &mut Vec<u16>),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let scatters = match method {
-            FieldMethod::Auto => self.scatter_is_cheaper(grid, query),
-            FieldMethod::Sweep => false,
-            FieldMethod::Scatter => true,
-        };
-        if scatters {
+        if self.scatter_is_cheaper(grid, query) {
             return Scatter::new(grid, &self.boundary).fill(query, field, stop);
         }
         let best = Simd::new(InstructionSet::best());
@@ -74,26 +68,22 @@ mod tests {
     use super::*;
     use crate::grid::drawn::grid;
     use crate::program::{ScanProgram, VoteConfig};
+    use crate::reference;
     use crate::scan::Scan;
     use crate::testing::{any_grid, any_scan, space_of};
 
     proptest! {
         #[test]
-        fn every_method_counts_the_same_votes(
+        fn the_cheaper_method_counts_the_same_votes(
             grid in any_grid(), scan in any_scan(), heading in 0usize..72,
         ) {
             let space = &space_of(&grid, 72);
             let query = Query { program: &scan.program(space), space, heading };
             let fields = Fields::new(&grid, None);
-            let votes = |method| {
-                let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
-                let scratch = (&mut workspace, &mut field);
-                fields.fill((&grid, method), query, scratch, &|| false).map(|()| field)
-            };
-            let swept = votes(FieldMethod::Sweep);
-            prop_assert!(swept.is_some());
-            prop_assert_eq!(&votes(FieldMethod::Scatter), &swept);
-            prop_assert_eq!(&votes(FieldMethod::Auto), &swept);
+            let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
+            let filled = fields.fill(&grid, query, (&mut workspace, &mut field), &|| false);
+            prop_assert!(filled.is_some());
+            prop_assert_eq!(field, reference::field(&grid, query.program, space, heading));
         }
     }
 

@@ -7,11 +7,11 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fit::{DistanceField, Ends};
-use crate::grid::{self, drawn::grid};
+use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
 use crate::scan::Scan;
-use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan};
+use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan, occupancy_of};
 
 /// An L-shaped room with a pillar, without symmetry: every pose is distinguishable.
 const ROOM: [&str; 12] = [
@@ -160,11 +160,7 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     };
     let prior = heading.map_or(Prior::None, |_| Prior::Heading);
     let sides = (grid.width(), grid.height());
-    let occupied = |&cell: &grid::Cell| match cell {
-        grid::Cell::Occupied => 100,
-        _ => 0,
-    };
-    let occupancy: Vec<u8> = grid.cells().iter().map(occupied).collect();
+    let occupancy = occupancy_of(grid);
     let distance_field = DistanceField::new(frame, sides, &occupancy, Default::default()).unwrap();
     // Grids without obstacles or free cells are rejected.
     let localizer = Localizer::new(frame, grid.clone(), config, prior).ok()?;

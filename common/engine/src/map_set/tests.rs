@@ -4,24 +4,17 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fit::GridPose;
-use crate::grid::{Cell, CellRules, Grid, GridFrame};
+use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{LocalizerConfig, Prior};
 use crate::locator::{LocatorConfig, OccupancyView};
 use crate::peaks::{PeakConfig, Score};
 use crate::program::VoteConfig;
 use crate::scan::Scan;
-use crate::testing::{any_grid, any_scan};
+use crate::testing::{any_grid, any_scan, occupancy_of};
 
 /// Prepares a locator; `None` if the grid has no obstacle or no free cell.
 fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> Option<Locator> {
-    let occupancy: Vec<u8> = grid
-        .cells()
-        .iter()
-        .map(|cell| match cell {
-            Cell::Occupied => 100,
-            _ => 0,
-        })
-        .collect();
+    let occupancy = occupancy_of(grid);
     let map = OccupancyView {
         frame: GridFrame {
             resolution_m,

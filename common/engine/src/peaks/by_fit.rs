@@ -12,14 +12,6 @@ use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map, lik
 use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined, lacks};
 use crate::votes::most_candidates;
 
-/// Finds the places from the votes of a scan and from the scan itself, see [`Workspace::by_fit`].
-#[must_use]
-pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &PeakConfig) -> Places {
-    let mut workspace = Workspace::default();
-    workspace.by_fit(input, scan, config);
-    workspace.places
-}
-
 /// Difference between the readings of neighbouring beams at which a new piece begins, in standard
 /// deviations of the fit.
 const PIECE_SIGMAS: f64 = 4.0;

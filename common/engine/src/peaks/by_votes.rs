@@ -1,7 +1,6 @@
 //! Places by votes alone: a peak is refined by its centroid, and its shape gives the covariance.
 
 use geometry::{Covariance, wrap_angle};
-use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{self, Reach, Summit};
@@ -10,14 +9,6 @@ use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map};
 /// Share of a peak's height above which votes belong to its shape: below it, the flanks of other
 /// peaks begin.
 const PEAK_BASE_SHARE: f64 = 0.85;
-
-/// Finds the places from the votes of a scan, see [`Workspace::by_votes`].
-#[must_use]
-pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
-    let mut workspace = Workspace::default();
-    workspace.by_votes(input, config);
-    workspace.places
-}
 
 impl Workspace {
     /// Finds the places from the votes of a scan, by the paper's method.
@@ -30,32 +21,12 @@ impl Workspace {
         let places = summits.iter().map(|summit| place(input, summit, reach));
         found.places.extend(places);
         if let Some(best) = found.places.first().copied() {
-            found.judge_by_votes(best, input, config);
+            let next = f64::from(input.certified_floor.saturating_sub(1));
+            let may_lack = input.may_lack(config.ambiguous_share);
+            found.judge_by_votes(best, may_lack, next, config);
+            found.inlier_share = best.score;
         }
         found
-    }
-}
-
-impl Places {
-    /// Derives verdict, alternatives and confidence from the votes of the places.
-    fn judge_by_votes(&mut self, best: Place, input: &PeakInput<'_>, config: &PeakConfig) {
-        let rival = f64::from(best.intensity) * config.ambiguous_share;
-        let others = self.places[1..].iter();
-        let rivals = others.filter(|place| f64::from(place.intensity) >= rival);
-        self.alternatives = rivals.count() as u32;
-        let next = self.places.get(1).map_or_else(
-            || input.certified_floor.saturating_sub(1),
-            |next| u32::from(next.intensity),
-        );
-        self.confidence = (1.0 - f64::from(next) / f64::from(best.intensity)).clamp(0.0, 1.0);
-        self.verdict = match () {
-            () if best.score < config.poor_fit_share => Verdict::PoorFit,
-            () if self.alternatives > 0 || input.may_lack(config.ambiguous_share) => {
-                Verdict::Ambiguous
-            }
-            () => Verdict::Unique,
-        };
-        self.inlier_share = best.score;
     }
 }
 

@@ -126,9 +126,7 @@ impl PeakConfig {
             .max(1.0)
             .sqrt()
     }
-}
 
-impl PeakConfig {
     /// Returns the settings for each single map of several searched together: places that one map
     /// would drop may be among the best of all.
     #[must_use]

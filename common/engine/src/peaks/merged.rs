@@ -119,7 +119,10 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     if let Some(best) = merged.places.first().copied() {
         match config.score {
             Score::Fit => merged.judge_by_fit((best.score, margin), &mut Vec::new(), config),
-            Score::Votes => merged.judge_by_shares((best, margin), unseen, config),
+            Score::Votes => {
+                let unseen = unseen * f64::from(best.possible);
+                merged.judge_by_votes(best, margin.may_lack, unseen, config);
+            }
         }
     }
     Merged {
@@ -130,27 +133,31 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
 }
 
 impl Places {
-    /// Derives the verdict from the vote shares, which are the scores here.
-    fn judge_by_shares(
+    /// Derives verdict, alternatives and confidence from the votes of the places, which may be on
+    /// several maps. If there is no second place, the next one has `unseen` votes on the map of the
+    /// best.
+    pub(super) fn judge_by_votes(
         &mut self,
-        (best, margin): (Place, Margin),
+        best: Place,
+        may_lack: bool,
         unseen: f64,
         config: &PeakConfig,
     ) {
-        // Votes are compared on the place's own map, where the rounding is that of a single map.
-        let best_on = |place: &Place| {
-            let votes = f64::from(best.intensity) * f64::from(place.possible);
-            votes / f64::from(best.possible.max(1))
+        // Returns votes of one map on another; on the same map they stay as they are.
+        let on = |to: &Place, from: &Place| {
+            let votes = f64::from(from.intensity) * f64::from(to.possible);
+            votes / f64::from(from.possible.max(1))
         };
         let others = self.places[1..].iter();
-        let rivals = others
-            .filter(|place| f64::from(place.intensity) >= best_on(place) * config.ambiguous_share);
+        let rivals = others.filter(|place| {
+            f64::from(place.intensity) >= on(place, &best) * config.ambiguous_share
+        });
         self.alternatives = rivals.count() as u32;
-        let next = self.places.get(1).map_or(unseen, |next| next.score);
-        self.confidence = (1.0 - next / best.score).clamp(0.0, 1.0);
+        let next = self.places.get(1).map_or(unseen, |next| on(&best, next));
+        self.confidence = (1.0 - next / f64::from(best.intensity)).clamp(0.0, 1.0);
         self.verdict = match () {
             () if best.score < config.poor_fit_share => Verdict::PoorFit,
-            () if self.alternatives > 0 || margin.may_lack => Verdict::Ambiguous,
+            () if self.alternatives > 0 || may_lack => Verdict::Ambiguous,
             () => Verdict::Unique,
         };
         self.places.truncate(config.max_hypotheses as usize);

@@ -22,9 +22,7 @@ use nalgebra::Matrix3;
 use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
-pub use by_fit::by_fit;
 pub(crate) use by_fit::{doubt_between, lead};
-pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
 pub use merged::{Found, Merged, merge};
 use sentence::PlaceSummary;
@@ -150,6 +148,17 @@ impl Place {
             support: self.support,
         }
     }
+
+    /// Converts a place of the target frame to one of the first laser.
+    #[must_use]
+    pub fn of_laser(&self, target: Target) -> Place {
+        let map_from_laser = target.laser(self.map_from_laser);
+        Place {
+            map_from_laser,
+            covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
+            ..*self
+        }
+    }
 }
 
 /// The target frame, whose poses are searched, with its relation to the first laser and the base.
@@ -205,19 +214,6 @@ impl Target {
     #[must_use]
     pub fn base(self, map_from_target: Pose) -> Pose {
         map_from_target.then(self.target_from_base)
-    }
-}
-
-impl Place {
-    /// Converts a place of the target frame to one of the first laser.
-    #[must_use]
-    pub fn of_laser(&self, target: Target) -> Place {
-        let map_from_laser = target.laser(self.map_from_laser);
-        Place {
-            map_from_laser,
-            covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
-            ..*self
-        }
     }
 }
 

@@ -11,6 +11,10 @@ fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
     }
 }
 
+fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
+    Workspace::default().by_votes(input, config).clone()
+}
+
 fn input(votes: &[Vote]) -> PeakInput<'_> {
     PeakInput {
         votes,

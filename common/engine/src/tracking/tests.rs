@@ -13,7 +13,7 @@ use crate::beams::BeamConfig;
 use crate::fit::{DistanceField, Ends, FitConfig};
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{Localizer, LocalizerConfig, Prior};
-use crate::peaks::{PeakConfig, PeakInput, Target, by_fit};
+use crate::peaks::{self, PeakConfig, PeakInput, Target};
 use crate::scan::Scan;
 use crate::space::Space;
 

@@ -34,16 +34,6 @@ impl FieldVotes {
     }
 }
 
-/// Returns the best poses of an intensity image, row by row, at one heading.
-#[must_use]
-pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
-    let (mut collector, mut found) = (Collector::default(), VoteSet::default());
-    collector.start(config);
-    collector.take_field(field, width, heading);
-    collector.finish(field.len() as u64, &mut found);
-    found
-}
-
 /// Side, in cells, of the blocks of an image whose best pose is a candidate.
 const BLOCK: usize = 8;
 

@@ -86,12 +86,6 @@ class Settings(TypedDict, total=False):
     # radians in the map, each within a turn. Default: None.
     headings_within: Iterable[float] | None
 
-    # How votes are counted where the heading is known; the answer is the same. "auto": The one
-    # that takes fewer steps, scan by scan; "sweep": Line sweeps over all cells, beam by beam;
-    # "scatter": Out from the boundary cells of the obstacles, as the paper does it. Default:
-    # "auto".
-    method: Literal["auto", "sweep", "scatter"]
-
     # Finer maps are searched in cells of at most this side, and what is found is refined on the
     # map as it is, metres, 0..=1; 0 searches each map as it is. Default: 0.05.
     search_cell: float

@@ -15,13 +15,7 @@ pub(super) struct Building {
 
 /// Makes a building. Its walls must be ragged, so that its map does not count as drawn.
 pub(super) fn building(rows: &[&str]) -> Building {
-    let (width, height) = (rows[0].len(), rows.len());
-    let cells: Vec<u8> = rows
-        .iter()
-        .rev()
-        .flat_map(|row| row.bytes())
-        .map(|cell| if cell == b'#' { 100 } else { 0 })
-        .collect();
+    let (width, height, cells) = crate::grid::drawn::occupancy(rows);
     let frame = GridFrame {
         resolution_m: RESOLUTION_M,
         map_from_grid: Pose::IDENTITY,
@@ -87,11 +81,9 @@ impl Building {
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
         let ends = self.ends_of(ranges);
-        let places = by_fit(
-            &input,
-            (&self.distance_field, &ends),
-            &PeakConfig::default(),
-        );
+        let mut workspace = peaks::Workspace::default();
+        let fit = (&self.distance_field, &ends);
+        let places = workspace.by_fit(&input, fit, &PeakConfig::default());
         let target = Target::of(None, false);
         let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
