@@ -1,6 +1,9 @@
-//! Common parts of the commands of `backcast`: exit codes, standard output.
+//! Common parts of commands and nodes: exit codes, numbers in options, standard output.
 
+mod number;
 pub mod stdout;
+
+pub use number::{number, within};
 
 use std::error::Error;
 use std::io;

@@ -1,6 +1,7 @@
 //! Command-line options.
 
 use clap::{CommandFactory, Parser, error::ErrorKind};
+use command_line::number;
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
@@ -45,7 +46,7 @@ pub struct Config {
     /// Maximum number of images per second on `field`, 0.1..=100. They are sent while the topic has
     /// a subscriber: the intensities of all cells if the heading is known, else the upper bound for
     /// each block of cells.
-    #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = field_rate)]
+    #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = number(0.1..=100.0, "images a second"))]
     pub field_rate: f64,
 }
 
@@ -108,25 +109,6 @@ impl Config {
             );
         }
         self.heading.check()
-    }
-}
-
-fn field_rate(text: &str) -> Result<f64, String> {
-    number_within(text, 0.1..=100.0, "images a second")
-}
-
-fn number_within(
-    text: &str,
-    allowed: std::ops::RangeInclusive<f64>,
-    unit: &str,
-) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if allowed.contains(&number) => Ok(number),
-        _ => Err(format!(
-            "allowed are {} to {} {unit}",
-            allowed.start(),
-            allowed.end()
-        )),
     }
 }
 

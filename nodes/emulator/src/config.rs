@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
+use command_line::number;
 use replay::Rate;
 use sick::cola::{Encoding, KnownDevice};
 use sick::lms2xx::Baud;
@@ -77,19 +78,12 @@ pub struct Config {
     pub wait_for: Vec<String>,
 
     /// Timeout for an answer at --rate max, seconds, 0.1 to 3600.
-    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = number(0.1..=3600.0, "seconds"))]
     pub patience: f64,
 
     /// Seed of the random faults.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
-}
-
-fn patience(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("allowed are 0.1 to 3600 seconds".into()),
-    }
 }
 
 fn model(text: &str) -> Result<&'static KnownDevice, String> {

@@ -4,7 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::builder::TypedValueParser;
 use clap::{CommandFactory, Parser, error::ErrorKind};
+use command_line::number;
 use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::localizer::LocalizerConfig;
@@ -47,7 +49,7 @@ pub struct Config {
 
     /// Timeout of a request that names none, 0.01 to 60 seconds; a scan that cannot be answered in
     /// time is not searched
-    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = deadline)]
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = number(0.01..=60.0, "seconds").map(Duration::from_secs_f64))]
     pub deadline: Duration,
 
     #[command(flatten)]
@@ -117,13 +119,6 @@ impl Config {
     pub fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
         self.workers.map_or_else(cores, usize::from)
-    }
-}
-
-fn deadline(text: &str) -> Result<Duration, String> {
-    match text.parse() {
-        Ok(seconds) if (0.01..=60.0).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err("allowed are 0.01 to 60 seconds".into()),
     }
 }
 

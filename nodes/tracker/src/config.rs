@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use command_line::number;
 use engine::beams::BeamConfig;
 use engine::fit::FitConfig;
 use engine::joined::JoinConfig;
@@ -18,7 +19,7 @@ pub struct Config {
 
     /// Maximum number of poses per second, 0..=1000: between scans, the pose is extrapolated by
     /// odometry. 0 sends one pose per scan only.
-    #[arg(long, value_name = "HERTZ", default_value_t = 50.0, allow_negative_numbers = true, value_parser = rate)]
+    #[arg(long, value_name = "HERTZ", default_value_t = 50.0, allow_negative_numbers = true, value_parser = number(0.0..=1000.0, "poses a second"))]
     pub rate: f64,
 
     /// File in which the last pose is saved, and from which it is tried first after a start. It is
@@ -42,13 +43,6 @@ pub struct Config {
     /// Settings of the fit between beams and map.
     #[command(flatten)]
     pub fit: FitConfig,
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(rate) if (0.0..=1000.0).contains(&rate) => Ok(rate),
-        _ => Err("allowed are 0 to 1000 poses a second".into()),
-    }
 }
 
 fn pose(text: &str) -> Result<Pose, String> {

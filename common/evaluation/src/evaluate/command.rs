@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{number, stdout};
 use map::OccupancyGrid;
 use offline::{Accepted, OfflineError, Options, Session, World, damage_of};
 use progress::{Progress, say};
@@ -43,7 +43,7 @@ pub struct Config {
     /// Erase the map around each true pose: cells within this distance become unknown, metres,
     /// 0..=1000. unique_wrong then shows how often a place that is missing on the map is mistaken
     /// for another
-    #[arg(long, value_name = "METRES", value_parser = radius)]
+    #[arg(long, value_name = "METRES", value_parser = number(0.0..=1000.0, "metres"))]
     erase_place: Option<f64>,
 
     #[command(flatten)]
@@ -54,12 +54,6 @@ pub struct Config {
 
     #[command(flatten)]
     sequence: SequenceOptions,
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    let allowed = |metres: &f64| (0.0..=1000.0).contains(metres);
-    let metres = text.parse().ok().filter(allowed);
-    metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
