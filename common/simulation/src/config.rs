@@ -1,21 +1,21 @@
 //! Settings of a simulated drive.
 
+use command_line::{number, within};
 use geometry::{Mount, MountError, Pose};
 
-use crate::numbers::{parse, parse_share, within};
 use crate::{LaserConfig, Noise, OdometryConfig, SonarConfig};
 
 /// Motion, sensors and errors of the robot.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct DriveConfig {
     /// Speed along the path, metres per second, 0.01..=10.
-    #[arg(long, value_name = "M_PER_S", default_value_t = 0.5, value_parser = parse_speed)]
+    #[arg(long, value_name = "M_PER_S", default_value_t = 0.5, value_parser = number(0.01..=10.0, "metres a second"))]
     pub speed: f64,
     /// Turn rate on the spot at corners, degrees per second, 1..=360.
-    #[arg(long, value_name = "DEG_PER_S", default_value_t = 45.0, value_parser = parse_turn_rate)]
+    #[arg(long, value_name = "DEG_PER_S", default_value_t = 45.0, value_parser = number(1.0..=360.0, "degrees a second"))]
     pub turn_rate: f64,
     /// Scan rate, hertz, 0.01..=1000.
-    #[arg(long, value_name = "HZ", default_value_t = 5.0, value_parser = parse_rate)]
+    #[arg(long, value_name = "HZ", default_value_t = 5.0, value_parser = number(0.01..=1000.0, "scans a second"))]
     pub rate: f64,
     /// Mount of the sensor on the robot: metres ahead and left of the base, and degrees
     /// counter-clockwise. A fourth number of 180 is a laser upside down, rolled by half a turn
@@ -39,19 +39,19 @@ pub struct DriveConfig {
     pub lasers: Vec<NamedMount>,
     /// Time from the first beam of a scan to the last, seconds, 0..=1; the robot keeps moving. 0
     /// measures all beams at once.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_duration, conflicts_with = "sonar")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = number(0.0..=1.0, "seconds"), conflicts_with = "sonar")]
     pub scan_duration: f64,
     /// Standard deviation of a reading: metres, and optionally an increase per metre of range.
     #[arg(long, value_name = "METRES[,SHARE]", default_value = "0.01,0.002")]
     pub noise: Noise,
     /// Share of random readings, uniform from 0 to the maximum range, 0..=1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = parse_share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = number(0.0..=1.0, "as a share"))]
     pub outliers: f64,
     /// People who walk near the path, discs of 0.2 m radius, 0..=1000.
     #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub people: u32,
     /// Maximum range, metres, 0.1..=1000 [default: 30, or 5 with --sonar].
-    #[arg(long, value_name = "METRES", value_parser = parse_reach)]
+    #[arg(long, value_name = "METRES", value_parser = number(0.1..=1000.0, "metres"))]
     pub range_max: Option<f64>,
     /// Seed of all random numbers.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
@@ -108,7 +108,7 @@ fn parse_mount(text: &str) -> Result<Mount, String> {
         .map_err(|error: MountError| error.to_string())?;
     let Pose { x, y, .. } = mount.base_from_laser;
     for metres in [x, y] {
-        within(metres, -5.0..=5.0, "metres")?;
+        within(metres, &(-5.0..=5.0), "metres")?;
     }
     Ok(mount)
 }
@@ -129,26 +129,6 @@ fn parse_laser(text: &str) -> Result<NamedMount, String> {
         name: name.to_owned(),
         mount: parse_mount(mount)?,
     })
-}
-
-fn parse_duration(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=1.0, "seconds")
-}
-
-fn parse_speed(text: &str) -> Result<f64, String> {
-    parse(text, 0.01..=10.0, "metres a second")
-}
-
-fn parse_turn_rate(text: &str) -> Result<f64, String> {
-    parse(text, 1.0..=360.0, "degrees a second")
-}
-
-fn parse_rate(text: &str) -> Result<f64, String> {
-    parse(text, 0.01..=1000.0, "scans a second")
-}
-
-fn parse_reach(text: &str) -> Result<f64, String> {
-    parse(text, 0.1..=1000.0, "metres")
 }
 
 #[cfg(test)]

@@ -2,18 +2,19 @@
 
 use std::f64::consts::{PI, TAU};
 
+use clap::builder::TypedValueParser;
+use command_line::number;
 use geometry::{Mount, Pose};
 
 use crate::Bearings;
 use crate::noise::Receiver;
-use crate::numbers::parse;
 use crate::scene::Scene;
 
 /// Beams of the laser. The default is that of the recordings: 180 degrees, two beams per degree.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct LaserConfig {
     /// Angle from the first beam to the last, degrees, 1..=360, centred ahead [default: 180].
-    #[arg(long, value_name = "DEGREES", value_parser = parse_field_of_view, conflicts_with = "sonar")]
+    #[arg(long, value_name = "DEGREES", value_parser = number(1.0..=360.0, "degrees").map(|degrees| degrees.to_radians().min(TAU)), conflicts_with = "sonar")]
     pub field_of_view: Option<f64>,
     /// Number of beams per scan, 2..=65536 [default: 361].
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=65_536), conflicts_with = "sonar")]
@@ -26,12 +27,6 @@ impl LaserConfig {
         let beams = self.beams.map_or(361, |beams| beams as usize);
         Bearings::over(self.field_of_view.unwrap_or(PI), beams)
     }
-}
-
-/// Parses a field of view in degrees; returns radians.
-fn parse_field_of_view(text: &str) -> Result<f64, String> {
-    let degrees = parse(text, 1.0..=360.0, "degrees")?;
-    Ok(degrees.to_radians().min(TAU))
 }
 
 /// Readings of all beams, in metres; `map_from_base` returns the pose of the robot at a beam.

@@ -2,11 +2,12 @@
 
 use std::str::FromStr;
 
+use command_line::within;
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::numbers::{numbers, within};
+use crate::numbers::numbers;
 
 /// Readings are rounded to millimetres, as on real devices.
 const STEPS_PER_METRE: f64 = 1000.0;
@@ -29,8 +30,8 @@ impl FromStr for Noise {
             .or_else(|| numbers(text).map(|[metres]| [metres, 0.0]))
             .ok_or_else(|| format!("{text:?} is not a noise; needed is METRES or METRES,SHARE"))?;
         Ok(Noise {
-            sigma_m: within(metres, 0.0..=2.0, "metres")?,
-            sigma_per_m: within(share, 0.0..=0.25, "as a share of the range")?,
+            sigma_m: within(metres, &(0.0..=2.0), "metres")?,
+            sigma_per_m: within(share, &(0.0..=0.25), "as a share of the range")?,
         })
     }
 }

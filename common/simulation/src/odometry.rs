@@ -4,17 +4,17 @@ use geometry::Pose;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::numbers::parse_share;
+use command_line::number;
 
 /// Errors of the odometry. Variances grow with the distance, so that the scan rate does not matter.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct OdometryConfig {
     /// Standard deviation of the odometry after one metre: of the distance in metres and of the
     /// heading in radians, 0..=1.
-    #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = parse_share)]
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = number(0.0..=1.0, "as a share"))]
     pub odometry_noise_per_metre: f64,
     /// Standard deviation of the heading after turning by one radian, radians, 0..=1.
-    #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = parse_share)]
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.03, value_parser = number(0.0..=1.0, "as a share"))]
     pub odometry_noise_per_radian: f64,
 }
 

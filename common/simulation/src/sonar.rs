@@ -7,13 +7,13 @@
 
 use std::f32::consts::PI;
 
+use command_line::number;
 use geometry::{Pose, angle_between};
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use crate::Bearings;
 use crate::noise::Receiver;
-use crate::numbers::{parse, parse_share};
 use crate::scene::Scene;
 
 /// Bearings of the transducers, degrees counter-clockwise from ahead: six ahead and two behind, as
@@ -39,22 +39,14 @@ pub struct SonarConfig {
     #[arg(long)]
     pub sonar: bool,
     /// Full width of a transducer's cone, degrees, 1..=90.
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = parse_beam_width, requires = "sonar")]
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number(1.0..=90.0, "degrees"), requires = "sonar")]
     pub beam_width: f64,
     /// Largest angle from head on at which walls return an echo, degrees, 0..=90.
-    #[arg(long, value_name = "DEGREES", default_value_t = 15.0, value_parser = parse_limit, requires = "sonar")]
+    #[arg(long, value_name = "DEGREES", default_value_t = 15.0, value_parser = number(0.0..=90.0, "degrees"), requires = "sonar")]
     pub specular_limit: f64,
     /// Share of the readings that are another transducer's echo, 0..=1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = parse_share, requires = "sonar")]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = number(0.0..=1.0, "as a share"), requires = "sonar")]
     pub cross_talk: f64,
-}
-
-fn parse_beam_width(text: &str) -> Result<f64, String> {
-    parse(text, 1.0..=90.0, "degrees")
-}
-
-fn parse_limit(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=90.0, "degrees")
 }
 
 #[derive(Debug, Clone, Copy)]

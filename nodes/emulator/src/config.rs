@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
+use command_line::number;
 use replay::Rate;
 use sick::cola::{Encoding, KnownDevice};
 use sick::lms2xx::Baud;
@@ -52,7 +53,7 @@ pub struct Config {
 
     /// Baud rate of the LMS2xx after power-on: 9600, 19200, 38400 or 500000. At any other rate it
     /// receives and sends garbage.
-    #[arg(long, value_name = "RATE", default_value = "9600", value_parser = baud)]
+    #[arg(long, value_name = "RATE", default_value = "9600")]
     pub baud: Baud,
 
     /// Playback speed as a multiple of the original, 0.001 to 1000; or max: each scan is sent after
@@ -77,19 +78,12 @@ pub struct Config {
     pub wait_for: Vec<String>,
 
     /// Timeout for an answer at --rate max, seconds, 0.1 to 3600.
-    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = number(0.1..=3600.0, "seconds"))]
     pub patience: f64,
 
     /// Seed of the random faults.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
-}
-
-fn patience(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("allowed are 0.1 to 3600 seconds".into()),
-    }
 }
 
 fn model(text: &str) -> Result<&'static KnownDevice, String> {
@@ -109,15 +103,8 @@ fn listen(text: &str) -> Result<String, String> {
     }
 }
 
-fn baud(text: &str) -> Result<Baud, String> {
-    let baud = text.parse().ok().and_then(Baud::from_rate);
-    baud.ok_or_else(|| "allowed are 9600, 19200, 38400 and 500000".into())
-}
-
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     fn parse(arguments: &str) -> Result<Config, String> {
@@ -127,7 +114,6 @@ mod tests {
 
     #[test]
     fn options() {
-        Config::command().debug_assert();
         let config = parse("--recording a --listen tcp://127.0.0.1:2112").unwrap();
         assert_eq!(config.listen.as_deref(), Some("127.0.0.1:2112"));
         assert_eq!((config.baud, config.rate), (Baud::B9600, Rate::Factor(1.0)));

@@ -5,6 +5,7 @@
 use std::str::FromStr;
 use std::time::Duration;
 
+use command_line::number;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
@@ -35,6 +36,7 @@ impl FromStr for FaultPlan {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let probability = number(0.0..=1.0, "as a share");
         let mut plan = FaultPlan::default();
         for fault in text.split(',').filter(|fault| !fault.is_empty()) {
             match fault.split_once('=') {
@@ -54,13 +56,6 @@ impl FromStr for FaultPlan {
             }
         }
         Ok(plan)
-    }
-}
-
-fn probability(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
-        _ => Err(format!("{text:?}: allowed are 0 to 1")),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
+use clap::{ArgAction, ArgGroup, Parser, ValueEnum};
+use command_line::number;
 use geometry::Mount;
 use messages::{FrameName, Name};
 use sick::cola::{AngleConvention, DeviceAngles, Encoding, KnownDevice, USUAL_REACH_M};
@@ -30,17 +31,17 @@ pub struct Config {
 
     /// Baud rate to switch the serial device to: 9600, 19200, 38400 or 500000 [default: the rate at
     /// which it answers].
-    #[arg(long, value_name = "RATE", value_parser = baud, conflicts_with_all = ["tcp", "capture"])]
+    #[arg(long, value_name = "RATE", conflicts_with_all = ["tcp", "capture"])]
     pub baud: Option<Baud>,
 
     /// Field of view, degrees, half of it to each side: 100 or 180 with --serial, else
     /// up to 360 [default: the device's setting].
-    #[arg(long, value_name = "DEGREES", value_parser = field, conflicts_with = "capture")]
+    #[arg(long, value_name = "DEGREES", value_parser = number(1.0..=360.0, "degrees"), conflicts_with = "capture")]
     pub field: Option<f64>,
 
     /// Angle between beams, degrees: 0.25, 0.5 or 1 with --serial, else any value that the device
     /// supports [default: the device's setting].
-    #[arg(long, value_name = "DEGREES", value_parser = resolution, conflicts_with = "capture")]
+    #[arg(long, value_name = "DEGREES", value_parser = number(0.01..=5.0, "degrees"), conflicts_with = "capture")]
     pub resolution: Option<f64>,
 
     /// Range of the serial device, metres: 8, 16 or 32 in millimetres, 80 in centimetres [default:
@@ -78,7 +79,7 @@ pub struct Config {
 
     /// Timeout in seconds, 0.2 to 3600: the connection is closed if no byte (--tcp) or telegram
     /// (--serial) is received for this long.
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = number(0.2..=3600.0, "seconds"))]
     pub silence: f64,
 
     /// Pose of the laser on the robot: metres ahead, metres to the left, degrees counter-clockwise,
@@ -116,7 +117,7 @@ pub struct Config {
 
     /// Device angle that points ahead, degrees: 90 on most devices. With --tcp or --capture,
     /// instead of --device.
-    #[arg(long, value_name = "DEGREES", value_parser = zero, allow_hyphen_values = true, conflicts_with_all = ["serial", "device"])]
+    #[arg(long, value_name = "DEGREES", value_parser = number(-360.0..=360.0, "degrees"), allow_hyphen_values = true, conflicts_with_all = ["serial", "device"])]
     pub zero_deg: Option<f64>,
 
     /// The device's own angles grow clockwise, seen from above.
@@ -145,13 +146,7 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        let config = Config::parse();
-        match config.check() {
-            Ok(()) => config,
-            Err(problem) => Config::command()
-                .error(ErrorKind::ValueValidation, problem)
-                .exit(),
-        }
+        command_line::parse(Config::check)
     }
 
     /// Checks rules that concern more than one option.
@@ -234,10 +229,6 @@ fn device(text: &str) -> Result<&'static KnownDevice, String> {
     }
 }
 
-fn zero(text: &str) -> Result<f64, String> {
-    degrees(text, -360.0, 360.0)
-}
-
 fn address(text: &str) -> Result<String, String> {
     let port = text
         .rsplit_once(':')
@@ -245,26 +236,6 @@ fn address(text: &str) -> Result<String, String> {
     match port {
         Some((host, Ok(1u16..))) if !host.is_empty() => Ok(text.into()),
         _ => Err("expected is HOST:PORT with a port from 1 to 65535".into()),
-    }
-}
-
-fn baud(text: &str) -> Result<Baud, String> {
-    let baud = text.parse().ok().and_then(Baud::from_rate);
-    baud.ok_or_else(|| "allowed are 9600, 19200, 38400 and 500000".into())
-}
-
-fn field(text: &str) -> Result<f64, String> {
-    degrees(text, 1.0, 360.0)
-}
-
-fn resolution(text: &str) -> Result<f64, String> {
-    degrees(text, 0.01, 5.0)
-}
-
-fn degrees(text: &str, least: f64, most: f64) -> Result<f64, String> {
-    match text.parse() {
-        Ok(degrees) if (least..=most).contains(&degrees) => Ok(degrees),
-        _ => Err(format!("allowed are {least} to {most} degrees")),
     }
 }
 
@@ -277,13 +248,6 @@ fn range(text: &str) -> Result<Reach, String> {
         _ => return Err("allowed are 8, 16, 32 and 80".into()),
     };
     Ok(Reach { mode, unit })
-}
-
-fn silence(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.2..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("allowed are 0.2 to 3600 seconds".into()),
-    }
 }
 
 fn metres(text: &str) -> Result<f32, String> {

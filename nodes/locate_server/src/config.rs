@@ -4,7 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{CommandFactory, Parser, error::ErrorKind};
+use clap::Parser;
+use clap::builder::TypedValueParser;
+use command_line::number;
 use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::localizer::LocalizerConfig;
@@ -47,7 +49,7 @@ pub struct Config {
 
     /// Timeout of a request that names none, 0.01 to 60 seconds; a scan that cannot be answered in
     /// time is not searched
-    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = deadline)]
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = number(0.01..=60.0, "seconds").map(Duration::from_secs_f64))]
     pub deadline: Duration,
 
     #[command(flatten)]
@@ -68,13 +70,10 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        let config = Config::parse();
-        match Directions::new(config.localizer.headings) {
-            Ok(_) => config,
-            Err(problem) => Config::command()
-                .error(ErrorKind::ValueValidation, problem)
-                .exit(),
-        }
+        command_line::parse(|config: &Config| {
+            let headings = Directions::new(config.localizer.headings);
+            headings.map(drop).map_err(|problem| problem.to_string())
+        })
     }
 
     /// Returns the map files with their names.
@@ -120,13 +119,6 @@ impl Config {
     }
 }
 
-fn deadline(text: &str) -> Result<Duration, String> {
-    match text.parse() {
-        Ok(seconds) if (0.01..=60.0).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err("allowed are 0.01 to 60 seconds".into()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -139,7 +131,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
         let config = parse("--name office --workers 3 --deadline 0.5").unwrap();
         assert_eq!((config.name().as_str(), config.workers()), ("office", 3));
         assert_eq!(config.deadline, Duration::from_millis(500));

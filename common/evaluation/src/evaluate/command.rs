@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{number, stdout};
 use map::OccupancyGrid;
-use offline::{Accepted, OfflineError, Options, Session, World, damage_of};
+use offline::{Accepted, OfflineError, Options, Session, World};
 use progress::{Progress, say};
 use recording::GroundTruth;
 
@@ -43,7 +43,7 @@ pub struct Config {
     /// Erase the map around each true pose: cells within this distance become unknown, metres,
     /// 0..=1000. unique_wrong then shows how often a place that is missing on the map is mistaken
     /// for another
-    #[arg(long, value_name = "METRES", value_parser = radius)]
+    #[arg(long, value_name = "METRES", value_parser = number(0.0..=1000.0, "metres"))]
     erase_place: Option<f64>,
 
     #[command(flatten)]
@@ -54,12 +54,6 @@ pub struct Config {
 
     #[command(flatten)]
     sequence: SequenceOptions,
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    let allowed = |metres: &f64| (0.0..=1000.0).contains(metres);
-    let metres = text.parse().ok().filter(allowed);
-    metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
@@ -106,7 +100,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
             code = ExitCode::FAILURE;
         }
         let line = match config.json {
-            true => evaluation.json(),
+            true => json::object(&evaluation),
             false => table.row(&evaluation),
         };
         for line in header.take().into_iter().chain([line]) {
@@ -127,7 +121,7 @@ fn evaluate(
     trust: &mut Trust,
 ) -> Result<Evaluation, EvaluationError> {
     let recording = config.options.open(&[bag.to_owned()])?;
-    if let Some(damage) = damage_of(&recording) {
+    if let Some(damage) = recording.damage_error() {
         return Err(damage.into());
     }
     let truths = recording.ground_truths()?;

@@ -1,13 +1,16 @@
 //! Requirements on the figures of a file, by which a build can fail. Pure.
 
+use command_line::number;
+
 use super::judge::Evaluation;
+use crate::sequence::above_zero;
 
 /// Requirements on each file; none by default, and not for sequences.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Requirements: exit code 1 if a file misses one")]
 pub(super) struct Limits {
     /// Lowest share of the truths that are found within 0.5 m and 10 degrees, per cent
-    #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = percent)]
+    #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = number(0.0..=100.0, "per cent"))]
     min_success: Option<f64>,
 
     /// Highest number of results that are Unique and wrong
@@ -21,19 +24,6 @@ pub(super) struct Limits {
     /// Largest median distance of the right answers from the truth, centimetres
     #[arg(long, value_name = "CM", conflicts_with = "sequence", value_parser = above_zero)]
     max_error_cm: Option<f64>,
-}
-
-fn percent(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|n| (0.0..=100.0).contains(n));
-    number.ok_or_else(|| "allowed are 0 to 100 per cent".to_owned())
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    let number = text
-        .parse()
-        .ok()
-        .filter(|n: &f64| n.is_finite() && *n > 0.0);
-    number.ok_or_else(|| "allowed are numbers above 0".to_owned())
 }
 
 impl Limits {

@@ -30,7 +30,8 @@ pub(super) struct Reached {
     pub(super) rms_m: Option<f64>,
 }
 
-fn above_zero(text: &str) -> Result<f64, String> {
+/// Parses a finite number above 0.
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|n: &f64| n.is_finite() && *n > 0.0);
     number.ok_or_else(|| "allowed are numbers above 0".to_owned())

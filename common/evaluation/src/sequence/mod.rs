@@ -19,4 +19,5 @@ mod starts;
 mod stress;
 
 pub(crate) use command::evaluate;
+pub(crate) use limits::above_zero;
 pub(crate) use options::SequenceOptions;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use command_line::number;
 use engine::tracking::TrackingConfig;
 
 use super::limits::SequenceLimits;
@@ -33,7 +34,7 @@ pub(crate) struct SequenceOptions {
     pub without_odometry: bool,
 
     /// Multiply the errors of odometry, against the truth, by this factor, 0..=100
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = number(0.0..=100.0, "times"))]
     pub odometry_noise: f64,
 
     /// Numbers of scans, from 0, whose true poses are known to be wrong
@@ -78,13 +79,5 @@ impl SequenceOptions {
             Some(Stress::AllOf(file)) => Some(file.clone()),
             _ => None,
         }
-    }
-}
-
-fn parse_factor(text: &str) -> Result<f64, String> {
-    let allowed = 0.0..=100.0;
-    match text.parse() {
-        Ok(factor) if allowed.contains(&factor) => Ok(factor),
-        _ => Err("0 to 100 are allowed".to_owned()),
     }
 }
