@@ -15,8 +15,8 @@ fn main() -> ExitCode {
     };
     let config = Config::parse_from(words);
     let level = config.log_level.as_deref().unwrap_or("info");
-    // What DDS does in the normal case is of no interest.
-    let log = zenoh_session::LOG.replacen("info", level, 1) + ",rustdds=warn";
+    // What DDS does in the normal case is of no interest, nor how messages are tried to be read.
+    let log = zenoh_session::LOG.replacen("info", level, 1) + ",rustdds=warn,cdr_encoding=error";
     transport::node::main_with_log(ros2_gateway::NODE, &log, |graph| {
         ros2_gateway::run(graph, &config)
     })

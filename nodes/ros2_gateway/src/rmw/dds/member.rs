@@ -1,6 +1,7 @@
 //! The gateway as a participant of a domain of DDS.
 
 use std::rc::Rc;
+use std::time::Duration;
 
 use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
@@ -19,6 +20,10 @@ const MAX_INFO_BYTES: usize = 1 << 20;
 
 /// Participants whose nodes are remembered until they are looked at.
 const MAX_INFOS: usize = 256;
+
+/// For so long the end of all topics and services is sent before the participant itself ends,
+/// whose end drops what is not sent yet.
+const FAREWELL: Duration = Duration::from_millis(100);
 
 /// A node of ROS, as others see it, for as long as this lives.
 pub(crate) struct Member {
@@ -91,6 +96,13 @@ impl Member {
         let topic = named(&self.participant, (topic, kind), quality)?;
         let reader = reader(&self.subscriber, &topic)?;
         Ok(Reader::new(name, reader, Some(graph.waker()?), max_bytes))
+    }
+}
+
+impl Drop for Member {
+    fn drop(&mut self) {
+        self.node.leave();
+        std::thread::sleep(FAREWELL);
     }
 }
 
