@@ -1,6 +1,8 @@
-//! `std_msgs/msg/Header` and `builtin_interfaces/msg/Time`.
+//! `std_msgs/msg/Header`, `std_msgs/msg/String` and `builtin_interfaces/msg/Time`.
 
 use serde::{Deserialize, Serialize};
+
+use super::RosMessage;
 
 /// When and in which frame something was measured.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -20,6 +22,18 @@ impl Header {
             frame_id: frame.to_owned(),
         }
     }
+}
+
+/// `std_msgs/msg/String`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Text {
+    /// The text.
+    pub data: String,
+}
+
+impl RosMessage for Text {
+    const SCHEMA: &'static str = "std_msgs/msg/String";
+    const DEFINITION: &'static str = "string data\n";
 }
 
 /// A moment since 1970.

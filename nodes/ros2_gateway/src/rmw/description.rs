@@ -274,6 +274,11 @@ mod tests {
             "diagnostic_msgs::msg::dds_::DiagnosticArray_",
             "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
         );
+        check(
+            of_message::<ros::Text>(),
+            "std_msgs::msg::dds_::String_",
+            "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
+        );
     }
 
     /// As `rosbags` makes them of the definitions.
