@@ -16,7 +16,7 @@ use recording::{Kind, Recording};
 
 use crate::InitError;
 use crate::descriptor::{Served, Source, descriptor_of};
-use crate::robot::{self, Robot};
+use crate::robot::{self, Lasers, Robot};
 
 /// Text below the options in the help.
 pub const NOTES: &str = "\
@@ -147,7 +147,12 @@ fn source(config: &Config) -> Result<Source, InitError> {
         let mut seen = Robot::default();
         if !config.no_probe {
             say("looking for the robot's nodes");
-            seen = robot::look(router.as_deref())?;
+            // A mount is that of one laser.
+            let lasers = match mount {
+                Some(_) => Lasers::First,
+                None => Lasers::All,
+            };
+            seen = robot::look(router.as_deref(), lasers)?;
             seen.said.iter().for_each(|said| say(said));
             if seen.lacks_map && !has_map {
                 say(robot::NO_MAP);
@@ -156,6 +161,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
         return Ok(Source::Ros2 {
             router: router.clone(),
             options: seen.options,
+            scans: seen.scans,
             mount,
             brings_map: !has_map,
         });

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use ros::lasers;
+
 /// Source of scans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Source {
@@ -16,6 +18,8 @@ pub(crate) enum Source {
     Ros2 {
         /// Options of the gateway for middleware and topics.
         options: Vec<String>,
+        /// Topics of the scans of several lasers; empty with one laser.
+        scans: Vec<String>,
         /// Address of its router; `None` if the gateway is the router.
         router: Option<String>,
         /// Mount as `X,Y,YAW_DEG`.
@@ -71,6 +75,17 @@ impl Source {
         }
     }
 
+    /// The topics of scans in the graph.
+    fn scans(&self) -> Vec<String> {
+        match self {
+            Source::Ros2 { scans, .. } if !scans.is_empty() => {
+                let name = |topic: &String| format!("scan_{}", lasers::name_of(topic));
+                scans.iter().map(name).collect()
+            }
+            _ => vec!["scan".to_owned()],
+        }
+    }
+
     fn has_odometry(&self) -> bool {
         match self {
             Source::Laser { .. } => false,
@@ -101,6 +116,7 @@ impl Source {
                 options,
                 mount: at,
                 brings_map,
+                ..
             } => {
                 let router = router.as_deref().map(|r| format!(" --connect {}", word(r)));
                 let options = options.iter().map(|option| format!(" {}", word(option)));
@@ -117,8 +133,9 @@ impl Source {
     inputs:
       hypotheses: peak_extractor/hypotheses
       pose: tracker/pose
-    outputs: [scan, odometry{output}]
+    outputs: [{scans}, odometry{output}]
 {RESTARTS}",
+                    scans = self.scans().join(", "),
                     args = quoted(&format!(
                         "--bring scan,odometry{brought}{}{}{}",
                         options.collect::<String>(),
@@ -188,6 +205,9 @@ impl Served {
 /// Generates the whole descriptor; `map` is served by `map_server` if it is given.
 pub(crate) fn descriptor_of(source: &Source, map: Option<&Served>) -> String {
     let from = source.node();
+    let scans = source.scans().into_iter();
+    let scans: Vec<String> = scans.map(|scan| format!("{scan}: {from}/{scan}")).collect();
+    let scans = scans.join("\n      ");
     let odometry = match source.has_odometry() {
         true => format!("\n      odometry: {from}/odometry"),
         false => String::new(),
@@ -235,7 +255,7 @@ nodes:
   - id: accumulator
     path: accumulator
     inputs:
-      scan: {from}/scan
+      {scans}
       {maps}{boundary}{odometry}
       attention: tracker/attention
     outputs: [votes, {votes_out}readings, field]
@@ -246,7 +266,7 @@ nodes:
     inputs:
       votes: accumulator/votes{votes_in}
       readings: accumulator/readings
-      scan: {from}/scan
+      {scans}
       {maps}
     outputs: [hypotheses, beams]
 {RESTARTS}
@@ -254,7 +274,7 @@ nodes:
   - id: tracker
     path: tracker
     inputs:
-      scan: {from}/scan{odometry}
+      {scans}{odometry}
       {maps}
       hypotheses: peak_extractor/hypotheses
     outputs: [pose, attention]
@@ -314,9 +334,19 @@ mod tests {
             options: ["--rmw", "dds", "--scan", "/r2/scan"]
                 .map(str::to_owned)
                 .to_vec(),
+            scans: Vec::new(),
             router,
             mount: mount.clone(),
             brings_map,
+        };
+        let lasers = Source::Ros2 {
+            options: ["--scan", "/front/scan", "--scan", "/rear/scan"]
+                .map(str::to_owned)
+                .to_vec(),
+            scans: ["/front/scan", "/rear/scan"].map(str::to_owned).to_vec(),
+            router: None,
+            mount: None,
+            brings_map: true,
         };
         let recording = |has_odometry| Source::Recording {
             file: "/data/a \"good\" drive.mcap".to_owned(),
@@ -327,6 +357,7 @@ mod tests {
             laser(mount.clone()),
             robot(None, true),
             robot(router, false),
+            lasers,
             recording(true),
             recording(false),
         ]

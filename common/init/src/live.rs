@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use messages::topic;
@@ -16,7 +16,7 @@ use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_cau
 
 use crate::InitError;
 use crate::descriptor::quoted;
-use crate::robot;
+use crate::robot::{self, Lasers};
 
 /// A recording in a temporary folder, which is removed when this is dropped.
 pub struct Recorded {
@@ -54,7 +54,7 @@ const TICK: Duration = Duration::from_millis(50);
 pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitError> {
     let failed = |reason: String| InitError::Record { reason };
     say("looking for the robot's nodes");
-    let seen = robot::look(router)?;
+    let seen = robot::look(router, Lasers::First)?;
     seen.said.iter().for_each(|said| say(said));
     if seen.lacks_map {
         say(robot::NO_MAP);
@@ -111,7 +111,7 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
         let lines = log.into_iter().flat_map(BufRead::lines);
         lines.map_while(Result::ok).collect::<Vec<String>>()
     });
-    if let Err(error) = wait_for_scan(&name) {
+    if let Err(error) = wait_for_scan(&name, &mut graph) {
         say(&with_causes(&error));
     }
     std::thread::sleep(length);
@@ -132,12 +132,15 @@ pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitEr
     })
 }
 
-/// Waits until a scan has entered a graph that is starting, at most for [`FIRST_SCAN`].
-fn wait_for_scan(name: &GraphName) -> Result<(), TransportError> {
+/// Waits until a scan has entered a graph that is starting, at most for [`FIRST_SCAN`], or until
+/// its launcher has ended.
+fn wait_for_scan(name: &GraphName, launcher: &mut Child) -> Result<(), TransportError> {
     let begin = Instant::now();
+    let mut is_over =
+        || begin.elapsed() >= FIRST_SCAN || launcher.try_wait().is_ok_and(|end| end.is_some());
     // Joining before the launcher would keep it from starting.
     while !control_socket(name).exists() {
-        if begin.elapsed() >= FIRST_SCAN {
+        if is_over() {
             return Ok(());
         }
         std::thread::sleep(TICK);
@@ -145,8 +148,12 @@ fn wait_for_scan(name: &GraphName) -> Result<(), TransportError> {
     let graph = Graph::join_named("doctor", name)?;
     let scans = graph.subscriber::<topic::Scan>()?;
     graph.run(&[&scans], TICK, |_| {
-        let is_over = scans.newest()?.is_some() || begin.elapsed() >= FIRST_SCAN;
-        Ok(if is_over { Flow::Stop } else { Flow::Continue })
+        let is_enough = scans.newest()?.is_some() || is_over();
+        Ok(if is_enough {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
     })
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
+use ros::lasers;
 use serde::Deserialize;
 use transport::GRAPH_VARIABLE;
 
@@ -21,11 +22,22 @@ pub(crate) struct Published {
     node: String,
 }
 
+/// Choice among the lasers of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lasers {
+    /// `/scan` or the first one.
+    First,
+    /// All, if none is `/scan`.
+    All,
+}
+
 /// Result of looking for a robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Robot {
     /// Options of the gateway for middleware and topics.
     pub(crate) options: Vec<String>,
+    /// Topics of the scans of several lasers; empty with one laser.
+    pub(crate) scans: Vec<String>,
     /// True if its nodes publish scans but no map.
     pub(crate) lacks_map: bool,
     /// Sentences for the user on what was found.
@@ -36,7 +48,7 @@ pub(crate) struct Robot {
 ///
 /// # Errors
 /// The gateway cannot be started or ends with an error.
-pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
+pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> Result<Robot, InitError> {
     let failed = |reason: String| InitError::Robot { reason };
     let gateway = launcher::node("ros2_gateway").ok_or_else(|| {
         failed("ros2_gateway is not built; `cargo build --release -p ros2_gateway` does".into())
@@ -61,14 +73,14 @@ pub(crate) fn look(router: Option<&str>) -> Result<Robot, InitError> {
     let lines = lines.filter(|line| !line.is_empty());
     let published: Result<Vec<Published>, _> = lines.map(serde_json::from_slice).collect();
     let published = published.map_err(|error| failed(format!("ros2_gateway: {error}")))?;
-    Ok(robot_of(&published))
+    Ok(robot_of(&published, lasers))
 }
 
 /// Message for a robot without a map.
 pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one";
 
 /// Chooses the options for the published topics.
-fn robot_of(published: &[Published]) -> Robot {
+fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
     let mut robot = Robot::default();
     // With several robots, the first one with scans is used.
     let Some(first) = published.iter().find(|one| one.kind == "scan") else {
@@ -105,9 +117,20 @@ fn robot_of(published: &[Published]) -> Robot {
         .filter(|topic| !topic.contains("costmap"))
         .collect();
     robot.lacks_map = maps.is_empty();
+    let odometry = of_kind("odometry");
+    if lasers == Lasers::All {
+        robot.scans = of_lasers(&scans, &odometry);
+    }
+    for scan in &robot.scans {
+        robot.options.extend(["--scan".to_owned(), scan.clone()]);
+    }
+    let scans = match robot.scans.is_empty() {
+        true => scans,
+        false => BTreeSet::new(),
+    };
     for (option, default, topics) in [
         ("--scan", "/scan", &scans),
-        ("--odom", "/odom", &of_kind("odometry")),
+        ("--odom", "/odom", &odometry),
         ("--map", "/map", &maps),
     ] {
         let Some(chosen) = topics.get(default).or_else(|| topics.first()) else {
@@ -125,6 +148,21 @@ fn robot_of(published: &[Published]) -> Robot {
         }
     }
     robot
+}
+
+/// The topics of several lasers of one robot, with names that tell these apart; none where one
+/// topic is that of all. Who has odometry of its own in its namespace is another robot.
+fn of_lasers(scans: &BTreeSet<String>, odometry: &BTreeSet<String>) -> Vec<String> {
+    let space = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
+    let robots: BTreeSet<_> = odometry.iter().map(|topic| space(topic)).collect();
+    let first = odometry.first().and_then(|topic| space(topic));
+    let is_its = |topic: &&String| !robots.contains(&space(topic)) || space(topic) == first;
+    let its: Vec<String> = scans.iter().filter(is_its).cloned().collect();
+    let names: BTreeSet<String> = its.iter().map(|topic| lasers::name_of(topic)).collect();
+    match its.len() > 1 && names.len() == its.len() && !scans.contains("/scan") {
+        true => its,
+        false => Vec::new(),
+    }
 }
 
 #[cfg(test)]
@@ -152,7 +190,7 @@ mod tests {
             ("map", "/map"),
             ("transforms", "/tf"),
         ];
-        let robot = robot_of(&published(&seen, "zenoh", 0));
+        let robot = robot_of(&published(&seen, "zenoh", 0), Lasers::All);
         assert_eq!(robot.options, ["--rmw", "zenoh"]);
         assert!(!robot.lacks_map);
         assert_eq!(
@@ -171,15 +209,33 @@ mod tests {
             ("scan", "/r2/rear"),
             ("odometry", "/r2/odometry/filtered"),
         ];
-        let robot = robot_of(&published(&seen, "dds", 7));
-        let expected = "--rmw dds --domain 7 --scan /r2/front --odom /r2/odometry/filtered";
+        for (lasers, scans) in [
+            (Lasers::First, "--scan /r2/front"),
+            (Lasers::All, "--scan /r2/front --scan /r2/rear"),
+        ] {
+            let robot = robot_of(&published(&seen, "dds", 7), lasers);
+            let expected = format!("--rmw dds --domain 7 {scans} --odom /r2/odometry/filtered");
+            assert_eq!(robot.options.join(" "), expected);
+            assert!(robot.lacks_map);
+        }
+    }
+
+    #[test]
+    fn lasers_of_another_robot_are_left_out() {
+        let seen = [
+            ("scan", "/r1/scan"),
+            ("scan", "/r2/scan"),
+            ("odometry", "/r1/odom"),
+            ("odometry", "/r2/odom"),
+        ];
+        let robot = robot_of(&published(&seen, "dds", 0), Lasers::All);
+        let expected = "--rmw dds --scan /r1/scan --odom /r1/odom";
         assert_eq!(robot.options.join(" "), expected);
-        assert!(robot.lacks_map);
     }
 
     #[test]
     fn a_robot_that_is_not_there_is_said() {
-        let robot = robot_of(&[]);
+        let robot = robot_of(&[], Lasers::All);
         assert!(robot.options.is_empty());
         assert!(robot.said[0].starts_with("no node publishes laser scans"));
     }

@@ -61,7 +61,7 @@ pub use pose_array::PoseArray;
 pub use pose_stamped::PoseStamped;
 pub use pose_with_covariance_stamped::PoseWithCovarianceStamped;
 pub use service::{Empty, Nothing, RosService};
-pub use std_msgs::{Header, Time};
+pub use std_msgs::{Header, Text, Time};
 pub use tf_message::{TfMessage, TransformStamped};
 
 /// A message type with its name and definition in recordings.

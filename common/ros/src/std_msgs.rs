@@ -1,6 +1,8 @@
-//! `std_msgs/msg/Header` and `builtin_interfaces/msg/Time`.
+//! `std_msgs/msg/Header`, `std_msgs/msg/String` and `builtin_interfaces/msg/Time`.
 
 use serde::{Deserialize, Serialize};
+
+use super::RosMessage;
 
 /// Time and frame of a measurement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -17,6 +19,17 @@ impl Header {
             frame_id: frame.to_owned(),
         }
     }
+}
+
+/// `std_msgs/msg/String`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Text {
+    pub data: String,
+}
+
+impl RosMessage for Text {
+    const SCHEMA: &'static str = "std_msgs/msg/String";
+    const DEFINITION: &'static str = "string data\n";
 }
 
 /// Time since 1970.

@@ -15,8 +15,8 @@ fn main() -> ExitCode {
     };
     let config = Config::parse_from(words);
     let level = config.log_level.as_deref().unwrap_or("info");
-    // Routine log lines of DDS are of no interest.
-    let log = zenoh_session::LOG.replacen("info", level, 1) + ",rustdds=warn";
+    // Routine log lines of DDS, and attempts to decode a message, are of no interest.
+    let log = zenoh_session::LOG.replacen("info", level, 1) + ",rustdds=warn,cdr_encoding=error";
     transport::node::main_with_log(ros2_gateway::NODE, &log, |graph| {
         ros2_gateway::run(graph, &config)
     })

@@ -65,7 +65,6 @@ fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
 }
 
 struct Gateway {
-    member: Member,
     watch: Watch,
     service: Service<Empty>,
     incoming: Incoming,
@@ -75,6 +74,8 @@ struct Gateway {
     frames: Frames,
     seeding: Seeding,
     map_frame: Option<String>,
+    // Behind all that is open in the robot's domain, which ends before it.
+    member: Member,
 }
 
 impl Gateway {

@@ -1,6 +1,7 @@
 //! The tracker's verdict: as a topic of the robot, and for a fleet's master control.
 
 use messages::PoseHeader;
+use ros::Text;
 use ros::backcast_msgs::Localization;
 use transport::TransportError;
 use zenoh::Wait;
@@ -17,24 +18,37 @@ use crate::{GatewayError, vda5050};
 /// Publishers of the verdict, with one message per scan.
 pub(crate) struct Verdict {
     topic: Publisher<Localization>,
-    /// `None` if the robot does not use Zenoh.
-    fleet: Option<ZenohPublisher<'static>>,
+    fleet: Fleet,
+}
+
+/// Destination of the verdict for a fleet's master control.
+enum Fleet {
+    /// A Zenoh key, with JSON.
+    Key(ZenohPublisher<'static>),
+    /// A topic of the robot, with text.
+    Topic(Publisher<Text>),
 }
 
 impl Verdict {
     pub(crate) fn open(member: &Member, topics: &Topics) -> Result<Self, GatewayError> {
-        let fleet = member.session().map(|session| {
-            let key = format!("vda5050/{}{}", member.domain(), topics.localization);
-            let publisher = session.declare_publisher(key.clone());
-            let publisher = publisher
-                .congestion_control(CongestionControl::Drop)
-                .encoding(Encoding::APPLICATION_JSON)
-                .wait();
-            publisher.map_err(KeyError::when("publish", &key))
-        });
+        let fleet = match member.session() {
+            Some(session) => {
+                let key = format!("vda5050/{}{}", member.domain(), topics.localization);
+                let publisher = session.declare_publisher(key.clone());
+                let publisher = publisher
+                    .congestion_control(CongestionControl::Drop)
+                    .encoding(Encoding::APPLICATION_JSON)
+                    .wait();
+                Fleet::Key(publisher.map_err(KeyError::when("publish", &key))?)
+            }
+            None => {
+                let topic = format!("{}/vda5050", topics.localization);
+                Fleet::Topic(Publisher::open(member, &topic, 1)?)
+            }
+        };
         Ok(Verdict {
             topic: Publisher::open_kept(member, &topics.localization, 1)?,
-            fleet: fleet.transpose()?,
+            fleet,
         })
     }
 
@@ -52,14 +66,20 @@ impl Verdict {
         let on_topic = in_map(from.stamp, map_frame)
             .and_then(|header| self.topic.send(&Localization::of(header, from, words)));
         report.outcome(on_topic)?;
-        let to_fleet = self.fleet.as_ref().map(|fleet| send_to(fleet, from));
-        to_fleet.map_or(Ok(()), |outcome| report.outcome(outcome))
+        report.outcome(self.fleet.send(from))
     }
 }
 
-fn send_to(fleet: &ZenohPublisher<'static>, from: &PoseHeader) -> Result<(), GatewayError> {
-    let key = fleet.key_expr();
-    let bytes = serde_json::to_vec(&vda5050::of(from)).map_err(GatewayError::encoding(key))?;
-    let sent = fleet.put(bytes).wait();
-    Ok(sent.map_err(KeyError::when("send on", key.as_str()))?)
+impl Fleet {
+    fn send(&mut self, from: &PoseHeader) -> Result<(), GatewayError> {
+        let data = json::object(&vda5050::of(from));
+        match self {
+            Fleet::Key(publisher) => {
+                let sent = publisher.put(data).wait();
+                let key = publisher.key_expr();
+                Ok(sent.map_err(KeyError::when("send on", key.as_str()))?)
+            }
+            Fleet::Topic(publisher) => publisher.send(&Text { data }),
+        }
+    }
 }

@@ -280,6 +280,7 @@ mod tests {
             (of_message::<PoseWithCovarianceStamped>(), "geometry_msgs::msg PoseWithCovarianceStamped", "26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e"),
             (of_message::<PoseArray>(), "geometry_msgs::msg PoseArray", "af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0"),
             (of_message::<DiagnosticArray>(), "diagnostic_msgs::msg DiagnosticArray", "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"),
+            (of_message::<ros::Text>(), "std_msgs::msg String", "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"),
             (of_service("example_interfaces/srv/AddTwoInts", "int64 a\nint64 b\n", "int64 sum\n"), "example_interfaces::srv AddTwoInts", "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"),
         ]);
         // `rosbags` makes these hashes of the definitions.

@@ -5,6 +5,9 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod cyclone;
+mod drives;
+
 use std::process::Command;
 
 use bytemuck::Zeroable;
@@ -19,7 +22,7 @@ use tests::{executables, python};
 use transport::testing::{Isolated, NodeProcess, wait_for};
 use transport::{Graph, monotonic_ns};
 
-const LIBRARIES: [&str; 9] = [
+const LIBRARIES: [&str; 10] = [
     "ros-jazzy-rclpy",
     "ros-jazzy-rmw-fastrtps-cpp",
     "ros-jazzy-sensor-msgs",
@@ -29,7 +32,11 @@ const LIBRARIES: [&str; 9] = [
     "ros-jazzy-diagnostic-msgs",
     "ros-jazzy-lifecycle-msgs",
     "ros-jazzy-rcl-interfaces",
+    "rosbags==0.11.9",
 ];
+
+/// Mount of the laser.
+const MOUNT: [&str; 2] = ["--mount", "0.78,0,0"];
 
 /// Number of beams of a scan.
 const BEAMS: usize = 720;
@@ -80,8 +87,6 @@ impl Joined {
             &self.domain,
             "--namespace",
             self.namespace,
-            "--mount",
-            "0.2,0,0",
         ];
         let arguments = common.iter().chain(&self.options);
         let executable = env!("CARGO_BIN_EXE_ros2_gateway");
@@ -94,9 +99,13 @@ impl Joined {
 }
 
 fn robot(domain: &str, namespace: &str) -> Option<Robot> {
-    let python = python::with("ros", &LIBRARIES, "rclpy, nav_msgs, lifecycle_msgs")
-        .map_err(|why| Need::Python.is_missing("a robot with ROS 2 on DDS", &why))
-        .ok()?;
+    let python = python::with(
+        "ros",
+        &LIBRARIES,
+        "rclpy, nav_msgs, lifecycle_msgs, rosbags",
+    )
+    .map_err(|why| Need::Python.is_missing("a robot with ROS 2 on DDS", &why))
+    .ok()?;
     let mut command = Command::new(python);
     command
         .args([
@@ -160,6 +169,23 @@ fn stamp(counter: u64) -> Stamp {
     }
 }
 
+/// What a tracker says that is sure of the robot's place.
+fn tracked() -> PoseHeader {
+    PoseHeader {
+        stamp: stamp(0),
+        probability: 0.75,
+        places: 1,
+        state: TrackState::Unique as u32,
+        from_scan: 1,
+        pose_known: 1,
+        mount_known: 1,
+        map_from_base: pose2(3.0, 1.0, 0.0),
+        map_from_laser: pose2(3.2, 1.0, 0.0),
+        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
+        ..PoseHeader::zeroed()
+    }
+}
+
 fn wait_until_waiting(graph: &Graph, words: &str) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     wait_for(graph, &health, |report, error| {
@@ -171,7 +197,7 @@ fn wait_until_waiting(graph: &Graph, words: &str) {
 
 #[test]
 fn scan_odometry_and_a_large_map_enter_the_graph() {
-    let Some(mut joined) = Joined::new("dds-in", "/r2", &[]) else {
+    let Some(mut joined) = Joined::new("dds-in", "/r2", &MOUNT) else {
         return;
     };
     wait_until_waiting(&joined.graph, "/r2/scan: no publisher");
@@ -180,7 +206,7 @@ fn scan_odometry_and_a_large_map_enter_the_graph() {
     assert_eq!(ranges[..2], [1.0, 1.01]);
     assert!(header.stamp.measured_ns >= START_NS);
     assert_eq!(header.frame.as_str(), "laser");
-    assert_eq!(header.base_from_laser, pose2(0.2, 0.0, 0.0));
+    assert_eq!(header.base_from_laser, pose2(0.78, 0.0, 0.0));
     assert_eq!(odometry.odom_from_child, pose2(1.5, 0.0, 0.0));
 
     // 16 MB, in some hundred fragments.
@@ -208,7 +234,7 @@ fn scan_odometry_and_a_large_map_enter_the_graph() {
 
 #[test]
 fn what_the_graph_says_reaches_the_robot() {
-    let Some(mut joined) = Joined::new("dds-out", "/", &[]) else {
+    let Some(mut joined) = Joined::new("dds-out", "/", &MOUNT) else {
         return;
     };
     drive(&mut joined, START_NS);
@@ -307,21 +333,8 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
         .graph
         .publisher_for::<topic::Tracked>(PoseHeader::WORDS_CAPACITY)
         .unwrap();
-    let header = PoseHeader {
-        stamp: stamp(0),
-        probability: 0.75,
-        places: 1,
-        state: TrackState::Unique as u32,
-        from_scan: 1,
-        pose_known: 1,
-        mount_known: 1,
-        map_from_base: pose2(3.0, 1.0, 0.0),
-        map_from_laser: pose2(3.2, 1.0, 0.0),
-        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
-        ..PoseHeader::zeroed()
-    };
     let mut loan = poses.loan(0).unwrap();
-    *loan.header_mut() = header;
+    *loan.header_mut() = tracked();
     loan.send().unwrap();
     // Kept for late subscribers.
     joined
@@ -334,7 +347,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
 
 #[test]
 fn publishers_that_cannot_be_received_are_named() {
-    let Some(mut joined) = Joined::new("dds-strange", "/", &[]) else {
+    let Some(mut joined) = Joined::new("dds-strange", "/", &MOUNT) else {
         return;
     };
     let graph = &joined.graph;
@@ -380,14 +393,14 @@ fn a_robot_is_found_and_checked_while_it_drives() {
 
 #[test]
 fn nothing_crosses_from_one_domain_to_another() {
-    let Some(mut joined) = Joined::new("dds-own", "/", &[]) else {
+    let Some(mut joined) = Joined::new("dds-own", "/", &MOUNT) else {
         return;
     };
     let isolated = Isolated::new("dds-other");
     let other = isolated.join("test");
     let next = domain(2);
     let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-    let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.2,0,0"];
+    let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.78,0,0"];
     let gateway = NodeProcess::start(executable, &other, options);
     let scans = other.subscriber::<topic::Scan>().unwrap();
     // Repeated while that robot's own gateway is restarted.

@@ -2,10 +2,14 @@
 it sees in the same way.
 """
 
+import itertools
 import json
+import math
+import struct
 import sys
 import threading
 import time
+from pathlib import Path
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -17,6 +21,7 @@ from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rosbags.highlevel import AnyReader
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Header
 from std_srvs.srv import Empty
@@ -49,14 +54,26 @@ def planar(pose):
     return [pose.position.x, pose.position.y, q.z, q.w]
 
 
+def yaw_of(turn):
+    return 2 * math.atan2(turn.z, turn.w)
+
+
+def stamp_of(message):
+    return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+def stamped(cdr, ns):
+    """The bytes of a message that begins with a header, with another stamp."""
+    return cdr[:4] + struct.pack("<iI", *divmod(ns, 10**9)) + cdr[12:]
+
+
 def content(message):
     """What a test compares of a message."""
     if isinstance(message, DiagnosticArray):
         return {"names": [status.name for status in message.status]}
     poses = message.poses if isinstance(message, PoseArray) else [message.pose.pose]
-    stamp = message.header.stamp
     return {
-        "stamp": stamp.sec * 10**9 + stamp.nanosec,
+        "stamp": stamp_of(message),
         "frame": message.header.frame_id,
         "poses": [planar(pose) for pose in poses],
     }
@@ -69,6 +86,10 @@ class Robot(Node):
         self.publishers_by_topic = {}
         self.clients_by_service = {}
         self.kept = []
+        # The true pose of the base now, and by the stamps of scans.
+        self.here = None
+        self.truths = {}
+        self.is_localized = threading.Event()
 
     def put(self, kind, topic, quality, message):
         if topic not in self.publishers_by_topic:
@@ -98,6 +119,97 @@ class Robot(Node):
             self.do_drive(time.time_ns())
             time.sleep(1 / rate)
         say(event="played")
+
+    def do_replay(self, file, mount, start=0):
+        """A recorded robot drives there and back again and again, by the clock of now; its laser
+        is `mount` metres ahead of its base.
+        """
+        recorded, truths = {}, {}
+        with AnyReader([Path(file)]) as reader:
+            for connection, ns, cdr in reader.messages():
+                recorded.setdefault(connection.topic, {})[ns] = bytes(cdr)
+                if connection.topic == "/ground_truth":
+                    laser = reader.deserialize(cdr, connection.msgtype).pose
+                    at, yaw = laser.position, yaw_of(laser.orientation)
+                    back = [mount * math.cos(yaw), mount * math.sin(yaw)]
+                    truths[ns] = (at.x - back[0], at.y - back[1], yaw)
+        scans, odometry = recorded["/scan"], recorded["/odom"]
+        steps = [(ns, scan, odometry[ns], truths.get(ns)) for ns, scan in scans.items()]
+        steps += steps[-2:0:-1]
+        self.put(OccupancyGrid, "map", KEPT, *recorded["/map"].values())
+        threading.Thread(target=self.replay, args=[steps, start], daemon=True).start()
+
+    def replay(self, steps, start):
+        due = time.monotonic()
+        for index in itertools.count(start):
+            ns, scan, odometry, truth = steps[index % len(steps)]
+            now = time.time_ns()
+            self.here = truth or self.here
+            self.truths[now] = truth
+            self.put(Odometry, "odom", 10, stamped(odometry, now))
+            self.put(LaserScan, "scan", qos_profile_sensor_data, stamped(scan, now))
+            due += abs(steps[(index + 1) % len(steps)][0] - ns) * 1e-9
+            time.sleep(max(0.0, due - time.monotonic()))
+
+    def do_track(self):
+        """Says of each pose how far it is from the true one, where that is known."""
+
+        def take(message):
+            self.is_localized.set()
+            stamp = stamp_of(message)
+            if truth := self.truths.get(stamp):
+                at, yaw = message.pose.pose.position, yaw_of(message.pose.pose.orientation)
+                say(
+                    event="pose",
+                    at=time.monotonic_ns(),
+                    stamp=stamp,
+                    metres=math.hypot(at.x - truth[0], at.y - truth[1]),
+                    radians=abs(math.remainder(yaw - truth[2], math.tau)),
+                )
+
+        taken = self.create_subscription(PoseWithCovarianceStamped, "amcl_pose", take, KEPT)
+        self.kept.append(taken)
+        # There before the first click, as that of an operator's tool.
+        kind, topic = PoseWithCovarianceStamped, "initialpose"
+        self.publishers_by_topic[topic] = self.create_publisher(kind, topic, 10)
+
+    def point(self, off):
+        """A click so far from where the robot is, without a covariance."""
+        while self.here is None:
+            time.sleep(0.01)
+        x, y, yaw = (here + more for here, more in zip(self.here, off))
+        pose = PoseWithCovarianceStamped(header=header(time.time_ns(), "map"))
+        pose.pose.pose.position.x, pose.pose.pose.position.y = x, y
+        turn = pose.pose.pose.orientation
+        turn.z, turn.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        self.put(PoseWithCovarianceStamped, "initialpose", 10, pose)
+
+    def do_point(self, off, clicks, seconds):
+        for _ in range(clicks):
+            self.point(off)
+            time.sleep(seconds / clicks)
+        say(event="pointed")
+
+    def do_bring_up(self):
+        """As a lifecycle manager does it."""
+        for label, transition in [("unconfigured", 1), ("inactive", 3)]:
+            if self.state().label == label:
+                self.change(transition)
+        say(event="brought_up", label=self.state().label)
+
+    def do_navigate(self, off):
+        """As setInitialPose() and waitUntilNav2Active() of Simple Commander do it."""
+        begin = time.monotonic()
+        self.point(off)
+        while True:
+            is_active = self.state().label == "active"
+            time.sleep(2)
+            if is_active:
+                break
+        while not self.is_localized.is_set():
+            self.point(off)
+            self.is_localized.wait(1)
+        say(event="navigating", seconds=time.monotonic() - begin)
 
     def do_map(self, width, height, kept=True):
         grid = OccupancyGrid(header=header(10**18, "map"))
@@ -133,21 +245,29 @@ class Robot(Node):
         client = self.clients_by_service[service]
         if not client.wait_for_service(timeout_sec=60):
             raise TimeoutError(service)
-        done = threading.Event()
-        future = client.call_async(request)
-        future.add_done_callback(lambda _: done.set())
-        if not done.wait(60):
-            raise TimeoutError(f"no answer of {service}")
-        return future.result()
+        # Again and again: what is sent to a server that has just ended has no answer.
+        for _ in range(30):
+            done = threading.Event()
+            future = client.call_async(request)
+            future.add_done_callback(lambda _: done.set())
+            if done.wait(2):
+                return future.result()
+        raise TimeoutError(f"no answer of {service}")
+
+    def state(self):
+        return self.ask(GetState, "amcl/get_state", GetState.Request()).current_state
+
+    def change(self, transition):
+        request = ChangeState.Request()
+        request.transition.id = transition
+        return self.ask(ChangeState, "amcl/change_state", request).success
 
     def do_state(self):
-        state = self.ask(GetState, "amcl/get_state", GetState.Request()).current_state
+        state = self.state()
         say(event="state", id=state.id, label=state.label)
 
     def do_change(self, id):
-        request = ChangeState.Request()
-        request.transition.id = id
-        say(event="change", success=self.ask(ChangeState, "amcl/change_state", request).success)
+        say(event="change", success=self.change(id))
 
     def do_parameters(self, name, value):
         listed = self.ask(ListParameters, "amcl/list_parameters", ListParameters.Request())

@@ -52,8 +52,12 @@ struct NodeInfo<G> {
     writers: Vec<G>,
 }
 
-/// Encodes the message of a participant with one node, in CDR.
-pub(super) fn encode(format: Format, participant: Gid, node: &Node) -> Result<Vec<u8>, String> {
+/// Encodes the message of a participant with one node or none, in CDR.
+pub(super) fn encode(
+    format: Format,
+    participant: Gid,
+    node: Option<&Node>,
+) -> Result<Vec<u8>, String> {
     match format {
         Format::Iron => encode_as(|gid| gid, participant, node),
         Format::Humble => encode_as(long, participant, node),
@@ -75,17 +79,18 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(Option<Format>, Vec<Node>), String
 fn encode_as<G: Serialize>(
     gid: impl Fn(Gid) -> G,
     participant: Gid,
-    node: &Node,
+    node: Option<&Node>,
 ) -> Result<Vec<u8>, String> {
     let all = |gids: &[Gid]| gids.iter().map(|number| gid(*number)).collect();
+    let info = |node: &Node| NodeInfo {
+        namespace: node.namespace.clone(),
+        name: node.name.clone(),
+        readers: all(&node.readers),
+        writers: all(&node.writers),
+    };
     let info = Info {
         participant: gid(participant),
-        nodes: vec![NodeInfo {
-            namespace: node.namespace.clone(),
-            name: node.name.clone(),
-            readers: all(&node.readers),
-            writers: all(&node.writers),
-        }],
+        nodes: node.map(info).into_iter().collect(),
     };
     ros::cdr::encode(&info).map_err(|error| error.to_string())
 }
@@ -129,7 +134,7 @@ mod tests {
         };
         assert_eq!(node.whole_name(), "/r2/amcl");
         for format in [Format::Humble, Format::Iron] {
-            let bytes = encode(format, [9; 16], &node).unwrap();
+            let bytes = encode(format, [9; 16], Some(&node)).unwrap();
             let (found, nodes) = decode(&bytes).unwrap();
             assert_eq!((found, nodes), (Some(format), vec![node.clone()]));
             for length in 0..bytes.len() - 8 {

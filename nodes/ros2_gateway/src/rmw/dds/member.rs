@@ -1,6 +1,7 @@
 //! The gateway as a participant of a domain of DDS.
 
 use std::rc::Rc;
+use std::time::Duration;
 
 use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
@@ -19,6 +20,10 @@ const MAX_INFO_BYTES: usize = 1 << 20;
 
 /// Number of such messages that are queued until the next tick.
 const MAX_INFOS: usize = 256;
+
+/// Time to send the end of all topics and services before the participant ends, which would drop
+/// what is not sent yet.
+const FAREWELL: Duration = Duration::from_millis(100);
 
 /// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
@@ -90,6 +95,13 @@ impl Member {
         let topic = named(&self.participant, (topic, kind), quality)?;
         let reader = reader(&self.subscriber, &topic)?;
         Ok(Reader::new(name, reader, Some(graph.waker()?), max_bytes))
+    }
+}
+
+impl Drop for Member {
+    fn drop(&mut self) {
+        self.node.leave();
+        std::thread::sleep(FAREWELL);
     }
 }
 

@@ -96,16 +96,25 @@ impl Node {
             }
         }
         if let (true, Some(format)) = (state.is_changed, state.format) {
-            let sent = entities::encode(format, self.participant, &state.own).and_then(|bytes| {
-                let sent = self.writer.write(fields(bytes), None);
-                sent.map_err(|error| error.to_string())
-            });
-            match sent {
-                Ok(()) => state.is_changed = false,
-                // It is sent again at the next tick.
-                Err(reason) => tracing::debug!("{}: {reason}", entities::TOPIC),
-            }
+            // What could not be sent is sent at the next tick.
+            state.is_changed = !self.send(format, Some(&state.own));
         }
+    }
+
+    /// Says that the node is gone.
+    pub(super) fn leave(&self) {
+        if let Some(format) = self.state.borrow().format {
+            self.send(format, None);
+        }
+    }
+
+    fn send(&self, format: Format, own: Option<&entities::Node>) -> bool {
+        let sent = entities::encode(format, self.participant, own).and_then(|bytes| {
+            let sent = self.writer.write(fields(bytes), None);
+            sent.map_err(|error| error.to_string())
+        });
+        sent.inspect_err(|reason| tracing::debug!("{}: {reason}", entities::TOPIC))
+            .is_ok()
     }
 }
 
