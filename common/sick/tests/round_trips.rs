@@ -7,10 +7,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use sick::cola::{
-    Channel, Channels, DeviceTime, Encoder, Encoding, Event, Framer, LmdScanData, Position,
-    Telegram,
-};
+use sick::cola::{Channel, Channels, DeviceTime, Encoding, Framer, LmdScanData, Telegram};
 use sick::lms2xx::{Answer, Part, Reply, ReplyFramer, Scan, Status, Unit};
 
 /// Owned data of a scan.
@@ -19,11 +16,10 @@ struct Parts {
     numbers: [u32; 4],
     counters: [u16; 2],
     layer: i16,
-    encoders: Vec<(u32, u16)>,
     wide: Vec<(i32, u16, Vec<u16>)>,
     narrow: Vec<u8>,
     texts: [Option<String>; 2],
-    tail: [bool; 3],
+    has_time: bool,
 }
 
 fn parts() -> impl Strategy<Value = Parts> {
@@ -33,22 +29,20 @@ fn parts() -> impl Strategy<Value = Parts> {
         any::<[u32; 4]>(),
         any::<[u16; 2]>(),
         any::<i16>(),
-        vec(any::<(u32, u16)>(), 0..4),
         vec(channel, 0..4),
         vec(any::<u8>(), 0..60),
         [text(), text()],
-        any::<[bool; 3]>(),
+        any::<bool>(),
     )
         .prop_map(
-            |(numbers, counters, layer, encoders, wide, narrow, texts, tail)| Parts {
+            |(numbers, counters, layer, wide, narrow, texts, has_time)| Parts {
                 numbers,
                 counters,
                 layer,
-                encoders,
                 wide,
                 narrow,
                 texts,
-                tail,
+                has_time,
             },
         )
 }
@@ -64,10 +58,6 @@ impl Parts {
             step_raw_1e4_deg: step,
             values,
         };
-        let encoders = self.encoders.iter();
-        let encoders: Vec<Encoder> = encoders
-            .map(|&(position, speed)| Encoder { position, speed })
-            .collect();
         let wide: Vec<Channel<'_>> = self
             .wide
             .iter()
@@ -97,17 +87,11 @@ impl Parts {
             layer_angle_raw: self.layer,
             scan_frequency_raw_1e2_hz: self.numbers[3],
             measurement_frequency_raw: 360,
-            encoders: encoders[..].into(),
             channels_16_bit: Channels::from(&wide[..]),
             channels_8_bit: Channels::from(&narrow[..]),
-            position: self.tail[0].then_some(Position {
-                place: [1.0, -2.0, 0.5],
-                rotation: [0.0, 0.1, -0.1],
-                rotation_kind: 3,
-            }),
             name: self.texts[0].as_ref().map(String::as_bytes),
             comment: self.texts[1].as_ref().map(String::as_bytes),
-            time: self.tail[1].then_some(DeviceTime {
+            time: self.has_time.then_some(DeviceTime {
                 year: 2024,
                 month: 2,
                 day: 29,
@@ -115,12 +99,6 @@ impl Parts {
                 minute: 59,
                 second: 60,
                 microsecond: 999_999,
-            }),
-            event: self.tail[2].then_some(Event {
-                kind: *b"FDIN",
-                encoder_position: 7,
-                time_us: self.numbers[1],
-                angle_raw_1e4_deg: -450_000,
             }),
         })
     }

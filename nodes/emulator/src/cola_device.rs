@@ -142,8 +142,6 @@ impl ColaDevice {
     ) -> Result<Answer<'static>, Fault> {
         match command {
             Command::Read(variable) => Ok(Answer::Value(self.value(*variable))),
-            // A recording has no current scan.
-            Command::ReadScan => Err(Fault::UNKNOWN_COMMAND),
             Command::Write(_) if !session.logged_in => Err(Fault::WRITE_DENIED),
             Command::Write(value) => self.write(value),
             Command::Call(method) => self.call(session, method),
@@ -212,8 +210,6 @@ impl ColaDevice {
                     config: self.scan,
                 }
             }
-            Method::StoreParameters => Answer::ParametersStored(true),
-            Method::StartMeasurement => Answer::MeasurementStarted(0),
             Method::Run => {
                 session.logged_in = false;
                 Answer::Running(true)
@@ -274,28 +270,19 @@ impl ColaDevice {
             version: 1,
             device_number: 1,
             serial_number: 1,
-            status: [0, 0],
             telegram_counter: counter as u16,
             scan_counter: counter as u16,
             time_since_start_up_us: now_us as u32,
             time_of_transmission_us: now_us as u32,
-            digital_inputs: [0, 0],
-            digital_outputs: [0, 0],
-            layer_angle_raw: 0,
             // 0 means unknown; otherwise the reader would derive the time of each beam from it.
             scan_frequency_raw_1e2_hz: match self.says_frequency {
                 true => self.scan.frequency_raw_1e2_hz,
                 false => 0,
             },
-            measurement_frequency_raw: 0,
-            encoders: (&[][..]).into(),
             channels_16_bit: Channels::from(&channels[..]),
-            channels_8_bit: Channels::from(&[][..]),
-            position: None,
             name: self.data.name.then_some(&b"emulated"[..]),
-            comment: None,
             time: self.time(sweep, scan, &channels[0]),
-            event: None,
+            ..LmdScanData::default()
         };
         self.encoding.frame(&Telegram::ScanData(data), out);
     }

@@ -20,10 +20,6 @@ pub enum Answer<'a> {
         status: u8,
         config: ScanConfig,
     },
-    /// `sAN mEEwriteall`: true if the settings were stored.
-    ParametersStored(bool),
-    /// `sAN LMCstartmeas`: u8, 0 if measuring started, 1 if that is not allowed.
-    MeasurementStarted(u8),
     /// `sAN Run`: true if the device is running.
     Running(bool),
     /// `sEA LMDscandata`: true if the device now sends every scan.
@@ -63,8 +59,6 @@ impl<'a> Answer<'a> {
                 status: cursor.u8_upto("status", 5, "0 to 5")?,
                 config: ScanConfig::read(cursor)?,
             },
-            b"mEEwriteall" => Answer::ParametersStored(cursor.bool("success")?),
-            b"LMCstartmeas" => Answer::MeasurementStarted(cursor.bool("error")?.into()),
             b"Run" => Answer::Running(cursor.bool("success")?),
             _ => return Ok(None),
         }))
@@ -97,12 +91,6 @@ impl<'a> Answer<'a> {
                 let mut writer = Writer::command(encoding, b"sAN", b"mLMPsetscancfg", out);
                 writer.u8(*status);
                 config.write(&mut writer);
-            }
-            Answer::ParametersStored(success) => {
-                Writer::command(encoding, b"sAN", b"mEEwriteall", out).bool(*success);
-            }
-            Answer::MeasurementStarted(error) => {
-                Writer::command(encoding, b"sAN", b"LMCstartmeas", out).u8(*error);
             }
             Answer::Running(success) => {
                 Writer::command(encoding, b"sAN", b"Run", out).bool(*success);

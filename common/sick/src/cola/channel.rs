@@ -149,6 +149,12 @@ impl<'a> Channels<'a> {
     }
 }
 
+impl Default for Channels<'_> {
+    fn default() -> Self {
+        Channels(Place::Listed(&[]))
+    }
+}
+
 impl<'a> From<&'a [Channel<'a>]> for Channels<'a> {
     fn from(channels: &'a [Channel<'a>]) -> Self {
         Channels(Place::Listed(channels))

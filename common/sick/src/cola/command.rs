@@ -15,8 +15,6 @@ pub const PASSWORD_AUTHORIZED_CLIENT: u32 = 0xf472_4744;
 pub enum Command<'a> {
     /// `sRN`: read a variable.
     Read(Variable),
-    /// `sRN LMDscandata`: send one scan.
-    ReadScan,
     /// `sWN`: write a variable.
     Write(Value<'a>),
     /// `sMN`: call a method.
@@ -37,10 +35,6 @@ pub enum Method {
     },
     /// `mLMPsetscancfg`: change how the device scans.
     SetScanConfig(ScanConfig),
-    /// `mEEwriteall`: keep the settings over a power cycle.
-    StoreParameters,
-    /// `LMCstartmeas`: start measuring.
-    StartMeasurement,
     /// `Run`: leave set-up and log out.
     Run,
 }
@@ -50,8 +44,6 @@ impl Method {
         match self {
             Method::SetAccessMode { .. } => "SetAccessMode",
             Method::SetScanConfig(_) => "mLMPsetscancfg",
-            Method::StoreParameters => "mEEwriteall",
-            Method::StartMeasurement => "LMCstartmeas",
             Method::Run => "Run",
         }
     }
@@ -63,8 +55,6 @@ impl Method {
                 password: cursor.u32("password")?,
             },
             b"mLMPsetscancfg" => Method::SetScanConfig(ScanConfig::read(cursor)?),
-            b"mEEwriteall" => Method::StoreParameters,
-            b"LMCstartmeas" => Method::StartMeasurement,
             b"Run" => Method::Run,
             _ => return Ok(None),
         };
@@ -83,9 +73,7 @@ impl Method {
             Method::SetScanConfig(config) => {
                 config.write(&mut Writer::command(encoding, b"sMN", name, out));
             }
-            Method::StoreParameters | Method::StartMeasurement | Method::Run => {
-                Writer::bare(b"sMN", name, out);
-            }
+            Method::Run => Writer::bare(b"sMN", name, out),
         }
     }
 }
@@ -103,10 +91,6 @@ impl<'a> Command<'a> {
                 cursor.end()?;
                 Some(Command::Read(variable))
             }
-            (b"sRN", None) if name == lmd_scan_data::NAME => {
-                cursor.end()?;
-                Some(Command::ReadScan)
-            }
             (b"sWN", Some(variable)) => Some(Command::Write(Value::read(variable, cursor)?)),
             (b"sMN", _) => Method::read(name, cursor)?.map(Command::Call),
             (b"sEN", _) if name == lmd_scan_data::NAME => {
@@ -122,7 +106,6 @@ impl<'a> Command<'a> {
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         match self {
             Command::Read(variable) => Writer::bare(b"sRN", variable.name().as_bytes(), out),
-            Command::ReadScan => Writer::bare(b"sRN", lmd_scan_data::NAME, out),
             Command::Write(value) => {
                 let name = value.variable().name().as_bytes();
                 value.write(&mut Writer::command(encoding, b"sWN", name, out));

@@ -1,13 +1,13 @@
 //! `LMDscandata`: one scan in the device's format.
 //!
 //! The layout follows SICK's telegram listing for LiDAR sensors. Every field is read and checked,
-//! in order, to the last byte; this module does not interpret the values.
+//! in order, to the last byte; this module does not interpret the values. Encoders, the position and
+//! the event are skipped, and written as missing.
 
 use super::Encoding;
 use super::channel::Channels;
 use super::cursor::{Cursor, field_error};
-use super::encoders::Encoders;
-use super::tail::{self, DeviceTime, Event, Position};
+use super::tail::{self, DeviceTime};
 use super::writer::Writer;
 use crate::SickError;
 
@@ -40,12 +40,12 @@ pub(super) const NAME: &[u8] = b"LMDscandata";
 /// | 54 | 6 each | encoders | position u32, speed u16 |
 /// | … | … | 16-bit channels | see [`Channels`] |
 /// | … | … | 8-bit channels | see [`Channels`] |
-/// | … | 2 (+ 25) | position | u16 flag, [`Position`] |
+/// | … | 2 (+ 25) | position | u16 flag, f32 each, kind u8 |
 /// | … | 2 (+ 1 + n) | name | u16 flag, u8 length, characters |
 /// | … | 2 (+ 1 + n) | comment | u16 flag, u8 length, characters |
 /// | … | 2 (+ 11) | time | u16 flag, [`DeviceTime`] |
-/// | … | 2 (+ 16) | event | u16 flag, [`Event`] |
-#[derive(Debug, Clone, PartialEq)]
+/// | … | 2 (+ 16) | event | u16 flag, `FDIN`, u32, u32, i32 |
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LmdScanData<'a> {
     /// Version of the layout.
     pub version: u16,
@@ -73,22 +73,16 @@ pub struct LmdScanData<'a> {
     pub scan_frequency_raw_1e2_hz: u32,
     /// Measurement frequency, in 100 Hz on most devices; depends on the firmware.
     pub measurement_frequency_raw: u32,
-    /// Incremental encoders on the device's inputs.
-    pub encoders: Encoders<'a>,
     /// Distances, and remissions if they have 16 bits.
     pub channels_16_bit: Channels<'a>,
     /// Remissions of 8 bits.
     pub channels_8_bit: Channels<'a>,
-    /// Mounting position of the device, if configured and sent.
-    pub position: Option<Position>,
     /// Name of the device, if sent.
     pub name: Option<&'a [u8]>,
     /// Comment, if sent.
     pub comment: Option<&'a [u8]>,
     /// Clock of the device, if sent.
     pub time: Option<DeviceTime>,
-    /// Event at a digital input, if there was one.
-    pub event: Option<Event>,
 }
 
 impl<'a> LmdScanData<'a> {
@@ -138,17 +132,21 @@ impl<'a> LmdScanData<'a> {
             layer_angle_raw: cursor.i16("layer angle")?,
             scan_frequency_raw_1e2_hz: cursor.u32("scan frequency")?,
             measurement_frequency_raw: cursor.u32("measurement frequency")?,
-            encoders: Encoders::read(cursor)?,
-            channels_16_bit: Channels::read(cursor, "number of 16-bit channels", 2)?,
+            channels_16_bit: {
+                tail::skip_encoders(cursor)?;
+                Channels::read(cursor, "number of 16-bit channels", 2)?
+            },
             channels_8_bit: Channels::read(cursor, "number of 8-bit channels", 1)?,
-            position: optional(cursor, "position flag", Position::read)?,
-            name: optional(cursor, "name flag", |cursor| tail::text(cursor, "name"))?,
+            name: {
+                optional(cursor, "position flag", tail::skip_position)?;
+                optional(cursor, "name flag", |cursor| tail::text(cursor, "name"))?
+            },
             comment: optional(cursor, "comment flag", |cursor| {
                 tail::text(cursor, "comment")
             })?,
             time: optional(cursor, "time flag", DeviceTime::read)?,
-            event: optional(cursor, "event flag", Event::read)?,
         };
+        optional(cursor, "event flag", tail::skip_event)?;
         cursor.end()?;
         Ok(data)
     }
@@ -157,7 +155,8 @@ impl<'a> LmdScanData<'a> {
     pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         let mut writer = Writer::command(encoding, b"sSN", NAME, out);
         self.write_header(&mut writer);
-        self.encoders.write(&mut writer);
+        // No encoders.
+        writer.u16(0);
         self.channels_16_bit.write(&mut writer, 2);
         self.channels_8_bit.write(&mut writer, 1);
         self.write_tail(&mut writer);
@@ -180,10 +179,8 @@ impl<'a> LmdScanData<'a> {
     }
 
     fn write_tail(&self, writer: &mut Writer<'_>) {
-        writer.flag(self.position.is_some());
-        if let Some(position) = self.position {
-            position.write(writer);
-        }
+        // No position.
+        writer.flag(false);
         for text in [self.name, self.comment] {
             writer.flag(text.is_some());
             if let Some(text) = text {
@@ -194,10 +191,8 @@ impl<'a> LmdScanData<'a> {
         if let Some(time) = self.time {
             time.write(writer);
         }
-        writer.flag(self.event.is_some());
-        if let Some(event) = self.event {
-            event.write(writer);
-        }
+        // No event.
+        writer.flag(false);
     }
 }
 
@@ -216,7 +211,6 @@ fn optional<'a, T>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cola::Encoder;
 
     /// Returns a telegram with every optional block.
     fn full() -> Vec<u8> {
@@ -261,46 +255,34 @@ mod tests {
         assert_eq!(data.layer_angle_raw, -2638);
         assert_eq!(data.scan_frequency_raw_1e2_hz, 5000);
         assert_eq!(data.measurement_frequency_raw, 360);
-        let encoder = Encoder {
-            position: 9,
-            speed: 0xfffe,
-        };
-        assert_eq!(data.encoders.collect::<Vec<_>>(), [encoder]);
         assert_eq!(data.channels_16_bit.count(), 0);
         let narrow = data.channels_8_bit.named(b"RSSI1").unwrap();
         assert_eq!(narrow.values.collect::<Vec<_>>(), [200, 201]);
-        let position = data.position.unwrap();
-        assert_eq!(
-            (position.place, position.rotation_kind),
-            ([1.0, 2.0, 3.0], 3)
-        );
-        assert_eq!(position.rotation, [0.1, 0.2, 0.3]);
         assert_eq!(data.name, Some(&b"LMS"[..]));
         assert_eq!(data.comment, Some(&b"hi"[..]));
         let time = data.time.unwrap();
         assert_eq!((time.year, time.minute, time.second), (1970, 50, 14));
         assert_eq!(time.microsecond, 136_000);
-        let event = data.event.unwrap();
-        assert_eq!(
-            (&event.kind, event.encoder_position, event.time_us),
-            (b"FDIN", 5, 6)
-        );
-        assert_eq!(event.angle_raw_1e4_deg, -1);
     }
 
     #[test]
-    fn every_field_survives_both_encodings() {
+    fn every_field_that_is_kept_survives_both_encodings() {
         let bytes = full();
         let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
         let mut again = Vec::new();
         data.write(Encoding::Binary, &mut again);
-        assert_eq!(again, bytes);
+        assert_eq!(LmdScanData::read(Encoding::Binary, &again).unwrap(), data);
+        let skipped = "sSN LMDscandata 1 7 10203 0 2 FFFF 0 FFFFFFF0 10 3 0 7 0 F5B2 1388 168 \
+                       1 9 FFFE 0 1 RSSI1 3F800000 0 0 1388 2 C8 C9 \
+                       1 3F800000 40000000 40400000 3DCCCCCD 3E4CCCCD 3E99999A 3 \
+                       1 3 LMS 1 2 hi 1 7B2 1 1 0 32 E 21340 1 FDIN 5 6 FFFFFFFF";
+        let read = LmdScanData::read(Encoding::Text, skipped.as_bytes());
+        assert_eq!(read.unwrap(), data);
         let mut text = Vec::new();
         data.write(Encoding::Text, &mut text);
         let expected = "sSN LMDscandata 1 7 10203 0 2 FFFF 0 FFFFFFF0 10 3 0 7 0 F5B2 1388 168 \
-                        1 9 FFFE 0 1 RSSI1 3F800000 0 0 1388 2 C8 C9 \
-                        1 3F800000 40000000 40400000 3DCCCCCD 3E4CCCCD 3E99999A 3 \
-                        1 3 LMS 1 2 hi 1 7B2 1 1 0 32 E 21340 1 FDIN 5 6 FFFFFFFF";
+                        0 0 1 RSSI1 3F800000 0 0 1388 2 C8 C9 \
+                        0 1 3 LMS 1 2 hi 1 7B2 1 1 0 32 E 21340 0";
         assert_eq!(String::from_utf8(text.clone()).unwrap(), expected);
         assert_eq!(LmdScanData::read(Encoding::Text, &text).unwrap(), data);
     }
@@ -363,7 +345,6 @@ mod tests {
             if let Ok(data) = LmdScanData::read(Encoding::Binary, &edited) {
                 // Accepted contents can be iterated to the end.
                 let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values.count()).sum::<usize>();
-                let _ = data.encoders.count();
             }
         }
     }

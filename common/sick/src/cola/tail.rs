@@ -6,23 +6,6 @@ use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
 
-/// Mounting position of the device, as configured.
-///
-/// | bytes | field | |
-/// |---|---|---|
-/// | 3 · 4 | x, y, z | f32 |
-/// | 3 · 4 | rotation about x, y, z | f32 |
-/// | 1 | kind of rotation | 0 none, 1 pitch, 2 roll, 3 free |
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Position {
-    /// Position along x, y and z in the configured unit.
-    pub place: [f32; 3],
-    /// Rotation about x, y and z in the configured unit.
-    pub rotation: [f32; 3],
-    /// Kind of rotation: 0 none, 1 pitch, 2 roll, 3 free.
-    pub rotation_kind: u8,
-}
-
 /// Clock of the device; starts in 1970 if it was never set.
 ///
 /// | bytes | field | |
@@ -46,46 +29,6 @@ pub struct DeviceTime {
     pub second: u8,
     /// Microsecond, 0 to 999999.
     pub microsecond: u32,
-}
-
-/// Event at a fast digital input.
-///
-/// | bytes | field | |
-/// |---|---|---|
-/// | 4 | kind | `FDIN` |
-/// | 4 | encoder position | u32, ticks |
-/// | 4 | time since start-up | u32, µs |
-/// | 4 | angle | i32, 1/10000° |
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Event {
-    /// Kind of the event: `FDIN`.
-    pub kind: [u8; 4],
-    /// Encoder position in ticks.
-    pub encoder_position: u32,
-    /// Time since start-up, µs.
-    pub time_us: u32,
-    /// Angle in the device's convention.
-    pub angle_raw_1e4_deg: i32,
-}
-
-impl Position {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        let mut axes = |field| {
-            Ok::<_, SickError>([cursor.f32(field)?, cursor.f32(field)?, cursor.f32(field)?])
-        };
-        Ok(Position {
-            place: axes("position")?,
-            rotation: axes("rotation")?,
-            rotation_kind: cursor.u8_upto("kind of rotation", 3, "0 to 3")?,
-        })
-    }
-
-    pub(super) fn write(&self, writer: &mut Writer<'_>) {
-        for value in self.place.into_iter().chain(self.rotation) {
-            writer.f32(value);
-        }
-        writer.u8(self.rotation_kind);
-    }
 }
 
 impl DeviceTime {
@@ -149,22 +92,47 @@ impl DeviceTime {
     }
 }
 
-impl Event {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        Ok(Event {
-            kind: cursor.letters("kind of event")?,
-            encoder_position: cursor.u32("encoder position of the event")?,
-            time_us: cursor.u32("time of the event")?,
-            angle_raw_1e4_deg: cursor.i32("angle of the event")?,
-        })
+/// Skips the incremental encoders on the device's inputs; each has a position (u32, ticks) and a
+/// speed (u16, ticks per millimetre).
+pub(super) fn skip_encoders(cursor: &mut Cursor<'_>) -> Result<(), SickError> {
+    for _ in 0..cursor.u16_upto("number of encoders", 3, "0 to 3")? {
+        cursor.u32("encoder position")?;
+        cursor.u16("encoder speed")?;
     }
+    Ok(())
+}
 
-    pub(super) fn write(&self, writer: &mut Writer<'_>) {
-        writer.characters(&self.kind);
-        writer.u32(self.encoder_position);
-        writer.u32(self.time_us);
-        writer.i32(self.angle_raw_1e4_deg);
+/// Skips the configured mounting position.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 3 · 4 | x, y, z | f32 |
+/// | 3 · 4 | rotation about x, y, z | f32 |
+/// | 1 | kind of rotation | 0 none, 1 pitch, 2 roll, 3 free |
+pub(super) fn skip_position(cursor: &mut Cursor<'_>) -> Result<(), SickError> {
+    for field in ["position", "rotation"] {
+        for _ in 0..3 {
+            cursor.f32(field)?;
+        }
     }
+    cursor.u8_upto("kind of rotation", 3, "0 to 3")?;
+    Ok(())
+}
+
+/// Skips an event at a fast digital input.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 4 | kind | `FDIN` |
+/// | 4 | encoder position | u32, ticks |
+/// | 4 | time since start-up | u32, µs |
+/// | 4 | angle | i32, 1/10000° |
+pub(super) fn skip_event(cursor: &mut Cursor<'_>) -> Result<(), SickError> {
+    cursor.letters::<4>("kind of event")?;
+    cursor.u32("encoder position of the event")?;
+    cursor.u32("time of the event")?;
+    cursor.i32("angle of the event")?;
+    Ok(())
 }
 
 /// Reads a name or comment: its length in one byte, then its characters.

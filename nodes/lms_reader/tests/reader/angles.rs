@@ -33,24 +33,9 @@ fn scan(first_deg: i32, beams: u16) -> Vec<u8> {
         version: 1,
         device_number: 1,
         serial_number: 1,
-        status: [0, 0],
-        telegram_counter: 0,
-        scan_counter: 0,
-        time_since_start_up_us: 0,
-        time_of_transmission_us: 0,
-        digital_inputs: [0, 0],
-        digital_outputs: [0, 0],
-        layer_angle_raw: 0,
         scan_frequency_raw_1e2_hz: 1500,
-        measurement_frequency_raw: 0,
-        encoders: (&[][..]).into(),
         channels_16_bit: Channels::from(&channels[..]),
-        channels_8_bit: Channels::from(&[][..]),
-        position: None,
-        name: None,
-        comment: None,
-        time: None,
-        event: None,
+        ..LmdScanData::default()
     };
     framed(&Telegram::ScanData(data))
 }
