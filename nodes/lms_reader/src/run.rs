@@ -5,7 +5,7 @@ mod outlet;
 mod serial;
 mod tcp;
 
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
 use transport::Graph;
 
@@ -55,10 +55,8 @@ fn keep(
 }
 
 fn now() -> Received {
-    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     Received {
-        // A clock before 1970 is just as wrong as one at 1970.
-        realtime_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
+        realtime_ns: transport::wall_ns(),
         monotonic_ns: transport::monotonic_ns(),
     }
 }

@@ -4,7 +4,7 @@ mod one;
 mod several;
 
 use std::path::Path;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use map::OccupancyGrid;
 use messages::{CellRules, MapHeader, MapName, NodeState, Stamp};
@@ -54,10 +54,8 @@ fn header(grid: &OccupancyGrid, rules: CellRules, name: &str) -> MapHeader {
 
 /// Returns the stamp of a map that is read now; `served` is its counter.
 fn now(served: u64) -> Stamp {
-    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     Stamp {
-        // A clock before 1970 is just as wrong as one at 1970.
-        measured_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
+        measured_ns: transport::wall_ns(),
         entered_ns: transport::monotonic_ns(),
         counter: served,
     }
