@@ -12,35 +12,52 @@ const KEPT: usize = 64;
 
 #[derive(Debug, Default)]
 pub struct Scans {
-    /// Scans, newest last.
-    kept: VecDeque<(ScanHeader, Vec<f32>)>,
-    /// Beams of scans that were joined or deskewed, newest last.
-    readings: VecDeque<(Stamp, Vec<Reading>)>,
-    /// Vote headers by map, newest last.
-    by_map: VecDeque<(Stamp, Vec<VotesHeader>)>,
+    kept: Ring<ScanHeader, f32>,
+    /// Beams of scans that were joined or deskewed.
+    readings: Ring<(), Reading>,
+    /// Vote headers by map.
+    by_map: Ring<(), VotesHeader>,
+}
+
+/// The last messages by the stamp of their scan, newest last.
+#[derive(Debug)]
+struct Ring<H, T>(VecDeque<(Stamp, H, Vec<T>)>);
+
+impl<H, T> Default for Ring<H, T> {
+    fn default() -> Self {
+        Ring(VecDeque::new())
+    }
+}
+
+impl<H, T: Copy> Ring<H, T> {
+    /// Stores a message, reusing the buffer of the oldest one.
+    fn push(&mut self, stamp: Stamp, header: H, items: &[T]) {
+        let oldest = match self.0.len() {
+            KEPT => self.0.pop_front(),
+            _ => None,
+        };
+        let mut room = oldest.map_or_else(Vec::new, |(_, _, room)| room);
+        room.clear();
+        room.extend_from_slice(items);
+        self.0.push_back((stamp, header, room));
+    }
+
+    fn get(&self, stamp: Stamp) -> Option<(&H, &[T])> {
+        let mut newest_first = self.0.iter().rev();
+        let (_, header, items) = newest_first.find(|(of, ..)| of.is_of(stamp))?;
+        Some((header, items))
+    }
 }
 
 impl Scans {
-    /// Stores a scan, reusing the buffer of the oldest one.
+    /// Stores a scan.
     pub fn receive(&mut self, header: &ScanHeader, ranges: &[f32]) {
-        let mut room = match self.kept.len() {
-            KEPT => self
-                .kept
-                .pop_front()
-                .map_or_else(Vec::new, |(_, room)| room),
-            _ => Vec::new(),
-        };
-        room.clear();
-        room.extend_from_slice(ranges);
-        self.kept.push_back((*header, room));
+        self.kept.push(header.stamp, *header, ranges);
     }
 
     /// Stores the beams of a scan that was joined or deskewed.
     pub fn take_readings(&mut self, stamp: Stamp, readings: &[Reading]) {
-        if self.readings.len() == KEPT {
-            self.readings.pop_front();
-        }
-        self.readings.push_back((stamp, readings.to_vec()));
+        self.readings.push(stamp, (), readings);
     }
 
     /// Returns the beams of the scan with this stamp.
@@ -48,19 +65,13 @@ impl Scans {
     /// # Errors
     /// If they were not received, or too long ago.
     pub fn readings(&self, stamp: Stamp) -> Result<&[Reading], PeakError> {
-        let mut newest_first = self.readings.iter().rev();
-        let found = newest_first.find(|(of, _)| of.is_of(stamp));
-        found
-            .map(|(_, readings)| &readings[..])
-            .ok_or(PeakError::UnknownScan)
+        let found = self.readings.get(stamp);
+        Ok(found.ok_or(PeakError::UnknownScan)?.1)
     }
 
     /// Stores the headers of the votes on each map.
     pub fn take_by_map(&mut self, stamp: Stamp, maps: &[VotesHeader]) {
-        if self.by_map.len() == KEPT {
-            self.by_map.pop_front();
-        }
-        self.by_map.push_back((stamp, maps.to_vec()));
+        self.by_map.push(stamp, (), maps);
     }
 
     /// Returns the headers of the votes on each map of the scan with this stamp.
@@ -68,11 +79,8 @@ impl Scans {
     /// # Errors
     /// If they were not received, or too long ago.
     pub fn by_map(&self, stamp: Stamp) -> Result<&[VotesHeader], PeakError> {
-        let mut newest_first = self.by_map.iter().rev();
-        let found = newest_first.find(|(of, _)| of.is_of(stamp));
-        found
-            .map(|(_, maps)| &maps[..])
-            .ok_or(PeakError::UnknownParts)
+        let found = self.by_map.get(stamp);
+        Ok(found.ok_or(PeakError::UnknownParts)?.1)
     }
 
     /// Returns the scan with this stamp.
@@ -80,9 +88,7 @@ impl Scans {
     /// # Errors
     /// If it was not received, or too long ago.
     pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
-        let mut newest_first = self.kept.iter().rev();
-        let found = newest_first.find(|(header, _)| header.stamp.is_of(stamp));
-        let (header, ranges) = found.ok_or(PeakError::UnknownScan)?;
+        let (header, ranges) = self.kept.get(stamp).ok_or(PeakError::UnknownScan)?;
         Ok(Scan::of(header, ranges))
     }
 }
