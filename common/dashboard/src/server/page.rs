@@ -1,11 +1,11 @@
 //! The page, which is part of the executable.
 
 use axum::extract::Path;
+use axum::http::Uri;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
-use axum::http::{StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 
-use super::Refusal;
+use super::refusal::nothing_here;
 
 const HTML: &str = "text/html; charset=utf-8";
 const CSS: &str = "text/css; charset=utf-8";
@@ -55,8 +55,7 @@ pub(super) async fn index(uri: Uri) -> Response {
 /// Returns a file of the page.
 pub(super) async fn file(Path(name): Path<String>, uri: Uri) -> Response {
     let Some((_, kind, content)) = FILES.iter().find(|(known, ..)| *known == name) else {
-        let problem = format!("there is nothing at {}", uri.path());
-        return Refusal::new(StatusCode::NOT_FOUND, problem).into_response();
+        return nothing_here(uri).await.into_response();
     };
     // A restart may bring another version.
     (
