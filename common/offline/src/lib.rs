@@ -24,6 +24,6 @@ pub use layout::{check_map, frame_of, sides_of};
 pub use maps::map_in;
 pub use options::{EngineOptions, NamedMap, Options};
 pub use scans::TakenScan;
-pub use session::{Reply, Session, View, damage_of};
+pub use session::{Reply, Session, View};
 pub use topics::TopicOptions;
 pub use world::{Answer, BeamEnd, Field, KnownMap, ScanAt, World};

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use engine::EngineError;
-use engine::joined::{ByOdometry, JoinConfig, Joiner, MotionConfig, Seen};
+use engine::joined::{JoinConfig, Joiner, MotionConfig};
 use messages::Odometry;
 use recording::{Kind, Recording, RecordingError};
 use ros::lasers;
@@ -17,7 +17,8 @@ use crate::OfflineError;
 pub(crate) struct Motion<'a> {
     recording: &'a Recording,
     config: JoinConfig,
-    joiner: Joiner,
+    /// The added scans; after [`Motion::bring`], at the time of the newest.
+    pub(crate) joiner: Joiner,
     /// True once the odometry was read; it is needed only for scans that take time.
     is_read: bool,
     deskews: bool,
@@ -100,26 +101,6 @@ impl<'a> Motion<'a> {
         let brought = self.joiner.bring()?;
         self.notes.extend(brought.notes(self.joiner.flows()));
         Ok(())
-    }
-
-    /// Pose of the target frame by odometry, at the time of the scan.
-    pub(crate) fn by_odometry(&self) -> Option<ByOdometry> {
-        self.joiner.by_odometry()
-    }
-
-    /// The transformed scan.
-    pub(crate) fn seen(&self) -> Seen<'_> {
-        self.joiner.seen()
-    }
-
-    /// True if the base's pose is searched, as with several lasers.
-    pub(crate) fn targets_base(&self) -> bool {
-        self.joiner.targets_base()
-    }
-
-    /// Converts a heading of the laser, in radians, to one of the searched frame.
-    pub(crate) fn target_heading(&self, laser_heading: f64) -> f64 {
-        self.joiner.target_heading(laser_heading)
     }
 
     /// Returns the notes since the last call.

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use engine::fit::Ends;
 use engine::joined::ByOdometry;
-use engine::localizer::Prior;
 use engine::peaks::Target;
 use geometry::Pose;
 use index_cache::{CachePlace, IndexCache, Kept, Unsaved};
@@ -104,7 +103,7 @@ impl<'a> Session<'a> {
 
     fn unprepared(recording: &'a Recording, options: &Options) -> Result<Self, OfflineError> {
         let damage = |error| match error {
-            RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
+            RecordingError::NoTopic { .. } => recording.damage_error().unwrap_or(error),
             other => other,
         };
         let topics = options.topics.scans(recording).map_err(damage)?;
@@ -118,7 +117,11 @@ impl<'a> Session<'a> {
             refusal: String::new(),
             notes: headings.notes().to_vec(),
             said: BTreeSet::new(),
-            map_file: map_file(options, recording.path()),
+            map_file: options
+                .map
+                .first()
+                .map_or(recording.path(), PathBuf::as_path)
+                .to_owned(),
             engine: options.engine.clone(),
             cache: options.index_cache.open(CachePlace::Off)?,
             headings,
@@ -253,7 +256,9 @@ impl<'a> Session<'a> {
                 *cell = UNKNOWN;
             }
         }
-        prepared.world = erased(&map, &self.map_file, &self.engine, prior)?;
+        let world = World::prepare(&map, &self.engine, prior);
+        let file = self.map_file.clone();
+        prepared.world = world.map_err(|source| OfflineError::UnusableMap { file, source })?;
         Ok(())
     }
 
@@ -277,7 +282,7 @@ impl<'a> Session<'a> {
     /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
     pub fn by_odometry(&mut self, scan: &TakenScan) -> Result<Option<ByOdometry>, OfflineError> {
         self.motion.take(scan)?;
-        Ok(self.motion.by_odometry())
+        Ok(self.motion.joiner.by_odometry())
     }
 
     /// Tracker input of the last scan that was searched.
@@ -285,12 +290,12 @@ impl<'a> Session<'a> {
     /// # Errors
     /// The scan is rejected.
     pub fn view(&self, scan: &TakenScan) -> Result<View, OfflineError> {
-        let seen = self.motion.seen();
+        let seen = self.motion.joiner.seen();
         let ends = self.world()?.ends(seen.observation());
         Ok(View {
             ends: ends.map_err(OfflineError::Refused)?,
-            by_odometry: self.motion.by_odometry(),
-            target: Target::of(scan.base_from_laser, self.motion.targets_base()),
+            by_odometry: self.motion.joiner.by_odometry(),
+            target: Target::of(scan.base_from_laser, self.motion.joiner.targets_base()),
         })
     }
 
@@ -326,11 +331,11 @@ impl<'a> Session<'a> {
                 answer: Err(refusal),
             });
         }
-        let target = Target::of(scan.base_from_laser, motion.targets_base());
+        let target = Target::of(scan.base_from_laser, motion.joiner.targets_base());
         let (found, cpu_ms) = cpu::timed(|| {
             motion.bring()?;
-            let heading = heading.map(|heading| motion.target_heading(heading));
-            let seen = motion.seen();
+            let heading = heading.map(|heading| motion.joiner.target_heading(heading));
+            let seen = motion.joiner.seen();
             prepared.world.locate(seen.observation(), heading, target)
         })?;
         if let Ok(Answer { map, .. }) = &found {
@@ -344,31 +349,9 @@ impl<'a> Session<'a> {
     }
 }
 
-fn erased(
-    map: &OccupancyGrid,
-    file: &Path,
-    options: &EngineOptions,
-    prior: Prior,
-) -> Result<World, OfflineError> {
-    World::prepare(map, options, prior).map_err(|source| OfflineError::UnusableMap {
-        file: file.into(),
-        source,
-    })
-}
-
 fn no_usable_map(file: &Path, reason: &str) -> OfflineError {
     OfflineError::NoUsableMap {
         file: file.into(),
         reason: reason.to_owned(),
     }
-}
-
-/// Damage of a recording as an error; `None` if it is sound.
-pub fn damage_of(recording: &Recording) -> Option<RecordingError> {
-    recording.damage_error()
-}
-
-fn map_file(options: &Options, bag: &Path) -> PathBuf {
-    let file = options.map.first().map(PathBuf::as_path);
-    file.unwrap_or(bag).to_owned()
 }

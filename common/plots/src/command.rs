@@ -12,7 +12,7 @@ use engine::localizer::Prior;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
-use offline::{Field, OfflineError, Session, TakenScan, World, damage_of, map_in};
+use offline::{Field, OfflineError, Session, TakenScan, World, map_in};
 use progress::{Progress, say};
 use recording::{GroundTruth, Recording, RecordingError};
 
@@ -204,7 +204,7 @@ impl<'a> Plot<'a> {
     }
 
     fn draw_errors(&mut self) -> Result<Scene, PlotError> {
-        if let Some(damage) = damage_of(self.recording) {
+        if let Some(damage) = self.recording.damage_error() {
             return Err(damage.into());
         }
         if self.truths.is_empty() {

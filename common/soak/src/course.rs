@@ -35,8 +35,6 @@ const LONG_GAP_S: f64 = 0.5;
 const LOOK: Duration = Duration::from_secs(1);
 /// Interval between checks while waiting.
 const TICK: Duration = Duration::from_millis(50);
-/// Node name of the launcher in the report.
-const LAUNCHED: &str = LAUNCHER;
 
 /// Settings of a run.
 #[derive(Debug)]
@@ -212,7 +210,7 @@ impl Course {
         if !self.tally.is_sure() && self.usage.nodes.is_empty() {
             return;
         }
-        self.usage.look_at(LAUNCHED, self.launched.pid());
+        self.usage.look_at(LAUNCHER, self.launched.pid());
         for node in &self.nodes {
             if let Some(pid) = node.pid {
                 self.usage.look_at(&node.id, pid);

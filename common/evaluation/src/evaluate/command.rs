@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use command_line::{number, stdout};
 use map::OccupancyGrid;
-use offline::{Accepted, OfflineError, Options, Session, World, damage_of};
+use offline::{Accepted, OfflineError, Options, Session, World};
 use progress::{Progress, say};
 use recording::GroundTruth;
 
@@ -100,7 +100,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
             code = ExitCode::FAILURE;
         }
         let line = match config.json {
-            true => evaluation.json(),
+            true => json::object(&evaluation),
             false => table.row(&evaluation),
         };
         for line in header.take().into_iter().chain([line]) {
@@ -121,7 +121,7 @@ fn evaluate(
     trust: &mut Trust,
 ) -> Result<Evaluation, EvaluationError> {
     let recording = config.options.open(&[bag.to_owned()])?;
-    if let Some(damage) = damage_of(&recording) {
+    if let Some(damage) = recording.damage_error() {
         return Err(damage.into());
     }
     let truths = recording.ground_truths()?;

@@ -169,12 +169,6 @@ impl Judge {
     }
 }
 
-impl Evaluation {
-    pub(super) fn json(&self) -> String {
-        json::object(self)
-    }
-}
-
 /// True if the position is inside the 95 % ellipse.
 fn is_in_ellipse(place: &Place, truth: Pose) -> bool {
     let pose = place.map_from_laser;
@@ -285,7 +279,7 @@ pub(super) mod tests {
         }
         evaluation.probabilities.truncate(1);
         assert_eq!(
-            evaluation.json(),
+            json::object(&evaluation),
             r#"{"schema":1,"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"searchable_cells":300,"index_bytes":9000,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null},"unique_in_ellipse":1,"probabilities":[{"from":0.0,"to":0.2,"answers":0,"right":0,"mean":null}]}"#
         );
     }

@@ -79,7 +79,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
                 accepted.count(&reply);
                 let particles = Particles::draw(&config.particles, &scan, &reply)?;
                 let line = match config.json {
-                    true => Object::new(&scan, &reply).with(particles).json(),
+                    true => json::object(&Object::new(&scan, &reply).with(particles)),
                     false => match particles {
                         Some(particles) => row::text(scan.stamp_ns, &reply) + &particles.text(),
                         None => row::text(scan.stamp_ns, &reply),

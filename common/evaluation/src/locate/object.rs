@@ -161,10 +161,6 @@ impl Object {
         };
         self.hypotheses = places.places.iter().map(hypothesis).collect();
     }
-
-    pub(super) fn json(&self) -> String {
-        json::object(self)
-    }
 }
 
 fn beams(classes: &[BeamClass]) -> Option<Beams> {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use command_line::stdout;
+use drawing::Scene;
 use map::OccupancyGrid;
 use offline::{Accepted, Options, Session};
 use plots::{PlotError, draw_drive};
@@ -43,7 +44,7 @@ pub(crate) fn evaluate(
         match one((bag, &name), map, options, sequence) {
             Ok(figures) => {
                 let line = match json {
-                    true => format!("{}\n", figures.json()),
+                    true => format!("{}\n", json::object(&figures)),
                     false => figures.text(),
                 };
                 stdout::print(&line)?;
@@ -134,9 +135,13 @@ fn show(
         let words = (name.to_owned(), course::doubts(said));
         let stops = course::stops(moments, said);
         let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
-        let file = folder.join(format!("{name}.png"));
-        let picture = drawing::to_png(&scene).map_err(PlotError::from)?;
-        std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })?;
+        save(&scene, folder.join(format!("{name}.png")))?;
     }
     Ok(())
+}
+
+/// Writes a drawn scene to a PNG file.
+pub(super) fn save(scene: &Scene, file: PathBuf) -> Result<(), PlotError> {
+    let picture = drawing::to_png(scene)?;
+    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })
 }

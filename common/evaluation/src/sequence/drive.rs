@@ -9,7 +9,7 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, OfflineError, Options, Session, TakenScan, View, damage_of};
+use offline::{Accepted, OfflineError, Options, Session, TakenScan, View};
 use progress::Progress;
 use recording::{GroundTruth, Recording};
 
@@ -63,7 +63,7 @@ pub(super) type Truths = BTreeMap<i64, GroundTruth>;
 /// The recording cannot be read, is damaged, or has no true pose.
 pub(super) fn open(bag: &Path, options: &Options) -> Result<(Recording, Truths), EvaluationError> {
     let recording = options.open(&[bag.to_owned()])?;
-    if let Some(damage) = damage_of(&recording) {
+    if let Some(damage) = recording.damage_error() {
         return Err(damage.into());
     }
     let truths = recording.ground_truths()?;

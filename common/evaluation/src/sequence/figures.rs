@@ -130,10 +130,6 @@ impl Figures {
         }
     }
 
-    pub(super) fn json(&self) -> String {
-        json::object(self)
-    }
-
     /// Formats the figures as text for the terminal.
     pub(super) fn text(&self) -> String {
         let row = |after: &After| {

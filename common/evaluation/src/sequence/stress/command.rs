@@ -6,9 +6,10 @@ use std::process::ExitCode;
 use ::map::OccupancyGrid;
 use command_line::stdout;
 use offline::{Accepted, Options, Session, map_in};
-use plots::{PlotError, draw_drive};
+use plots::draw_drive;
 use progress::{Progress, say};
 
+use super::super::command::save;
 use super::super::limits::Reached;
 use super::super::{SequenceOptions, course, drive, names};
 use super::figures::Figures;
@@ -111,7 +112,7 @@ fn one(
         let judged = (&trial.starts, &trial.followed);
         let figures = Figures::new((name.clone(), variant.name), judged, tally);
         let line = match json {
-            true => format!("{}\n", figures.json()),
+            true => format!("{}\n", json::object(&figures)),
             false => figures.row(),
         };
         stdout::print(&line)?;
@@ -165,8 +166,5 @@ fn picture(
         &stops,
         (title, words(wrong)),
     )?;
-    let file = folder.join(format!("{name}_{variant}.png"));
-    let picture = drawing::to_png(&scene).map_err(PlotError::from)?;
-    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })?;
-    Ok(())
+    Ok(save(&scene, folder.join(format!("{name}_{variant}.png")))?)
 }

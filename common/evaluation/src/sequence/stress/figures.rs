@@ -66,10 +66,6 @@ impl Figures {
         }
     }
 
-    pub(super) fn json(&self) -> String {
-        json::object(self)
-    }
-
     pub(super) fn header() -> String {
         format!(
             "  {:<22}{:>7}{:>7}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n",
