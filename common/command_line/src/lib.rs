@@ -8,12 +8,25 @@ pub use number::{number, within};
 use std::error::Error;
 use std::io;
 
+use clap::{Parser, error::ErrorKind};
+
 /// Exit code of a command that failed.
 pub const FAILED: u8 = 1;
 /// Exit code of a command with wrong options or settings.
 pub const WRONG_USE: u8 = 2;
 /// Exit code of a run that finished but lost data.
 pub const LOST_DATA: u8 = 3;
+
+/// Parses the command line; exits with code 2 if it is invalid or `check` finds a problem.
+pub fn parse<C: Parser>(check: impl FnOnce(&C) -> Result<(), String>) -> C {
+    let config = C::parse();
+    if let Err(problem) = check(&config) {
+        C::command()
+            .error(ErrorKind::ValueValidation, problem)
+            .exit()
+    }
+    config
+}
 
 /// An error that ends a command.
 pub trait CommandError: Error {

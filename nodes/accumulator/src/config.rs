@@ -1,6 +1,6 @@
 //! Command-line options.
 
-use clap::{CommandFactory, Parser, error::ErrorKind};
+use clap::Parser;
 use command_line::number;
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
@@ -63,13 +63,7 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        let config = Config::parse();
-        match config.check() {
-            Ok(()) => config,
-            Err(problem) => Config::command()
-                .error(ErrorKind::ValueValidation, problem)
-                .exit(),
-        }
+        command_line::parse(Config::check)
     }
 
     /// Returns the settings of the localizer, with a default work limit so that even clutter does
@@ -122,11 +116,6 @@ mod tests {
             .chain(arguments.split_whitespace());
         let config = Config::try_parse_from(words).map_err(|error| error.to_string())?;
         config.check().map(|()| config)
-    }
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
     }
 
     #[test]

@@ -3,10 +3,8 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use command_line::LOST_DATA;
 use emulator::Config;
-
-/// Exit code if the recording was played but data was lost.
-const LOST_DATA: u8 = 3;
 
 fn main() -> ExitCode {
     let config = Config::parse();

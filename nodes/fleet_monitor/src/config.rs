@@ -25,13 +25,10 @@ pub struct Config {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]
     fn only_this_machine_is_served_unless_asked_for() {
-        Config::command().debug_assert();
         let config = Config::try_parse_from(["fleet_monitor"]).unwrap();
         assert!(config.page.ip().is_loopback());
     }

@@ -35,13 +35,10 @@ impl Config {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]
     fn only_this_machine_is_served_unless_asked_for() {
-        Config::command().debug_assert();
         let config = Config::parse_from(["foxglove_server"]);
         assert!(config.listen.ip().is_loopback());
         assert!(!config.robot().is_empty());

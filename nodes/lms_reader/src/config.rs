@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
+use clap::{ArgAction, ArgGroup, Parser, ValueEnum};
 use command_line::number;
 use geometry::Mount;
 use messages::{FrameName, Name};
@@ -31,7 +31,7 @@ pub struct Config {
 
     /// Baud rate to switch the serial device to: 9600, 19200, 38400 or 500000 [default: the rate at
     /// which it answers].
-    #[arg(long, value_name = "RATE", value_parser = baud, conflicts_with_all = ["tcp", "capture"])]
+    #[arg(long, value_name = "RATE", conflicts_with_all = ["tcp", "capture"])]
     pub baud: Option<Baud>,
 
     /// Field of view, degrees, half of it to each side: 100 or 180 with --serial, else
@@ -146,13 +146,7 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        let config = Config::parse();
-        match config.check() {
-            Ok(()) => config,
-            Err(problem) => Config::command()
-                .error(ErrorKind::ValueValidation, problem)
-                .exit(),
-        }
+        command_line::parse(Config::check)
     }
 
     /// Checks rules that concern more than one option.
@@ -243,11 +237,6 @@ fn address(text: &str) -> Result<String, String> {
         Some((host, Ok(1u16..))) if !host.is_empty() => Ok(text.into()),
         _ => Err("expected is HOST:PORT with a port from 1 to 65535".into()),
     }
-}
-
-fn baud(text: &str) -> Result<Baud, String> {
-    let baud = text.parse().ok().and_then(Baud::from_rate);
-    baud.ok_or_else(|| "allowed are 9600, 19200, 38400 and 500000".into())
 }
 
 fn range(text: &str) -> Result<Reach, String> {

@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::Parser;
 use clap::builder::TypedValueParser;
-use clap::{CommandFactory, Parser, error::ErrorKind};
 use command_line::number;
 use engine::directions::Directions;
 use engine::grid::CellRules;
@@ -70,13 +70,10 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        let config = Config::parse();
-        match Directions::new(config.localizer.headings) {
-            Ok(_) => config,
-            Err(problem) => Config::command()
-                .error(ErrorKind::ValueValidation, problem)
-                .exit(),
-        }
+        command_line::parse(|config: &Config| {
+            let headings = Directions::new(config.localizer.headings);
+            headings.map(drop).map_err(|problem| problem.to_string())
+        })
     }
 
     /// Returns the map files with their names.
@@ -134,7 +131,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
         let config = parse("--name office --workers 3 --deadline 0.5").unwrap();
         assert_eq!((config.name().as_str(), config.workers()), ("office", 3));
         assert_eq!(config.deadline, Duration::from_millis(500));

@@ -19,8 +19,6 @@ pub struct Config {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     fn parse(arguments: &str) -> Result<PeakConfig, String> {
@@ -30,11 +28,6 @@ mod tests {
         Config::try_parse_from(words)
             .map(|config| config.peaks)
             .map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
     }
 
     #[test]

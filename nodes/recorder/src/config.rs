@@ -100,8 +100,6 @@ impl SyncPeriod {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     fn parse(arguments: &str) -> Result<Config, String> {
@@ -111,7 +109,6 @@ mod tests {
 
     #[test]
     fn options() {
-        Config::command().debug_assert();
         let config = parse("--output r.mcap").unwrap();
         assert_eq!((config.keep, config.split_size), (None, None));
         assert_eq!(config.sync, SyncPeriod(Some(Duration::from_secs(5))));

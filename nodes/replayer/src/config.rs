@@ -87,8 +87,6 @@ fn node(text: &str) -> Result<String, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     fn parse(arguments: &str) -> Result<Config, String> {
@@ -98,7 +96,6 @@ mod tests {
 
     #[test]
     fn options() {
-        Config::command().debug_assert();
         let config = parse("--recording a.mcap").unwrap();
         assert_eq!(config.rate, Rate::Factor(1.0));
         assert!(config.wait_for.is_empty() && !config.looped);

@@ -57,18 +57,11 @@ fn pose(text: &str) -> Result<Pose, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     fn parse(arguments: &str) -> Result<Config, String> {
         let words = ["tracker"].into_iter().chain(arguments.split_whitespace());
         Config::try_parse_from(words).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Commands that a host sends.
 
+use std::str::FromStr;
+
 use super::configuration::Configuration;
 use super::fields::Fields;
 use super::framing::frame;
@@ -91,6 +93,15 @@ impl Baud {
             Baud::B38400 => 0x40,
             Baud::B500000 => 0x48,
         }
+    }
+}
+
+impl FromStr for Baud {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let baud = text.parse().ok().and_then(Self::from_rate);
+        baud.ok_or("allowed are 9600, 19200, 38400 and 500000")
     }
 }
 

@@ -9,11 +9,6 @@ fn parse(arguments: &str) -> Result<Config, String> {
 }
 
 #[test]
-fn the_command_line_is_well_formed() {
-    Config::command().debug_assert();
-}
-
-#[test]
 fn defaults() {
     let config = parse("--tcp 192.168.0.1:2112").unwrap();
     assert!(config.start_stream && !config.looped);
