@@ -97,143 +97,44 @@ fn every_message_has_its_table() {
 
 /// Structs that are sent as JSON, with the section that lists their fields; several structs if they
 /// are sent as one object.
+#[rustfmt::skip]
 const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`pose/json`", &[("nodes/bridge/src/json.rs", "Pose")]),
     ("`health/json`", &[("nodes/bridge/src/json.rs", "Health")]),
-    (
-        "`backcast locate --json`",
-        &[("common/evaluation/src/locate/object.rs", "Object")],
-    ),
-    (
-        "Votes of a scan",
-        &[("common/evaluation/src/locate/object.rs", "Votes")],
-    ),
-    (
-        "Beams of a scan",
-        &[("common/evaluation/src/locate/object.rs", "Beams")],
-    ),
-    (
-        "Places of a scan",
-        &[("common/evaluation/src/locate/object.rs", "Hypothesis")],
-    ),
-    (
-        "Particles of a scan",
-        &[("common/evaluation/src/locate/particles.rs", "Particles")],
-    ),
-    (
-        "`backcast evaluate --json`",
-        &[("common/evaluation/src/evaluate/judge.rs", "Evaluation")],
-    ),
-    (
-        "Probabilities of a file",
-        &[("common/evaluation/src/trust.rs", "Said")],
-    ),
-    (
-        "`backcast evaluate --sequence --json`",
-        &[("common/evaluation/src/sequence/figures.rs", "Figures")],
-    ),
-    (
-        "`backcast evaluate --sequence --stress --json`",
-        &[(
-            "common/evaluation/src/sequence/stress/figures.rs",
-            "Figures",
-        )],
-    ),
-    (
-        "Of the single scan",
-        &[("common/pose_table/src/line.rs", "Line")],
-    ),
-    (
-        "Of the tracker",
-        &[("common/pose_table/src/pose_line.rs", "PoseLine")],
-    ),
-    (
-        "Of the run",
-        &[
-            ("common/launcher/src/run/summary.rs", "Summary"),
-            ("common/statistics/src/lib.rs", "Figures"),
-        ],
-    ),
-    (
-        "`backcast status --json`",
-        &[("common/launcher/src/run/control.rs", "Status")],
-    ),
-    (
-        "A node of a graph",
-        &[("common/launcher/src/run/control.rs", "NodeStatus")],
-    ),
-    (
-        "`backcast logs --json`",
-        &[("common/launcher/src/control/logs.rs", "LogLine")],
-    ),
-    (
-        "`backcast info --json`",
-        &[("common/recording_tools/src/info/contents.rs", "Contents")],
-    ),
-    (
-        "`backcast doctor --json`",
-        &[("common/recording_tools/src/doctor/command.rs", "Report")],
-    ),
-    (
-        "`backcast soak --json`",
-        &[
-            ("common/soak/src/report.rs", "Report"),
-            ("common/soak/src/tally.rs", "PoseFigures"),
-            ("common/soak/src/launched.rs", "Losses"),
-        ],
-    ),
-    (
-        "`backcast bench --json`",
-        &[("common/bench/src/row.rs", "Row")],
-    ),
-    (
-        "The last pose",
-        &[("nodes/tracker/src/memory.rs", "Remembered")],
-    ),
-    (
-        "VDA 5050",
-        &[("nodes/ros2_gateway/src/vda5050.rs", "Position")],
-    ),
-    (
-        "`snapshot`",
-        &[("common/dashboard/src/view.rs", "Snapshot")],
-    ),
+    ("`backcast locate --json`", &[("common/evaluation/src/locate/object.rs", "Object")]),
+    ("Votes of a scan", &[("common/evaluation/src/locate/object.rs", "Votes")]),
+    ("Beams of a scan", &[("common/evaluation/src/locate/object.rs", "Beams")]),
+    ("Places of a scan", &[("common/evaluation/src/locate/object.rs", "Hypothesis")]),
+    ("Particles of a scan", &[("common/evaluation/src/locate/particles.rs", "Particles")]),
+    ("`backcast evaluate --json`", &[("common/evaluation/src/evaluate/judge.rs", "Evaluation")]),
+    ("Probabilities of a file", &[("common/evaluation/src/trust.rs", "Said")]),
+    ("`backcast evaluate --sequence --json`", &[("common/evaluation/src/sequence/figures.rs", "Figures")]),
+    ("`backcast evaluate --sequence --stress --json`", &[("common/evaluation/src/sequence/stress/figures.rs", "Figures")]),
+    ("Of the single scan", &[("common/pose_table/src/line.rs", "Line")]),
+    ("Of the tracker", &[("common/pose_table/src/pose_line.rs", "PoseLine")]),
+    ("Of the run", &[("common/launcher/src/run/summary.rs", "Summary"), ("common/statistics/src/lib.rs", "Figures")]),
+    ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
+    ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
+    ("`backcast logs --json`", &[("common/launcher/src/control/logs.rs", "LogLine")]),
+    ("`backcast info --json`", &[("common/recording_tools/src/info/contents.rs", "Contents")]),
+    ("`backcast doctor --json`", &[("common/recording_tools/src/doctor/command.rs", "Report")]),
+    ("`backcast soak --json`", &[("common/soak/src/report.rs", "Report"), ("common/soak/src/tally.rs", "PoseFigures"), ("common/soak/src/launched.rs", "Losses")]),
+    ("`backcast bench --json`", &[("common/bench/src/row.rs", "Row")]),
+    ("The last pose", &[("nodes/tracker/src/memory.rs", "Remembered")]),
+    ("VDA 5050", &[("nodes/ros2_gateway/src/vda5050.rs", "Position")]),
+    ("`snapshot`", &[("common/dashboard/src/view.rs", "Snapshot")]),
     ("`map`", &[("common/dashboard/src/view/map.rs", "MapInfo")]),
-    (
-        "`answer`",
-        &[("common/dashboard/src/view/answer.rs", "Answer")],
-    ),
-    (
-        "A place",
-        &[("common/dashboard/src/view/answer.rs", "Place")],
-    ),
+    ("`answer`", &[("common/dashboard/src/view/answer.rs", "Answer")]),
+    ("A place", &[("common/dashboard/src/view/answer.rs", "Place")]),
     ("An ellipse", &[("common/dashboard/src/view.rs", "Ellipse")]),
-    (
-        "`pose`",
-        &[("common/dashboard/src/view/tracked.rs", "Tracked")],
-    ),
-    (
-        "`state`",
-        &[("common/dashboard/src/view/history.rs", "Period")],
-    ),
-    (
-        "A webhook's object",
-        &[("common/dashboard/src/view/state_change.rs", "StateChange")],
-    ),
-    (
-        "`beams`",
-        &[("common/dashboard/src/view/beams.rs", "Beams")],
-    ),
-    (
-        "`node`",
-        &[("common/dashboard/src/view/roster.rs", "NodeReport")],
-    ),
+    ("`pose`", &[("common/dashboard/src/view/tracked.rs", "Tracked")]),
+    ("`state`", &[("common/dashboard/src/view/history.rs", "Period")]),
+    ("A webhook's object", &[("common/dashboard/src/view/state_change.rs", "StateChange")]),
+    ("`beams`", &[("common/dashboard/src/view/beams.rs", "Beams")]),
+    ("`node`", &[("common/dashboard/src/view/roster.rs", "NodeReport")]),
     ("`log`", &[("common/dashboard/src/view/log.rs", "LogLine")]),
     ("`region`", &[("common/dashboard/src/view.rs", "Region")]),
-    (
-        "`abilities`",
-        &[("common/dashboard/src/view.rs", "Abilities")],
-    ),
+    ("`abilities`", &[("common/dashboard/src/view.rs", "Abilities")]),
     ("`field`", &[("common/dashboard/src/view/field.rs", "Head")]),
 ];
 

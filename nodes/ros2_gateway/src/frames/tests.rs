@@ -45,19 +45,21 @@ fn mounted(x: f64) -> Mount {
     }
 }
 
+fn check_mount(frames: &mut Frames, index: usize, laser: &str, expected: Option<Mount>) {
+    assert_eq!(frames.base_from_laser(index, laser).unwrap(), expected);
+}
+
 #[test]
 fn the_mount_comes_with_the_transforms_or_from_the_user() {
     let mut frames = Frames::new(Vec::new());
-    assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
+    check_mount(&mut frames, 0, "laser", None);
     let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&mount).unwrap();
-    let found = frames.base_from_laser(0, "laser").unwrap();
-    assert_eq!(found, Some(mounted(0.5)));
+    check_mount(&mut frames, 0, "laser", Some(mounted(0.5)));
     let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)]);
     frames.on_static_transforms(&mount).unwrap();
     for (index, expected) in [9.0, 8.0].into_iter().enumerate() {
-        let found = frames.base_from_laser(index, "laser").unwrap();
-        assert_eq!(found, Some(mounted(expected)));
+        check_mount(&mut frames, index, "laser", Some(mounted(expected)));
     }
 }
 
@@ -74,12 +76,10 @@ fn the_base_that_is_named_counts_where_it_is_connected() {
     let mut frames = Frames::new(Vec::new()).with_base("base_footprint".to_owned());
     let laser = fixed("base_link", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&laser).unwrap();
-    let found = frames.base_from_laser(0, "laser").unwrap();
-    assert_eq!(found, Some(mounted(0.5)));
+    check_mount(&mut frames, 0, "laser", Some(mounted(0.5)));
     let base = fixed("base_footprint", "base_link", 0.25, Quaternion::default());
     frames.on_static_transforms(&base).unwrap();
-    let found = frames.base_from_laser(0, "laser").unwrap();
-    assert_eq!(found, Some(mounted(0.75)));
+    check_mount(&mut frames, 0, "laser", Some(mounted(0.75)));
 }
 
 #[test]
@@ -87,10 +87,9 @@ fn odometry_names_the_base() {
     let mut frames = Frames::new(Vec::new());
     let laser = fixed("chassis", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&laser).unwrap();
-    assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
+    check_mount(&mut frames, 0, "laser", None);
     frames.on_odometry(&odometry("chassis", 1.0));
-    let found = frames.base_from_laser(0, "laser").unwrap();
-    assert_eq!(found, Some(mounted(0.5)));
+    check_mount(&mut frames, 0, "laser", Some(mounted(0.5)));
 }
 
 #[test]
@@ -121,10 +120,8 @@ fn each_laser_has_its_own_mount_also_upside_down() {
         ..mounted(-0.4)
     };
     for _ in 0..2 {
-        let found = frames.base_from_laser(0, "front").unwrap();
-        assert_eq!(found, Some(mounted(0.5)));
-        let found = frames.base_from_laser(1, "rear").unwrap();
-        assert_eq!(found, Some(turned));
+        check_mount(&mut frames, 0, "front", Some(mounted(0.5)));
+        check_mount(&mut frames, 1, "rear", Some(turned));
     }
     // The cache is bounded, and changes with the transforms.
     for i in 0..3 * MAX_MOUNTS {
@@ -133,8 +130,7 @@ fn each_laser_has_its_own_mount_also_upside_down() {
     }
     let moved = fixed("base_link", "rear", -0.6, Quaternion::default());
     frames.on_static_transforms(&moved).unwrap();
-    let found = frames.base_from_laser(1, "rear").unwrap();
-    assert_eq!(found, Some(mounted(-0.6)));
+    check_mount(&mut frames, 1, "rear", Some(mounted(-0.6)));
 }
 
 #[test]
@@ -158,8 +154,7 @@ fn a_transform_that_is_none_does_not_stop_the_rest() {
     let expected = "the transform from base_link to camera is ignored: the position (NaN, 0)";
     assert!(text.starts_with(expected), "{text}");
     for (index, laser, x) in [(0, "front", 0.5), (1, "rear", -0.4)] {
-        let found = frames.base_from_laser(index, laser).unwrap();
-        assert_eq!(found, Some(mounted(x)));
+        check_mount(&mut frames, index, laser, Some(mounted(x)));
     }
     let mended = ["front".to_owned(), "rear".to_owned()];
     assert!(frames.mended.iter().eq(&mended));
@@ -171,8 +166,7 @@ fn a_frame_may_have_the_longest_name_of_a_message() {
     let long = "f".repeat(FrameName::CAPACITY);
     let mount = fixed("base_link", &long, 0.5, Quaternion::default());
     frames.on_static_transforms(&mount).unwrap();
-    let found = frames.base_from_laser(0, &long).unwrap();
-    assert_eq!(found, Some(mounted(0.5)));
+    check_mount(&mut frames, 0, &long, Some(mounted(0.5)));
 }
 
 #[test]
