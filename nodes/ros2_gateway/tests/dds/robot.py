@@ -90,6 +90,7 @@ class Robot(Node):
         self.here = None
         self.truths = {}
         self.is_localized = threading.Event()
+        self.step = 0
 
     def put(self, kind, topic, quality, message):
         if topic not in self.publishers_by_topic:
@@ -146,10 +147,14 @@ class Robot(Node):
             now = time.time_ns()
             self.here = truth or self.here
             self.truths[now] = truth
+            self.step = index
             self.put(Odometry, "odom", 10, stamped(odometry, now))
             self.put(LaserScan, "scan", qos_profile_sensor_data, stamped(scan, now))
             due += abs(steps[(index + 1) % len(steps)][0] - ns) * 1e-9
             time.sleep(max(0.0, due - time.monotonic()))
+
+    def do_step(self):
+        say(event="step", step=self.step)
 
     def do_track(self):
         """Says of each pose how far it is from the true one, where that is known."""
@@ -158,13 +163,14 @@ class Robot(Node):
             self.is_localized.set()
             stamp = stamp_of(message)
             if truth := self.truths.get(stamp):
+                x, y, turned = truth
                 at, yaw = message.pose.pose.position, yaw_of(message.pose.pose.orientation)
                 say(
                     event="pose",
                     at=time.monotonic_ns(),
                     stamp=stamp,
-                    metres=math.hypot(at.x - truth[0], at.y - truth[1]),
-                    radians=abs(math.remainder(yaw - truth[2], math.tau)),
+                    metres=math.hypot(at.x - x, at.y - y),
+                    radians=abs(math.remainder(yaw - turned, math.tau)),
                 )
 
         taken = self.create_subscription(PoseWithCovarianceStamped, "amcl_pose", take, KEPT)
@@ -200,6 +206,7 @@ class Robot(Node):
     def do_navigate(self, off):
         """As setInitialPose() and waitUntilNav2Active() of Simple Commander do it."""
         begin = time.monotonic()
+        self.is_localized.clear()
         self.point(off)
         while True:
             is_active = self.state().label == "active"
@@ -249,7 +256,7 @@ class Robot(Node):
         for _ in range(30):
             done = threading.Event()
             future = client.call_async(request)
-            future.add_done_callback(lambda _: done.set())
+            future.add_done_callback(lambda _, done=done: done.set())
             if done.wait(2):
                 return future.result()
         raise TimeoutError(f"no answer of {service}")
