@@ -72,7 +72,8 @@ impl Verdict {
 
 impl Fleet {
     fn send(&mut self, from: &PoseHeader) -> Result<(), GatewayError> {
-        let data = json::object(&vda5050::of(from));
+        let encoded = serde_json::to_string(&vda5050::of(from));
+        let data = encoded.map_err(GatewayError::encoding("localization/vda5050"))?;
         match self {
             Fleet::Key(publisher) => {
                 let sent = publisher.put(data).wait();
