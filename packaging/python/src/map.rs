@@ -37,7 +37,9 @@ impl Map {
     fn from_yaml(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let (grid, notes) = detached(py, move || {
             let mut notes = Vec::new();
-            let grid = map::load_within(map::MemoryLimit::NONE, path, |key| notes.push(key.to_string()));
+            let grid = map::load_within(map::MemoryLimit::NONE, path, |key| {
+                notes.push(key.to_string())
+            });
             Ok((grid.map_err(|error| of_map(&error))?, notes))
         })?;
         for note in notes {
