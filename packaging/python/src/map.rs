@@ -38,7 +38,7 @@ impl Map {
         let (grid, notes) = detached(py, move || {
             let mut notes = Vec::new();
             let grid = map::load_within(map::MemoryLimit::NONE, path, |key| {
-                notes.push(key.to_string())
+                notes.push(key.to_string());
             });
             Ok((grid.map_err(|error| of_map(&error))?, notes))
         })?;
