@@ -9,6 +9,7 @@ mod cyclone;
 mod drives;
 
 use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use bytemuck::Zeroable;
 use messages::{
@@ -41,10 +42,14 @@ const MOUNT: [&str; 2] = ["--mount", "0.78,0,0"];
 /// Number of beams of a scan.
 const BEAMS: usize = 720;
 
-/// Returns one of three domains of this process, away from those that people use. Two processes
-/// have the same ones only if their ids are equal modulo 40.
-fn domain(number: u32) -> String {
-    (101 + 3 * (std::process::id() % 40) + number).to_string()
+/// Returns a domain that no other test of this process uses, away from those that people use. Two
+/// processes have the same ones only if their ids are equal modulo 8.
+fn domain() -> String {
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    // The ports of DDS end at domain 232.
+    assert!(number < 16, "{number} domains are in use");
+    (101 + 16 * (std::process::id() % 8) + number).to_string()
 }
 
 /// A graph with a gateway, and a robot in the same domain.
@@ -64,7 +69,7 @@ impl Joined {
     fn new(tag: &str, namespace: &'static str, options: &[&'static str]) -> Option<Self> {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
-        let domain = domain(0);
+        let domain = domain();
         let robot = robot(&domain, namespace)?;
         let mut joined = Joined {
             robot,
@@ -362,7 +367,7 @@ fn publishers_that_cannot_be_received_are_named() {
 /// Runs the commands that a user types next to an unknown robot that drives.
 #[test]
 fn a_robot_is_found_and_checked_while_it_drives() {
-    let domain = domain(1);
+    let domain = domain();
     let Some(mut robot) = robot(&domain, "/r2") else {
         return;
     };
@@ -398,7 +403,7 @@ fn nothing_crosses_from_one_domain_to_another() {
     };
     let isolated = Isolated::new("dds-other");
     let other = isolated.join("test");
-    let next = domain(2);
+    let next = domain();
     let executable = env!("CARGO_BIN_EXE_ros2_gateway");
     let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.78,0,0"];
     let gateway = NodeProcess::start(executable, &other, options);
