@@ -43,7 +43,7 @@ pub(in crate::search) fn count(
 }
 
 impl Share {
-    /// Takes the poses of a heading.
+    /// Counts the poses of a heading.
     fn take(
         &mut self,
         task: &Task<'_>,

@@ -1,10 +1,10 @@
 //! The search over x, y and all headings, exact by bounds.
 //!
-//! Blocks of 16 × 16 cells are bounded by their sets of visible ranges, for all
-//! headings at once. What may still matter is split into blocks of 8 × 8 cells
-//! with sets of their own, then into 4 × 4 with intervals of ranges, and last
-//! the poses of those are counted one by one. When no block that is left can
-//! reach the floor, every pose above it has been seen.
+//! Blocks of 16 × 16 cells are bounded by their sets of visible ranges, for all headings at
+//! once. Those that may still matter are split into blocks of 8 × 8 cells with sets of
+//! their own, then into 4 × 4 with intervals of ranges, and at last the poses of those are
+//! counted one by one. When no remaining block can reach the floor, every pose at or above
+//! it was counted.
 //!
 //! ```text
 //! map ─ bins ─ intervals ─ sets                         prepared once (index)
@@ -17,9 +17,9 @@
 //! Alternatives below the floor come from the blocks with the highest bounds. Where bounds do
 //! not distinguish blocks, every pose is counted instead (`counting`).
 //!
-//! Each folder imports only those before it: `index`, what is known of a map; `bounds`,
-//! how many votes a block can have; `leaves`, how many a pose has; `task`, what threads
-//! share; `counting`, counting every pose; `plan`, the order of a search.
+//! Each folder imports only those before it: `index`, the prepared map; `bounds`, upper
+//! bounds of the votes in a block; `leaves`, the votes of poses; `task`, the data that
+//! threads share; `counting`, counting every pose; `plan`, the order of a search.
 
 mod bounds;
 mod counting;

@@ -10,13 +10,13 @@ pub(crate) trait CellLanes: Copy {
 
     fn load(set: Self::Set, votes: &[u16; CELLS]) -> Self;
 
-    /// Adds those of a beam, given the ranges that the cells see along it. All but
-    /// plain code needs a table that is short.
+    /// Adds the votes of a beam, given the ranges that the cells see along it. All but plain
+    /// code need a short table.
     fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self;
 
     fn votes(self) -> [u16; CELLS];
 
-    /// The most votes of those cells that have all ones in a mask.
+    /// Returns the most votes of the cells that have all ones in a mask.
     fn most(self, among: &[u16; CELLS]) -> u16;
 }
 
@@ -26,7 +26,7 @@ pub(crate) trait CellLanes: Copy {
 pub(crate) struct Portable([u16; CELLS]);
 
 impl Portable {
-    /// They are the same with every instruction set.
+    /// Loads votes without a token, with any instruction set.
     #[inline(always)]
     pub(crate) fn new(votes: &[u16; CELLS]) -> Self {
         Portable(*votes)
@@ -95,11 +95,11 @@ mod x86 {
     use crate::simd::table::look_up_avx2;
     use crate::simd::{Avx2, avx2};
 
-    /// Why tables are short: with these instruction sets no others are looked up here.
+    /// Panic message: with AVX2, no long tables are looked up here.
     const SHORT: &str = "a table that is short";
 
     avx2! {
-        /// The greatest of the numbers that have all ones in a mask.
+        /// Returns the greatest of the numbers that have all ones in a mask.
         fn most(_set: Avx2, numbers: __m256i, among: &[u16; CELLS]) -> u16 {
             let numbers = _mm256_and_si256(numbers, must_cast(*among));
             let (low, high) = (
@@ -113,7 +113,7 @@ mod x86 {
     }
 
     avx2! {
-        /// Where a table has the votes for ranges.
+        /// Returns the places of ranges in a table.
         fn places(_set: Avx2, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> __m256i {
             let ranges = must_cast(*ranges);
             let centre = _mm256_set1_epi16(table.centre.cast_signed());
@@ -140,7 +140,7 @@ mod x86 {
             fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Avx2Cells {
                 let Avx2Cells(set, votes) = self;
                 let entries = table.short().expect(SHORT);
-                // The high byte of each number lies beyond all entries.
+                // The high byte of each number is beyond all entries.
                 let high = _mm256_set1_epi16(0xff00_u16.cast_signed());
                 let index = _mm256_or_si256(places(set, table, ranges), high);
                 let [found] = look_up_avx2(set, entries, table.used.into(), [index]);

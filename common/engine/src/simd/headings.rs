@@ -7,22 +7,21 @@ use crate::tables::TABLE;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::Avx2Headings;
 
-/// Headings that are bounded at a time.
+/// Number of headings that are bounded at a time.
 pub(crate) const HEADINGS: usize = 64;
 
 /// First and last bins of two intervals, in the directions of a beam at [`HEADINGS`].
 pub(crate) type IntervalRows<'a> = [&'a [u8; HEADINGS]; 4];
 
-/// The most votes of a beam for a range in a bin; they never rise away from one.
+/// Most votes of a beam for a range in each bin; they never rise away from the centre.
 #[derive(Debug, Clone)]
 #[repr(C)]
 pub(crate) struct BinVotes {
-    /// Those in bins `base`, `base + 1`, …; the first and the last stand for all bins
-    /// beyond.
+    /// Votes in bins `base`, `base + 1`, …; the first and the last stand for all bins beyond.
     pub table: [u8; TABLE],
-    /// Behind this entry there are no others than 0.
+    /// Number of entries after which all are 0.
     pub used: u8,
-    /// The bin of most votes.
+    /// Bin with the most votes.
     pub centre: u8,
     pub base: u8,
 }
@@ -36,12 +35,12 @@ pub(crate) trait HeadingLanes: Copy {
 
     fn none(set: Self::Set) -> Self;
 
-    /// The most votes that a beam has for a range of either interval.
+    /// Returns the most votes that a beam has for a range of either interval.
     fn of_beam(set: Self::Set, votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
 
     fn add(self, other: Self) -> Self;
 
-    /// The headings with other votes than 0.
+    /// Returns a bit for each heading with any votes.
     fn present(self) -> u64;
 
     fn to_bytes(self) -> [u8; HEADINGS];
@@ -50,10 +49,10 @@ pub(crate) trait HeadingLanes: Copy {
 
     fn add_to(self, sums: Self::Sums) -> Self::Sums;
 
-    /// The headings with a sum of at least this much.
+    /// Returns a bit for each heading with a sum of at least `least`.
     fn at_least(set: Self::Set, sums: Self::Sums, least: u16) -> u64;
 
-    /// The sums, heading by heading.
+    /// Returns the sums by heading.
     fn votes(set: Self::Set, sums: Self::Sums) -> [u16; HEADINGS];
 }
 
@@ -120,7 +119,7 @@ impl HeadingLanes for Portable {
     }
 }
 
-/// The votes in the bin of each interval that is nearest to the centre.
+/// Looks up the votes in the bin of each interval that is nearest to the centre.
 #[inline(always)]
 fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
     let index = std::array::from_fn(|i| {
@@ -163,8 +162,8 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::simd::{Kernel, Set, Simd};
 
-    /// Votes of some beams in some rows, their sums with others, where those reach a least
-    /// one, and where there are any votes.
+    /// Kernel that returns the votes of some beams in some rows, their sums, and bits for the
+    /// headings whose sum is at least `least` and for those with any votes.
     struct Counting<'a> {
         beams: &'a [(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,

@@ -1,10 +1,11 @@
-//! Numbers side by side in the registers of an instruction set.
+//! Vectors of numbers in the registers of an instruction set.
 //!
 //! [`Portable`] and [`Avx2`] are tokens: each proves that the processor has the
-//! instructions, which was checked when the first one was made ([`Simd::new`]). Vectors can only be made with a token, and nothing that takes these
-//! instructions can be called without a token or a vector. So the code of the search and
-//! of the sweeps is safe, and written once for all sets: it is a [`Kernel`], generic over
-//! the [`Set`], which [`Simd::run`] runs compiled for the one at hand.
+//! instructions, which was checked when the first one was made ([`Simd::new`]). Vectors can
+//! only be made with a token, and nothing that takes these instructions can be called
+//! without a token or a vector. So the code of the search and of the sweeps is safe, and
+//! written once for all sets: it is a [`Kernel`], generic over the [`Set`], which
+//! [`Simd::run`] runs compiled for the one at hand.
 //!
 //! The modules here hold the code that differs between the sets. There the macro `avx2!`
 //! compiles functions for AVX2, in which its instructions are safe to use.
@@ -26,18 +27,18 @@ pub(crate) mod words;
 
 use crate::instruction_set::InstructionSet;
 
-/// Cells along the side of a small block, whose votes and ranges lie side by side.
+/// Cells along the side of a small block, whose votes and ranges are adjacent in memory.
 pub(crate) const SIDE: usize = 4;
 
 /// Cells of such a block, row by row.
 pub(crate) const CELLS: usize = SIDE * SIDE;
 
-/// Compiles functions for a set of instructions: those of an implementation of a trait, one
-/// by itself, or kernels.
+/// Compiles functions for a set of instructions: those of an implementation of a trait, a
+/// single one, or kernels.
 ///
-/// The first argument of each function is a token of the set, or a value that is only made where
-/// there is one. What stands behind `plain` is not compiled for the set by itself: it
-/// calls what is, and is too large to be inlined unless it must be.
+/// The first argument of each function is a token of the set, or a value that is only made
+/// with one. Functions after `plain` are not compiled for the set by themselves: they call
+/// functions that are, and are too large to be inlined unless they must be.
 macro_rules! compiled {
     (
         [$features:literal]
@@ -122,7 +123,7 @@ macro_rules! avx2 {
     };
 }
 
-/// [`compiled!`] for what every x86-64 processor has: no token is needed.
+/// [`compiled!`] for the instructions of every x86-64 processor: no token is needed.
 #[cfg(target_arch = "x86_64")]
 macro_rules! sse2 {
     ($($item:tt)*) => {
@@ -143,7 +144,7 @@ pub(crate) struct Portable;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Avx2(());
 
-/// A token, and what its instruction set can do.
+/// A token, and the vectors of its instruction set.
 pub(crate) trait Set: numbers::Numbers {
     type Words: words::BitWords<Set = Self>;
     type Headings: headings::HeadingLanes<Set = Self>;
@@ -173,7 +174,7 @@ impl Set for Avx2 {
 pub(crate) trait Kernel {
     type Result;
 
-    /// To be `#[inline(always)]`, and all that it calls in its loops.
+    /// Must be `#[inline(always)]`, and so must all that it calls in its loops.
     fn run<S: Set>(self, set: S) -> Self::Result;
 }
 
@@ -192,7 +193,7 @@ impl Default for Simd {
 }
 
 impl Simd {
-    /// The token of an instruction set.
+    /// Returns the token of an instruction set.
     ///
     /// # Panics
     /// If this processor does not have it.
@@ -206,7 +207,6 @@ impl Simd {
         }
     }
 
-    /// The instruction set.
     pub(crate) fn set(self) -> InstructionSet {
         match self {
             Simd::Portable(_) => InstructionSet::Portable,

@@ -2,7 +2,7 @@
 
 use super::Portable;
 
-/// What can be done with vectors; numbers are unsigned unless said otherwise.
+/// Operations on vectors; numbers are unsigned unless said otherwise.
 pub(crate) trait Numbers: Copy {
     type Vector: Copy;
 
@@ -11,13 +11,13 @@ pub(crate) trait Numbers: Copy {
 
     fn splat(self, value: u16) -> Self::Vector;
 
-    /// The first [`Numbers::COUNT`] numbers.
+    /// Loads the first [`Numbers::COUNT`] numbers.
     fn load(self, from: &[u16]) -> Self::Vector;
 
-    /// To the first [`Numbers::COUNT`] numbers.
+    /// Stores to the first [`Numbers::COUNT`] numbers.
     fn store(self, vector: Self::Vector, to: &mut [u16]);
 
-    /// To the first [`Numbers::COUNT`] bytes; the numbers are at most 255.
+    /// Stores to the first [`Numbers::COUNT`] bytes; the numbers are at most 255.
     fn store_bytes(self, vector: Self::Vector, to: &mut [u8]);
 
     fn add(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
@@ -29,7 +29,7 @@ pub(crate) trait Numbers: Copy {
     fn min(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
     fn max(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
 
-    /// The greater ones, as signed numbers.
+    /// Returns the greater numbers, compared as signed ones.
     fn max_signed(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
 
     /// `a · b >> 16`.
@@ -41,11 +41,11 @@ pub(crate) trait Numbers: Copy {
     /// `a << 4`.
     fn shift_nibble(self, a: Self::Vector) -> Self::Vector;
 
-    /// Where numbers are at least as great as others, a bit each.
+    /// Returns a bit for each number of `a` that is at least the one of `b`.
     fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64;
 
-    /// Where a byte lies at most so far behind any of others, a bit each. Bytes count on
-    /// from 0 behind 255.
+    /// Returns a bit for each lane in which `byte` is at most `reaches` after `behind`, in any
+    /// of the `N` rows. Bytes wrap from 255 to 0.
     fn any_within<const N: usize>(
         self,
         byte: u8,
@@ -54,10 +54,10 @@ pub(crate) trait Numbers: Copy {
     ) -> u64;
 }
 
-/// Bytes that are marked at a time.
+/// Number of bytes that are marked at a time.
 pub(crate) const MARKED: usize = 64;
 
-/// Numbers that are left to the compiler at a time.
+/// Numbers of a vector of plain code.
 const PORTABLE: usize = 8;
 
 /// Operations lane by lane.
@@ -119,7 +119,7 @@ impl Numbers for Portable {
         behind: &[[u8; MARKED]; N],
         reaches: &[[u8; MARKED]; N],
     ) -> u64 {
-        // How far beyond the nearest reach the byte lies.
+        // Distance of the byte beyond the nearest reach.
         let mut off = [u8::MAX; MARKED];
         for (behind, reaches) in behind.iter().zip(reaches) {
             for ((off, first), &reach) in off.iter_mut().zip(behind).zip(reaches) {

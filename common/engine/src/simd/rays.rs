@@ -1,34 +1,34 @@
-//! Where eight rays side by side end.
+//! Ends of eight adjacent rays.
 
 use super::{CELLS, SIDE};
 use crate::program::NO_RANGE;
 
-/// Rows of a word, and rays side by side in each.
+/// Number of rows of a word, and of adjacent rays in each.
 pub(crate) const ROWS: i64 = 8;
 
-/// The most rays of a bundle.
+/// Largest number of rays in a bundle.
 pub(crate) const RAYS: usize = ROWS as usize;
 
-/// Where rays side by side end.
+/// Ends of adjacent rays.
 pub(crate) trait RayLanes: Sized {
     /// The token of the instruction set.
     type Set: Copy;
 
-    /// No ray has ended.
+    /// Returns lanes in which no ray has ended.
     fn none(set: Self::Set) -> Self;
 
-    /// Eight bits of each of eight rows, a row a byte.
+    /// Returns eight bits of each of eight rows, a byte for each row.
     fn word(set: Self::Set, rows: &BitRows<'_>) -> u64;
 
-    /// Notes where rays end at one of eight positions, unless they did before. Bit
-    /// `i` of byte `j` of the word returns whether ray `i` ends at `position + j`. And a
-    /// bit for each ray that ends in it.
+    /// Notes the rays that end at one of eight positions, unless they ended before. Bit `i` of
+    /// byte `j` of the word is set if ray `i` ends at `position + j`. Also returns a bit for
+    /// each ray that ends in the word.
     fn note(self, word: u64, position: i64) -> (Self, u8);
 
-    /// The position at which each ray ends first, or [`NO_RANGE`].
+    /// Returns the position at which each ray ends first, or [`NO_RANGE`].
     fn hits(self) -> [u16; RAYS];
 
-    /// The ranges of the cells of a block, given the ray of each column's first cell.
+    /// Returns the ranges of the cells of a block, given the ray of each column's first cell.
     fn ranges(
         set: Self::Set,
         hits: &[u16; RAYS],
@@ -37,17 +37,17 @@ pub(crate) trait RayLanes: Sized {
     ) -> [u16; CELLS];
 }
 
-/// Where the cells of a block lie as rays cross them.
+/// Order in which rays cross the cells of a block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Across {
-    /// How many columns a ray has met before.
+    /// Number of columns that a ray has met before the cell.
     pub column: [u16; CELLS],
-    /// The place in the column.
+    /// Place of the cell in its column.
     pub minor: [u16; CELLS],
 }
 
 impl Across {
-    /// For rays along y and along x, each forward and backward.
+    /// Orders for rays along y and along x, each forward and backward.
     pub(crate) const ALL: [[Across; 2]; 2] = [
         [Across::new(false, false), Across::new(false, true)],
         [Across::new(true, false), Across::new(true, true)],
@@ -75,8 +75,8 @@ impl Across {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BitRows<'a> {
     pub rows: &'a [u32; RAYS],
-    /// The first bit of the first row that is read, times 2³², and how much further
-    /// that is in each further row. Eight bits from there on are in each row.
+    /// First bit of the first row that is read, times 2³², and the increase for each further
+    /// row. Eight bits are read in each row.
     pub bit: i64,
     pub slope: i64,
 }
@@ -146,12 +146,12 @@ mod x86 {
     use super::{Across, BitRows, CELLS, NO_RANGE, Portable, RAYS, RayLanes, SIDE};
     use crate::simd::{self, Avx2, avx2};
 
-    /// A ray a lane of 64 bits, in two registers.
+    /// One ray in each lane of 64 bits, in two registers.
     #[derive(Clone, Copy)]
     pub(crate) struct Avx2Rays([__m256i; 2]);
 
     avx2! {
-        /// Those of eight numbers, which are there twice, at places below eight.
+        /// Returns those of eight numbers, which are stored twice, at places below eight.
         fn number_at(_set: Avx2, numbers: __m256i, places: __m256i) -> __m256i {
             let bytes = _mm256_mullo_epi16(places, _mm256_set1_epi16(0x0202));
             let bytes = _mm256_add_epi16(bytes, _mm256_set1_epi16(0x0100));
@@ -180,7 +180,7 @@ mod x86 {
                     let word = _mm256_set1_epi64x(word.cast_signed());
                     let first = _mm256_set1_epi64x(0x0101_0101_0101_0101);
                     let ends = _mm256_and_si256(_mm256_srlv_epi64(word, rays), first);
-                    // Below the lowest bit lie as many bytes as positions before it.
+                    // There are as many bytes below the lowest bit as positions before it.
                     let below = _mm256_add_epi64(ends, _mm256_set1_epi64x(-1));
                     let below = _mm256_and_si256(_mm256_andnot_si256(ends, below), first);
                     let row = _mm256_sad_epu8(below, zero);

@@ -2,7 +2,7 @@
 
 use crate::tables::TABLE;
 
-/// Entries that an instruction of AVX2 and NEON looks up.
+/// Number of entries that an instruction of AVX2 and NEON looks up.
 const PIECE: usize = 16;
 
 /// Added to an index with AVX2, it sets the highest bit unless the index is below 16:
@@ -20,7 +20,7 @@ mod x86 {
     use crate::simd::{Avx2, avx2};
 
     avx2! {
-        /// Adds what 32 numbers find in the piece of this number to what they found before.
+        /// Looks 32 numbers up in piece `number` of a table, and adds the results to `found`.
         fn look_up_piece(
             _set: Avx2,
             piece: &[u8; PIECE],
@@ -28,7 +28,7 @@ mod x86 {
             index: __m256i,
             found: __m256i,
         ) -> __m256i {
-            // What goes below 0 lies beyond 16, too.
+            // Numbers that go below 0 are beyond 16, too.
             let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
             let index = _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND));
             let piece = _mm256_broadcastsi128_si256(must_cast(*piece));
@@ -37,7 +37,7 @@ mod x86 {
     }
 
     /// Looks 32 numbers in each register up in a table of which `used` entries are not 0;
-    /// what lies beyond those is 0.
+    /// numbers beyond those give 0.
     #[inline(always)]
     pub(in crate::simd) fn look_up_avx2<const N: usize>(
         set: Avx2,
@@ -49,7 +49,7 @@ mod x86 {
         let [first, others @ ..] = pieces;
         let mut found =
             index.map(|index| look_up_piece(set, first, 0, index, must_cast([0u8; 32])));
-        // How many pieces there are is asked once for all registers.
+        // The number of pieces is decided once for all registers.
         for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
             for (found, index) in found.iter_mut().zip(index) {
                 *found = look_up_piece(set, piece, number, index, *found);
@@ -62,8 +62,8 @@ mod x86 {
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::look_up_avx2;
 
-/// Looks 16 numbers up in a table of which `used` entries are not 0; what lies beyond
-/// those is 0. Every ARM processor of 64 bits has NEON.
+/// Looks 16 numbers up in a table of which `used` entries are not 0; numbers beyond those
+/// give 0. Every ARM processor of 64 bits has NEON.
 #[cfg(target_arch = "aarch64")]
 #[inline(always)]
 pub(super) fn look_up_neon(table: &[u8; TABLE], used: usize, index: [u8; PIECE]) -> [u8; PIECE] {

@@ -7,7 +7,7 @@ use super::Portable;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::Avx2Words;
 
-/// Blocks whose bits lie side by side.
+/// Number of blocks whose bits are interleaved.
 pub(crate) const QUAD: usize = 4;
 
 /// A word of 128 bits for each block of a quad: the lower halves, then the upper ones.
@@ -19,34 +19,34 @@ pub(crate) const EMPTY: Words = [[0; QUAD]; 2];
 /// Bytes of the words of a quad.
 pub(crate) const BYTES: usize = 16 * QUAD;
 
-/// Words under way, one for each block.
+/// Words of a quad in registers, one for each block.
 pub(crate) trait BitWords: Copy {
     /// The token of the instruction set.
     type Set: Copy;
 
-    /// Words without bits.
+    /// Returns words without bits.
     fn empty(set: Self::Set) -> Self;
-    /// The same word for each block.
+    /// Returns the same word for each block.
     fn splat(set: Self::Set, word: u128) -> Self;
-    /// Bytes as they lie in sets, see [`BitWords::sorted`].
+    /// Reads bytes in the order of sets, see [`BitWords::sorted`].
     fn read(set: Self::Set, bytes: &[u8; BYTES]) -> Self;
-    /// Fours of bytes: those that the mask selects, one after the other, and others
-    /// without bits.
+    /// Spreads groups of four bytes: places that the mask selects get the next group of
+    /// `bytes`, others get no bits.
     fn expand(set: Self::Set, mask: u16, bytes: &[u8; BYTES]) -> Self;
     fn from_words(set: Self::Set, words: &Words) -> Self;
     fn to_words(self) -> Words;
     fn and(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
-    /// The bits of `self` that `other` lacks.
+    /// Returns the bits of `self` that `other` lacks.
     fn without(self, other: Self) -> Self;
-    /// Sum and carry of three bits.
+    /// Returns sum and carry of three bits.
     fn full_adder(self, b: Self, c: Self) -> (Self, Self);
-    /// Every bit of each word `by` places down, 0 to 63.
+    /// Shifts every word down by 0 to 63 bits.
     fn shift_down(self, by: u32) -> Self;
-    /// All bits of the words that have any.
+    /// Sets all bits of the words that have any.
     fn filled(self) -> Self;
-    /// Words made of bytes that lie in the order of sets: the first of each block, the
-    /// second of each, and so on.
+    /// Returns words from bytes in the order of sets: the first of each block, the second of
+    /// each, and so on.
     fn sorted(self) -> Self;
     fn is_empty(self) -> bool;
 
@@ -165,7 +165,7 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::simd::{Kernel, Set, Simd};
 
-    /// Words after sorting, shifting, filling and expanding.
+    /// Kernel that returns words after sorting, shifting, filling and expanding.
     struct Done<'a>(&'a [u8; BYTES], (u32, u128, u16));
 
     impl Kernel for Done<'_> {

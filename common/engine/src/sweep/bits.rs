@@ -6,8 +6,8 @@ use crate::grid::{Cell, Grid};
 /// Bits of a word.
 const WORD: usize = u64::BITS as usize;
 
-/// One bit a cell, row by row over the major axis. Rows are filled up to whole
-/// words with cells that neither hold a ray nor send one back.
+/// One bit for each cell, row by row over the major axis. Rows are filled up to whole words
+/// with cells that neither hold a ray nor send one back.
 #[derive(Debug, Clone)]
 pub(crate) struct BitGrid {
     /// Cells along the major axis.
@@ -17,12 +17,12 @@ pub(crate) struct BitGrid {
     /// Words of a row.
     words: usize,
     occupied: Vec<u64>,
-    /// Empty where no cell is blocked.
+    /// Empty if no cell is blocked.
     blocked: Vec<u64>,
 }
 
 impl BitGrid {
-    /// Rows lie along y where `x_major` and along x where not.
+    /// Lays out rows along y if `x_major`, else along x.
     pub(crate) fn new(grid: &Grid, x_major: bool) -> Self {
         let (rows, columns) = swap_unless(x_major, (grid.width(), grid.height()));
         let mut bits = BitGrid {
@@ -49,18 +49,18 @@ impl BitGrid {
         bits
     }
 
-    /// Bytes that the bits take.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         8 * (self.occupied.len() + self.blocked.len())
     }
 
-    /// Whether any cell blocks rays without a hit.
+    /// True if any cell blocks rays without a hit.
     pub(crate) fn has_blocked(&self) -> bool {
         !self.blocked.is_empty()
     }
 
-    /// The occupied and the blocked cells of a row; no words of the latter
-    /// where the grid has none.
+    /// Returns the occupied and the blocked cells of a row; the latter have no words if the
+    /// grid has none.
     pub(crate) fn row(&self, row: usize) -> (&[u64], &[u64]) {
         let words = row * self.words..(row + 1) * self.words;
         let blocked = if self.has_blocked() {
@@ -71,7 +71,7 @@ impl BitGrid {
         (&self.occupied[words], &self.blocked[blocked])
     }
 
-    /// The open cells of a row from a multiple of 64 on, the first in the lowest bit.
+    /// Returns the open cells of a row from a multiple of 64 on, the first in the lowest bit.
     #[inline(always)]
     pub(crate) fn open_word(&self, row: usize, column: usize) -> u64 {
         let word = row * self.words + column / WORD;

@@ -11,12 +11,12 @@ use crate::instruction_set::InstructionSet;
 use crate::simd::bytes::Lanes;
 use crate::simd::{Kernel, Set, Simd};
 
-/// Rows that all batches pass before the next ones: their sums stay in the
-/// second cache meanwhile.
+/// Number of rows that all batches pass before the next ones, so that their sums stay in
+/// the second-level cache meanwhile.
 const TILE_ROWS: usize = 32;
 
-/// What a sweep needs beside the field; kept from scan to scan, of any map, so
-/// that nothing is allocated but once.
+/// Buffers of a sweep other than the field; kept from scan to scan, for any map, so that
+/// they are allocated only once.
 #[derive(Debug, Default)]
 pub struct Workspace {
     plan: Plan,
@@ -25,7 +25,7 @@ pub struct Workspace {
     words: Sums<u16>,
 }
 
-/// Rows of cells under way: those of a batch of beams, and of a wide beam.
+/// Rows of cells in work: those of a batch of beams, and of a wide beam.
 #[derive(Debug, Default)]
 struct Scratch {
     store: Vec<Line>,
@@ -37,7 +37,7 @@ struct Scratch {
 #[repr(C, align(64))]
 struct Line([u8; 64]);
 
-/// The sums of votes: along y and, lying on its side, along x.
+/// Sums of votes: along y and, transposed, along x.
 #[derive(Debug, Default)]
 struct Sums<S> {
     rows: Vec<S>,
@@ -61,13 +61,13 @@ impl FieldSweep {
         }
     }
 
-    /// An accumulator on the grid with the best instruction set.
+    /// Returns an accumulator on the grid with the best instruction set.
     #[must_use]
     pub fn accumulator(&self) -> Sweep<'_> {
         self.accumulator_with(InstructionSet::best())
     }
 
-    /// The same with a certain instruction set.
+    /// Does the same with a given instruction set.
     ///
     /// # Panics
     /// If this processor does not have it.
@@ -101,14 +101,14 @@ impl FieldSweep {
         })
     }
 
-    /// Bytes that the prepared grid takes.
+    /// Size of the prepared grid in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.along_y.bytes() + self.along_x.bytes()
     }
 }
 
-/// Counts votes by one line sweep for each beam, whatever the boundary.
+/// Counts votes by one line sweep for each beam, at the same cost for any boundary.
 #[derive(Debug)]
 pub struct Sweep<'a> {
     sweeps: &'a FieldSweep,
@@ -135,7 +135,7 @@ struct Job<'a> {
     stop: &'a dyn Fn() -> bool,
 }
 
-/// Filling in the field of a job.
+/// Kernel that fills in the field of a job.
 struct Filling<'a> {
     job: Job<'a>,
     workspace: &'a mut Workspace,
@@ -205,7 +205,7 @@ impl Job<'_> {
         Some(())
     }
 
-    /// Sums up the votes along one axis: those of a group and the next.
+    /// Sums up the votes along one axis: those of group `first_group` and the next.
     #[inline(always)]
     fn sweep_axis<S: Set, M: Sum>(
         &self,
@@ -258,7 +258,7 @@ impl Job<'_> {
     }
 }
 
-/// Cells from one row of sums to the next.
+/// Number of cells from one row of sums to the next.
 pub(super) fn stride(bits: &BitGrid) -> usize {
     bits.columns.next_multiple_of(64)
 }

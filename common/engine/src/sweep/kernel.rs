@@ -15,15 +15,15 @@ use super::plan::{MAX_BEAMS, SweptBeam};
 use crate::simd::Set;
 use crate::simd::bytes::Lanes;
 
-/// Where votes are added up: rows of bytes or of 16 bits.
+/// Type of the sums of votes: bytes or 16 bits.
 pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
-    /// Fills in a field as [`merge::merge`].
+    /// Fills in a field like [`merge::merge`].
     ///
     /// # Panics
-    /// As that.
+    /// Like [`merge::merge`].
     fn merge(bits: &BitGrid, rows: &Plane<'_, Self>, columns: &Plane<'_, Self>, field: &mut [u16]);
 
-    /// Adds votes to the sums of as many cells, or sets those.
+    /// Adds votes to the sums of as many cells if `ADD`, else overwrites those.
     fn take<S: Set, const ADD: bool>(set: S, votes: S::Bytes, to: &mut [Self]);
 }
 
@@ -54,18 +54,18 @@ impl Sum for u8 {
     }
 }
 
-/// A batch's way through some rows of the grid.
+/// The way of a batch through some rows of the grid.
 pub(super) struct Stretch<'a, N> {
     pub bits: &'a BitGrid,
-    /// Rows, counted from where the sweep begins.
+    /// Rows, counted from the start of the sweep.
     pub steps: Range<usize>,
     /// Sums of all cells, row by row.
     pub sums: &'a mut [N],
-    /// From one row of sums to the next: the cells in whole words.
+    /// Cells from one row of sums to the next, in whole words.
     pub stride: usize,
-    /// Whether votes are added to the sums or set them.
+    /// True if votes are added to the sums, false if they overwrite them.
     pub adds: bool,
-    /// The rows of all beams, each at its place.
+    /// Rows of all beams, each at its place.
     pub store: &'a mut [u8],
 }
 
@@ -86,13 +86,13 @@ pub(super) fn sweep<S: Set, M: Sum, const N: usize>(
 
 type Cells<S> = <<S as Set>::Bytes as Lanes>::Cells;
 
-/// How many bits what is left takes.
+/// Number of bits that hold the steps left.
 trait Depth {
     /// Bytes of a cell in a beam's row.
     const BYTES: usize;
 
-    /// What is left in `N` vectors of cells of a beam's row, read from byte `ahead` on and
-    /// kept from `here` on.
+    /// Returns the steps left in `N` vectors of cells of a beam's row, read from byte `ahead`
+    /// on and stored from `here` on.
     fn step<S: Set, const N: usize, const BLOCKED: bool>(
         set: S,
         row: &mut [u8],
@@ -160,14 +160,14 @@ impl Depth for Far {
     }
 }
 
-/// Where a beam stands, in bytes of its row.
+/// Place of a beam in its row, in bytes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Place {
-    /// What is left in the cells that the beam looks at from this row's first.
+    /// Start of the cells that the beam looks at from this row's first cell.
     ahead: usize,
-    /// This row's first cell.
+    /// Start of this row's cells.
     here: usize,
-    /// The next row's place on the minor axis.
+    /// Position of the next row on the minor axis, in cells.
     minor: i64,
 }
 
@@ -194,7 +194,7 @@ fn stretch_on<S: Set, M: Sum, D: Depth, const N: usize, const BLOCKED: bool>(
     }
     for step in stretch.steps.clone() {
         let major = major(step);
-        // Rows begin behind a margin, every other one a vector farther.
+        // Rows begin after a margin, every other one a vector farther.
         let leftward = step % 2 == 0;
         let (from, to) = if leftward { (2, 1) } else { (1, 2) };
         for (beam, place) in beams.iter().zip(&mut places) {
@@ -225,8 +225,7 @@ fn stretch_on<S: Set, M: Sum, D: Depth, const N: usize, const BLOCKED: bool>(
                 row.block::<D, N, BLOCKED>(beams, &places, block * N);
             }
         }
-        // What the last row leaves beside this one must not be taken for
-        // cells of it.
+        // Remains of the last row next to this one must not be taken for cells of it.
         for (_, place) in beams.iter().zip(&places) {
             let beside = if leftward {
                 place.here + vectors * vector
@@ -245,12 +244,12 @@ struct Row<'a, S, M> {
     blocked: &'a [u64],
     sums: &'a mut [M],
     adds: bool,
-    /// The rows of all beams.
+    /// Rows of all beams.
     store: &'a mut [u8],
 }
 
 impl<S: Set, M: Sum> Row<'_, S, M> {
-    /// The vectors that do not fill a block.
+    /// Processes the vectors that do not fill a block.
     #[inline(always)]
     fn rest<D: Depth, const N: usize, const BLOCKED: bool>(
         &mut self,

@@ -1,4 +1,4 @@
-//! Sums of neighbouring cells side by side, and squares of them turned over.
+//! Vectors of sums of neighbouring cells, and squares of them transposed.
 //!
 //! Written with the instructions that every x86-64 processor has: from plain
 //! loops the compiler makes code that takes five times as long.
@@ -14,17 +14,17 @@ use crate::simd::sse2;
 
 /// Sums of `N` neighbouring cells, as many as there are in a vector.
 pub(super) trait Line<const N: usize>: Copy {
-    /// One of them.
+    /// Type of one sum.
     type Sum: Copy + Default;
 
     fn load(sums: &[Self::Sum; N]) -> Self;
 
     fn sums(self) -> [Self::Sum; N];
 
-    /// The square whose rows are the columns of this one.
+    /// Transposes a square.
     fn turned(rows: [Self; N]) -> [Self; N];
 
-    /// The sums of both, each of which a sum holds, in the cells whose bit is set.
+    /// Adds both in the cells whose bit is set, 0 elsewhere; the results must fit a sum.
     fn plus(self, other: Self, open: u16) -> [u16; N];
 }
 
@@ -53,7 +53,7 @@ sse2! {
 
         fn turned(rows: [Words; 8]) -> [Words; 8] {
             let mut rows = rows;
-            // Three rounds that interleave rows i and i + 4 turn a square over.
+            // Three rounds that interleave rows i and i + 4 transpose a square.
             for _ in 0..3 {
                 let before = rows;
                 for i in 0..4 {
@@ -87,7 +87,7 @@ sse2! {
 
         fn turned(rows: [Bytes; 16]) -> [Bytes; 16] {
             let mut rows = rows;
-            // As of words, in four rounds.
+            // The same as for words, in four rounds.
             for _ in 0..4 {
                 let before = rows;
                 for i in 0..8 {
@@ -108,7 +108,7 @@ sse2! {
     }
 }
 
-/// All ones where a bit is set, in words.
+/// All ones in the words whose bit is set.
 #[cfg(target_arch = "x86_64")]
 static OPEN_WORDS: [[u16; 8]; 256] = {
     let mut masks = [[0; 8]; 256];
@@ -122,7 +122,7 @@ static OPEN_WORDS: [[u16; 8]; 256] = {
     masks
 };
 
-/// All ones where a bit is set, in bytes.
+/// All ones in the bytes whose bit is set.
 #[cfg(target_arch = "x86_64")]
 static OPEN_BYTES: [i64; 256] = {
     let mut masks = [0; 256];

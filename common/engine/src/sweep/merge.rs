@@ -1,30 +1,30 @@
-//! Adds up the sums along both axes of a sweep: those along x lie on their side.
+//! Adds up the sums along both axes of a sweep; those along x are transposed.
 
 use super::bits::BitGrid;
 use super::line::Line;
 
-/// Sides of a block that is merged before the next, cells: its lines of both
-/// sums and of the field stay in the nearest cache, and a word holds a line of bits.
+/// Side of a block that is merged before the next, in cells: its lines of both sums and of
+/// the field stay in the nearest cache, and a word holds a line of bits.
 const BLOCK: usize = 64;
 
-/// Sides of the largest square that is turned over: rows of sums come in multiples.
+/// Side of the largest square that is transposed: rows of sums come in multiples of it.
 pub(super) const SQUARE: usize = 16;
 
-/// The sums of votes along one axis: row by row, from each row to the next this many.
+/// Sums of votes along one axis, row by row, with `stride` sums from each row to the next.
 pub(super) struct Plane<'a, S> {
     pub sums: &'a [S],
     pub stride: usize,
 }
 
 impl<S> Plane<'_, S> {
-    /// Whether squares that cover this many rows and columns can be read, and whole
-    /// blocks of each row.
+    /// True if squares that cover this many rows and columns can be read, and whole blocks of
+    /// each row.
     fn cover(&self, rows: usize, columns: usize) -> bool {
         self.stride >= columns.next_multiple_of(BLOCK)
             && self.sums.len() >= rows.next_multiple_of(SQUARE) * self.stride
     }
 
-    /// `N` sums of a row from a column on.
+    /// Returns `N` sums of a row from a column on.
     #[inline(always)]
     fn at<const N: usize>(&self, row: usize, column: usize) -> &[S; N] {
         const COVERED: &str = "sums cover the squares that are read";
@@ -38,12 +38,12 @@ impl<S> Plane<'_, S> {
 #[repr(align(64))]
 struct Block<S>([[S; BLOCK]; BLOCK]);
 
-/// Fills in the field: what `rows` and, turned over, `columns` hold of a cell
-/// that is open, and nothing elsewhere.
+/// Fills in the field: for each open cell the sum of `rows` and of the transposed
+/// `columns`, and 0 elsewhere.
 ///
 /// # Panics
 /// If there are fewer sums than whole blocks take.
-// Inlined into a sweep it would be spilled all over the stack.
+// Inlined into a sweep, it would spill its registers to the stack.
 #[inline(never)]
 pub(super) fn merge<L: Line<N>, const N: usize>(
     bits: &BitGrid,
@@ -82,7 +82,7 @@ pub(super) fn merge<L: Line<N>, const N: usize>(
     }
 }
 
-/// Turns a square over into its place in a block, at these columns and rows.
+/// Transposes a square into its place in a block, at these columns and rows.
 #[inline(always)]
 fn turn<L: Line<N>, const N: usize>(
     square: [L; N],

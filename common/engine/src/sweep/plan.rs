@@ -1,4 +1,4 @@
-//! Which beams are swept together, and where their rows of cells lie.
+//! Batches of beams that are swept together, and the places of their rows of cells.
 
 use std::ops::Range;
 
@@ -7,14 +7,14 @@ use crate::directions::Direction;
 use crate::simd::Set;
 use crate::simd::bytes::{Lanes, Lookup, MAX_REACH};
 
-/// Bytes of rows that are swept together: they must stay in the nearest cache,
-/// with the votes beside them.
+/// Bytes of rows that are swept together: they must stay in the nearest cache, along with
+/// the votes.
 const NEAR_BYTES: usize = 32 << 10;
 
-/// Most beams that are swept together.
+/// Largest number of beams that are swept together.
 pub(super) const MAX_BEAMS: usize = 32;
 
-/// Directions with one major axis and one sense along it.
+/// Number of groups of directions, each with one major axis and one sense along it.
 pub(super) const GROUPS: usize = 4;
 
 /// A beam at a heading.
@@ -22,17 +22,17 @@ pub(super) const GROUPS: usize = 4;
 pub(super) struct SweptBeam {
     pub direction: Direction,
     pub lookup: Lookup,
-    /// What is left in an obstacle: steps from there to the taper's end.
+    /// Steps left in an obstacle: those from there to the taper's end.
     pub end: u16,
-    /// Whether the end takes 16 bits.
+    /// True if the end takes 16 bits.
     pub is_far: bool,
-    /// The beam's votes in full.
+    /// Most votes of the beam.
     pub peak: u8,
-    /// Where the beam's row begins in the store of rows.
+    /// Start of the beam's row in the store of rows.
     pub row: usize,
 }
 
-/// Beams that are swept together: none has more votes than a byte holds.
+/// Beams that are swept together; the sum of their votes fits a byte.
 #[derive(Debug, Clone)]
 pub(super) struct Batch {
     pub beams: Range<usize>,
@@ -43,15 +43,14 @@ pub(super) struct Batch {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Plan {
     pub beams: Vec<SweptBeam>,
-    /// In each group, those whose ends take 8 bits come first.
+    /// Batches of each group; those whose ends take 8 bits come first.
     pub batches: [Vec<Batch>; GROUPS],
     /// Beams whose tapers are too wide for a [`Lookup`].
     pub wide: Vec<usize>,
-    /// Cache lines that the rows of all beams take.
+    /// Number of cache lines that the rows of all beams take.
     pub lines: usize,
 }
 
-/// The group of a direction.
 pub(super) fn group(direction: &Direction) -> usize {
     2 * usize::from(direction.x_major) + usize::from(direction.step > 0)
 }
@@ -124,8 +123,8 @@ impl Plan {
     }
 }
 
-/// Bytes that a beam's row takes: its cells, a vector to which they move and
-/// back, and a margin on either side.
+/// Bytes that a beam's row takes: its cells, a vector for moving them to and fro, and a
+/// margin on either side.
 fn row_bytes<L: Lanes>(columns: usize, is_far: bool) -> usize {
     (columns.div_ceil(L::WIDTH) + 3) * L::WIDTH * (1 + usize::from(is_far))
 }

@@ -1,7 +1,7 @@
 //! Beams whose tapers are too wide for a look-up: more than a hundred steps to
 //! either side of the reading.
 //!
-//! They are rare, so this sweep is plain: ranges in 16 bits, and the votes by
+//! They are rare, so this sweep is plain: ranges take 16 bits, and votes are found by
 //! counting the levels down to which the taper has fallen.
 
 use super::bits::BitGrid;
@@ -10,7 +10,7 @@ use crate::directions::Direction;
 use crate::program::NO_RANGE;
 use crate::program::Taper;
 
-/// Cells that vote side by side.
+/// Number of cells that vote at a time.
 const SIDE_BY_SIDE: usize = 32;
 
 /// The ranges of two rows of cells, with a margin on either side.
@@ -30,7 +30,7 @@ pub(super) fn add<S: Sum>(
     stride: usize,
     Rows { row, next }: &mut Rows,
 ) {
-    // What lies off the map is no range.
+    // Cells off the map have no range.
     for row in [&mut *row, next] {
         row.clear();
         row.resize(stride + 2, NO_RANGE);

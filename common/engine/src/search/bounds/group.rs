@@ -1,33 +1,34 @@
-//! Sums of the windows of a group of beams, bit by bit side by side.
+//! Adds up the windows of a group of beams. Plane `i` of a sum holds bit `i` of it, at all
+//! headings of a chunk and for all blocks of a quad.
 //!
-//! Three rows of bits become a sum and a carry for the next plane, so that
-//! adding a window to as many numbers takes two operations and as much again for
-//! its carries.
+//! Carry-save adders turn three rows of bits into a sum and a carry for the next plane, so
+//! adding a window to all these sums takes two operations, and as many again for its
+//! carries.
 
 use super::quad_rows::{Extent, Reader, Window, Windows};
 use crate::simd::words::{BitWords, Words};
 
-/// Words in one line of the processor's cache.
+/// Words of a quad, aligned to a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(in crate::search) struct Aligned(pub Words);
 
-/// Rows that are carried over to the plane that is added up, the next one, and that
+/// Rows carried over to the plane that is being added up, to the next one, and to the one
 /// after it.
 pub(in crate::search) type Carries = [Vec<Aligned>; 3];
 
 /// Beams with the same bearing modulo 8.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Group {
-    /// That rest.
+    /// Bearing modulo 8.
     shift: u32,
-    /// The windows with a share of `1 << i` units.
+    /// Windows with a share of `1 << i` units, by `i`.
     planes: Vec<Plane>,
-    /// The most units that the beams can give.
+    /// Most units that the beams can give together.
     pub possible: u16,
-    /// What is read of a quad in a chunk.
+    /// Number of reads for a chunk of a quad.
     pub reads: u32,
-    /// How far all windows go.
+    /// Extent of all windows.
     extent: Extent,
 }
 
@@ -35,9 +36,9 @@ pub(in crate::search) struct Group {
 #[derive(Debug, Clone, Default)]
 struct Plane {
     windows: Vec<Window>,
-    /// The same four by four, those that are read as often side by side.
+    /// The same windows in fours, sorted by how often each is read.
     fours: Vec<[Window; 4]>,
-    /// The windows that are left.
+    /// The remaining windows in pairs; a window that sees nothing fills up the last pair.
     pairs: Vec<[Window; 2]>,
 }
 
@@ -92,7 +93,8 @@ impl Group {
         self.planes[plane].windows.push(window);
     }
 
-    /// Lays out the windows that were pushed; one that sees nothing fills up.
+    /// Lays out the windows that were pushed; `nothing`, a window that sees nothing, fills up
+    /// pairs.
     pub(in crate::search) fn lay_out(&mut self, nothing: Window) {
         self.extent.take(&nothing);
         self.planes
@@ -100,14 +102,14 @@ impl Group {
             .for_each(|plane| plane.lay_out(nothing));
     }
 
-    /// How many words at most are carried over from a plane to another.
+    /// Largest number of words carried over from a plane to another.
     pub(in crate::search) fn carries(&self) -> usize {
         let windows: usize = self.planes.iter().map(|plane| plane.windows.len()).sum();
         windows.div_ceil(2) + 1
     }
 
-    /// Adds up what the windows see, plane by plane with carry-save adders, and
-    /// adds that to the sums of all groups.
+    /// Adds up the windows plane by plane with carry-save adders, and adds the result to
+    /// `total`, the sums of all groups.
     #[inline(always)]
     pub(in crate::search) fn add<W: BitWords>(
         &self,
@@ -121,7 +123,7 @@ impl Group {
         let (mut carried, mut carried_next) = (0, 0);
         let mut planes = self.planes.iter();
         let mut twos = W::empty(set);
-        // What adding to the total carries over.
+        // Carry of the addition to the total.
         let mut overflow = W::empty(set);
         let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
         for total in own {
@@ -142,7 +144,7 @@ impl Group {
         }
     }
 
-    /// Planes that hold all sums of the beams.
+    /// Number of planes that hold every sum of the beams.
     fn sum_planes(&self) -> usize {
         (u16::BITS - self.possible.leading_zeros()) as usize
     }
@@ -155,8 +157,9 @@ impl Aligned {
     }
 }
 
-/// Sums of a plane and the next one, of rows of bits four by four, with a carry for the
-/// plane after these for each.
+/// Adder of one plane: `ones` is its sum so far and `twos` that of the next plane. Each
+/// four or pair of rows that is added leaves a row in `carries` for the plane after these
+/// two.
 struct Column<'a, W: BitWords> {
     set: W::Set,
     ones: W,
@@ -180,12 +183,12 @@ impl<'a, W: BitWords> Column<'a, W> {
     #[inline(always)]
     fn add_windows(&mut self, windows: Windows<'_>, plane: &Plane) {
         let set = self.set;
-        // SAFETY: the extent of a group, within which the windows are, takes in all that are
-        // pushed to its planes and the one that fills up.
+        // SAFETY: `windows` was made for the extent of the group, which has taken in all windows of
+        // its planes and the one that fills up pairs.
         let read = |window: &Window, reads| unsafe { windows.read(set, window, reads) };
         for four in &plane.fours {
             let [first, second, third, fourth] = four;
-            // They are sorted, and reading more often changes nothing.
+            // They are sorted by reads, and reading more often changes nothing.
             let reads = fourth.reads;
             let (ones, a) = self
                 .ones
@@ -226,7 +229,7 @@ impl<'a, W: BitWords> Column<'a, W> {
         self.carry(carry, W::empty(self.set));
     }
 
-    /// Adds two rows to the next plane.
+    /// Adds two rows to the next plane, and stores the carry.
     #[inline(always)]
     fn carry(&mut self, a: W, b: W) {
         let carry;
@@ -251,14 +254,15 @@ mod tests {
     use crate::simd::words::{EMPTY, QUAD};
     use crate::simd::{Kernel, Set, Simd};
 
-    /// Rows have fewer bytes than these.
+    /// Exclusive limit of the bytes of a row.
     const STRIDES: usize = if cfg!(miri) { 5 } else { 50 };
 
-    /// Rows of a quad from one on; a byte has a bit for each of 8 directions, for each block.
+    /// Rows of a quad, numbered from the first field on; a byte has a bit for each of 8
+    /// directions, for each block.
     #[derive(Debug, Clone)]
     struct Rows(usize, Vec<Vec<Byte>>);
 
-    /// Whether a block sees anything in some rows in a direction.
+    /// True if a block sees anything in some rows in a direction.
     fn sees(
         Rows(first, plain): &Rows,
         rows: &Range<usize>,
@@ -270,8 +274,8 @@ mod tests {
         })
     }
 
-    /// Adds a group's windows in some quads one after the other; the sums are those of the
-    /// last one in a chunk.
+    /// Takes quads one after the other, and adds up the windows of a group in the last one, at
+    /// the headings of a chunk.
     struct Adding<'a> {
         group: &'a Group,
         layout: &'a RowLayout,
@@ -280,7 +284,7 @@ mod tests {
     }
 
     impl Kernel for Adding<'_> {
-        /// Plane by plane.
+        /// Sums by plane.
         type Result = [Words; PLANES];
 
         #[inline(always)]

@@ -1,4 +1,4 @@
-//! What the blocks of a quad are bounded by at each heading: numbers as planes.
+//! Upper bounds of the votes in the blocks of a quad, by heading.
 
 use super::set_program::GROUPS;
 use crate::search::index::bits::{self, Planes};
@@ -7,9 +7,9 @@ use crate::simd::words::{EMPTY, QUAD, Words};
 /// Bounds of the blocks of a quad for all headings.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeadingBounds {
-    /// All numbers count in this unit of votes.
+    /// Unit of all numbers, in votes.
     unit: u16,
-    /// The greatest of each block, in units.
+    /// Greatest bound of each block, in units.
     pub(in crate::search) greatest: [u16; QUAD],
     pub(in crate::search) chunks: Vec<Chunk>,
 }
@@ -17,19 +17,19 @@ pub(crate) struct HeadingBounds {
 /// Bounds at the headings of a chunk.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Chunk {
-    /// What was noted after each group but the last: sums in units.
+    /// Sums of the votes, noted after each group but the last, in units.
     pub after: [Planes; GROUPS - 1],
-    /// The greatest of each block, in units.
+    /// Greatest bound of each block, in units.
     pub greatest: [u16; QUAD],
-    /// Which headings matter.
+    /// A bit for each heading that matters.
     pub valid: u128,
-    /// Those at which a block was bounded and may have as many votes as was asked for.
+    /// Headings at which each block was bounded and may have as many votes as was asked for.
     pub reach: Words,
 }
 
 impl HeadingBounds {
-    /// Allocates bounds at some headings, a word a chunk; nothing is left of what
-    /// was there.
+    /// Allocates bounds at some headings, a word of `headings` for each chunk; drops earlier
+    /// bounds.
     pub(in crate::search) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = u128>) {
         self.unit = unit;
         self.greatest = [0; QUAD];
@@ -43,19 +43,20 @@ impl HeadingBounds {
         self.chunks.extend(chunks);
     }
 
-    /// The greatest bound of a block.
+    /// Returns the greatest bound of a block, in votes.
     pub(crate) fn greatest(&self, place: usize) -> u16 {
         self.unit * self.greatest[place]
     }
 
-    /// The same, chunk by chunk.
+    /// Returns the greatest bound of a block in each chunk, in votes.
     pub(crate) fn by_chunk(&self, place: usize) -> impl Iterator<Item = u16> {
         self.chunks
             .iter()
             .map(move |chunk| self.unit * chunk.greatest[place])
     }
 
-    /// Windows of the headings at which a block reaches what was asked for.
+    /// Returns the headings at which a block reaches the votes asked for, as windows of bits:
+    /// the first heading, and a bit for each from there on.
     pub(crate) fn reach(&self, place: usize) -> impl Iterator<Item = (usize, u64)> {
         bits::windows(self.chunks.len(), move |chunk| {
             bits::of_block(&self.chunks[chunk].reach, place)

@@ -1,8 +1,8 @@
 //! Upper bounds of the votes in a small block from its intervals of ranges.
 //!
-//! A beam votes most for the range of an interval that lies nearest to its
-//! reading. Intervals of adjacent directions lie side by side, so one table
-//! look-up bounds a beam at 64 headings.
+//! A beam votes most for the range of an interval that is nearest to its reading. Intervals
+//! of adjacent directions are adjacent in memory, so one table look-up bounds a beam at 64
+//! headings.
 
 use super::interval_program::{IntervalBeam, IntervalProgram, Order};
 use super::set_bounds::Rests;
@@ -10,14 +10,14 @@ use crate::search::index::intervals::BlockIntervals;
 use crate::simd::headings::{HEADINGS, HeadingLanes};
 use crate::simd::{Kernel, Set};
 
-/// Bounds of a block at adjacent headings.
+/// Upper bounds of a block's votes at adjacent headings.
 #[derive(Debug, Clone)]
 pub(crate) struct IntervalBounds {
-    /// By all beams.
+    /// Bounds for all beams together.
     pub all: [u16; HEADINGS],
-    /// By each sector of beams, in the order in which they are counted.
+    /// Bounds for each sector of beams, in the order in which they are counted.
     pub sectors: Vec<[u8; HEADINGS]>,
-    /// At which headings each beam may vote, in that order.
+    /// Headings at which each beam may vote, as bits, with the beams in that order.
     pub voting: Vec<u64>,
 }
 
@@ -31,35 +31,34 @@ impl Default for IntervalBounds {
     }
 }
 
-/// Some of the headings at which a block may matter, less than [`HEADINGS`] behind
-/// the first.
+/// Headings at which a block may matter, all of them less than [`HEADINGS`] after the
+/// first.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Window {
     pub first: u16,
-    /// Those that may, from the first on.
+    /// Bit `i` is set if heading `first + i` may matter.
     pub among: u64,
-    /// What the beams from each group on give at most at any of them.
+    /// Most votes that the beams from each group on give at any of these headings.
     pub rests: Rests,
 }
 
-/// What is to be bounded, and when it may be given up.
+/// A block to bound, and the votes below which it is given up.
 struct BoundQuery<'a> {
     order: &'a Order,
     block: &'a BlockIntervals,
-    /// The first of the headings, and those that matter from there on.
+    /// First heading, and a bit for each that matters from there on.
     heading: usize,
     among: u64,
     /// Votes that any of them must reach.
     least: u16,
-    /// What the beams give at most that are missing when this many sectors or groups are
-    /// complete.
+    /// Most votes that the remaining beams give when this many sectors or groups are complete.
     rests: &'a [u16],
 }
 
 impl IntervalProgram {
-    /// Bounds the votes of a block at 64 headings from `heading` on, of which
-    /// `among` matter. Whether any of those may have `least` votes; if not, the
-    /// bounds are not finished.
+    /// Bounds the votes of a block at the 64 headings from `heading` on; `among` selects those
+    /// that matter. Returns true if any of these may have `least` votes; if not, the bounds are
+    /// left unfinished.
     pub(crate) fn bound(
         &self,
         block: &BlockIntervals,
@@ -79,9 +78,9 @@ impl IntervalProgram {
         self.run::<true>(&query, bounds)
     }
 
-    /// The same at the headings of a window that is known of a block around it, but
-    /// for the bounds of sectors and beams. What is known of the beams that are missing
-    /// decides sooner whether any heading may have this many votes.
+    /// Does the same at the headings of a window known from the enclosing block, but finds no
+    /// bounds of sectors and beams. The window's limits for the remaining beams tell sooner
+    /// whether any heading may have `least` votes.
     pub(crate) fn bound_within(
         &self,
         block: &BlockIntervals,
@@ -100,7 +99,7 @@ impl IntervalProgram {
         self.run::<false>(&query, bounds)
     }
 
-    /// `DETAILED`: also the bounds of sectors and beams.
+    /// `DETAILED` finds the bounds of sectors and beams, too.
     fn run<const DETAILED: bool>(
         &self,
         query: &BoundQuery<'_>,
@@ -149,7 +148,6 @@ impl IntervalProgram {
         alive
     }
 
-    /// The direction of a beam at a heading.
     #[inline(always)]
     fn direction(&self, beam: &IntervalBeam, heading: usize) -> usize {
         let direction = heading + usize::from(beam.bearing);
@@ -161,7 +159,7 @@ impl IntervalProgram {
     }
 }
 
-/// Bounding a block; `DETAILED`: also the bounds of sectors and beams.
+/// Kernel that bounds a block; `DETAILED` finds the bounds of sectors and beams, too.
 struct Bounding<'a, const DETAILED: bool> {
     program: &'a IntervalProgram,
     query: &'a BoundQuery<'a>,

@@ -8,7 +8,7 @@ use crate::simd::Simd;
 use crate::simd::headings::BinVotes;
 use crate::tables::TABLE;
 
-/// As many votes of at most 16 as fit into a byte.
+/// Number of beams whose votes, at most 16 each, fit a byte together.
 const BEAMS_OF_A_BYTE: usize = 15;
 
 /// A scan program laid out for bounds from intervals; made again for each scan.
@@ -17,9 +17,9 @@ pub(crate) struct IntervalProgram {
     pub(in crate::search) directions: usize,
     pub(in crate::search) simd: Simd,
     pub(in crate::search) by_sector: Order,
-    /// By groups of beams as bounds from sets have them.
+    /// Beams in the groups of the bounds from sets.
     pub(in crate::search) by_group: Order,
-    /// What all beams from each sector on can give.
+    /// Most votes that all beams from each sector on give.
     pub(in crate::search) possible_from: Vec<u16>,
 }
 
@@ -27,13 +27,13 @@ pub(crate) struct IntervalProgram {
 #[derive(Debug, Clone, Default)]
 pub(in crate::search) struct Order {
     beams: Vec<IntervalBeam>,
-    /// Pieces whose votes fit into a byte: where each ends, and how many sectors or
-    /// groups are complete then.
+    /// Pieces whose votes fit a byte: the end of each, and the number of sectors or groups that
+    /// are complete there.
     pieces: Vec<(usize, usize)>,
 }
 
-/// A beam, and what it gives for ranges in bins: the table in one line of the cache, the
-/// rest in the next.
+/// A beam and its votes for ranges in bins: the table fills one cache line, the rest is in
+/// the next.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub(in crate::search) struct IntervalBeam {
@@ -42,9 +42,8 @@ pub(in crate::search) struct IntervalBeam {
 }
 
 impl IntervalProgram {
-    /// Lays out a program whose sectors are in this order, see [`sectors::order`];
-    /// `shifts` give the groups of beams in theirs, see
-    /// [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
+    /// Lays out a program. Its beams are in the order of [`sectors::order`]; `shifts` gives
+    /// their groups, see [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,
         (program, order): (&ScanProgram, &[usize]),
@@ -101,7 +100,7 @@ impl Order {
 
 impl IntervalBeam {
     fn new(program: &ScanProgram, beam: usize, directions: &Directions, steps: &BinSteps) -> Self {
-        // The most votes in each bin, over all classes of directions.
+        // Most votes in each bin, over all classes of directions.
         let mut most = [0u8; 256];
         for class in 0..directions.classes() {
             let taper = program.taper(beam, class);
@@ -119,7 +118,7 @@ impl IntervalBeam {
         }
         let peak = most.iter().copied().max().unwrap_or(0);
         let centre = most.iter().position(|&votes| votes == peak).unwrap_or(0);
-        // Never rising away from the centre, so that the nearest bin has most.
+        // Votes never rise away from the centre, so the nearest bin has most.
         for bin in 1..centre {
             most[bin] = most[bin].max(most[bin - 1]);
         }
@@ -131,7 +130,7 @@ impl IntervalBeam {
             .iter()
             .rposition(|&votes| votes > 0)
             .map_or(0, |last| last + 1);
-        // Where the taper is wider than the table, its middle lies there.
+        // If the taper is wider than the table, the table holds its middle.
         let base = if end - first <= TABLE - 2 {
             first.saturating_sub(1)
         } else {

@@ -1,8 +1,8 @@
-//! Upper bounds of the votes in blocks, from what the index says they see.
+//! Upper bounds of the votes in blocks, from the ranges that the index says they see.
 //!
-//! Each bound is admissible: no pose of the block has more votes at that heading, for each
-//! beam may choose the best cell of the block for itself. They differ in how near they
-//! come and in what they cost.
+//! Each bound is admissible: no pose of the block has more votes at that heading, because
+//! each beam may choose the best cell of the block for itself. They differ in tightness and
+//! cost.
 
 pub(in crate::search) mod group;
 pub(in crate::search) mod heading_bounds;

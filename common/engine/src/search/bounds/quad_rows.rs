@@ -1,8 +1,8 @@
 //! The sets of a quad of blocks, laid out so that windows of bins are read quickly.
 //!
-//! Each row holds a full turn and one word more: a word can be read from any direction
-//! on. Beside each row lies the same joined with the next one, so that a window takes
-//! half as many reads.
+//! Each row holds a full turn and one word more, so that a word can be read from any
+//! direction on. Each row is followed by the same row joined with the next one, so that a
+//! window takes half as many reads.
 
 use std::ops::Range;
 
@@ -12,34 +12,34 @@ use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::sets::{Byte, READ, SetRows};
 use crate::simd::words::{BYTES, BitWords, QUAD};
 
-/// Where rows lie.
+/// Layout of rows in memory.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RowLayout {
-    /// Bytes of a turn.
+    /// Bytes of a full turn, 8 directions each.
     stride: usize,
-    /// Bytes from a row to where the same starts that is joined with the next one, and
-    /// from there to the next row.
+    /// Bytes from a row to its copy joined with the next row, and from there to the next row.
     row: usize,
-    /// How many rows there are at most. Behind them is nothing.
+    /// Largest number of rows. A row without bits follows them.
     most: usize,
-    /// Rows that are read at all.
+    /// Range of the rows that are read.
     needed: Range<usize>,
-    /// A bit for each row that is read alone, and for each that is read with the next one.
+    /// A bit for each row that is read alone, and for each that is read joined with the next
+    /// one.
     alone: u64,
     joined: u64,
-    /// Where a byte of two turns lies.
+    /// Place within a turn of each byte of two turns.
     turns: Vec<u32>,
 }
 
-/// Some rows at a beam's bearing, but for what it leaves by eight.
+/// A range of rows to be read at a beam's bearing, rounded down to a multiple of 8.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Window {
-    /// Where the first of them starts that is read, and the last.
+    /// Starts of the first and the last row that is read.
     first: u32,
     last: u32,
-    /// The whole bytes of the bearing.
+    /// Bearing divided by 8.
     byte: u32,
-    /// How often is read.
+    /// Number of reads.
     pub reads: u32,
 }
 
@@ -47,35 +47,35 @@ pub(crate) struct Window {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct QuadRows {
     bytes: Vec<Byte>,
-    /// The rows that have any bits.
+    /// Range of the rows that may have bits.
     used: Range<usize>,
 }
 
-/// How far windows go.
+/// Extent of some windows in memory.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Extent {
-    /// The end of their bytes, and where the farthest of their rows starts.
+    /// End of their bytes, and the start of the farthest of their rows.
     bytes: usize,
     rows: usize,
 }
 
-/// The rows of a quad, in which windows are read that were found to lie in them.
+/// The rows of a quad, for reading windows within an [`Extent`] that was checked.
 #[derive(Clone, Copy)]
 pub(crate) struct Windows<'a> {
     reader: Reader<'a>,
 }
 
-/// The rows of a quad, to be read at the headings of a chunk.
+/// The rows of a quad, for reading at the headings of a chunk.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
     layout: &'a RowLayout,
     bytes: &'a [Byte],
-    /// The first byte of the chunk.
+    /// First byte of the chunk.
     start: usize,
 }
 
 impl RowLayout {
-    /// Starts again, with nothing that is read.
+    /// Starts a new layout without windows.
     pub(crate) fn start(&mut self, directions: usize) {
         self.stride = directions / 8;
         let turns = (READ - 1).div_ceil(self.stride);
@@ -88,7 +88,7 @@ impl RowLayout {
         self.turns.extend(turn.clone().chain(turn));
     }
 
-    /// A window of rows from direction `8 · byte` on.
+    /// Adds a window of rows from direction `8 · byte` on, and returns it.
     pub(crate) fn window(&mut self, rows: Range<usize>, byte: usize) -> Window {
         assert!(
             byte < self.stride && rows.end <= self.most,
@@ -96,7 +96,7 @@ impl RowLayout {
         );
         let needed = &self.needed;
         self.needed = needed.start.min(rows.start)..needed.end.max(rows.end);
-        // Two rows at a time, the last two with the one before if need be.
+        // Two rows at a time; of an odd number, the last two overlap with those before.
         let last = rows.end.saturating_sub(2).max(rows.start);
         let starts = rows.clone().step_by(2).map(|row| row.min(last));
         let is_joined = rows.len() > 1;
@@ -116,7 +116,7 @@ impl RowLayout {
         }
     }
 
-    /// A window that sees nothing.
+    /// Returns a window that sees nothing.
     pub(crate) fn nothing(&self) -> Window {
         let start = (2 * self.most * self.row) as u32;
         Window {
@@ -127,21 +127,21 @@ impl RowLayout {
         }
     }
 
-    /// Where the rows end, with one of which nothing is seen.
+    /// Returns the end of all rows, including the one without bits.
     fn end(&self) -> usize {
         (2 * self.most + 1) * self.row
     }
 }
 
 impl QuadRows {
-    /// Allocates buffers for a layout; nothing is left of what another one had.
+    /// Allocates buffers for a layout; drops the rows of an earlier one.
     pub(crate) fn fit(&mut self, layout: &RowLayout) {
         self.bytes.clear();
         self.bytes.resize(layout.end(), [0; QUAD]);
         self.used = 0..0;
     }
 
-    /// Takes the rows of a quad.
+    /// Replaces the rows by those of a quad.
     #[inline(always)]
     pub(crate) fn take<W: BitWords>(
         &mut self,
@@ -182,7 +182,7 @@ impl QuadRows {
             }
         }
         if let Some(last) = taken.clone().next_back() {
-            // Nothing is seen behind the last one, or nobody reads it.
+            // The row after the last one has no bits, or no window reads it.
             let rows = &mut self.bytes[2 * last * row..][..2 * row];
             let (last, joined) = rows.split_at_mut(row);
             joined.copy_from_slice(last);
@@ -200,11 +200,11 @@ impl QuadRows {
     }
 }
 
-/// Lets words be read from any byte of a row's first turn on.
+/// Repeats a row's turn, so that words can be read from any byte of the first turn on.
 #[inline(always)]
 fn go_round<W: BitWords>(set: W::Set, row: &mut [Byte], stride: usize) {
     let turn = W::read(set, bytes(row));
-    // What is copied too much, the next turn overwrites.
+    // Bytes copied in excess are overwritten by the next turn.
     for start in (stride..stride + READ - 1).step_by(stride) {
         turn.write(bytes_mut(&mut row[start..]));
     }
@@ -233,10 +233,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A reader of windows, none of which goes further than `extent`.
+    /// Returns a reader of windows, none of which goes further than `extent`.
     ///
     /// # Panics
-    /// If the rows do not go so far.
+    /// If the extent goes further than the rows.
     #[inline(always)]
     pub(crate) fn within(self, extent: &Extent) -> Windows<'a> {
         let stride = self.layout.stride;
@@ -246,7 +246,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Extent {
-    /// Takes a window in.
+    /// Extends this to a window.
     pub(crate) fn take(&mut self, window: &Window) {
         self.bytes = self.bytes.max(window.byte as usize + 1);
         self.rows = self.rows.max(window.last as usize);
@@ -254,8 +254,8 @@ impl Extent {
 }
 
 impl Windows<'_> {
-    /// The bits of a window that is read so often, in the order of sets, see
-    /// [`BitWords::sorted`]. Reading oftener than needed changes nothing.
+    /// Reads the bits of a window with `reads` reads, in the order of sets, see
+    /// [`BitWords::sorted`]. More reads than needed change nothing.
     ///
     /// # Safety
     /// The extent within which windows are read must have taken this one in.

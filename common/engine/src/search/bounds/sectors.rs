@@ -1,29 +1,29 @@
 //! The order in which a block's beams are counted.
 //!
-//! Neighbouring beams need neighbouring directions, so beams are counted in
-//! sectors of neighbours. Those that can give most votes come first: they decide
-//! most about a pose, and counting can stop early.
+//! Neighbouring beams need neighbouring directions, so beams are counted in sectors of
+//! neighbours. Sectors that can give most votes come first: they decide most about a pose,
+//! and counting can stop early.
 
 use std::cmp::Reverse;
 use std::ops::Range;
 
 use crate::program::ScanProgram;
 
-/// Beams of a sector. With fewer a heading is given up sooner, with more there is less to
-/// compare: so it was fastest. Their votes, at most 16 each, fit into a byte.
+/// Beams of a sector. With fewer a heading is given up sooner, with more there are fewer
+/// comparisons; this number was fastest. Their votes, at most 16 each, fit a byte.
 pub(crate) const BEAMS: usize = 10;
 
-/// How many sectors there are.
+/// Number of sectors of this many beams.
 pub(crate) fn count(beams: usize) -> usize {
     beams.div_ceil(BEAMS)
 }
 
-/// The beams of a sector, as places in the order.
+/// Returns the beams of a sector, as places in the order.
 pub(crate) fn beams(sector: usize, beams: usize) -> Range<usize> {
     sector * BEAMS..((sector + 1) * BEAMS).min(beams)
 }
 
-/// Puts the beams of a program in order. Only the last sector may have less than
+/// Puts the beams of a program in order. Only the last sector may have fewer than
 /// [`BEAMS`].
 pub(crate) fn order(program: &ScanProgram, order: &mut Vec<usize>) {
     order.clear();

@@ -1,11 +1,10 @@
 //! Upper bounds of the votes in blocks from their sets of visible ranges.
 //!
-//! A beam's taper is covered by nested windows of distances, each with a share
-//! of its votes. Where a block sees no range within a window, at a heading, its
-//! share is missing there. The bits of a window are read at the beam's bearing:
-//! the whole bytes of it by where reading starts, the rest by grouping beams
-//! and shifting the sums of each group once. What is done is done for the four
-//! blocks of a quad, side by side.
+//! A beam's taper is covered by nested windows of distances, each with a share of its
+//! votes. If a block sees no range within a window at a heading, the bound there lacks the
+//! window's share. The bits of a window are read at the beam's bearing: its whole bytes by
+//! where reading starts, the rest by grouping beams and shifting the sums of each group
+//! once. The four blocks of a quad are processed together.
 
 use std::sync::atomic::{AtomicU16, Ordering};
 
@@ -18,32 +17,32 @@ use crate::search::index::sets::{Quad, RangeSets};
 use crate::simd::words::{BitWords, EMPTY, QUAD};
 use crate::simd::{Kernel, Set};
 
-/// What the beams from each group on give at most, in votes: more for the first
-/// group than they can, and 0 behind the last.
+/// Most votes that the beams from each group on give: `u16::MAX` for the first group, and 0
+/// after the last.
 pub(crate) type Rests = [u16; GROUPS + 1];
 
-/// What is known of the blocks of a quad: that none has more votes in each chunk, and how
-/// many matter.
+/// Known limits of the blocks of a quad: votes that none of them exceeds in each chunk, and
+/// the least votes that matter.
 pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 
-/// The bounds of a quad, and a place there.
+/// Bounds of a quad, and the place of a block in it.
 pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
 
-/// Bounds of the blocks of a quad, and scratch buffers to find them.
+/// Bounds of the blocks of a quad, with the buffers for finding them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
     pub found: HeadingBounds,
-    /// What was read in all, in words.
+    /// Number of words read since [`SetBounds::fit`].
     pub reads: u64,
-    /// The chunks in which any heading matters.
+    /// Chunks in which any heading matters.
     chunks: Vec<usize>,
     rows: QuadRows,
     carries: Carries,
 }
 
 impl SetBounds {
-    /// Allocates the bounds by a program of blocks at some headings, a word a
-    /// chunk; nothing is left of what another program had.
+    /// Allocates the bounds of a program at some headings, a word of `headings` for each chunk;
+    /// drops those of an earlier program.
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
         self.found.fit(program.unit, headings);
         self.reads = 0;
@@ -56,8 +55,8 @@ impl SetBounds {
 }
 
 impl SetProgram {
-    /// What the beams from each group on give at most at the headings of a window, by
-    /// sums that were noted.
+    /// Returns the most votes that the beams from each group on give at the headings of a
+    /// window, from the sums that were noted.
     pub(crate) fn rests(&self, (bounds, place): Placed<'_>, (first, among): (usize, u64)) -> Rests {
         let chunks = &bounds.chunks;
         let others = self.groups().len().saturating_sub(1);
@@ -75,9 +74,9 @@ impl SetProgram {
         rests
     }
 
-    /// Bounds the votes of blocks at all headings or, if something is known, where any may
-    /// have as many as matter. Then the bounds of others are not finished, and sums after
-    /// each group are noted for what lies in the blocks.
+    /// Bounds the votes of blocks at all headings or, with `known`, at those where any may have
+    /// as many as matter. Then the bounds at other headings are left unfinished, and the sums
+    /// after each group are noted for the smaller blocks inside.
     pub(crate) fn bound<'a>(
         &self,
         blocks: (&RangeSets, &Quad),
@@ -93,7 +92,7 @@ impl SetProgram {
         &bounds.found
     }
 
-    /// The greatest bound of each block.
+    /// Bounds the blocks of each quad, and hands the bounds to `take`.
     pub(crate) fn bound_all(
         &self,
         sets: &RangeSets,
@@ -132,7 +131,7 @@ impl SetProgram {
         bounds.chunks = chunks;
     }
 
-    /// Notes at which headings the blocks are bounded, and in which chunks.
+    /// Chooses the headings at which the blocks are bounded, and the chunks that hold any.
     #[inline(always)]
     fn choose(
         &self,
@@ -201,7 +200,7 @@ impl SetProgram {
     }
 }
 
-/// Bounding the blocks of a quad.
+/// Kernel that bounds the blocks of a quad.
 struct Bounding<'a, 'b> {
     program: &'a SetProgram,
     blocks: (&'a RangeSets, &'a Quad),
@@ -348,7 +347,7 @@ mod tests {
         }
     }
 
-    /// Places of the cells of a block.
+    /// Returns the indices of a block's cells in the grid.
     fn cells(
         sets: &RangeSets,
         block: usize,

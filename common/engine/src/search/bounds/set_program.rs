@@ -1,7 +1,7 @@
 //! A scan program laid out for bounds from sets of visible ranges.
 //!
 //! A beam's taper is covered by nested windows of distances, each with a share of its
-//! votes. Beams are grouped by what their bearings leave by eight.
+//! votes. Beams are grouped by their bearings modulo 8.
 
 use std::ops::Range;
 
@@ -14,20 +14,20 @@ use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::steps::BinSteps;
 use crate::simd::Simd;
 
-/// Rests that bearings leave by eight, each with a group of beams.
+/// Number of groups of beams: one for each bearing modulo 8.
 pub(in crate::search) const GROUPS: usize = 8;
 
 /// A scan program laid out for bounds from sets; made again for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
     pub(in crate::search) simd: Simd,
-    /// Votes are counted in this unit, of which all peaks are multiples.
+    /// Unit of the sums, in votes: all peaks are multiples of it.
     pub(in crate::search) unit: u16,
-    /// Planes that hold all sums.
+    /// Number of planes that hold every sum.
     pub(in crate::search) planes: usize,
-    /// One for each rest; those that have any beams come first.
+    /// One group for each bearing modulo 8; those with beams come first.
     groups: [Group; GROUPS],
-    /// How many of them have.
+    /// Number of groups with beams.
     used: usize,
     pub(in crate::search) layout: RowLayout,
 }
@@ -46,7 +46,6 @@ impl Default for SetProgram {
 }
 
 impl SetProgram {
-    /// Lays out a program.
     pub(crate) fn make(
         &mut self,
         program: &ScanProgram,
@@ -80,12 +79,12 @@ impl SetProgram {
             .map_or(0, |plane| plane as usize + 1);
     }
 
-    /// What the bearings of each group of beams leave by eight.
+    /// Returns the bearing modulo 8 of each group that has beams.
     pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> {
         self.groups().iter().map(Group::shift)
     }
 
-    /// Those that have beams.
+    /// Returns the groups that have beams.
     pub(in crate::search) fn groups(&self) -> &[Group] {
         &self.groups[..self.used]
     }
@@ -99,9 +98,9 @@ fn greatest_common_divisor(a: u16, b: u16) -> u16 {
     }
 }
 
-/// Windows of rows of sets that cover the taper of a beam in all classes of
-/// directions, each with the plane of its share: one for each binary digit of
-/// the peak, that of the highest for the whole taper.
+/// Returns windows of rows of sets that cover the taper of a beam in all classes of
+/// directions, each with the plane of its share. Each binary digit 1 of the peak has a
+/// window, the highest digit one for the whole taper.
 fn windows(
     program: &ScanProgram,
     beam: usize,

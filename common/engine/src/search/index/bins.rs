@@ -1,4 +1,4 @@
-//! Bins of distances: one byte for how far a ray is.
+//! Bins of distances: one byte says how far a ray goes.
 //!
 //! Bins are one and a half cells wide at first and wider in each further piece
 //! of the scale, as tapers of far readings are wider, too. A piece is a line in
@@ -7,12 +7,11 @@
 
 use crate::directions::Directions;
 
-/// Where each piece's line meets distance 0, in bins, and how many cells wide
-/// its bins are. A step along a diagonal is 1.4 cells long, and no step may take
-/// more than a bin, or directions of different classes would not agree where a
-/// bin is. The last line is nearly flat: no ray within a map's sides
-/// reaches its end, and yet [`NO_RANGE`](crate::program::NO_RANGE) comes out as
-/// [`Bins::NOTHING`] like any other range.
+/// Bin of each piece's line at distance 0, and the width of its bins in cells. A step along
+/// a diagonal is 1.4 cells long, and no step may span more than a bin, or directions of
+/// different classes would not agree where a bin is. The last line is nearly flat: no ray
+/// within a map's sides reaches its end, and yet [`NO_RANGE`](crate::program::NO_RANGE)
+/// gives [`Bins::NOTHING`] without a special case.
 const PIECES: [(u16, f64); 7] = [
     (1, 1.5),
     (11, 2.0),
@@ -23,14 +22,14 @@ const PIECES: [(u16, f64); 7] = [
     (240, 4096.0),
 ];
 
-/// From which distance on, in steps, a ray falls into which bin.
+/// Scale that puts ranges, in steps, into bins.
 #[derive(Debug, Clone)]
 pub(crate) struct Bins {
-    /// For each class of direction, the lines of all pieces.
+    /// Lines of all pieces, for each class of directions.
     lines: Vec<[Line; PIECES.len()]>,
 }
 
-/// `start + (steps · slope >> 16)`, in bins.
+/// The line `start + (steps · slope >> 16)`, in bins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
     pub start: u16,
@@ -38,11 +37,11 @@ pub(crate) struct Line {
 }
 
 impl Bins {
-    /// The bin of what sees nothing, and of cells that nobody can stand in.
+    /// Bin of a ray that sees nothing, and of cells in which no robot can stand.
     pub(crate) const NOTHING: u8 = u8::MAX;
 
-    /// Up to here, the lines of the last two pieces lie above the others: they
-    /// come in at 1755 cells, which are the fewest steps along a diagonal.
+    /// Steps up to which the lines of the last two pieces are above the others: these matter
+    /// from 1755 cells on, which along a diagonal are the fewest steps.
     pub(crate) const NEAR_STEPS: u16 = 1_200;
 
     pub(crate) fn new(directions: &Directions) -> Self {
@@ -58,22 +57,22 @@ impl Bins {
         }
     }
 
-    /// The bin of a range in steps along a class of directions, at least 1 and
-    /// never less for more steps.
+    /// Returns the bin of a range in steps along a class of directions: at least 1, and never
+    /// lower for more steps.
     #[inline(always)]
     pub(crate) fn bin(&self, class: usize, steps: u16) -> u8 {
         let bins = self.lines[class].iter().map(|line| line.at(steps));
         bins.min().unwrap_or(0).min(u16::from(Self::NOTHING) - 1) as u8
     }
 
-    /// The lines whose least value is the bin of a range on any map, and at
-    /// least [`Bins::NOTHING`] for no range.
+    /// Returns the lines whose minimum is the bin of a range on any map, and at least
+    /// [`Bins::NOTHING`] for no range.
     #[inline(always)]
     pub(crate) fn lines(&self, class: usize) -> &[Line; PIECES.len()] {
         &self.lines[class]
     }
 
-    /// Those of them that suffice up to [`Bins::NEAR_STEPS`].
+    /// Returns those of them that suffice up to [`Bins::NEAR_STEPS`].
     #[inline(always)]
     pub(crate) fn near_lines(&self, class: usize) -> &[Line; PIECES.len() - 2] {
         let [near @ .., _, _] = &self.lines[class];

@@ -1,29 +1,29 @@
-//! Bits of adjacent headings, and numbers kept as planes of them.
+//! Bits of adjacent headings, and numbers stored as planes of bits.
 //!
-//! Headings come in chunks, a word of bits for each. Plane `j` of numbers holds bit
-//! `j` of all of them.
+//! Headings come in chunks with one word of bits each. Plane `j` holds bit `j` of all
+//! numbers.
 
 use crate::simd::words::{BitWords, QUAD, Words};
 
-/// Headings of a chunk: a word less what shifting takes up.
+/// Headings of a chunk: the 128 bits of a word, less those that shifting takes up.
 pub(crate) const CHUNK: usize = 120;
 
-/// The bits of a chunk.
+/// Mask of the bits of a chunk.
 const WHOLE: u128 = u128::MAX >> (128 - CHUNK);
 
-/// Planes of numbers: they fit 16 bits.
+/// Largest number of planes: numbers fit 16 bits.
 pub(crate) const PLANES: usize = 16;
 
 /// The numbers of a quad in a chunk, by plane.
 pub(crate) type Planes = [Words; PLANES];
 
-/// The word of a block.
+/// Returns the 128 bits of a block.
 #[inline(always)]
 pub(crate) fn of_block(words: &Words, block: usize) -> u128 {
     u128::from(words[0][block]) | u128::from(words[1][block]) << 64
 }
 
-/// Words of a quad.
+/// Returns the words of a quad from the 128 bits of each block.
 #[inline(always)]
 pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
     let words: [u128; QUAD] = std::array::from_fn(of_block);
@@ -33,7 +33,7 @@ pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
     ]
 }
 
-/// The greatest of the numbers that `among` selects, of this many planes.
+/// Returns the greatest of the numbers, of this many planes, that `among` selects.
 #[inline(always)]
 pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64) -> u16 {
     let (mut candidates, mut value) = (among, 0);
@@ -47,7 +47,8 @@ pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64)
     value
 }
 
-/// The greatest of the numbers of each block that `among` selects, of this many planes.
+/// Returns the greatest of the numbers of each block, of this many planes, that `among`
+/// selects.
 #[inline(always)]
 pub(crate) fn greatest_of_each<W: BitWords>(
     set: W::Set,
@@ -65,7 +66,8 @@ pub(crate) fn greatest_of_each<W: BitWords>(
     value.to_words()[0].map(|value| value as u16)
 }
 
-/// Where the numbers that `among` selects, of this many planes, are at least `least`.
+/// Returns a bit for each number, of this many planes, that `among` selects and that is at
+/// least `least`.
 #[inline(always)]
 pub(crate) fn at_least<W: BitWords>(
     set: W::Set,
@@ -94,7 +96,7 @@ pub(crate) fn at_least<W: BitWords>(
     greater.or(equal)
 }
 
-/// The places of the set bits of a word, ascending.
+/// Returns the places of the set bits of a word, in ascending order.
 pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> + Clone {
     let mut word = word;
     std::iter::from_fn(move || {
@@ -106,8 +108,8 @@ pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> + Clone {
     })
 }
 
-/// The set bits of this many chunks in windows: the place of the first bit, and all of
-/// them less than 64 places behind it.
+/// Returns the set bits of this many chunks in windows: the place of a window's first bit,
+/// and the bits of the 64 places from there on.
 pub(crate) fn windows(
     chunks: usize,
     bits: impl Fn(usize) -> u128,
@@ -127,8 +129,7 @@ pub(crate) fn windows(
     })
 }
 
-/// The bits of this many chunks from a place on, as many as a window has; none behind the
-/// last chunk.
+/// Returns the 64 bits from place `first` on; they are 0 after the last chunk.
 #[inline(always)]
 pub(crate) fn window_of(chunks: usize, bits: impl Fn(usize) -> u128, first: usize) -> u64 {
     let (chunk, place) = (first / CHUNK, first % CHUNK);

@@ -1,25 +1,24 @@
 //! The blocks of a grid in which poses are searched, numbered without gaps.
 //!
-//! What is kept of blocks is kept of these alone, so that it grows with where a robot can
-//! be and not with the rectangle that the map fills.
+//! Data is kept of these blocks alone, so its size grows with the area where a robot can be
+//! and not with the rectangle of the map.
 
 use crate::grid::{CellSet, WORD};
 
-/// Some of the blocks of a grid, by where they are in it, row by row.
+/// A set of blocks of a grid, by their places in it, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct BlockIds {
     blocks: CellSet,
-    /// How many blocks lie before each word of the set, and at the end how many there are.
+    /// Number of blocks before each word of the set, and at the end their total.
     before: Vec<u32>,
 }
 
 impl BlockIds {
-    /// Those of which `holds` says so, block by block.
+    /// Makes the set of the blocks for which `holds` is true.
     pub(crate) fn new(holds: &[bool]) -> Self {
         Self::of(CellSet::of(holds.len(), |block| holds[block]))
     }
 
-    /// The blocks of a set.
     pub(crate) fn of(blocks: CellSet) -> Self {
         let mut ids = BlockIds {
             blocks,
@@ -40,34 +39,32 @@ impl BlockIds {
         }));
     }
 
-    /// The set of them.
     pub(crate) fn set(&self) -> &CellSet {
         &self.blocks
     }
 
-    /// The same, to be filled in; [`BlockIds::number`] is to follow.
+    /// Returns the set to be filled in; [`BlockIds::number`] must follow.
     pub(crate) fn set_mut(&mut self) -> &mut CellSet {
         &mut self.blocks
     }
 
-    /// All of this many blocks.
     #[cfg(test)]
     pub(crate) fn all(blocks: usize) -> Self {
         Self::new(&vec![true; blocks])
     }
 
-    /// How many they are.
+    /// Number of blocks in the set.
     pub(crate) fn count(&self) -> usize {
         self.before.last().map_or(0, |&count| count as usize)
     }
 
-    /// Whether a block is among them.
     #[inline(always)]
     pub(crate) fn holds(&self, block: usize) -> bool {
         self.blocks.holds(block)
     }
 
-    /// How many of them lie before a block: the number of the block, if it is among them.
+    /// Returns the number of the set's blocks before a block, which is that block's number if
+    /// it is in the set.
     #[inline(always)]
     pub(crate) fn before(&self, block: usize) -> usize {
         let (word, bit) = (block / WORD, block % WORD);
@@ -76,7 +73,7 @@ impl BlockIds {
         (self.before[word] + lower.count_ones()) as usize
     }
 
-    /// Bytes that they take.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.blocks.bytes() + size_of_val(&self.before[..])
     }

@@ -1,8 +1,7 @@
-//! Which ranges the cells of a small block see in each direction, as intervals.
+//! Ranges that the cells of a small block see in each direction, as intervals.
 //!
-//! Four by four cells see one surface, or two where the edge of one hides a part
-//! of the other: a near interval of bins and a far one hold nearly just what
-//! they see.
+//! The cells of a 4 × 4 block see one surface, or two where the edge of one hides a part of
+//! the other: a near and a far interval of bins hold little more than the cells see.
 
 mod build;
 mod pool;
@@ -26,52 +25,52 @@ use build::Source;
 pub(crate) use unpack::{far_start, near_end};
 pub(crate) use wide::{ROW_SHIFT, WideViews};
 
-/// Directions that are read at a time.
+/// Number of directions that are read at a time.
 pub(crate) const READ: usize = HEADINGS;
 
-/// Rows of bytes of a packed block.
+/// Number of rows of a packed block.
 const PACKED: usize = 3;
 
 /// A nibble that stands for the width of all that the block sees.
 const ALL: u8 = 15;
 
-/// Nibbles beyond each of these stand for widths that are this many bins farther apart
-/// than before; up to the first a nibble is a width itself.
+/// Each entry `(from, by)` means that beyond nibble `from` each nibble stands for a width
+/// of `by` more bins than before. Up to the first `from`, a nibble is the width itself.
 const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
 
-/// The two intervals in all directions of the blocks in which poses are searched.
+/// Near and far interval of the blocks in which poses are searched, in all directions.
 #[derive(Debug, Clone)]
 pub(crate) struct RangeIntervals {
     /// Blocks along x.
     pub columns: usize,
     /// Blocks along y.
     pub rows: usize,
-    /// Directions of a turn.
+    /// Number of directions of a turn.
     pub directions: usize,
-    /// The blocks whose intervals are kept.
+    /// Blocks whose intervals are kept.
     pub ids: BlockIds,
-    /// By which blocks are unpacked.
+    /// Instruction set that unpacks blocks.
     simd: Simd,
-    /// For each block that is kept three rows with a byte for each direction: the nearest
-    /// bin, the farthest bin, and the widths of the two intervals.
+    /// Three rows for each block that is kept, with a byte for each direction: nearest bin,
+    /// farthest bin, and the widths of the two intervals.
     packed: Vec<u8>,
 }
 
-/// The intervals of one block, direction by direction for a turn and [`READ`]
-/// further ones, so that as many can be read from any direction on.
+/// Intervals of one block, direction by direction for a turn and [`READ`] further ones, so
+/// that [`READ`] directions can be read from any one on.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BlockIntervals {
-    /// First and last bin of the near interval, then of the far one. Where
-    /// there is none, the first lies behind the last.
+    /// First and last bin of the near interval, then of the far one. If there is none, the
+    /// first is greater than the last.
     pub rows: [Vec<u8>; 4],
 }
 
-/// The rows of a block, all as long.
+/// The rows of a block, all of the same length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowsOfBlock<'a>([&'a [u8]; 4]);
 
 impl BlockIntervals {
-    /// The rows, to be read from.
+    /// Returns the rows for reading.
     #[inline(always)]
     pub(crate) fn rows(&self) -> RowsOfBlock<'_> {
         // With one length for all, each place needs to be checked only once.
@@ -81,7 +80,7 @@ impl BlockIntervals {
 }
 
 impl<'a> RowsOfBlock<'a> {
-    /// The rows from a direction on.
+    /// Returns the rows from a direction on.
     #[inline(always)]
     pub(crate) fn from(&self, direction: usize) -> IntervalRows<'a> {
         const ENOUGH: &str = "a row goes on for as many directions as are read";
@@ -91,7 +90,8 @@ impl<'a> RowsOfBlock<'a> {
 }
 
 impl RangeIntervals {
-    /// Those of some blocks of a grid, and what they see where these are wide.
+    /// Builds the intervals of some blocks of a grid, and the views of directions in which they
+    /// are wide.
     pub(crate) fn new(
         grid: &Grid,
         directions: &Directions,
@@ -101,7 +101,6 @@ impl RangeIntervals {
         Self::with(grid, directions, bins, blocks, (InstructionSet::best(), 1))
     }
 
-    /// Those of all blocks.
     #[cfg(test)]
     pub(crate) fn of_all(
         grid: &Grid,
@@ -112,7 +111,7 @@ impl RangeIntervals {
         Self::new(grid, directions, bins, BlockIds::all(blocks))
     }
 
-    /// The same as [`RangeIntervals::new`] by a given instruction set and number of
+    /// Does the same as [`RangeIntervals::new`] with a given instruction set and number of
     /// threads.
     pub(crate) fn with(
         grid: &Grid,
@@ -144,8 +143,8 @@ impl RangeIntervals {
         (intervals, wide)
     }
 
-    /// Those of some blocks of a grid, to be filled in: this many bytes. `None` where there
-    /// cannot be this many.
+    /// Allocates intervals of some blocks of a grid, to be filled in: this many bytes. Returns
+    /// `None` if the grid cannot have as many.
     pub(crate) fn unfilled(grid: &Grid, directions: &Directions, bytes: usize) -> Option<Self> {
         let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
         let most = PACKED * directions.count() * columns * rows;
@@ -159,30 +158,30 @@ impl RangeIntervals {
         })
     }
 
-    /// All that is packed.
+    /// Returns the packed bytes of all blocks.
     pub(crate) fn all_packed(&self) -> &[u8] {
         &self.packed
     }
 
-    /// The same and the set of the blocks, to be filled in.
+    /// Returns the set of the blocks and the packed bytes, to be filled in.
     pub(crate) fn filling(&mut self) -> (&mut CellSet, &mut [u8]) {
         (self.ids.set_mut(), &mut self.packed)
     }
 
-    /// Numbers the blocks that were filled in; whether they are those of the grid, and as
-    /// many as intervals are packed.
+    /// Numbers the blocks that were filled in. Returns true if they are blocks of the grid, and
+    /// as many as intervals are packed.
     pub(crate) fn number(&mut self) -> bool {
         self.ids.number();
         let packed = PACKED * self.directions * self.ids.count();
         self.ids.set().are_below(self.columns * self.rows) && packed == self.packed.len()
     }
 
-    /// Bytes that the intervals take.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.packed.len() + self.ids.bytes()
     }
 
-    /// The nearest bins of a block that is kept, its farthest ones, and the widths.
+    /// Returns the nearest bins, the farthest bins and the widths of a block that is kept.
     pub(crate) fn packed(&self, block: usize) -> [&[u8]; PACKED] {
         let bytes = PACKED * self.directions;
         let packed = &self.packed[bytes * self.ids.before(block)..][..bytes];
@@ -191,7 +190,7 @@ impl RangeIntervals {
         [nearest, farthest, widths]
     }
 
-    /// Asks for the intervals of a block that is soon to be read, if it is kept.
+    /// Prefetches the intervals of a block that is soon to be read, if it is kept.
     pub(crate) fn prefetch(&self, block: usize) {
         if self.ids.holds(block) {
             self.packed(block).into_iter().for_each(prefetch);
@@ -276,8 +275,8 @@ mod tests {
                         let near = (near_first..=near_last).contains(bin);
                         prop_assert!(near || (far_first..=far_last).contains(bin), "{} {:?}", bin, seen);
                     }
-                    // An inner end is seen, too, or lies less far behind one that is
-                    // than the next smaller width would.
+                    // An inner end is seen, too, or is less far from a bin that is seen than the
+                    // next smaller width would be.
                     if !seen.is_empty() {
                         let least = |width| (0..ALL).map(unpack::width).rev().find(|&less| less < width);
                         let least = |width| least(width).map_or(0, |less| less + 1);
@@ -328,7 +327,7 @@ mod tests {
         }
     }
 
-    /// What the open cells of a block see.
+    /// Returns the bins that the open cells of a block see.
     fn seen(
         grid: &Grid,
         intervals: &RangeIntervals,

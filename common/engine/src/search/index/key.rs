@@ -1,4 +1,4 @@
-//! By what a kept index is found again.
+//! Key by which a kept index is found again.
 
 use std::fmt;
 
@@ -16,12 +16,11 @@ use crate::space::Space;
 pub struct IndexKey(u128);
 
 impl IndexKey {
-    /// The key of a grid, searched within limits.
+    /// Returns the key of the index of a grid that is searched within limits.
     pub(crate) fn of(grid: &Grid, space: &Space, frame: GridFrame, limits: &LimitsConfig) -> Self {
         let (version, headings) = (SearchIndex::VERSION, space.directions.count());
         let (width, height) = (grid.width(), grid.height());
-        // Numbers are written so that they are read as the same ones; a limit that is new is
-        // in the text by itself.
+        // Debug output tells all different numbers apart, and a new limit is in the text by itself.
         let settings = format!("{version} {width} {height} {headings} {frame:?} {limits:?}");
         let mut hash = XxHash3_128::new();
         hash.write(settings.as_bytes());
@@ -30,14 +29,14 @@ impl IndexKey {
         IndexKey(hash.finish_128())
     }
 
-    /// Its bytes.
+    /// Returns the bytes of the key, the most significant first.
     #[must_use]
     pub fn to_bytes(self) -> [u8; 16] {
         self.0.to_be_bytes()
     }
 }
 
-/// Thirty-two hexadecimal digits.
+/// Writes the key as 32 hexadecimal digits.
 impl fmt::Display for IndexKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:032x}", self.0)

@@ -1,8 +1,9 @@
-//! A map prepared for searches: what the blocks see in which poses are searched.
+//! A map prepared for searches: the ranges seen from all blocks in which poses are
+//! searched.
 //!
 //! It is made once for each map and then only read. What it says of a block holds for all
-//! its cells: no range that a cell sees is missing. Nothing here knows a scan, a floor or
-//! the order in which blocks are searched.
+//! its cells: no range that a cell sees is missing. Nothing here depends on a scan, a floor
+//! or the order in which blocks are searched.
 
 pub(in crate::search) mod bins;
 pub(in crate::search) mod bits;
@@ -44,19 +45,19 @@ pub struct SearchIndex {
     pub(in crate::search) coarse: RangeSets,
     pub(in crate::search) obstacles: Obstacles,
     pub(in crate::search) within: Within,
-    /// Where bounds do not help: made when they first do not.
+    /// Prepared for counting every pose; made when bounds first do not help.
     sweeps: OnceLock<FieldSweep>,
 }
 
 impl SearchIndex {
-    /// Prepares a map of which poses are searched in all open cells.
+    /// Prepares a map for searching poses in all open cells.
     #[must_use]
     pub fn new(grid: &Grid, space: &Space) -> Self {
         Self::within(grid, space, Limits::none(grid.width()))
     }
 
-    /// Prepares a map of which poses are searched only within limits, those of its grid.
-    /// What is kept of blocks is kept of those alone that hold such a pose.
+    /// Prepares a map for searching poses within limits, which must be those of its grid. Data
+    /// is kept only of blocks that hold such a pose.
     #[must_use]
     pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
         let directions = &space.directions;
@@ -77,7 +78,7 @@ impl SearchIndex {
         }
     }
 
-    /// The bins of distances, and the steps that they stand for.
+    /// Returns the bins of distances, and the steps that they stand for.
     fn scale(grid: &Grid, space: &Space) -> (BinSteps, Bins) {
         let bins = Bins::new(&space.directions);
         // No ray has more steps than it crosses columns or rows.
@@ -86,18 +87,18 @@ impl SearchIndex {
         (steps, bins)
     }
 
-    /// Where poses are searched.
+    /// Returns the limits within which poses are searched.
     #[must_use]
     pub fn limits(&self) -> &Limits {
         &self.within.limits
     }
 
-    /// The grid of the index, prepared for counting every pose.
+    /// Returns the grid of the index, prepared for counting every pose.
     pub(in crate::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
         self.sweeps.get_or_init(|| FieldSweep::new(grid))
     }
 
-    /// Bytes that the index takes.
+    /// Size of the index in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();

@@ -1,4 +1,4 @@
-//! What preparing a map takes, before any of it is allocated.
+//! Memory needed to prepare a map, estimated before any of it is allocated.
 
 use super::SearchIndex;
 use super::intervals::SIDE;
@@ -6,22 +6,23 @@ use crate::grid::Grid;
 use crate::limits::Limits;
 use crate::space::Space;
 
-/// Bytes for each block of 4 × 4 cells in which poses are searched and each direction: three
-/// of the intervals, and while these are built up to 26 where they are wide, which on real
-/// maps they are in at most 7 of a hundred. The sets come when that is gone and take less.
+/// Bytes for each direction of each block of 4 × 4 cells in which poses are searched: three
+/// for the intervals and, while these are built, up to 26 where they are wide, which on
+/// real maps they are in at most 7 of a hundred. The sets are made when that memory is free
+/// again, and take less.
 const BYTES_A_DIRECTION: usize = 5;
 
-/// Bytes for each cell of the map: its class, the bits that rays and sweeps follow, and
-/// which cells are free and searched.
+/// Bytes for each cell of the map: its class, the bits that rays and sweeps follow, and the
+/// sets of free and of searched cells.
 const BYTES_A_CELL: usize = 3;
 
-/// Bytes on any map.
+/// Bytes needed for any map.
 const BYTES_OF_ALL: usize = 1_000_000;
 
 impl SearchIndex {
-    /// About the most bytes that are held at a time while the index of a map is prepared
-    /// within limits, its cells included. It is an estimate: how many intervals are wide
-    /// shows only when they are built.
+    /// Estimates the most bytes that are held at a time while the index of a map is prepared
+    /// within limits, its cells included. It cannot be exact: how many intervals are wide shows
+    /// only when they are built.
     #[must_use]
     pub fn needed_bytes(grid: &Grid, space: &Space, limits: &Limits) -> usize {
         let blocks = limits.blocks(SIDE, grid);

@@ -1,8 +1,8 @@
-//! What ends a ray, as bits, so that rays side by side are followed together.
+//! Cells that end a ray, as bits, so that adjacent rays are followed together.
 //!
-//! Directions with the same major axis move all rays of a bundle by one row at a
-//! time. In a row of bits over the minor axis, rays side by side are bits side by
-//! side, and eight rows make one word. Where nothing is near they leap.
+//! Directions with the same major axis move all rays of a bundle by one row at a time. In a
+//! row of bits over the minor axis, adjacent rays are adjacent bits, and eight rows make
+//! one word. Where no obstacle is near, rays leap.
 
 use super::intervals::SIDE;
 use crate::chessboard;
@@ -13,14 +13,14 @@ use crate::simd::rays::{BitRows, ROWS, RayLanes};
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
 
-/// Bits from the start of a strip to that of the next one, `1 << STRIP`: half of what a
-/// strip holds. So all that rays side by side meet in eight rows lies in one strip.
+/// Bits from the start of a strip to that of the next one, `1 << STRIP`: half of the bits
+/// of a strip. So all cells that adjacent rays meet in eight rows are in one strip.
 const STRIP: u32 = 4;
 
-/// The middle of the rays of a word.
+/// Ray in the middle of those of a word.
 const MIDDLE: i64 = 4;
 
-/// Cells a side of what one clearance holds for, `1 << TILE`.
+/// Side of the tiles for which clearances hold, in cells: `1 << TILE`.
 const TILE: u32 = 2;
 
 /// The cells of a map that are not open, row by row along either axis.
@@ -31,9 +31,9 @@ pub(crate) struct Obstacles {
     clearance: Clearance,
 }
 
-/// How far away the nearest obstacle of each tile of the map is, in tiles: the
-/// larger of the distances along x and y, 0 in a tile that holds one. Tiles without
-/// any lie all around the map.
+/// Distance from each tile of the map to the nearest obstacle, in tiles: the larger of the
+/// distances along x and y, 0 in a tile that holds one. A margin of tiles without obstacles
+/// surrounds the map.
 #[derive(Debug, Clone)]
 struct Clearance {
     columns: usize,
@@ -53,15 +53,15 @@ struct Rows {
     bits: Vec<u32>,
 }
 
-/// Rays side by side on their way along a direction.
+/// Adjacent rays along a direction.
 #[derive(Debug)]
 pub(in crate::search) struct Rays<'a> {
     rows: &'a Rows,
     clearance: &'a Clearance,
     direction: &'a Direction,
-    /// Where the first ray stands at position 0, along the major axis.
+    /// Coordinate of the first ray on the major axis, at position 0.
     major: i64,
-    /// What the first ray has on the minor axis beyond the direction's own rise.
+    /// Coordinate of the first ray on the minor axis, less the direction's own rise.
     offset: i64,
 }
 
@@ -74,7 +74,7 @@ impl Obstacles {
         }
     }
 
-    /// Those of a grid, to be filled in.
+    /// Allocates the obstacles of a grid, to be filled in.
     pub(crate) fn unfilled(grid: &Grid) -> Self {
         Obstacles {
             along_x: Rows::empty(grid, true),
@@ -83,25 +83,25 @@ impl Obstacles {
         }
     }
 
-    /// The rows along either axis, and the clearances.
+    /// Returns the rows along either axis, and the clearances.
     pub(crate) fn parts(&self) -> ([&[u32]; 2], &[u8]) {
         let rows = [&self.along_x.bits[..], &self.along_y.bits];
         (rows, &self.clearance.tiles)
     }
 
-    /// The same, to be filled in.
+    /// Returns the same, to be filled in.
     pub(crate) fn parts_mut(&mut self) -> ([&mut [u32]; 2], &mut [u8]) {
         let rows = [&mut self.along_x.bits[..], &mut self.along_y.bits];
         (rows, &mut self.clearance.tiles)
     }
 
-    /// Bytes that they take.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let rows = self.along_x.bits.len() + self.along_y.bits.len();
         rows * size_of::<u32>() + self.clearance.tiles.len()
     }
 
-    /// Whether all cells of a small block are on the map and open.
+    /// True if all cells of a small block are on the map and open.
     #[inline(always)]
     pub(in crate::search) fn are_none_in(&self, (left, bottom): (usize, usize)) -> bool {
         let Rows {
@@ -119,8 +119,7 @@ impl Obstacles {
                 .all(|row| row >> bit & ((1 << SIDE) - 1) == 0)
     }
 
-    /// Rays in a direction, of which the first one stands at `(major, minor)` at
-    /// position 0.
+    /// Returns rays in a direction, the first of which is at `(major, minor)` at position 0.
     pub(in crate::search) fn rays<'a>(
         &'a self,
         direction: &'a Direction,
@@ -140,7 +139,7 @@ impl Obstacles {
 }
 
 impl Rows {
-    /// Rows of a grid without any obstacle.
+    /// Returns rows of the size of a grid without any obstacle.
     fn empty(grid: &Grid, x_major: bool) -> Self {
         let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
         let stride = majors + 2 * ROWS as usize;
@@ -168,14 +167,14 @@ impl Rows {
     }
 }
 
-/// The last strip that starts with a bit or before it, and the bit's place there.
+/// Returns the last strip that starts at a bit or before it, and the bit's place there.
 #[inline(always)]
 fn strip_of(bit: i64) -> (usize, i64) {
     ((bit >> STRIP) as usize, bit & ((1 << STRIP) - 1))
 }
 
 impl Clearance {
-    /// Of a map; what lies beyond it is no obstacle.
+    /// Returns the clearances of a map; cells beyond it are no obstacles.
     fn new(grid: &Grid) -> Self {
         let mut clearance = Self::unknown(grid);
         let columns = clearance.columns;
@@ -187,7 +186,7 @@ impl Clearance {
         clearance
     }
 
-    /// Of a map on which no obstacle is known.
+    /// Returns the clearances of a map on which no obstacle is known.
     fn unknown(grid: &Grid) -> Self {
         let tiles = |cells: usize| cells.div_ceil(1 << TILE) + 2;
         let (columns, rows) = (tiles(grid.width()), tiles(grid.height()));
@@ -197,7 +196,6 @@ impl Clearance {
         }
     }
 
-    /// The tile of a cell.
     #[inline(always)]
     fn tile(&self, x: usize, y: usize) -> usize {
         ((y >> TILE) + 1) * self.columns + (x >> TILE) + 1
@@ -205,8 +203,8 @@ impl Clearance {
 }
 
 impl Rays<'_> {
-    /// For how many positions from this one on no ray of a word can end, by what
-    /// is near its middle; 0 where that is not known.
+    /// Returns the number of positions from this one on at which no ray of a word can end,
+    /// judged by the clearance near its middle; 0 if that is not known.
     #[inline(always)]
     pub(crate) fn free(&self, position: i64) -> i64 {
         let (major, minor) = self.at(MIDDLE as usize, position);
@@ -222,7 +220,7 @@ impl Rays<'_> {
         (between - MIDDLE + 1).max(0)
     }
 
-    /// Positions on the map along the major axis.
+    /// Number of positions on the map along the major axis.
     pub(crate) fn positions(&self) -> i64 {
         match self.direction.step > 0 {
             true => self.rows.majors - self.major,
@@ -230,21 +228,21 @@ impl Rays<'_> {
         }
     }
 
-    /// The cell of ray `i` at a position, as column and row.
+    /// Returns the cell of ray `i` at a position, as column and row.
     pub(crate) fn cell(&self, i: usize, position: i64) -> (i64, i64) {
         self.direction.swap(self.at(i, position))
     }
 
-    /// The same along the major and the minor axis.
+    /// Returns the same along the major and the minor axis.
     #[inline(always)]
     fn at(&self, i: usize, position: i64) -> (i64, i64) {
         let major = self.major + self.direction.step * position;
         (major, self.offset + i as i64 + self.direction.minor(major))
     }
 
-    /// What ends eight rays at eight positions: bit `i` of byte `j` returns whether
-    /// ray `i` ends at `position + j`. `None` where all of them have left the map;
-    /// there must be a row at `position`.
+    /// Returns the ends of eight rays at eight positions: bit `i` of byte `j` is set if ray `i`
+    /// ends at `position + j`. Returns `None` if all of them have left the map; there must be a
+    /// row at `position`.
     #[inline(always)]
     pub(in crate::search) fn ends<L: RayLanes>(&self, set: L::Set, position: i64) -> Option<u64> {
         const ENOUGH: &str = "rows go on before the first and behind the last";

@@ -1,12 +1,12 @@
-//! Asking for memory before it is needed.
+//! Prefetching of memory before it is needed.
 //!
 //! The index of a map is larger than any cache, and a search jumps about in it.
 
-/// Bytes that come from memory at a time.
+/// Bytes of a cache line.
 #[cfg(target_arch = "x86_64")]
 const LINE: usize = 64;
 
-/// Asks for values that are soon to be read.
+/// Prefetches values that are soon to be read.
 #[inline]
 pub(in crate::search) fn prefetch<T>(values: &[T]) {
     #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,9 @@
-//! An index as sections of plain bytes, for whoever keeps it between runs.
+//! An index as sections of plain bytes, for callers that keep it between runs.
 //!
-//! They hold all that takes long to make. What is taken back is not believed: an index is
-//! searched only once all that a search reads by was found to lie within it. Whether the
-//! index is that of the map is for the keeper to know, see [`IndexKey`](super::IndexKey).
+//! Sections hold all that takes long to make. Bytes that are read back are not trusted: an
+//! index is searched only after a check that all places at which a search reads are within
+//! it. The caller must make sure that the index is that of the map, see
+//! [`IndexKey`](super::IndexKey).
 
 use bytemuck::{cast_slice, cast_slice_mut};
 
@@ -15,10 +16,10 @@ use crate::grid::{CellSet, Grid};
 use crate::limits::Limits;
 use crate::space::Space;
 
-/// How many sections an index has.
+/// Number of sections of an index.
 pub const SECTIONS: usize = 15;
 
-/// What they are, in their order.
+/// Names of the sections, in their order.
 const NAMES: [&str; SECTIONS] = [
     "cells",
     "headings",
@@ -37,26 +38,26 @@ const NAMES: [&str; SECTIONS] = [
     "clearance",
 ];
 
-/// Sections that are none of an index of the map.
+/// Error of sections that cannot be those of an index of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SectionError {
-    /// No index of the map has as many bytes there.
+    /// No index of the map has this many bytes in the section.
     #[error("section {section:?} has {bytes} bytes, which no index of the map has")]
     Length {
-        /// What it holds.
+        /// Name of the section.
         section: &'static str,
-        /// Its bytes.
+        /// Length of the section in bytes.
         bytes: u64,
     },
-    /// More bytes than are allowed.
+    /// The index takes more bytes than are allowed.
     #[error("the index takes {bytes} bytes, and --memory-limit allows {limit}")]
     Memory {
-        /// All of them.
+        /// Bytes of the index.
         bytes: u64,
-        /// Most that may be taken.
+        /// Largest number of bytes allowed.
         limit: u64,
     },
-    /// Its numbers do not fit together.
+    /// The contents of a section do not fit the others.
     #[error("what section {0:?} holds does not fit the others")]
     Content(&'static str),
 }
@@ -66,10 +67,10 @@ pub enum SectionError {
 pub struct UncheckedIndex(SearchIndex);
 
 impl SearchIndex {
-    /// Counted up whenever the same map comes to other sections.
+    /// Version of the sections, counted up whenever the same map leads to other ones.
     pub const VERSION: u32 = 1;
 
-    /// All sections.
+    /// Returns the bytes of all sections, in their order.
     #[must_use]
     pub fn sections(&self) -> [&[u8]; SECTIONS] {
         let [cells, headings] = self
@@ -102,7 +103,8 @@ impl SearchIndex {
 }
 
 impl UncheckedIndex {
-    /// Buffers for sections of such lengths, in bytes, if an index of the map can have them.
+    /// Allocates buffers for sections of these lengths, in bytes, if an index of the map can
+    /// have them.
     pub(crate) fn new(
         lengths: [u64; SECTIONS],
         grid: &Grid,
@@ -145,7 +147,7 @@ impl UncheckedIndex {
         }
     }
 
-    /// All sections, to be filled in.
+    /// Returns all sections, to be filled in.
     pub fn sections_mut(&mut self) -> [&mut [u8]; SECTIONS] {
         let SearchIndex {
             intervals,
@@ -182,7 +184,7 @@ impl UncheckedIndex {
         ]
     }
 
-    /// The index, if no search can read beyond what was filled in.
+    /// Returns the index, if no search can read beyond what was filled in.
     ///
     /// # Errors
     /// Names the section that does not fit.
@@ -230,7 +232,7 @@ mod tests {
         index.sections().map(|section| section.len() as u64)
     }
 
-    /// An index from the sections of another one, as `change` leaves them.
+    /// Makes an index from the sections of another one, after `change`.
     fn taken_back(
         index: &SearchIndex,
         (grid, space): (&Grid, &Space),
@@ -299,7 +301,7 @@ mod tests {
             for length in [lengths[section] + by, u64::MAX - by] {
                 lengths[section] = length;
                 let refused = UncheckedIndex::new(lengths, &grid, &space).map(|_| ());
-                // What depends on the cells is known only once it was read.
+                // Lengths that depend on the cells are known only once these were read.
                 let depends = matches!(section, 5 | 7 | 8 | 10 | 11);
                 // Cells or headings that were not limited, and of which there are as many
                 // as the map has, are those of an index of other limits.

@@ -1,4 +1,4 @@
-//! Which ranges the cells of a block see in each direction, as sets.
+//! Ranges that the cells of a block see in each direction, as sets.
 //!
 //! For each block of cells and each bin of distances, one bit a direction says
 //! whether any open cell of the block sees an obstacle at such a distance in
@@ -6,8 +6,8 @@
 //! for a bin that its taper covers, and one row of bits answers that for all
 //! headings at once.
 //!
-//! Two by two blocks are a quad. Their bits lie side by side, byte by byte, so that
-//! what is read of one is read of all.
+//! Two by two blocks are a quad. Their bits are interleaved byte by byte, so that one read
+//! serves all four.
 
 mod build;
 mod marks;
@@ -27,7 +27,7 @@ use build::{Rows, build};
 pub(crate) use packed::SetRows;
 use packed::{PackedRows, words};
 
-/// Bytes of directions that are read at a time: a word.
+/// Number of bytes of directions that are read at a time: a word.
 pub(crate) const READ: usize = BYTES / QUAD;
 
 /// The bits of eight directions in each block of a quad.
@@ -45,7 +45,7 @@ pub(crate) struct RangeSets {
     /// Bytes of a row of bits: one bit for each direction. A row stands for
     /// `1 << ROW_SHIFT` bins.
     stride: usize,
-    /// Where the rows of each quad start, and behind them where the last ones end.
+    /// Start of the rows of each quad, and at last the end of them all.
     starts: Vec<Start>,
     packed: PackedRows,
 }
@@ -54,28 +54,28 @@ pub(crate) struct RangeSets {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quad {
     pub index: usize,
-    /// Those that are on the map and wanted.
+    /// Blocks that are on the map and wanted.
     pub blocks: [Option<usize>; QUAD],
 }
 
-/// Where the rows of a quad start.
+/// Start of the rows of a quad.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Start {
-    /// Counted through all quads, and so are the bytes that are kept.
+    /// Rows and kept bytes of all quads before this one.
     row: u32,
     byte: u32,
-    /// The first row that has any bits.
+    /// First row that has any bits.
     first: u32,
 }
 
 impl RangeSets {
-    /// Those of blocks of 2 × 2 blocks of intervals.
+    /// Builds the sets of blocks of 2 × 2 blocks of intervals.
     pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
         Self::with(intervals, wide, InstructionSet::best(), 1)
     }
 
-    /// The same by a given instruction set and number of threads.
+    /// Does the same with a given instruction set and number of threads.
     pub(crate) fn with(
         intervals: &RangeIntervals,
         wide: &WideViews,
@@ -127,9 +127,9 @@ impl RangeSets {
         }
     }
 
-    /// Those of blocks of this many cells a side, to be filled in: this many bytes of where
-    /// quads start, of masks, and of bytes that are kept. `None` where there cannot be so
-    /// many.
+    /// Allocates sets of blocks with this many cells a side, to be filled in, with these
+    /// numbers of bytes: starts of quads, masks, and bytes that are kept. Returns `None` if the
+    /// grid cannot have as many.
     pub(crate) fn unfilled(
         side: usize,
         grid: &Grid,
@@ -155,14 +155,14 @@ impl RangeSets {
         })
     }
 
-    /// Where quads start, the masks, and the bytes that are kept.
+    /// Returns the starts of quads, the masks, and the bytes that are kept.
     pub(crate) fn parts(&self) -> [&[u8]; 3] {
         let PackedRows { masks, bytes } = &self.packed;
         let starts = bytemuck::cast_slice(&self.starts);
         [starts, bytemuck::cast_slice(masks), bytes.as_flattened()]
     }
 
-    /// The same, to be filled in.
+    /// Returns the same, to be filled in.
     pub(crate) fn parts_mut(&mut self) -> [&mut [u8]; 3] {
         let PackedRows { masks, bytes } = &mut self.packed;
         let starts = bytemuck::cast_slice_mut(&mut self.starts);
@@ -170,8 +170,8 @@ impl RangeSets {
         [starts, masks, bytes.as_flattened_mut()]
     }
 
-    /// Whether what was filled in can be read: the quads follow each other, no row lies
-    /// beyond the last bin, and as many bytes are kept of each quad as its masks say.
+    /// True if the sections that were filled in can be read: the quads follow each other, no
+    /// row is beyond the last bin, and as many bytes are kept of each quad as its masks say.
     pub(crate) fn are_sound(&self) -> bool {
         let PackedRows { masks, bytes } = &self.packed;
         let words = words(self.stride);
@@ -193,7 +193,7 @@ impl RangeSets {
         are_sound && masks.is_empty() && first == Some((0, 0)) && last == Some(bytes.len())
     }
 
-    /// Those of blocks that join two by two of these.
+    /// Builds the sets of blocks of twice the side, each joined from two by two of these.
     pub(crate) fn joined(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
         let quads = (columns.div_ceil(2), rows.div_ceil(2));
@@ -226,17 +226,15 @@ impl RangeSets {
         Self::of_rows(2 * self.side, (columns, rows), self.stride, joined)
     }
 
-    /// How many blocks there are.
     pub(crate) fn blocks(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// How many quads there are.
     pub(crate) fn quads(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// A quad, for those of its blocks that are wanted.
+    /// Returns a quad with those of its blocks that are wanted.
     pub(crate) fn searched(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
         let blocks = quad_of(quad, (self.columns, self.rows));
         Quad {
@@ -245,19 +243,18 @@ impl RangeSets {
         }
     }
 
-    /// Where a block lies: its quad, and its place there.
+    /// Returns the quad of a block, and the block's place in it.
     pub(crate) fn place_of(&self, block: usize) -> (usize, usize) {
         let (x, y) = (block % self.columns, block / self.columns);
         let quad = y / 2 * self.columns.div_ceil(2) + x / 2;
         (quad, y % 2 * 2 + x % 2)
     }
 
-    /// Bytes that the sets take.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.packed.size() + size_of_val(&self.starts[..])
     }
 
-    /// The rows of a quad.
     pub(crate) fn quad(&self, quad: usize) -> SetRows<'_> {
         let (start, end) = (self.starts[quad], self.starts[quad + 1]);
         let (row, rows) = (start.row as usize, (end.row - start.row) as usize);
@@ -267,7 +264,7 @@ impl RangeSets {
         SetRows::new(first..first + rows, self.stride, (masks, bytes))
     }
 
-    /// Asks for the rows of a quad that is soon to be read.
+    /// Prefetches the rows of a quad that is soon to be read.
     pub(crate) fn prefetch(&self, quad: usize) {
         let rows = self.quad(quad);
         prefetch(rows.masks);
@@ -276,20 +273,20 @@ impl RangeSets {
 }
 
 impl Quad {
-    /// The blocks that are wanted, and their places.
+    /// Returns the wanted blocks, each after its place in the quad.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let blocks = self.blocks.into_iter().enumerate();
         blocks.filter_map(|(place, block)| Some((place, block?)))
     }
 }
 
-/// How many of a kind this many bytes are.
+/// Returns how many `T` this many bytes are; `None` if it is no whole number.
 fn count<T>(bytes: usize) -> Option<usize> {
     let each = size_of::<T>();
     bytes.is_multiple_of(each).then_some(bytes / each)
 }
 
-/// The blocks of a quad on a map of this many columns and rows of blocks.
+/// Returns the blocks of a quad on a map of this many columns and rows of blocks.
 fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
     let quads = columns.div_ceil(2);
     let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
@@ -310,7 +307,7 @@ mod tests {
     use crate::search::index::steps::BinSteps;
     use crate::testing::{any_grid, space_of};
 
-    /// A row as it was before it was packed, if it has bits.
+    /// Returns a row as it was before it was packed, if it is kept.
     fn row_of(rows: &SetRows<'_>, row: usize) -> Option<Vec<Byte>> {
         let mut unpacked = Vec::new();
         rows.unpack(&mut unpacked);

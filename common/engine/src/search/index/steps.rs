@@ -1,14 +1,14 @@
-//! How many steps the bins of distances stand for.
+//! Numbers of steps for which the bins of distances stand.
 
 use super::bins::Bins;
 use crate::directions::Directions;
 
-/// Where each bin starts, by class of directions.
+/// Start of each bin in steps, by class of directions.
 #[derive(Debug, Clone)]
 pub(crate) struct BinSteps {
-    /// The least steps in each bin or a later one, 256 for each class.
+    /// Fewest steps in each bin or a later one, 256 for each class.
     firsts: Vec<u16>,
-    /// The bin of each number of steps up to the longest ray, class by class.
+    /// Bin of each number of steps up to the longest ray, class by class.
     bins: Vec<u8>,
     longest: u16,
 }
@@ -16,7 +16,7 @@ pub(crate) struct BinSteps {
 const BINS: usize = 256;
 
 impl BinSteps {
-    /// For rays of up to `longest` steps.
+    /// Makes the tables for rays of up to `longest` steps.
     pub(crate) fn new(bins: &Bins, directions: &Directions, longest: u16) -> Self {
         let mut firsts = Vec::with_capacity(BINS * directions.classes());
         let mut table = Vec::new();
@@ -36,14 +36,13 @@ impl BinSteps {
         }
     }
 
-    /// The bin of a number of steps; more steps than any ray has count as those
-    /// of the longest.
+    /// Returns the bin of a number of steps; steps beyond the longest ray count as the longest.
     #[inline(always)]
     pub(crate) fn bin(&self, class: usize, steps: u16) -> u8 {
         self.bins[class * (usize::from(self.longest) + 1) + usize::from(steps.min(self.longest))]
     }
 
-    /// The steps in bins `first..=last`, without the end.
+    /// Returns the range of the steps in bins `first..=last`, the end exclusive.
     #[inline(always)]
     pub(crate) fn span(&self, class: usize, first: u8, last: u8) -> (u16, u16) {
         let firsts = &self.firsts[class * BINS..][..BINS];

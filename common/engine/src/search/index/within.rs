@@ -6,15 +6,15 @@ use super::sets::{Quad, RangeSets};
 use crate::grid::{CellSet, Grid};
 use crate::limits::Limits;
 
-/// Where poses are searched, block by block.
+/// Limits of a search, and the blocks in which poses are searched.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Within {
     pub limits: Limits,
-    /// The blocks of 8 × 8 and of 16 × 16 cells in which poses are searched.
+    /// Blocks of 8 × 8 and of 16 × 16 cells in which poses are searched.
     pub blocks: [CellSet; 2],
 }
 
-/// A size of blocks that have sets.
+/// Size of blocks that have sets.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::search) enum Size {
     Fine,
@@ -31,7 +31,7 @@ impl Within {
         Within { limits, blocks }
     }
 
-    /// Limits and blocks of a grid that are still to be filled in.
+    /// Allocates the blocks of a grid, to be filled in along with the limits.
     pub(in crate::search) fn unfilled(limits: Limits, grid: &Grid) -> Self {
         let blocks = [2 * SIDE, 4 * SIDE].map(|side| {
             let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
@@ -40,22 +40,22 @@ impl Within {
         Within { limits, blocks }
     }
 
-    /// Whether poses are searched in a block.
+    /// True if poses are searched in a block.
     pub(in crate::search) fn holds(&self, size: Size, block: usize) -> bool {
         self.blocks[size as usize].holds(block)
     }
 
-    /// Bytes that they take.
+    /// Size in bytes.
     pub(in crate::search) fn bytes(&self) -> usize {
         self.limits.bytes() + self.blocks.iter().map(CellSet::bytes).sum::<usize>()
     }
 
-    /// A quad of blocks of a size, for those in which poses are searched.
+    /// Returns a quad of blocks of a size, with those in which poses are searched.
     pub(in crate::search) fn quad(&self, size: Size, sets: &RangeSets, quad: usize) -> Quad {
         sets.searched(quad, |block| self.holds(size, block))
     }
 
-    /// The headings that are searched among `count`, a word a chunk.
+    /// Returns a bit for each heading below `count` that is searched, a word for each chunk.
     pub(in crate::search) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
         (0..count).step_by(CHUNK).map(move |first| {
             let headings = first..count.min(first + CHUNK);
@@ -65,8 +65,7 @@ impl Within {
     }
 }
 
-/// The blocks of the next smaller size in a block, as far as they are on the
-/// map.
+/// Returns the blocks of the next smaller size in a block, as far as they are on the map.
 pub(in crate::search) fn quarters(
     index: usize,
     columns: usize,

@@ -1,9 +1,9 @@
 //! Exact ranges of the cells of a small block, computed for a direction when they are
 //! first needed.
 //!
-//! The block's intervals say how far away the first obstacle lies at least, so
-//! rays are followed only from there, all that leave the block in a direction at
-//! once. Cells behind one another on a line share a ray.
+//! The block's intervals say how near the first obstacle can be, so rays are followed only
+//! from there, all rays that leave the block in a direction at once. Cells in line share a
+//! ray.
 
 use super::bundle::{self, Bundle};
 use crate::directions::Directions;
@@ -15,7 +15,7 @@ use crate::search::index::obstacles::Obstacles;
 use crate::search::index::steps::BinSteps;
 use crate::simd::Set;
 
-/// The map and what is known of it.
+/// A map and the tables for following rays in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View<'a> {
     pub grid: &'a Grid,
@@ -28,22 +28,22 @@ pub(crate) struct View<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct BlockRanges {
     by_direction: Vec<[u16; CELLS]>,
-    /// The block for which each direction was computed last, by its number.
+    /// Number of the block for which each direction was computed last.
     computed_for: Vec<u32>,
-    /// Counts the blocks.
+    /// Number of the current block.
     number: u32,
     left: usize,
     bottom: usize,
     cells: [Cell; CELLS],
-    /// Whether all of them are open.
+    /// True if all of the block's cells are open.
     all_open: bool,
-    /// For each cell, all ones where poses are searched.
+    /// All ones for each cell in which poses are searched, else 0.
     open: [u16; CELLS],
     intervals: BlockIntervals,
-    /// Whether unknown cells block rays: then rays must be followed from the
-    /// start, as intervals say only where they hit an obstacle.
+    /// True if unknown cells block rays. Then rays must be followed from the start, because
+    /// intervals say only where they hit an obstacle.
     has_blocked: bool,
-    /// How often rays were cast in a direction.
+    /// Number of times that rays were cast in a direction.
     casts: u64,
 }
 
@@ -66,8 +66,8 @@ impl Default for BlockRanges {
 }
 
 impl BlockRanges {
-    /// Starts with a map. What was computed before is dropped with the next
-    /// block, whose number nothing has yet.
+    /// Starts with a map. Earlier ranges are dropped with the next block, because its number is
+    /// new.
     pub(crate) fn prepare(&mut self, grid: &Grid, directions: &Directions) {
         let count = directions.count();
         self.by_direction.resize(count, [NO_RANGE; CELLS]);
@@ -107,23 +107,22 @@ impl BlockRanges {
         });
     }
 
-    /// Column and row of the block's cell `i`.
+    /// Returns column and row of the block's cell `i`.
     pub(crate) fn cell(&self, i: usize) -> (usize, usize) {
         (self.left + i % SIDE, self.bottom + i / SIDE)
     }
 
-    /// The block's intervals.
     pub(crate) fn intervals(&self) -> &BlockIntervals {
         &self.intervals
     }
 
-    /// For each cell, all ones where the robot may stand and is searched.
+    /// Returns all ones for each cell where the robot may stand and is searched, else 0.
     pub(crate) fn open(&self) -> &[u16; CELLS] {
         &self.open
     }
 
-    /// Computes the ranges in direction `d`, unless that was done for this block. To be
-    /// inlined into what is compiled for the instruction set.
+    /// Computes the ranges in direction `d`, unless that was done for this block. It must be
+    /// inlined into code that is compiled for the instruction set.
     #[inline(always)]
     pub(in crate::search) fn compute<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
         if self.computed_for[d] != self.number {
@@ -133,18 +132,19 @@ impl BlockRanges {
         }
     }
 
-    /// The ranges in direction `d`, in steps; they must have been computed.
+    /// Returns the ranges in direction `d`, in steps; they must have been computed.
     #[inline(always)]
     pub(crate) fn ranges(&self, d: usize) -> &[u16; CELLS] {
         &self.by_direction[d]
     }
 
-    /// How often rays were cast in a direction of any block.
+    /// Number of times that rays were cast in a direction of any block.
     pub(crate) fn casts(&self) -> u64 {
         self.casts
     }
 
-    /// The steps at which rays in direction `d` may end, without the ends: two spans.
+    /// Returns the two spans of steps at which rays in direction `d` may end, their ends
+    /// exclusive.
     #[inline(always)]
     pub(crate) fn spans(&self, view: &View<'_>, d: usize) -> [(u16, u16); 2] {
         let class = view.directions.all()[d].class;
@@ -190,7 +190,7 @@ mod tests {
     use crate::simd::{Kernel, Simd};
     use crate::testing::{any_grid, any_long_grid, space_of};
 
-    /// Computing the ranges in a direction.
+    /// Kernel that computes the ranges in a direction.
     struct Computing<'a>(&'a mut BlockRanges, &'a View<'a>, usize);
 
     impl Kernel for Computing<'_> {

@@ -1,8 +1,7 @@
 //! The rays of one direction through a small block of cells.
 //!
-//! The cells of a column of the block lie side by side, and so do their rays. From
-//! column to column they move by one cell at most, all at once, so that no more
-//! than seven rays meet the block.
+//! The cells of a column of the block are adjacent, and so are their rays. From column to
+//! column all rays move together by one cell at most, so at most seven rays meet the block.
 
 use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
@@ -12,16 +11,16 @@ use crate::search::index::intervals::SIDE;
 use crate::search::index::obstacles::Rays;
 use crate::simd::rays::{Across, RAYS, ROWS, RayLanes};
 
-/// The rays of a direction through a block, side by side. Positions count along
-/// the major axis from the first of the block's columns that a ray meets; here a
-/// column is what shares an index on the major axis, whichever that is.
+/// The adjacent rays of a direction through a block. Positions count along the major axis
+/// from the first of the block's columns that a ray meets; a column here is the cells with
+/// the same index on the major axis, whichever axis that is.
 pub(in crate::search) struct Bundle {
     x_major: bool,
-    /// Whether rays run towards lower indices.
+    /// True if rays run towards lower indices.
     backward: bool,
-    /// Where the first ray stands at position 0, along major and minor axis.
+    /// Cell of the first ray at position 0, along major and minor axis.
     pub start: (i64, i64),
-    /// The ray of the first cell of each column.
+    /// Ray of the first cell of each column.
     first: [u16; SIDE],
     rays: u32,
 }
@@ -35,7 +34,7 @@ impl Bundle {
         let major = major as i64 + if backward { SIDE as i64 - 1 } else { 0 };
         let (rise, slope) = (direction.rise(major), direction.slope() * direction.step);
         let shift = |column: usize| ((rise + slope * column as i64) >> 32) - (rise >> 32);
-        // Where rays rise, those of the first column are not the first.
+        // If rays rise, those of the first column are not the first.
         let lead = shift(SIDE - 1).max(0);
         Bundle {
             x_major,
@@ -46,8 +45,8 @@ impl Bundle {
         }
     }
 
-    /// Those bits of a first word that lie behind the last cell of their ray: of
-    /// the rows of `0..SIDE - 1`, the rays of no later column.
+    /// Returns the bits of a first word that are after the last cell of their ray: in rows
+    /// `0..SIDE - 1`, the rays of no later column.
     #[inline(always)]
     fn behind(&self) -> u64 {
         let mut mask = u64::MAX;
@@ -59,8 +58,8 @@ impl Bundle {
         mask
     }
 
-    /// The positions at which the rays of the block end, which are some steps
-    /// behind the last open cell of each: in one of two spans.
+    /// Returns the positions at which the rays of the block end. The steps from the block's
+    /// cells to there are in one of two spans.
     #[inline(always)]
     pub(in crate::search) fn follow<L: RayLanes>(
         &self,
@@ -75,7 +74,7 @@ impl Bundle {
         for (first, end) in spans {
             let end = (i64::from(end) + SIDE as i64 - 1).min(rays.positions());
             let mut position = i64::from(first).max(done);
-            // A span starts where a ray ends, as a rule: that is looked at first.
+            // As a rule a ray ends at the start of a span, so that is read before any leap.
             while position < end && pending != 0 {
                 let Some(word) = rays.ends::<L>(set, position) else {
                     return hits.hits();
@@ -98,13 +97,14 @@ impl Bundle {
         hits.hits()
     }
 
-    /// Where the block's cells lie.
+    /// Returns the order in which rays cross the block's cells.
     #[inline(always)]
     fn across(&self) -> &'static Across {
         &Across::ALL[usize::from(self.x_major)][usize::from(self.backward)]
     }
 
-    /// The ranges of the block's cells, all of them open: to where their rays end.
+    /// Returns the ranges of the block's cells if all of them are open: the steps to the ends
+    /// of their rays.
     #[inline(always)]
     pub(in crate::search) fn ranges<L: RayLanes>(
         &self,
@@ -114,7 +114,7 @@ impl Bundle {
         L::ranges(set, hits, &self.first, self.across())
     }
 
-    /// The same where some cells are not: to those that are in the way.
+    /// Does the same if some cells are not open: the steps to those that are in the way, too.
     pub(in crate::search) fn ranges_among(
         &self,
         mut hits: [u16; RAYS],
@@ -139,7 +139,7 @@ impl Bundle {
     }
 }
 
-/// Where a ray ends in an unknown cell that blocks it, it has no range.
+/// Drops the hits of rays that end in an unknown cell that blocks them: they have no range.
 pub(in crate::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
     for (i, hit) in hits.iter_mut().enumerate() {
         if *hit == NO_RANGE {
@@ -162,7 +162,7 @@ mod tests {
     use crate::simd::{Kernel, Set, Simd};
     use crate::testing::{any_grid, space_of};
 
-    /// Following the rays of a bundle as far as the map goes.
+    /// Kernel that follows the rays of a bundle.
     struct Following<'a>(&'a Bundle, &'a Rays<'a>, [(u16, u16); 2]);
 
     impl Kernel for Following<'_> {
@@ -174,7 +174,8 @@ mod tests {
         }
     }
 
-    /// The last position of each ray within the block, `None` where it does not meet it.
+    /// Returns the last position of each ray within the block, `None` if it does not meet the
+    /// block.
     fn last_inside(bundle: &Bundle) -> [Option<u16>; RAYS] {
         let Across { column, minor } = bundle.across();
         let mut last = [None; RAYS];
@@ -231,7 +232,7 @@ mod tests {
                 let inside = last_inside(&bundle);
                 let ends = (0..RAYS).map(|ray| inside[ray].and_then(|last| end_of(ray, last)));
                 let ends: Vec<_> = ends.map(|end| end.unwrap_or(NO_RANGE)).collect();
-                // Blocks reach beyond the map, and nobody asks for rays from there.
+                // Blocks may reach beyond the map, but no rays are wanted from there.
                 let is_on_map = |ray: usize| inside[ray].is_some_and(|last| {
                     let (x, y) = rays.cell(ray, i64::from(last));
                     grid.get(x, y).is_some()

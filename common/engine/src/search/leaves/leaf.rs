@@ -1,8 +1,7 @@
 //! Counting votes, pose by pose, for the 16 cells of a small block at once.
 //!
-//! The ranges of all cells in a direction lie side by side, so that a beam's
-//! votes for the whole block are one table look-up for each cell, all of them at once
-//! (`simd/cells.rs`).
+//! The ranges of all cells in a direction are adjacent in memory, so a beam's votes for the
+//! whole block take one table look-up for each cell, all of them at once (`simd/cells.rs`).
 
 use super::block_ranges::{BlockRanges, View};
 use crate::directions::Directions;
@@ -18,7 +17,7 @@ use crate::tables::{VoteTable, VoteTables};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LeafProgram {
     simd: Simd,
-    /// The beams, sector by sector, and their bearings.
+    /// Beams by sector, and their bearings.
     order: Vec<usize>,
     bearings: Vec<usize>,
     tables: VoteTables,
@@ -31,7 +30,7 @@ pub(crate) struct LeafProgram {
 #[repr(align(64))]
 pub(crate) struct Count {
     pub votes: [u16; CELLS],
-    /// The most where poses are searched.
+    /// Most votes of the cells in which poses are searched.
     pub most: u16,
 }
 
@@ -48,15 +47,15 @@ impl LeafProgram {
         self.classes.extend(classes);
     }
 
-    /// The beams, sector by sector.
+    /// Returns the beams by sector.
     pub(crate) fn order(&self) -> &[usize] {
         &self.order
     }
 
-    /// Adds the votes of a sector of beams to those of the block's cells, at headings from
-    /// a first one on that bits select, each with a count. What is added where a cell is not
-    /// open means nothing. Of each beam of all sectors bits show at which headings it may
-    /// vote.
+    /// Adds the votes of a sector of beams to those of the block's cells, at the headings that
+    /// bits select from a first one on; each heading has a count. `voting` holds bits for each
+    /// beam of all sectors: the headings at which it may vote. The votes of cells that are not
+    /// open mean nothing.
     pub(crate) fn add(
         &self,
         rays: (&mut BlockRanges, &View<'_>),
@@ -69,8 +68,8 @@ impl LeafProgram {
         self.add_beams(rays, of_sector, headings, counts);
     }
 
-    /// The votes of the block's cells at a heading, by beams that may vote as its
-    /// intervals say. What is counted where a cell is not open means nothing.
+    /// Returns the votes of the block's cells at a heading, by the beams that may vote
+    /// according to its intervals. The votes of cells that are not open mean nothing.
     pub(crate) fn count(
         &self,
         block_ranges: &mut BlockRanges,
@@ -96,8 +95,8 @@ impl LeafProgram {
         count.votes
     }
 
-    /// Adds the votes of beams from a first one on, at the headings at which bits show that
-    /// each may vote.
+    /// Adds the votes of beams from a first one on, each at the headings at which its bits say
+    /// that it may vote.
     fn add_beams(
         &self,
         rays: (&mut BlockRanges, &View<'_>),
@@ -114,7 +113,8 @@ impl LeafProgram {
         });
     }
 
-    /// Plain code adds votes by tables of any length, and so do all where one is long.
+    /// Adds votes by the given lanes. Only plain code takes tables of any length; the lanes of
+    /// other instruction sets need short ones.
     #[inline(always)]
     fn add_with<S: Set, C: CellLanes>(
         &self,
@@ -159,7 +159,7 @@ impl LeafProgram {
         }
     }
 
-    /// The direction of a beam, and its table there.
+    /// Returns the direction of a beam at a heading, and the beam's table there.
     #[inline(always)]
     fn place(&self, beam: usize, heading: usize) -> (usize, VoteTable<'_>) {
         let direction = self.direction(beam, heading);
@@ -168,8 +168,8 @@ impl LeafProgram {
     }
 }
 
-/// Adding the votes of beams from a first one on, at headings from a first one on, each
-/// with a count.
+/// Kernel that adds the votes of beams from a first one on, at headings from a first one
+/// on, each with a count.
 struct Adding<'a, 'b> {
     program: &'a LeafProgram,
     rays: (&'b mut BlockRanges, &'a View<'a>),

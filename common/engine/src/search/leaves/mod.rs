@@ -1,6 +1,6 @@
 //! The votes of the poses in blocks of 4 × 4 cells, by exact ranges.
 //!
-//! What is counted here is what the plain reference counts, to the last vote.
+//! They equal those of the plain reference, to the last vote.
 
 pub(in crate::search) mod block_ranges;
 pub(in crate::search) mod bundle;

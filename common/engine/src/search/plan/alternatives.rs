@@ -1,11 +1,11 @@
 //! Candidates below the floor of a search: the best poses of the blocks
 //! with the highest bounds.
 //!
-//! The search proves which poses stand above its floor. Below, where proofs
-//! would cost more than they are worth, single blocks are searched: the 8 × 8
-//! with the highest bounds, and in each of those one pose of the 4 × 4 and the
-//! heading with the highest bound. The search bounded all blocks that the floor
-//! leaves. Where those are too few, the coarse blocks with the highest bounds are split.
+//! The search proves which poses are above its floor. Below, where proofs would cost more
+//! than they are worth, single blocks are searched: the 8 × 8 with the highest bounds, and
+//! in each of those one pose of the 4 × 4 and the heading with the highest bound. The
+//! search bounded all blocks that the floor leaves. If those are too few, the coarse blocks
+//! with the highest bounds are split.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -28,24 +28,24 @@ use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::task::Task;
 use crate::votes::Distinct;
 
-/// Coarse blocks that are split for each candidate that is wanted.
+/// Number of coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
 
 /// On large maps, one in this number of coarse blocks is split.
 const COARSE_PART: usize = 16;
 
-/// Blocks of 8 × 8 cells that are searched for each candidate.
+/// Number of blocks of 8 × 8 cells that are searched for each candidate.
 const FINE_SHARE: usize = 1;
 
-/// All 8 × 8 blocks that are searched likely have bounds of at least this share of that of
-/// the last coarse one that is split, in parts of 16.
+/// Share of the bound of the last coarse block that is split, in parts of 16, which the
+/// bounds of all searched 8 × 8 blocks likely reach.
 const LIKELY_SIXTEENTHS: u32 = 13;
 
 /// Headings with less than this share of a block's highest bound, in parts of
 /// 32, are skipped.
 const MIN_BOUND_RATIO: u32 = 31;
 
-/// Finds candidates on one thread, whatever the search did.
+/// Finds candidates on one thread, independent of how the search went.
 pub(in crate::search) struct Alternatives<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
@@ -64,7 +64,7 @@ pub(in crate::search) struct Scratch {
     spots: Vec<Spot>,
     /// Poses or spots that are distinct.
     pub distinct: Vec<Vote>,
-    /// What was found.
+    /// Poses that were found.
     pub votes: Vec<Vote>,
 }
 
@@ -85,10 +85,10 @@ impl<'a> Alternatives<'a> {
         Alternatives { task, scratch }
     }
 
-    /// Leaves in its scratch buffer poses of the blocks with the highest bounds, in no order,
-    /// at most this many. The search ended with a floor; its scratch buffers are given if it
-    /// bounded all blocks that the floor leaves. Blocks whose bounds lie below `least` are not
-    /// searched.
+    /// Leaves poses of the blocks with the highest bounds in its scratch buffer, in no order,
+    /// at most `wanted`. `floor` is that with which the search ended; `scratches` are its
+    /// buffers if it bounded all blocks that the floor leaves. Blocks whose bounds are below
+    /// `least` are not searched.
     pub(in crate::search) fn find(
         &mut self,
         wanted: usize,
@@ -131,8 +131,8 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Chooses this many 8 × 8 blocks in the coarse ones with the highest bounds, none of
-    /// them below `least`.
+    /// Chooses `count` 8 × 8 blocks in the coarse ones with the highest bounds, none of them
+    /// below `least`.
     fn split_highest(&mut self, wanted: usize, count: usize, least: u16) {
         let part = self.task.coarse_bounds.len() / COARSE_PART;
         self.take_highest(part.max(COARSE_SHARE * wanted));
@@ -148,7 +148,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Takes the coarse blocks with the highest bounds.
+    /// Takes the `count` coarse blocks with the highest bounds.
     fn take_highest(&mut self, count: usize) {
         let task = self.task;
         let blocks = (0..task.coarse_bounds.len())
@@ -185,7 +185,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Where in an 8 × 8 block the bound of a small block is highest.
+    /// Returns the small block in an 8 × 8 block, and the heading, with the highest bound.
     fn best_spot(&mut self, (bound, Reverse(block)): BoundedBlock) -> Option<Spot> {
         let (index, block) = (self.task.index, block as usize);
         let Scratch {
@@ -219,7 +219,7 @@ impl<'a> Alternatives<'a> {
         best
     }
 
-    /// The best pose of a spot; `None` where nobody can stand or nothing votes.
+    /// Returns the best pose of a spot; `None` if no cell of it is searched or no beam votes.
     fn count(&mut self, spot: Spot) -> Option<Vote> {
         let index = self.task.index;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
@@ -240,21 +240,19 @@ impl<'a> Alternatives<'a> {
     }
 }
 
-/// Bounds 8 × 8 blocks in chunks of headings in which they may have as many votes as
-/// matter.
+/// Bounds 8 × 8 blocks in the chunks of headings in which they may have `least` votes.
 fn bound_fine<'a>(
     task: &Task<'_>,
     quad: &Quad,
     least: u16,
     bounds: &'a mut SetBounds,
 ) -> &'a HeadingBounds {
-    // A coarse block is a quad of those within.
+    // A coarse block has the index of the quad of 8 × 8 blocks within.
     let known = (task.by_chunk(quad.index), least);
     let blocks = (&task.index.fine, quad);
     task.programs.sets.bound(blocks, Some(known), bounds)
 }
 
-/// A coarse block with its bound.
 fn bounded(task: &Task<'_>, block: usize) -> BoundedBlock {
     let bound = task.coarse_bounds[block].load(Ordering::Relaxed);
     (bound, Reverse(block as u32))
@@ -264,12 +262,12 @@ fn bounded(task: &Task<'_>, block: usize) -> BoundedBlock {
 #[derive(Debug, Default)]
 struct Greatest {
     count: usize,
-    /// The least first.
+    /// Kept blocks, the least on top.
     kept: BinaryHeap<Reverse<BoundedBlock>>,
 }
 
 impl Greatest {
-    /// Starts with nothing; this many will be kept, of which there is at least one.
+    /// Starts with nothing, to keep this many blocks, at least one.
     fn start(&mut self, count: usize) {
         self.count = count;
         self.kept.clear();
@@ -279,7 +277,7 @@ impl Greatest {
         self.kept.len() == self.count
     }
 
-    /// Nothing below this will be kept.
+    /// Returns the bound below which no block will be kept.
     fn least(&self) -> u16 {
         match self.kept.peek() {
             Some(&Reverse((least, _))) if self.is_full() => least,
@@ -297,15 +295,15 @@ impl Greatest {
         }
     }
 
-    /// What was kept, in no order.
+    /// Returns the blocks that were kept, in no order.
     fn blocks(&self) -> &[Reverse<BoundedBlock>] {
         self.kept.as_slice()
     }
 }
 
 impl Spot {
-    /// The spot as a pose, by which spots are distinguished; blocks lie in this many
-    /// columns.
+    /// Returns the spot as a pose, for telling spots apart; `columns` is the number of blocks
+    /// along x.
     fn corner(&self, columns: usize) -> Vote {
         let (Reverse(block), Reverse(heading)) = (self.block, self.heading);
         Vote {
@@ -317,7 +315,7 @@ impl Spot {
     }
 }
 
-/// Keeps the `count` greatest, in falling order.
+/// Keeps the `count` greatest, in descending order.
 fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
     if count < all.len() {
         all.select_nth_unstable_by(count, |a, b| b.cmp(a));

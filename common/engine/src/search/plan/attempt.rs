@@ -1,4 +1,4 @@
-//! One search: by bounds, or where these do not help by counting every pose.
+//! One search: by bounds or, if these do not help, by counting every pose.
 
 use super::alternatives::{self, Alternatives};
 use super::descent;
@@ -8,8 +8,7 @@ use crate::search::counting;
 use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, least_close, most_candidates};
 
-/// A search to be made, and its scratch buffers, of as many threads as there are of them and
-/// shares.
+/// A search to be made, with a scratch buffer and a share for each of its threads.
 pub(in crate::search) struct Attempt<'a> {
     pub task: Task<'a>,
     pub program: &'a ScanProgram,
@@ -20,8 +19,8 @@ pub(in crate::search) struct Attempt<'a> {
 }
 
 impl Attempt<'_> {
-    /// Finds the poses above the floor and candidates below, one way or the other;
-    /// `None` if it was asked to stop.
+    /// Finds the poses above the floor and candidates below, by bounds or by counting; `None`
+    /// if it was asked to stop.
     pub(in crate::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
         let end = self.by_bounds(found);
         match end {
@@ -33,8 +32,8 @@ impl Attempt<'_> {
         Some(())
     }
 
-    /// Finds those of several maps that are searched together: of each map, the poses that
-    /// come near the best one of all.
+    /// Finds the poses of several maps that are searched together: on each map, those that come
+    /// near the best one of all.
     pub(in crate::search) fn find_all(
         maps: &mut [(Self, &mut VoteSet)],
         stop: &dyn Fn() -> bool,
@@ -72,8 +71,8 @@ impl Attempt<'_> {
         counting::count(what, self.shares, found, self.stop)
     }
 
-    /// Adds the candidates that are wanted below what was found, however bounding the
-    /// blocks ended.
+    /// Adds the candidates that are wanted below the poses that were found; `end` says how
+    /// bounding the blocks ended.
     pub(in crate::search) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
         let Self {
             task,
@@ -82,7 +81,7 @@ impl Attempt<'_> {
             ..
         } = self;
         let (wanted, best) = (task.config.candidates as usize, task.best());
-        // Where another map has the best pose, only those that are close to it are wanted.
+        // If another map has the best pose, only candidates close to it are wanted.
         let least = match found.best == best {
             true => 1,
             false => least_close(best),
@@ -90,7 +89,7 @@ impl Attempt<'_> {
         if wanted > 0 && best > 0 {
             let bounded = (end == End::Done).then_some(&**scratches);
             let certain = found.votes.len();
-            // Of a search that was cut, all that it bounded may hold candidates.
+            // If the search was cut, all blocks that it bounded may hold candidates.
             let floor = if found.cut { 1 } else { found.certified_floor };
             let most = most_candidates(wanted, task.space.resolution_m);
             for count in [wanted, most] {

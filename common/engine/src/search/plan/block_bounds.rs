@@ -1,4 +1,4 @@
-//! Where the robot may be, roughly: upper bounds, block by block.
+//! Upper bounds of the votes, block by block: roughly where the robot may be.
 
 use super::Workspace;
 use super::search::Bounding;
@@ -17,7 +17,7 @@ pub struct BlockBounds {
     pub side: usize,
     /// Blocks along x.
     pub columns: usize,
-    /// No pose in the block, at any heading, has more votes.
+    /// Votes that no pose in the block exceeds, at any heading.
     pub bounds: Vec<u16>,
 }
 
@@ -30,8 +30,8 @@ impl BlockBounds {
 }
 
 impl SearchIndex {
-    /// Upper bounds of the intensities in all coarse blocks: where the robot
-    /// may be, roughly.
+    /// Returns upper bounds of the intensities in all coarse blocks: roughly where the robot
+    /// may be.
     #[must_use]
     pub fn block_bounds(&self, program: &ScanProgram, space: &Space) -> BlockBounds {
         let (mut workspace, mut blocks) = (Workspace::default(), BlockBounds::default());
@@ -39,7 +39,7 @@ impl SearchIndex {
         blocks
     }
 
-    /// The same in a workspace that may have served other scans and maps.
+    /// Fills in the same, in a workspace that may have served other scans and maps.
     pub fn block_bounds_in(
         &self,
         workspace: &mut Workspace,

@@ -57,13 +57,13 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// What was spent so far.
+    /// Cost that was spent so far.
     pub(in crate::search) fn spent(&self) -> f64 {
         self.budget.spent()
     }
 
-    /// Searches the next block; how the search ended, if it did. So much was spent on other
-    /// maps that are searched with this one.
+    /// Searches the next block, and returns how the search ended, if it did. `elsewhere` is the
+    /// cost that was spent on other maps that are searched with this one.
     pub(in crate::search) fn step(
         &mut self,
         elsewhere: f64,
@@ -103,8 +103,8 @@ impl<'a> Descent<'a> {
     /// Bounds one of `parts` of the coarse quads, and queues them.
     fn bound_coarse(&mut self, part: usize, parts: usize) {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.sets);
-        // Neighbouring blocks are alike, so parts take them in turn. All bounds
-        // are needed, also where another part gives up: candidates come of them.
+        // Neighbouring blocks are alike, so parts take them in turn. All bounds are needed, even if
+        // another part gives up: candidates come from them.
         let within = &self.task.index.within;
         let own = (part..coarse.quads()).step_by(parts);
         let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
@@ -126,11 +126,11 @@ impl<'a> Descent<'a> {
                 });
             }
         });
-        // What is tallied is what blocks cost that are taken from the queue.
+        // The tally counts only the cost of blocks that are taken from the queue.
         set_bounds.reads = 0;
     }
 
-    /// The next block that may matter.
+    /// Takes the next block that may matter from the queue.
     fn next(&mut self) -> Option<Block> {
         self.scratch.collector.raise_best(self.task.best());
         self.scratch
@@ -138,19 +138,19 @@ impl<'a> Descent<'a> {
             .pop(self.budget.prefers_leaves(), self.scratch.collector.floor())
     }
 
-    /// Asks for what is known of a block that is likely the next one.
+    /// Prefetches the data of a block that is likely the next one.
     fn prefetch(&self, block: &Block) {
         let SearchIndex {
             fine, intervals, ..
         } = self.task.index;
         let index = block.index as usize;
         match block.level {
-            // A coarse block is a quad of those within.
+            // A coarse block has the index of the quad of 8 × 8 blocks within.
             Level::Coarse => fine.prefetch(index),
             Level::Fine { start, end } => {
                 prefetch(&self.scratch.windows[start as usize..end as usize]);
                 let sides = (intervals.columns, intervals.rows);
-                // The others are asked for one by one: more at a time would be waited for.
+                // The others are prefetched one by one: more at a time would be waited for.
                 if let Some(first) = quarters(index, fine.columns, sides).next() {
                     intervals.prefetch(first);
                 }
@@ -162,7 +162,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// How many blocks of each level are left that may matter.
+    /// Number of blocks of each level that are left and may matter.
     fn left(&self) -> [usize; LEVELS] {
         let mut left = [0; LEVELS];
         let floor = self.scratch.collector.floor();
@@ -296,8 +296,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Takes candidates less than [`HEADINGS`] behind the first: its heading,
-    /// and those from there on that may still matter.
+    /// Takes candidates less than [`HEADINGS`] after the first. Returns the heading of the
+    /// first, and a bit for each from there on that may still matter.
     fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
         let floor = self.scratch.collector.floor();
         let first = usize::from(self.scratch.candidates[candidates.clone()].first()?.heading);
@@ -313,8 +313,8 @@ impl<'a> Descent<'a> {
         Some((first, among))
     }
 
-    /// Counts sector by sector at headings from `first` on, until no pose can
-    /// reach the floor with what the sectors left are bounded by.
+    /// Counts sector by sector at headings from `first` on, until no pose can reach the floor
+    /// with the bounds of the remaining sectors.
     fn count_at(&mut self, first: usize, among: u64) {
         let view = self.task.view();
         for lane in bits::ones(among) {

@@ -1,14 +1,14 @@
 //! The parts of a search, each on a thread of its own, and searches of several maps.
 //!
-//! Threads share what is searched and the best pose so far, and each has a scratch
-//! that stays with it from scan to scan.
+//! Threads share the task and the best pose so far, and each has a scratch of its own, kept
+//! from scan to scan.
 
 use super::descent::{Descent, Scratch};
 use crate::search::task::{End, Task};
 use crate::threads;
 use crate::votes::VoteSet;
 
-/// Runs a search on as many threads as there are scratch buffers, of which this is one.
+/// Runs a search on as many threads as there are scratch buffers, the calling one included.
 pub(in crate::search) fn run(
     task: &Task<'_>,
     scratches: &mut [Scratch],
@@ -27,9 +27,9 @@ pub(in crate::search) fn run(
         .unwrap_or(End::Done)
 }
 
-/// Searches maps together on one thread, each a part of its blocks: the next block is one of
-/// the map on which the least was spent. As soon as the best pose is known, bounds of the
-/// other maps are compared with its votes. How each map's search ended.
+/// Searches one part of the blocks of each map on one thread. The next block is always one
+/// of the map on which the least was spent. As soon as the best pose is known, bounds of
+/// the other maps are compared with its votes. Fills in how each map's search ended.
 fn run_together(descents: &mut [Descent<'_>], ends: &mut [Option<End>], stop: &dyn Fn() -> bool) {
     let mut spent: f64 = 0.0;
     loop {
@@ -45,13 +45,13 @@ fn run_together(descents: &mut [Descent<'_>], ends: &mut [Option<End>], stop: &d
     }
 }
 
-/// The same on as many threads as each map has scratch buffers; `None` if `stop` said so
-/// before the end.
+/// Does the same on as many threads as each map has scratch buffers; `None` if `stop`
+/// returned true before the end.
 pub(in crate::search) fn run_all<'a>(
     maps: impl Iterator<Item = (&'a Task<'a>, &'a mut [Scratch])>,
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<End>> {
-    /// What one thread searches.
+    /// The work of one thread.
     #[derive(Default)]
     struct Share<'a> {
         maps: Vec<(&'a Task<'a>, &'a mut Scratch)>,
@@ -86,7 +86,7 @@ pub(in crate::search) fn run_all<'a>(
     Some((0..shares[0].ends.len()).map(worst).collect())
 }
 
-/// What all threads found together.
+/// Merges the results of all threads.
 pub(in crate::search) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
     let (own, others) = scratches.split_first_mut().expect("a thread");
     for other in others {
@@ -145,9 +145,9 @@ mod orders {
         Grid::new(width, height, &occupancy, CellRules::default()).unwrap()
     }
 
-    /// Whichever thread finds its poses first, and whatever it knows of the other's: the poses
-    /// at or above the floor are those of the reference. In some orders, a thread skips what it
-    /// counts in others.
+    /// In any order in which the threads find their poses and learn of each other's, the poses
+    /// at or above the floor are those of the reference. In some orders, a thread skips poses
+    /// that it counts in others.
     #[test]
     fn the_poses_that_are_found_are_the_same_in_any_order() {
         let grid = leak(rooms());

@@ -7,9 +7,9 @@ use crate::search::index::prefetch::prefetch;
 
 /// The blocks that wait.
 ///
-/// Blocks of 4 × 4 cells have tighter bounds than those that they came of, and so
-/// would all wait until nothing larger is left. Yet in one of the first lies the best
-/// pose, and the sooner it is known, the less else needs to be looked at.
+/// Blocks of 4 × 4 cells have tighter bounds than the blocks that they came from, and so
+/// would all wait until nothing larger is left. Yet the best pose is in one of the first,
+/// and the sooner it is known, the fewer others have to be searched.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Queue {
     larger: ByBound,
@@ -29,8 +29,8 @@ impl Queue {
         }
     }
 
-    /// The next block with a bound that is not below the floor: the one with
-    /// the highest bound, or if `prefers_leaves` the best of the smallest.
+    /// Takes the next block with a bound that is not below the floor: the one with the highest
+    /// bound or, if `prefers_leaves`, the best of the smallest.
     pub(in crate::search) fn pop(&mut self, prefers_leaves: bool, floor: u16) -> Option<Block> {
         loop {
             let blocks = self.next_of(prefers_leaves);
@@ -38,12 +38,12 @@ impl Queue {
             if block.bound >= floor {
                 return Some(block);
             }
-            // Those behind it have no higher bounds.
+            // Those after it have no higher bounds.
             blocks.clear();
         }
     }
 
-    /// What would be popped now.
+    /// Returns the block that would be popped now, if it reaches the floor.
     pub(in crate::search) fn peek(&mut self, prefers_leaves: bool) -> Option<Block> {
         self.next_of(prefers_leaves).peek()
     }
@@ -65,15 +65,15 @@ impl Queue {
     }
 }
 
-/// Blocks by their bounds, of which there are few different ones; of equal ones the last
-/// comes first.
+/// Blocks by their bounds, of which there are few different ones. Of equal ones the last
+/// that was pushed comes first.
 #[derive(Debug, Default)]
 struct ByBound {
-    /// For each bound the last block that was pushed with it.
+    /// Place of the last block with each bound.
     last: Vec<Option<Place>>,
     /// A bit for each bound that a block has.
     bounds: Vec<u64>,
-    /// All that were pushed, each with the one before of the same bound.
+    /// All blocks that were pushed, each with the place of the one before with the same bound.
     blocks: Vec<(Block, Option<Place>)>,
 }
 
@@ -98,7 +98,7 @@ impl ByBound {
         self.bounds[bound / 64] |= 1 << (bound % 64);
     }
 
-    /// The greatest bound that a block has.
+    /// Returns the greatest bound that a block has.
     fn greatest(&mut self) -> Option<usize> {
         while let Some(&bounds) = self.bounds.last() {
             if let Some(highest) = bounds.checked_ilog2() {
@@ -114,7 +114,7 @@ impl ByBound {
         let bound = self.greatest()?;
         let &(block, before) = self.at(self.last[bound]?);
         if let Some(before) = before {
-            // It likely comes after this one, and lies anywhere.
+            // It is likely the next one, and may be anywhere in memory.
             prefetch(std::slice::from_ref(self.at(before)));
         }
         Some(block)
@@ -146,19 +146,19 @@ impl ByBound {
 /// A block in the queue.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::search) struct Block {
-    /// What none of its poses has more than: the order of the queue.
+    /// Votes that none of its poses exceeds; the queue is ordered by it.
     pub bound: u16,
     pub index: u32,
     pub level: Level,
 }
 
-/// The bound of a block, and which it is; of equal ones the first comes first.
+/// The bound of a block, and its index; of equal bounds the lowest index comes first.
 pub(in crate::search) type BoundedBlock = (u16, Reverse<u32>);
 
-/// How large a block is, and what is known of it.
+/// Size of a block, and the places of the headings known for it.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::search) enum Level {
-    /// A quad of 16 × 16 cells each.
+    /// 16 × 16 cells.
     Coarse,
     /// 8 × 8 cells, at the headings of these windows.
     Fine { start: u32, end: u32 },
@@ -167,7 +167,7 @@ pub(in crate::search) enum Level {
 }
 
 impl Level {
-    /// From the largest blocks on.
+    /// Number of the level, counted from the largest blocks on.
     pub(in crate::search) fn number(self) -> usize {
         match self {
             Level::Coarse => 0,

@@ -1,4 +1,4 @@
-//! Searches of a prepared map, whichever way they go.
+//! Searches of a prepared map, by bounds or by counting.
 
 use super::attempt::Attempt;
 use super::{alternatives, descent};
@@ -15,20 +15,20 @@ use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteSet};
 
-/// What searches need beside the map, kept from scan to scan: once there is scratch
-/// for all, nothing is allocated any more. It may serve any map.
+/// Buffers for searches, kept from scan to scan: once they are large enough, nothing is
+/// allocated any more. They may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     shared: Shared,
     /// One for each thread.
     scratches: Vec<descent::Scratch>,
     alternatives: alternatives::Scratch,
-    /// For counting every pose, the shares one for each thread.
+    /// Buffers for counting every pose, one for each thread.
     shares: Vec<counting::Share>,
     pub(in crate::search) bounding: Bounding,
 }
 
-/// What blocks are bounded with.
+/// Program and buffers for bounding blocks.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Bounding {
     pub(super) program: SetProgram,
@@ -36,7 +36,7 @@ pub(in crate::search) struct Bounding {
 }
 
 impl SearchIndex {
-    /// The poses with the most votes; `None` if `stop` said so before the end.
+    /// Returns the poses with the most votes; `None` if `stop` returned true before the end.
     #[must_use]
     pub fn search(
         &self,
@@ -50,7 +50,7 @@ impl SearchIndex {
         self.search_with((best, 1), grid, (program, space), config, stop)
     }
 
-    /// The same with a certain instruction set on a number of threads, see
+    /// Does the same with a given instruction set on a number of threads, see
     /// [`SearchIndex::search_in`].
     ///
     /// # Panics
@@ -72,12 +72,12 @@ impl SearchIndex {
         Some(found)
     }
 
-    /// Fills in the poses with the most votes, in a workspace that may have
-    /// served other scans and maps; `None` if `stop` said so before the end.
+    /// Fills in the poses with the most votes, in a workspace that may have served other scans
+    /// and maps; `None` if `stop` returned true before the end.
     ///
-    /// The outcome is the same with any instruction set and number of threads,
-    /// but for the number of poses that were counted. Where bounds cannot distinguish
-    /// blocks apart, all poses are counted.
+    /// The outcome is the same with any instruction set and number of threads, except for the
+    /// number of poses that were counted. If bounds cannot distinguish blocks, all poses are
+    /// counted.
     ///
     /// # Panics
     /// If the processor does not have the instruction set, or there is no
@@ -96,7 +96,7 @@ impl SearchIndex {
         attempt.find(found)
     }
 
-    /// A search to be made.
+    /// Prepares a search.
     pub(in crate::search) fn attempt<'a>(
         &'a self,
         workspace: &'a mut Workspace,

@@ -13,28 +13,28 @@ use crate::votes::{CollectConfig, VoteSet};
 /// A map that is searched together with others.
 #[derive(Debug)]
 pub struct Searched<'a> {
-    /// What is known of the map.
+    /// Index of the map.
     pub index: &'a SearchIndex,
-    /// Its cells.
+    /// Cells of the map.
     pub grid: &'a Grid,
-    /// The scan, compiled for its space.
+    /// Scan, compiled for the map's space.
     pub scan: (&'a ScanProgram, &'a Space),
-    /// May have served other scans and maps.
+    /// Workspace, which may have served other scans and maps.
     pub workspace: &'a mut Workspace,
-    /// What was found.
+    /// Poses that were found, filled in by the search.
     pub found: &'a mut VoteSet,
 }
 
 impl SearchIndex {
-    /// Searches several maps together, each with a workspace and a place for what is found:
-    /// of each map the poses that have at least a share of the best one's votes, wherever that
-    /// is. Votes of maps are compared as shares of the highest possible there, without
-    /// rounding. The lead rises with them, and by what others find on maps that they search
-    /// meanwhile. `None` if `stop` said so before the end.
+    /// Searches several maps together, each with a workspace and a place for the result. Finds
+    /// on each map the poses that have at least a share of the best one's votes, on whichever
+    /// map that is. Votes on different maps are compared as shares of the highest possible
+    /// there, without rounding. The lead rises with them, and with poses that other searches
+    /// find meanwhile. Returns `None` if `stop` returned true before the end.
     ///
     /// The outcome does not depend on the order of the maps, as far as it is certified. Of
-    /// poses below the floor, a map that does not have the best pose has only those with half
-    /// of its votes.
+    /// poses below the floor, a map that does not have the best pose has only those with at
+    /// least half of its votes.
     ///
     /// # Panics
     /// If the processor does not have the instruction set, or there is no thread.
@@ -66,8 +66,8 @@ mod tests {
     use crate::testing::{any_grid, any_scan, plain_votes};
     use messages::Vote;
 
-    /// The poses of maps that come near the best one of all, by counting every pose: most
-    /// votes first, with the least that is complete.
+    /// Returns the poses of maps that come near the best one of all, by counting every pose:
+    /// most votes first, with the least that is complete.
     fn plain_together(
         maps: &[(&Grid, &ScanProgram, &Space)],
         config: CollectConfig,

@@ -1,26 +1,26 @@
-//! When a search is worse than counting every pose.
+//! Decides when a search is worse than counting every pose.
 //!
-//! In uniform clutter bounds do not distinguish blocks. The search tallies what it
-//! did, estimates what is left from what blocks of each level have cost so far,
-//! and gives up where counting every pose would be done sooner. Where that is seen at
-//! the first look, a tenth of what brute force costs is lost.
+//! In uniform clutter bounds do not distinguish blocks. The search tallies its work,
+//! estimates the rest from the cost of the blocks of each level so far, and gives up if
+//! counting every pose would be done sooner. If that is seen at the first look, a tenth of
+//! the cost of brute force is lost.
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
 
-/// Sizes of blocks in the queue of a search.
+/// Number of sizes of blocks in the queue of a search.
 pub(in crate::search) const LEVELS: usize = 3;
 
 /// Work, in nanoseconds on a processor of 2 GHz. Only ratios matter.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(in crate::search) struct Cost(pub f64);
 
-/// What was done since it was last looked at.
+/// Work that was done since it was last taken.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::search) struct Tally {
-    /// Words that bounds from sets took, ever.
+    /// Words that were read for bounds from sets, ever.
     pub reads: u64,
     reads_before: u64,
     /// Bounds of blocks from intervals, 64 headings each.
@@ -32,30 +32,30 @@ pub(in crate::search) struct Tally {
     casts_before: u64,
 }
 
-/// What a search has cost so far.
+/// Cost of a search so far, and its limits.
 #[derive(Debug)]
 pub(in crate::search) struct Budget {
-    /// What is left must cost less.
+    /// Cost of the rest above which the search is given up.
     most: f64,
-    /// When the search ends, done or not.
+    /// Cost at which the search ends, done or not.
     limit: f64,
     /// Cost of counting every pose.
     counting: f64,
     spent: f64,
-    /// When to look again.
+    /// Cost at which to look again.
     next: f64,
-    /// Blocks of each level that were taken from the queue, and their cost.
+    /// Number of blocks of each level that were taken from the queue, and their cost.
     taken: [(f64, f64); LEVELS],
 }
 
-/// What was measured for the parts of a search, in nanoseconds.
+/// Measured cost of the parts of a search, in nanoseconds.
 #[derive(Debug, Clone, Copy)]
 struct Rates {
     read: f64,
     window_per_beam: f64,
     sector: f64,
     cast: f64,
-    /// For counting every pose: at each heading, cell and beam.
+    /// Counting every pose, for each heading, cell and beam.
     vote: f64,
 }
 
@@ -83,20 +83,21 @@ impl Rates {
 /// Share of the work that goes into the smallest blocks before their turn.
 const LEAF_SHARE: f64 = 0.4;
 
-/// The first look, as a share of what brute force costs: this much is lost where a
-/// search is given up then.
+/// Cost at the first look, as a share of that of brute force: this much is lost if a search
+/// is given up then.
 const FIRST_LOOK: f64 = 0.1;
 
-/// How much more is spent until the next look.
+/// Factor from the cost at a look to the cost at the next one.
 const NEXT_LOOK: f64 = 1.5;
 
-/// What is expected to be left, as a multiple of counting every pose, where a search is
-/// given up. The blocks that are left have lower bounds and cost less, to half of those before;
-/// and at first the best pose may not be known, so that the floor is still low.
+/// Expected cost of the rest, as a multiple of counting every pose, above which a search is
+/// given up. The blocks that are left have lower bounds and cost less, down to half of
+/// those before; and at first the best pose may not be known, so that the floor is still
+/// low.
 const HOPELESS: f64 = 2.5;
 
 impl Cost {
-    /// What it costs to count every pose.
+    /// Cost of counting every pose.
     pub(in crate::search) fn of_brute_force(
         instruction_set: InstructionSet,
         grid: &Grid,
@@ -109,7 +110,7 @@ impl Cost {
 }
 
 impl Tally {
-    /// What was done since the last time, with this many beams.
+    /// Returns the cost of the work since the last call, with this many beams.
     pub(in crate::search) fn take(
         &mut self,
         instruction_set: InstructionSet,
@@ -145,44 +146,44 @@ impl Budget {
         }
     }
 
-    /// Notes what a block of a level has cost.
+    /// Adds the cost of a block of a level.
     pub(in crate::search) fn spend(&mut self, level: usize, cost: Cost) {
         self.spent += cost.0;
         self.taken[level].0 += 1.0;
         self.taken[level].1 += cost.0;
     }
 
-    /// Whether the smallest block with the highest bound comes next, even where larger
-    /// blocks have higher bounds: as long as that has cost a small part.
+    /// True if the smallest block with the highest bound comes next, even if larger blocks have
+    /// higher bounds: as long as the smallest blocks have cost a small part.
     pub(in crate::search) fn prefers_leaves(&self) -> bool {
         self.taken[LEVELS - 1].1 < self.spent * LEAF_SHARE
     }
 
-    /// Whether it is time to see how much is left.
+    /// True if it is time to estimate the rest.
     pub(in crate::search) fn is_up(&self) -> bool {
         self.spent >= self.next
     }
 
-    /// What the search has cost.
+    /// Cost of the search so far.
     pub(in crate::search) fn spent(&self) -> f64 {
         self.spent
     }
 
-    /// Whether the search has to end, together with what was spent on other maps.
+    /// True if the search has to end, counting the cost spent on other maps.
     pub(in crate::search) fn is_used_up(&self, elsewhere: f64) -> bool {
         self.spent + elsewhere >= self.limit
     }
 
-    /// Whether counting every pose would be done sooner than what is left, blocks of
-    /// each level, and before the search has to end.
+    /// True if counting every pose would be done sooner than the blocks `left` of each level,
+    /// and before the search has to end. Sets the time of the next look.
     pub(in crate::search) fn is_hopeless(&mut self, left: [usize; LEVELS], elsewhere: f64) -> bool {
         self.next = self.spent * NEXT_LOOK;
         if self.spent + elsewhere + self.counting > self.limit {
             return false;
         }
         let mut below = 0.0;
-        // A block costs what those of its level did, and what those below it
-        // will that came of it.
+        // A block costs as much as those of its level did, and as much as the blocks that come from
+        // it will.
         let mut expected = 0.0;
         for level in (0..LEVELS).rev() {
             let (taken, cost) = self.taken[level];

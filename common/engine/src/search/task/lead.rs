@@ -8,36 +8,36 @@ use std::sync::atomic::Ordering;
 
 use crate::votes::VoteShare;
 
-/// The share that the best pose has, in one word, so that threads need no lock. Whoever knows
-/// of a pose on a map that somebody else searches may raise it while a search is at work.
+/// Share of the votes that the best pose has, in one word, so that threads need no lock. A
+/// caller that knows of a pose on another map may raise it while a search runs.
 #[derive(Debug)]
 pub struct Lead(AtomicU32);
 
 impl Default for Lead {
-    /// No pose has a vote so far.
+    /// Returns a lead without any votes.
     fn default() -> Self {
         Lead(AtomicU32::new(pack(VoteShare::default())))
     }
 }
 
 impl Lead {
-    /// Takes what a pose has that was counted.
+    /// Raises the lead to the share of a pose that was counted, if that is greater.
     pub fn raise(&self, share: VoteShare) {
         let better = |now| share.compare(unpack(now)).is_gt().then(|| pack(share));
-        // It only rises, whoever is first.
+        // It only rises, in any order of the threads.
         let _ = self
             .0
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, better);
     }
 
-    /// What the best pose has.
+    /// Returns the share of the best pose.
     #[must_use]
     pub fn share(&self) -> VoteShare {
         unpack(self.0.load(Ordering::Relaxed))
     }
 
-    /// The least number of votes that is as good as the best pose, on a map on which such a
-    /// number is possible.
+    /// Returns the least number of votes that is as good as the best pose, on a map where
+    /// `possible` votes are the most.
     pub(in crate::search) fn on(&self, possible: u16) -> u16 {
         let best = self.share();
         match best.possible == possible {

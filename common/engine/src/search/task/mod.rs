@@ -1,6 +1,6 @@
-//! What the threads of a search share, and what it may cost.
+//! Data that the threads of a search share, and the limits of its cost.
 //!
-//! A task does not change while it is searched but for bounds and the best pose so far,
+//! A task does not change while it is searched, except for bounds and the best pose so far,
 //! which only let threads skip work.
 
 pub(in crate::search) mod budget;
@@ -21,30 +21,30 @@ use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteShare};
 
-/// What is searched: a scan on a map.
+/// A scan to be searched on a map.
 pub(in crate::search) struct Task<'a> {
     pub index: &'a SearchIndex,
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
     pub programs: &'a Programs,
-    /// The bound of each coarse block in which poses are searched.
+    /// Bound of each coarse block in which poses are searched.
     pub coarse_bounds: &'a [AtomicU16],
-    /// The same, chunk by chunk of headings.
+    /// The same for each chunk of headings.
     by_chunk: &'a [AtomicU16],
-    /// The best pose so far, whoever found it, and on whichever map.
+    /// Best pose so far, found by any thread on any map.
     lead: &'a Lead,
-    /// What a pose would have if every beam agreed fully.
+    /// Votes of a pose with which every beam agrees fully.
     possible: u16,
-    /// What counting every pose with all beams would cost one thread.
+    /// Cost of counting every pose with all beams on one thread.
     pub brute_force: Cost,
 }
 
-/// How a part of a search ended.
+/// End of a part of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::search) enum End {
-    /// With the poses that matter, but for those in blocks that were left where it took
-    /// more work than it may.
+    /// All poses that matter were found, except for those in blocks that were left when the
+    /// work limit was reached.
     Done,
     /// It was asked to stop.
     Stopped,
@@ -52,7 +52,7 @@ pub(in crate::search) enum End {
     Hopeless,
 }
 
-/// What the threads of a search share, kept from scan to scan.
+/// Data that the threads of a search share, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Shared {
     pub programs: Programs,
@@ -114,7 +114,7 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The same task, of which nothing was found so far, and which is not given up.
+    /// Returns the same task with another lead; it is never given up.
     #[cfg(all(test, loom))]
     pub(in crate::search) fn anew(&self, lead: &'a Lead) -> Self {
         Task {
@@ -124,8 +124,8 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The votes of the best pose so far; where that is one of another map, the least number
-    /// that is as good here.
+    /// Returns the votes of the best pose so far or, if that is on another map, the least
+    /// number that is as good here.
     pub(in crate::search) fn best(&self) -> u16 {
         self.lead.on(self.possible)
     }
@@ -135,7 +135,7 @@ impl<'a> Task<'a> {
         self.lead.raise(VoteShare::new(votes, self.possible));
     }
 
-    /// What poses of the map see.
+    /// Returns the map and tables for following rays.
     pub(in crate::search) fn view(&self) -> View<'a> {
         View {
             grid: self.grid,
@@ -145,19 +145,19 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The bounds of a coarse block in each chunk of headings.
+    /// Returns the bounds of a coarse block in each chunk of headings.
     pub(in crate::search) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
         let chunks = self.by_chunk.len() / self.coarse_bounds.len();
         &self.by_chunk[block * chunks..][..chunks]
     }
 
-    /// The headings that are searched.
+    /// Returns the headings that are searched.
     pub(in crate::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
         let limits = &self.index.within.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
-    /// The headings that are searched, a word a chunk.
+    /// Returns a bit for each heading that is searched, a word for each chunk.
     pub(in crate::search) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }

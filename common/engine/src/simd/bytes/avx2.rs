@@ -13,22 +13,22 @@ use crate::simd::{Avx2, avx2};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Avx2Bytes(__m256i);
 
-/// All ones in a cell's byte.
+/// Masks with all ones in the bytes of open and of occupied cells.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cells {
     open: __m256i,
     occupied: __m256i,
 }
 
-/// What is left is never above 15.
+/// Kind of look-up in which at most 15 steps are left.
 const SHORT: u8 = 0;
-/// Votes end before 15 are left.
+/// Kind of look-up in which votes end before 15 steps are left.
 const CLAMPED: u8 = 1;
-/// By the distance from the reading, in parts of 16.
+/// Kind of look-up by the distance from the reading, in parts of 16.
 const BY_DISTANCE: u8 = 2;
 
 avx2! {
-    /// All ones in the bytes whose bit is set.
+    /// Returns all ones in the bytes whose bit is set.
     fn spread(_set: Avx2, bits: u32) -> __m256i {
         let byte_of = _mm256_setr_epi64x(
             0,
@@ -98,7 +98,7 @@ avx2! {
             Avx2Bytes(if BLOCKED {
                 _mm256_or_si256(_mm256_and_si256(next, cells.open), end)
             } else {
-                // Nothing ahead has more left than an obstacle.
+                // Nothing ahead has more steps left than an obstacle.
                 _mm256_max_epu8(next, end)
             })
         }
@@ -200,35 +200,35 @@ avx2! {
 }
 
 avx2! {
-    /// Sixteen bytes of a look-up, twice.
+    /// Returns sixteen bytes of a look-up, twice.
     fn part(_set: Avx2, bytes: &[u8; 16]) -> Avx2Bytes {
         Avx2Bytes(_mm256_broadcastsi128_si256(must_cast(*bytes)))
     }
 }
 
 avx2! {
-    /// The bytes of a table at places below 16.
+    /// Looks up bytes of a table at places below 16.
     fn short(left: Avx2Bytes, table: Avx2Bytes) -> Avx2Bytes {
         Avx2Bytes(_mm256_shuffle_epi8(table.0, left.0))
     }
 }
 
 avx2! {
-    /// The same; beyond the table it is as at its end.
+    /// Looks up bytes of a table; places beyond its end give the last one.
     fn clamped(left: Avx2Bytes, table: Avx2Bytes) -> Avx2Bytes {
         short(Avx2Bytes(_mm256_min_epu8(left.0, _mm256_set1_epi8(15))), table)
     }
 }
 
 avx2! {
-    /// The same; beyond the table it is 0.
+    /// Looks up bytes of a table; places beyond its end give 0.
     fn within(distance: Avx2Bytes, table: Avx2Bytes) -> Avx2Bytes {
         short(Avx2Bytes(_mm256_adds_epu8(distance.0, _mm256_set1_epi8(BEYOND))), table)
     }
 }
 
 avx2! {
-    /// How far bytes lie from the reach. What is left differs from that by at most 255
+    /// Returns the distances of bytes from the reach. Bytes exceed the reach by at most 255
     /// less the reach: the distance may wrap, but not to a vote.
     fn from(left: Avx2Bytes, reach: Avx2Bytes) -> Avx2Bytes {
         Avx2Bytes(_mm256_abs_epi8(less(left, reach).0))

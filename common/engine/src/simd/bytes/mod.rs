@@ -1,4 +1,4 @@
-//! Bytes side by side: what a sweep does to many cells at once.
+//! Vectors of bytes: the operations of a sweep on many cells at once.
 //!
 //! A cell's byte is the number of steps that are *left* before a taper ends:
 //! 0 where the ray sees nothing or too far, `end` in an obstacle, one less for
@@ -15,25 +15,25 @@ pub(crate) use portable::Portable;
 
 use crate::program::Taper;
 
-/// What every slice has that vectors are read of or stored to.
+/// Panic message: every slice holds at least a vector.
 const ENOUGH: &str = "as many numbers as a vector has";
 
 /// The longest profile whose taper a look-up holds: from its first vote to its
 /// end a byte counts the steps, and no vote is left at 255.
 pub(crate) const MAX_REACH: usize = 127;
 
-/// The votes of a beam by the steps that are left, laid out as one instruction
-/// set looks them up.
+/// Votes of a beam by the steps that are left, laid out for the look-up of one instruction
+/// set.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Lookup {
-    /// What [`Lanes`] wrote here.
+    /// Contents, written by [`Lanes`].
     bytes: [u8; 256],
-    /// How the bytes are laid out; each instruction set has its own kinds.
+    /// Layout of the bytes; each instruction set has its own kinds.
     pub kind: u8,
-    /// Steps that are left where the ray ends at the reading.
+    /// Steps that are left if the ray ends at the reading.
     reach: u8,
-    /// Parts of the bytes that are in use, where the kind asks.
+    /// Number of parts of the bytes in use, for kinds that have parts.
     parts: u8,
 }
 
@@ -47,7 +47,7 @@ impl Lookup {
         }
     }
 
-    /// The table by what is left, for the first `size` numbers.
+    /// Makes the table by the steps that are left, for the first `size` numbers.
     #[cfg(target_arch = "x86_64")]
     fn by_left(kind: u8, taper: &Taper<'_>, size: usize) -> Self {
         let mut lookup = Lookup::new(kind, taper);
@@ -59,19 +59,19 @@ impl Lookup {
     }
 }
 
-/// A vector of bytes, one for each of neighbouring cells. Slices hold a vector at least,
-/// or the bytes of two.
+/// A vector of bytes, one for each of neighbouring cells. Slices hold at least a vector or,
+/// for pairs, the bytes of two.
 pub(crate) trait Lanes: Copy {
     /// The token of the instruction set.
     type Set: Copy;
     /// Numbers of 16 bits, one for each of the cells of a vector.
     type Pair: Copy;
-    /// Where rays end among the cells of a vector.
+    /// Masks of the cells of a vector that end rays.
     type Cells: Copy;
 
-    /// Cells of a vector; at most 64 and a power of two.
+    /// Number of cells of a vector: a power of two, at most 64.
     const WIDTH: usize;
-    /// Vectors that are swept at a time, 1, 3 or 5: with their votes they fill the
+    /// Number of vectors that are swept at a time, 1, 3 or 5: with their votes they fill the
     /// registers.
     const AT_A_TIME: usize;
 
@@ -79,14 +79,14 @@ pub(crate) trait Lanes: Copy {
     fn load(set: Self::Set, from: &[u8]) -> Self;
     fn store(self, to: &mut [u8]);
     fn add(self, other: Self) -> Self;
-    /// Adds the bytes to numbers of 16 bits, or sets those.
+    /// Adds the bytes to numbers of 16 bits if `ADD`, else overwrites those.
     fn widen<const ADD: bool>(self, to: &mut [u16]);
 
-    /// The cells of a vector, the first in the lowest bit. There are blocked ones only
-    /// where `BLOCKED` says so.
+    /// Returns the masks of the cells of a vector, the first cell in the lowest bit. Blocked
+    /// cells count only if `BLOCKED`.
     fn cells<const BLOCKED: bool>(set: Self::Set, occupied: u64, blocked: u64) -> Self::Cells;
-    /// What is left a step before cells with this much left: `end` where the cell
-    /// is occupied, nothing where it blocks.
+    /// Returns the steps left in cells, given those left in the next ones: `end` if the cell is
+    /// occupied, 0 if it blocks, else one less.
     fn step<const BLOCKED: bool>(self, cells: Self::Cells, end: Self) -> Self;
 
     fn splat_pair(set: Self::Set, number: u16) -> Self::Pair;
@@ -98,13 +98,12 @@ pub(crate) trait Lanes: Copy {
         cells: Self::Cells,
         end: Self::Pair,
     ) -> Self::Pair;
-    /// As bytes; what no byte holds becomes 255 or 0, which have no votes.
+    /// Converts to bytes; greater numbers become 255 or 0, which have no votes.
     fn narrow(set: Self::Set, pair: Self::Pair) -> Self;
 
-    /// The look-up of a taper of at most [`MAX_REACH`]; what is left is at most
-    /// `highest`.
+    /// Makes the look-up of a taper of at most [`MAX_REACH`]; at most `highest` steps are left.
     fn lookup(set: Self::Set, taper: &Taper<'_>, highest: u8) -> Lookup;
-    /// Adds the votes for what is left.
+    /// Adds the votes for the steps that are left.
     fn vote<const N: usize>(
         set: Self::Set,
         votes: &mut [Self; N],

@@ -1,8 +1,8 @@
-//! 32 bytes as an array, for the compiler to lay on whatever there is.
+//! 32 bytes as an array, for the compiler to vectorize.
 //!
-//! Few processors look up many bytes at once in a way that it finds by itself.
-//! But votes only fall with the distance from the reading, in few levels, and
-//! to count the levels takes comparisons alone.
+//! On few processors does the compiler find an instruction that looks up many bytes at
+//! once. But votes only fall with the distance from the reading, in few levels, and
+//! counting the levels takes only comparisons.
 
 use bytemuck::must_cast;
 
@@ -15,7 +15,7 @@ const WIDTH: usize = 32;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Portable([u8; WIDTH]);
 
-/// All ones in a cell's byte.
+/// Masks with all ones in the bytes of open and of occupied cells.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cells {
     open: [u8; WIDTH],
@@ -158,7 +158,7 @@ impl Lanes for Portable {
     }
 }
 
-/// All ones in the bytes whose bit is set.
+/// Returns all ones in the bytes whose bit is set.
 #[inline(always)]
 fn spread(bits: u64) -> [u8; WIDTH] {
     let mut bytes = [0; WIDTH];

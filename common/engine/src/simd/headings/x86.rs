@@ -16,7 +16,7 @@ const HALF: usize = HEADINGS / 2;
 pub(crate) struct Avx2Headings([__m256i; 2]);
 
 avx2! {
-    /// Where the table has the votes for the bin of each interval that is nearest to the
+    /// Returns the place in the table of the bin of each interval that is nearest to the
     /// centre.
     fn place(_set: Avx2, votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __m256i {
         let centre = _mm256_set1_epi8(votes.centre.cast_signed());
@@ -33,7 +33,7 @@ fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
 avx2! {
     impl HeadingLanes for Avx2Headings {
         type Set = Avx2;
-        /// For each register, of the first and of the second eight headings of each 16.
+        /// For each register, the sums of the first and of the second eight headings of each 16.
         type Sums = [[__m256i; 2]; 2];
 
         fn none(_set: Avx2) -> Avx2Headings {
@@ -45,7 +45,7 @@ avx2! {
             let near = |half| place(set, votes, half_of(near_first, half), half_of(near_last, half));
             let far = |half| place(set, votes, half_of(far_first, half), half_of(far_last, half));
             let mut places = [near(0), far(0), near(1), far(1)];
-            // Only then is the last entry, which stands for those beyond, anything but 0.
+            // Otherwise the last entry, which stands for all bins beyond, is 0.
             if usize::from(votes.used) == TABLE {
                 let last = _mm256_set1_epi8(TABLE as i8 - 1);
                 places = places.map(|place| _mm256_min_epu8(place, last));

@@ -14,7 +14,7 @@ const BY_BLOCKS: [u8; 16] = [0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 1
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2Words([__m256i; 2]);
 
-/// For each mask of eight, which of those that it selects comes where.
+/// For each mask of eight, the number of selected places before each place, as a byte.
 static PLACES: [u64; 256] = places();
 
 const fn places() -> [u64; 256] {
@@ -33,8 +33,8 @@ const fn places() -> [u64; 256] {
 }
 
 avx2! {
-    /// Eight times four bytes: those that the mask selects, one after the other, and
-    /// others without bits.
+    /// Spreads eight groups of four bytes: places that the mask selects get the next group of
+    /// `bytes`, others get no bits.
     fn expand(_set: Avx2, mask: u8, bytes: &[u8; BYTES / 2]) -> __m256i {
         let places = _mm_cvtsi64_si128(PLACES[usize::from(mask)].cast_signed());
         let spread = _mm256_permutevar8x32_epi32(must_cast(*bytes), _mm256_cvtepu8_epi32(places));
@@ -118,7 +118,7 @@ avx2! {
         }
 
         fn sorted(self) -> Avx2Words {
-            // Then the parts of each block side by side.
+            // After this, the parts of each block are adjacent.
             let bytes = _mm256_broadcastsi128_si256(must_cast(BY_BLOCKS));
             let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
             let [low, high] = self.0;

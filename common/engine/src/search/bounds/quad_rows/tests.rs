@@ -6,10 +6,10 @@ use crate::instruction_set::InstructionSet;
 use crate::simd::words::Words;
 use crate::simd::{Kernel, Set, Simd};
 
-/// Rows have fewer bytes than these.
+/// Exclusive limit of the bytes of a row.
 const STRIDES: usize = if cfg!(miri) { 5 } else { 50 };
 
-/// Reading windows one by one in the last of some quads that are taken one after the other.
+/// Takes quads one after the other, and reads windows one by one in the last one.
 struct Reading<'a> {
     layout: &'a RowLayout,
     quads: &'a [(usize, Vec<Vec<Byte>>)],
@@ -62,7 +62,7 @@ proptest! {
         layout.start(8 * stride);
         let mut laid_out: Vec<_> = windows.iter().map(|&(first, length, byte, more)| {
             let window = layout.window(first..first + length, byte);
-            // Reading oftener than needed changes nothing.
+            // Reading more often than needed changes nothing.
             (window, window.reads + more)
         }).collect();
         laid_out.push((layout.nothing(), 3));

@@ -24,27 +24,27 @@ use crate::search::index::steps::BinSteps;
 use crate::simd::{Kernel, Set, Simd};
 use crate::threads;
 
-/// What the intervals are made of.
+/// Input for building the intervals.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'a> {
     pub grid: &'a Grid,
     pub directions: &'a Directions,
     pub bins: &'a Bins,
     pub steps: &'a BinSteps,
-    /// The blocks that are wanted.
+    /// Blocks whose intervals are wanted.
     pub ids: &'a BlockIds,
 }
 
 /// The packed intervals of the wanted blocks in [`TILE`] rows of blocks. Threads fill
 /// them in different directions and take turns at that.
 struct Band<'a> {
-    /// The number of its first block.
+    /// Number of its first wanted block.
     first: usize,
     packed: Mutex<&'a mut [u8]>,
 }
 
-/// Fills the packed intervals of the wanted blocks, row by row. What is seen where they
-/// are wide, as each thread found it.
+/// Fills the packed intervals of the wanted blocks, row by row. Returns the views where
+/// they are wide, as each thread found them.
 pub(super) fn build(
     source: Source<'_>,
     simd: Simd,
@@ -94,7 +94,7 @@ fn bands<'a>(source: Source<'_>, mut packed: &'a mut [u8]) -> Vec<Band<'a>> {
     bands
 }
 
-/// Where what is built goes: the packed intervals, and what is seen where they are wide.
+/// Output: the packed intervals, and the views where they are wide.
 struct Built<'a, 'b> {
     bands: &'a [Band<'b>],
     views: &'a mut Vec<WideView>,
@@ -109,7 +109,7 @@ struct Part {
     directions: Vec<usize>,
 }
 
-/// All directions by major axis and sense, in as many pieces as threads need.
+/// Returns all directions by major axis and sense, in as many pieces as threads need.
 fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
     let mut parts = Vec::new();
     for (x_major, forward) in [(true, true), (true, false), (false, true), (false, false)] {
@@ -131,7 +131,7 @@ fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
     parts
 }
 
-/// Sweeping in the directions of a part.
+/// Kernel that sweeps in the directions of a part.
 struct Sweeping<'a, 'b, 'c> {
     source: Source<'a>,
     part: &'a Part,
@@ -147,7 +147,6 @@ impl Kernel for Sweeping<'_, '_, '_> {
     }
 }
 
-/// Sweeps over the map in the directions of a part.
 #[inline(always)]
 fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
     let (width, height) = (source.grid.width(), source.grid.height());
@@ -216,16 +215,16 @@ fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_
 
 /// The packed intervals of a strip, direction by direction.
 struct Planes {
-    /// Directions of a turn.
+    /// Number of directions of a turn.
     directions: usize,
-    /// Bytes of a row of the packed format in one direction: one a block.
+    /// Bytes of a row of the packed format in one direction: one for each block.
     stride: usize,
     bytes: Vec<u8>,
     /// Bytes of a row of the packed format in one block.
     turned_stride: usize,
-    /// Those of the blocks of a tile, block by block.
+    /// Transposed rows of the blocks of a tile, block by block.
     turned: Vec<u8>,
-    /// Runs of neighbouring directions, and where they start among all.
+    /// Runs of neighbouring directions: the place of each in the part, and its directions.
     runs: Vec<(usize, Range<usize>)>,
 }
 
@@ -249,7 +248,7 @@ impl Planes {
         }
     }
 
-    /// The rows of the packed format in one direction.
+    /// Returns the rows of the packed format in one direction.
     #[inline(always)]
     fn of(&mut self, slot: usize) -> [&mut [u8]; PACKED] {
         let rows = &mut self.bytes[PACKED * self.stride * slot..][..PACKED * self.stride];
@@ -268,7 +267,7 @@ impl Planes {
             if wanted == 0 {
                 continue;
             }
-            // A tile across a column of blocks is as high as a band.
+            // A tile along a column of blocks is as high as a band.
             let band = if part.x_major { tile } else { strip / TILE };
             let Band { first, packed } = &bands[band];
             let place = |block: usize| bytes * (blocks.id(start + block) - first);
@@ -280,7 +279,7 @@ impl Planes {
         }
     }
 
-    /// Turns the tile of blocks from `start` on.
+    /// Transposes the tile of blocks from `start` on.
     #[inline(always)]
     fn turn(&mut self, start: usize) {
         let stride = self.turned_stride;
@@ -300,7 +299,7 @@ impl Planes {
         }
     }
 
-    /// Writes a block of the turned tile.
+    /// Writes a block of the transposed tile.
     #[inline(always)]
     fn write_block(&self, block: usize, packed: &mut [u8]) {
         let turned = &self.turned[PACKED * self.turned_stride * block..];

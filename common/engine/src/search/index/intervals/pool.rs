@@ -6,15 +6,15 @@ use super::{ALL, PACKED, SIDE, STRETCHES};
 use crate::search::index::bins::{Bins, Line};
 use crate::simd::numbers::Numbers;
 
-/// Pools the ranges of a strip's four rows of cells block by block, and packs
-/// the intervals of their bins, by `lines`, row by row of the packed format. Notes what
-/// is seen where they are wide. Where no block is wanted, nothing is done.
+/// Pools the ranges of a strip's four rows of cells block by block, and packs the intervals
+/// of their bins, by `lines`, row by row of the packed format. Notes the views where they
+/// are wide. Skips vectors in which no block is wanted.
 ///
-/// What lies up to the middle between the shortest and the longest range of a
-/// block is near, the rest is far; or what lies in the first quarter, if both parts
-/// are narrower then. Cells that see nothing and cells that nobody
-/// can stand in must not count: one step less than [`NO_RANGE`] and than the 0 of
-/// occupied cells are the two greatest numbers, and -2 and -1 if signed.
+/// Ranges up to the middle between the shortest and the longest range of a block are near,
+/// the rest far; or only those in the first quarter are near, if the sum of both widths is
+/// smaller then. Cells that see nothing and cells in which no robot can stand must not
+/// count: one step less than [`NO_RANGE`] and than the 0 of occupied cells are the two
+/// greatest numbers, and -2 and -1 if signed.
 ///
 /// [`NO_RANGE`]: crate::program::NO_RANGE
 #[inline(always)]
@@ -70,9 +70,9 @@ pub(super) fn pool<L: Numbers, const LINES: usize>(
     }
 }
 
-/// The nibbles of the widths of a near and a far interval, and above them, for what is
-/// wide to be more, both widths together: from the first bin to that of the last near
-/// number, and from that of the first far one to the last bin.
+/// Returns the nibbles of the widths of a near and a far interval, with the sum of both
+/// widths above them, so that a wider split is a greater number. Widths go from the first
+/// bin to that of the last near number, and from that of the first far one to the last bin.
 #[inline(always)]
 fn split<L: Numbers, const LINES: usize>(
     lanes: L,
@@ -88,12 +88,11 @@ fn split<L: Numbers, const LINES: usize>(
     lanes.or(lanes.shift_nibble(lanes.shift_nibble(both)), nibbles)
 }
 
-/// The nibbles that stand for widths, of which some are rounded up.
+/// Returns the nibbles that stand for widths, some of which are rounded up.
 #[inline(always)]
 fn nibble<L: Numbers>(lanes: L, widths: L::Vector) -> L::Vector {
     let mut least = lanes.min(widths, lanes.splat(u16::from(ALL)));
-    // The widths from one nibble on, as a line: as many bins for each nibble, and how
-    // far behind the start of that line the widths lie.
+    // From each stretch on, the width is the line `step · nibble - lag`.
     let (mut step, mut lag) = (1, 0);
     for (from, by) in STRETCHES {
         step += u16::from(by);
@@ -111,7 +110,7 @@ fn nibble<L: Numbers>(lanes: L, widths: L::Vector) -> L::Vector {
     least
 }
 
-/// First and last number of each lane.
+/// Returns the first and the last number of each lane.
 #[inline(always)]
 fn outermost<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector, L::Vector) {
     let (mut first, mut last) = (steps[0], steps[0]);
@@ -122,7 +121,7 @@ fn outermost<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vect
     (first, last)
 }
 
-/// The last of the numbers below `far`, and the first of the others.
+/// Returns the last of the numbers below `far`, and the first of the others.
 #[inline(always)]
 fn part<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) -> [L::Vector; 2] {
     // Counted from there, those below wrap around to the greatest numbers.
@@ -136,7 +135,7 @@ fn part<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) 
     [lanes.add(far, near_last), lanes.add(far, far_first)]
 }
 
-/// The bins of ranges that are a step longer than these numbers.
+/// Returns the bins of ranges that are one step longer than these numbers.
 #[inline(always)]
 fn bin<L: Numbers, const N: usize, const LINES: usize>(
     lanes: L,

@@ -1,9 +1,9 @@
 //! Ranges of the cells of a strip: a row of blocks across the major axis of a
 //! bundle of lines.
 //!
-//! A row of cells is kept as four planes: plane `k` holds every fourth cell from
-//! the `k`-th on, one for each block. So all that is pooled over a block lies in
-//! the same lane of 16 vectors.
+//! A row of cells is stored as four planes: plane `k` holds every fourth cell from the
+//! `k`-th on, one for each block. So the numbers pooled over a block are in the same lane
+//! of 16 vectors.
 
 use super::SIDE;
 use crate::directions::swap_unless;
@@ -14,19 +14,19 @@ use crate::simd::numbers::Numbers;
 /// Numbers in a cache line.
 const LINE: usize = 32;
 
-/// A cache line of numbers; rows made of them start where vectors should.
+/// A cache line of numbers, so that rows made of them are aligned for vectors.
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 struct CacheLine([u16; LINE]);
 
-/// How the cells of a row lie in memory.
+/// Layout of the cells of a row in memory.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowLayout {
     /// Blocks along the row, rounded up to whole cache lines.
     pub lanes: usize,
 }
 
-/// Numbers of a row of cells, with a margin of no ranges around each plane.
+/// Numbers of a row of cells, with a margin of [`NO_RANGE`] around each plane.
 #[derive(Debug, Clone)]
 pub(super) struct Row {
     layout: RowLayout,
@@ -40,13 +40,14 @@ impl RowLayout {
         }
     }
 
-    /// Where a plane starts, counted from the start of the row.
+    /// Returns the start of a plane, counted from the start of the row.
     #[inline(always)]
     fn plane(self, plane: usize) -> usize {
         LINE + plane * (self.lanes + LINE)
     }
 
-    /// Where the neighbours of a plane's cells start, -1 to +1 along the row.
+    /// Returns the start of the neighbours of a plane's cells, `shift` cells on along the row:
+    /// -1 to 1.
     #[inline(always)]
     fn beside(self, plane: usize, shift: i64) -> usize {
         match (plane, shift) {
@@ -60,7 +61,7 @@ impl RowLayout {
 }
 
 impl Row {
-    /// A row of cells that see nothing.
+    /// Returns a row of cells that see nothing.
     pub(super) fn new(layout: RowLayout) -> Self {
         let lines = (layout.plane(SIDE)) / LINE;
         Row {
@@ -69,7 +70,6 @@ impl Row {
         }
     }
 
-    /// The cells of a plane.
     #[inline(always)]
     pub(super) fn plane(&self, plane: usize) -> &[u16] {
         &self.numbers()[self.layout.plane(plane)..][..self.layout.lanes]
@@ -81,7 +81,7 @@ impl Row {
         &mut bytemuck::cast_slice_mut(&mut self.lines)[start..][..lanes]
     }
 
-    /// The neighbours of a plane's cells, `shift` cells on.
+    /// Returns the neighbours of a plane's cells, `shift` cells on.
     #[inline(always)]
     fn beside(&self, plane: usize, shift: i64) -> &[u16] {
         &self.numbers()[self.layout.beside(plane, shift)..][..self.layout.lanes]
@@ -93,7 +93,7 @@ impl Row {
     }
 }
 
-/// What rays meet in the cells of one strip, as masks.
+/// The cells of one strip as masks for rays.
 #[derive(Debug, Clone)]
 pub(super) struct StripMasks {
     /// 0 where the cell is occupied, else all ones.
@@ -111,7 +111,7 @@ impl StripMasks {
         }
     }
 
-    /// Takes the cells of a strip, a row of blocks or a column of them.
+    /// Takes the cells of a strip: a column of blocks if `x_major`, else a row of them.
     pub(super) fn fill(&mut self, grid: &Grid, x_major: bool, strip: usize) {
         let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
         let (major_stride, minor_stride) = swap_unless(x_major, (1, grid.width()));
@@ -140,9 +140,9 @@ impl StripMasks {
         }
     }
 
-    /// Ranges of the cells of the strip's row `row`, of which each one's next
-    /// cell lies `shift` cells on in the row `next`: 0 if the cell is occupied,
-    /// else one step more than the next one's.
+    /// Finds the ranges of the cells of the strip's row `row`: 0 if the cell is occupied,
+    /// [`NO_RANGE`] if it blocks rays without a hit, else one step more than the range of its
+    /// next cell, which is `shift` cells on in the row `next`.
     #[inline(always)]
     pub(super) fn sweep<L: Numbers>(
         &self,

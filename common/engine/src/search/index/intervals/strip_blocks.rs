@@ -1,4 +1,4 @@
-//! Which blocks of a strip are wanted, and their numbers.
+//! Wanted blocks of a strip, and their numbers.
 
 use super::transpose::TILE;
 use crate::search::index::block_ids::BlockIds;
@@ -6,9 +6,9 @@ use crate::search::index::block_ids::BlockIds;
 /// The blocks of a strip.
 pub(super) struct StripBlocks<'a> {
     ids: &'a BlockIds,
-    /// The first one, and how much farther each next one is.
+    /// Place of the first block in the grid, and the distance to each next one.
     places: (usize, usize),
-    /// A bit for each that is wanted.
+    /// A bit for each wanted block, a word for each tile.
     wanted: Vec<u64>,
 }
 
@@ -26,12 +26,13 @@ impl<'a> StripBlocks<'a> {
         }
     }
 
-    /// How many tiles they are.
+    /// Number of tiles.
     pub(super) fn tiles(&self) -> usize {
         self.wanted.len()
     }
 
-    /// Which are wanted of `count` from `start` on, which are a part of a tile.
+    /// Returns a bit for each wanted block of the `count` from `start` on, which must be in one
+    /// tile.
     #[inline(always)]
     pub(super) fn wanted(&self, start: usize, count: usize) -> u64 {
         let word = self
@@ -41,7 +42,7 @@ impl<'a> StripBlocks<'a> {
         word & (u64::MAX >> (TILE - count))
     }
 
-    /// The number of a wanted one.
+    /// Returns the number of a wanted block.
     #[inline(always)]
     pub(super) fn id(&self, block: usize) -> usize {
         self.ids.before(self.places.0 + block * self.places.1)

@@ -1,14 +1,14 @@
-//! Turns bytes that lie block by block for each direction into bytes that lie
-//! direction by direction for each block.
+//! Transposes bytes stored block by block for each direction into bytes stored direction by
+//! direction for each block.
 
-/// Bytes of a word: this many directions are turned at a time.
+/// Bytes of a word: the number of directions transposed at a time.
 pub(super) const WORD: usize = 8;
 
-/// Blocks that are turned at a time.
+/// Number of blocks transposed at a time.
 pub(super) const TILE: usize = WORD * WORD;
 
-/// Turns the bytes of 64 blocks in eight directions, a row of words each: the
-/// word of block `8 · i + j`, with a byte for each direction, is then `[j][i]`.
+/// Transposes the bytes of 64 blocks in eight directions, a row of words each: the word of
+/// block `8 · i + j`, with a byte for each direction, is then `[j][i]`.
 #[inline(always)]
 pub(super) fn transpose(words: &mut [[u64; WORD]; WORD]) {
     // Squares of bytes swap places across the diagonal: of four, two and one.
@@ -17,8 +17,8 @@ pub(super) fn transpose(words: &mut [[u64; WORD]; WORD]) {
     swap(words, 1, 0x00FF_00FF_00FF_00FF);
 }
 
-/// Swaps the upper part of each word with the lower part, `low`, of the one
-/// `distance` on.
+/// Swaps the upper part of each word with the lower part, `low`, of the word `distance`
+/// rows on.
 #[inline(always)]
 fn swap(words: &mut [[u64; WORD]; WORD], distance: usize, low: u64) {
     let bits = 8 * distance;

@@ -1,4 +1,4 @@
-//! The ends of the two intervals, direction by direction, from what is kept of them.
+//! Unpacks the ends of the two intervals, direction by direction.
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
@@ -13,19 +13,19 @@ use crate::simd::{Avx2, avx2};
 /// First and last bin of the near interval, then of the far one.
 pub(super) type Ends<'a> = [&'a mut [u8]; 4];
 
-/// Last bin of the near interval.
+/// Returns the last bin of the near interval.
 #[inline(always)]
 pub(crate) fn near_end(nearest: u8, farthest: u8, widths: u8) -> u8 {
     nearest.saturating_add(width(widths & 15)).min(farthest)
 }
 
-/// First bin of the far interval.
+/// Returns the first bin of the far interval.
 #[inline(always)]
 pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
     farthest.saturating_sub(width(widths >> 4)).max(nearest)
 }
 
-/// The width that a nibble stands for.
+/// Returns the width that a nibble stands for, in bins.
 #[inline(always)]
 pub(super) const fn width(nibble: u8) -> u8 {
     if nibble == ALL {
@@ -53,11 +53,11 @@ pub(super) fn unpack([nearest, farthest, widths]: [&[u8]; PACKED], ends: Ends<'_
     }
 }
 
-/// Directions that are unpacked at a time.
+/// Number of directions unpacked at a time.
 #[cfg(target_arch = "x86_64")]
 const LANES: usize = 32;
 
-/// The widths that nibbles stand for, twice.
+/// Widths that all nibbles stand for, twice.
 #[cfg(target_arch = "x86_64")]
 const WIDTHS: [u8; LANES] = {
     let mut widths = [0; LANES];
@@ -71,7 +71,7 @@ const WIDTHS: [u8; LANES] = {
 
 #[cfg(target_arch = "x86_64")]
 avx2! {
-    /// The same, [`LANES`] directions at a time.
+    /// Does the same as [`unpack`], [`LANES`] directions at a time.
     pub(super) fn unpack_avx2(_set: Avx2, packed: [&[u8]; PACKED], ends: Ends<'_>) {
         let directions = packed[0].len();
         let Some(last) = directions.checked_sub(LANES) else {
@@ -81,7 +81,7 @@ avx2! {
         let mut ends = ends.map(|row| &mut row[..directions]);
         let (nibble, by_nibble) = (_mm256_set1_epi8(15), must_cast(WIDTHS));
         for start in (0..directions).step_by(LANES) {
-            // Where directions do not come out even, some are unpacked twice.
+            // If the directions are no multiple of the lanes, some are unpacked twice.
             let lanes = start.min(last)..start.min(last) + LANES;
             let read = |row: &[u8]| -> __m256i { pod_read_unaligned(&row[lanes.clone()]) };
             let (nearest, farthest, widths) = (read(nearest), read(farthest), read(widths));

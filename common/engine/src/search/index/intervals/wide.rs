@@ -1,23 +1,24 @@
-//! What small blocks see in directions in which their intervals say little.
+//! Views of small blocks in directions in which their intervals are wide.
 //!
-//! A block that looks past corners sees near and far, and little between. Two intervals
-//! hold what lies between, too; so where they are wide the bins are noted one by one, for
-//! the sets that are made of the intervals. Searches do not need that any more.
+//! A block that looks past corners sees near and far surfaces and little between, but its
+//! two intervals hold the bins between, too. So where they are wide, the bins are noted one
+//! by one for the sets that are made from the intervals. Once these are made, the views are
+//! dropped.
 
 use super::strip_blocks::StripBlocks;
 use crate::program::NO_RANGE;
 use crate::search::index::bits;
 use crate::search::index::steps::BinSteps;
 
-/// Neighbouring bins that are noted together, as a power of two: a block of 8 × 8 cells
-/// smears distances by more.
+/// Number of neighbouring bins that are noted together, as a power of two: a block of 8 × 8
+/// cells blurs distances by more.
 pub(crate) const ROW_SHIFT: u32 = 2;
 
-/// Intervals are wide if the ends of both lie this many bins apart, in sum: four rows. On
+/// Sum of the widths of both intervals, in bins, from which on they are wide: four rows. On
 /// real maps at most 7 in a hundred are; noting more of them gains nothing.
 pub(super) const WIDE: u8 = 16;
 
-/// What a block sees in a direction in which its intervals are wide.
+/// Bins that a block sees in a direction in which its intervals are wide.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideView {
     block: u32,
@@ -25,10 +26,10 @@ pub(super) struct WideView {
     rows: u64,
 }
 
-/// What all blocks see where their intervals are wide.
+/// Views of all blocks in the directions in which their intervals are wide.
 #[derive(Debug, Clone)]
 pub(crate) struct WideViews {
-    /// Where the views of each block start, and behind them where the last ones end.
+    /// Start of the views of each block, and at last the end of them all.
     starts: Vec<u32>,
     directions: Vec<u16>,
     /// A bit for each `1 << ROW_SHIFT` bins.
@@ -36,7 +37,7 @@ pub(crate) struct WideViews {
 }
 
 impl WideViews {
-    /// Sorts the views of this many blocks.
+    /// Sorts views by block; `blocks` is the number of blocks.
     pub(super) fn new(blocks: usize, lists: &[Vec<WideView>]) -> Self {
         let mut starts = vec![0; blocks + 1];
         for view in lists.iter().flatten() {
@@ -61,8 +62,8 @@ impl WideViews {
         }
     }
 
-    /// The directions in which the intervals of a block, by its number, are wide, and a bit for each
-    /// `1 << ROW_SHIFT` bins that it sees there.
+    /// Returns the directions in which the intervals of a block, given by its number, are wide,
+    /// each with a bit for each `1 << ROW_SHIFT` bins that the block sees there.
     pub(crate) fn of(&self, block: usize) -> impl Iterator<Item = (usize, u64)> {
         let views = self.starts[block] as usize..self.starts[block + 1] as usize;
         let directions = self.directions[views.clone()].iter();
@@ -72,7 +73,7 @@ impl WideViews {
     }
 }
 
-/// Where the wide views of a strip of blocks in one direction are noted.
+/// Output for the wide views of a strip of blocks in one direction.
 pub(super) struct Noting<'a> {
     pub views: &'a mut Vec<WideView>,
     pub steps: &'a BinSteps,
@@ -82,8 +83,8 @@ pub(super) struct Noting<'a> {
 }
 
 impl Noting<'_> {
-    /// Notes what some of the strip's blocks see, from `start` on, by the ranges of
-    /// their cells.
+    /// Notes the bins that some of the strip's blocks see, by the ranges of their cells;
+    /// `among` has a bit for each block from `start` on.
     pub(super) fn note(&mut self, start: usize, among: u64, cells: &[&[u16]]) {
         for i in bits::ones(among).map(|lane| start + lane) {
             let ranges = cells.iter().map(|cells| cells[i]);

@@ -1,5 +1,5 @@
-//! Builds the sets of 2 × 2 blocks of intervals: of what these hold, or what was noted
-//! where they are wide.
+//! Builds the sets of 2 × 2 blocks of intervals from these or, where they are wide, from
+//! the views noted there.
 
 use std::ops::Range;
 
@@ -12,20 +12,20 @@ use crate::search::index::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
 use crate::simd::words::QUAD;
 use crate::simd::{Kernel, Set, Simd};
 
-/// No rows: any others start before and end behind.
+/// No rows; the range from which others grow.
 #[expect(clippy::reversed_empty_ranges, reason = "it is where growing starts")]
 const NONE: Range<usize> = usize::MAX..0;
 
 /// Rows of bits, quad by quad.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rows {
-    /// Which rows of each quad have any bits, and how many bytes are kept of them.
+    /// Range of the rows of each quad that have any bits, and number of bytes kept of them.
     pub quads: Vec<(Range<usize>, usize)>,
     pub packed: PackedRows,
 }
 
 impl Rows {
-    /// Adds a quad with such rows, which `row` fills in one by one.
+    /// Adds a quad with these rows, each of which `row` fills in.
     pub(super) fn push(
         &mut self,
         rows: Range<usize>,
@@ -40,22 +40,22 @@ impl Rows {
         self.quads.push((rows, self.packed.bytes.len() - before));
     }
 
-    /// Adds those of other quads.
+    /// Adds the rows of other quads.
     pub(super) fn append(&mut self, mut other: Self) {
         self.quads.append(&mut other.quads);
         self.packed.append(other.packed);
     }
 }
 
-/// What the sets are made of.
+/// Input from which the sets are built.
 pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
 
-/// The rows of the quads in some rows of them.
+/// Builds the rows of the quads in some rows of quads.
 pub(super) fn build(simd: Simd, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
     simd.run(Joining { source, quad_rows })
 }
 
-/// Joining the sets of some rows of quads.
+/// Kernel that joins the sets of some rows of quads.
 struct Joining<'a> {
     source: Source<'a>,
     quad_rows: Range<usize>,
@@ -106,8 +106,9 @@ fn join<S: Set>(set: S, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
     joined
 }
 
-/// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
-/// in which rows. The chunks are buffers for the directions of a turn.
+/// Marks the distances that the block in column `x` and row `y` sees in `words`, all of
+/// which must be 0. Returns the range of their rows. `chunks` are buffers for the
+/// directions of a turn.
 #[inline(always)]
 fn mark<S: Set>(
     set: S,
@@ -148,7 +149,7 @@ fn mark<S: Set>(
     rows
 }
 
-/// Takes the intervals of a block in the directions from `start` on.
+/// Takes the intervals of a block in the directions from `start` on into a chunk.
 #[inline(always)]
 fn take(chunk: &mut Chunk, i: usize, intervals: &RangeIntervals, block: usize, start: usize) {
     let [nearest, farthest, widths] = intervals.packed(block);
@@ -160,7 +161,7 @@ fn take(chunk: &mut Chunk, i: usize, intervals: &RangeIntervals, block: usize, s
         chunk.set(i, [nearest, farthest, widths]);
         return;
     }
-    // Behind the last direction nothing is seen.
+    // Nothing is seen after the last direction.
     let mut rows = [[Bins::NOTHING; CHUNK], [0; CHUNK], [0; CHUNK]];
     for (row, packed) in rows.iter_mut().zip([nearest, farthest, widths]) {
         let packed = &packed[start..];

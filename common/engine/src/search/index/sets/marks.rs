@@ -1,4 +1,4 @@
-//! Which of 64 directions see into a bin, as the bits of a word.
+//! Directions of 64 that see into a row of bins, as the bits of a word.
 
 use std::ops::RangeInclusive;
 
@@ -7,27 +7,27 @@ use crate::search::index::intervals::{ROW_SHIFT, far_start, near_end};
 use crate::simd::Set;
 use crate::simd::numbers::MARKED;
 
-/// Directions that are marked at a time.
+/// Number of directions that are marked at a time.
 pub(super) const CHUNK: usize = MARKED;
 
-/// Blocks that are joined.
+/// Number of blocks that are joined.
 const BLOCKS: usize = 4;
 
-/// Intervals of all of them: near and far.
+/// Number of their intervals: near and far.
 const INTERVALS: usize = 2 * BLOCKS;
 
 /// The intervals of joined blocks in 64 directions, for rows of some bins each.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
-    /// First bin of each interval. Where there is none it is 0, which is no bin.
+    /// First bin of each interval. If there is none it is 0, which is no bin.
     firsts: [[u8; CHUNK]; INTERVALS],
-    /// How far behind the first bin a row can end that meets the interval.
+    /// Largest distance from the first bin to the end of a row that meets the interval.
     reaches: [[u8; CHUNK]; INTERVALS],
     nearest: [u8; CHUNK],
     farthest: [u8; CHUNK],
 }
 
-/// The last bin of the first row.
+/// Last bin of the first row.
 const LAST: u8 = (1 << ROW_SHIFT) - 1;
 
 impl Default for Chunk {
@@ -63,7 +63,7 @@ impl Chunk {
         }
     }
 
-    /// The rows between the ends of all intervals.
+    /// Returns the rows between the ends of all intervals.
     #[inline(always)]
     pub(super) fn rows(&self) -> RangeInclusive<u8> {
         let (mut nearest, mut farthest) = (Bins::NOTHING, 0);
@@ -74,7 +74,7 @@ impl Chunk {
         nearest >> ROW_SHIFT..=farthest >> ROW_SHIFT
     }
 
-    /// Leaves out the intervals of block `i` in a direction, but for how far they reach.
+    /// Leaves out the intervals of block `i` in a direction; [`Chunk::rows`] still covers them.
     #[inline(always)]
     pub(super) fn leave_out(&mut self, i: usize, direction: usize) {
         for interval in [2 * i, 2 * i + 1] {
@@ -83,7 +83,7 @@ impl Chunk {
         }
     }
 
-    /// The directions in which a row of bins meets any interval, a bit each.
+    /// Returns a bit for each direction in which a row of bins meets any interval.
     #[inline(always)]
     pub(super) fn mark<S: Set>(&self, set: S, row: u8) -> u64 {
         let end = (row << ROW_SHIFT) | LAST;

@@ -1,44 +1,43 @@
-//! Rows of bits of which only the bytes are kept that have any.
+//! Rows of bits of which only the bytes with any bits are kept.
 //!
-//! A block sees few distances in a direction, so that three of four bytes have none. A
-//! mask for each sixteen says which are kept; the others need not come from memory.
+//! A block sees few distances in a direction, so three of four bytes have no bits. A mask
+//! for each sixteen says which are kept; the others need not come from memory.
 
 use std::ops::Range;
 
 use super::{Byte, READ};
 use crate::simd::words::QUAD;
 
-/// No block of a quad has bits.
+/// A byte of which no block has bits.
 const NOTHING: Byte = [0; QUAD];
 
 /// Rows of bits of quads, one after the other.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct PackedRows {
-    /// For each word of each row, which of its bytes are kept.
+    /// A mask for each word of each row, with a bit for each of its bytes that is kept.
     pub masks: Vec<u16>,
-    /// Those that have bits.
+    /// Bytes that have bits.
     pub bytes: Vec<Byte>,
 }
 
 /// The rows of a quad.
 #[derive(Debug, Clone)]
 pub(crate) struct SetRows<'a> {
-    /// Those that have any bits, from the nearest bin on.
+    /// Rows that have any bits, from the nearest bin on.
     pub rows: Range<usize>,
     /// Bytes of a row.
     stride: usize,
     pub(super) masks: &'a [u16],
-    /// Behind the last of them, [`READ`] more can be read.
+    /// Kept bytes, and [`READ`] more that can be read.
     pub bytes: &'a [Byte],
 }
 
-/// How many words a row of this many bytes has.
+/// Number of words in a row of this many bytes.
 pub(super) fn words(stride: usize) -> usize {
     stride.div_ceil(READ)
 }
 
 impl PackedRows {
-    /// Adds a row.
     pub(super) fn push(&mut self, row: &[Byte]) {
         for word in row.chunks(READ) {
             let (mut kept, mut count, mut mask) = ([NOTHING; READ], 0, 0);
@@ -53,20 +52,19 @@ impl PackedRows {
         }
     }
 
-    /// Adds all rows of others.
     pub(super) fn append(&mut self, mut other: Self) {
         self.masks.append(&mut other.masks);
         self.bytes.append(&mut other.bytes);
     }
 
-    /// Lets words be read from any byte on, and gives back the capacity that is left.
+    /// Lets words be read from any byte on, and gives back unused capacity.
     pub(super) fn finish(&mut self) {
         self.bytes.resize(self.bytes.len() + READ, NOTHING);
         self.bytes.shrink_to_fit();
         self.masks.shrink_to_fit();
     }
 
-    /// Bytes of memory that they take.
+    /// Size in bytes.
     pub(super) fn size(&self) -> usize {
         size_of_val(&self.masks[..]) + size_of_val(&self.bytes[..])
     }
@@ -88,14 +86,14 @@ impl<'a> SetRows<'a> {
         }
     }
 
-    /// The masks of the words of a row, which must have bits.
+    /// Returns the masks of the words of a row, which must be one of `rows`.
     #[inline(always)]
     pub(crate) fn masks_of(&self, row: usize) -> &'a [u16] {
         let words = words(self.stride);
         &self.masks[(row - self.rows.start) * words..][..words]
     }
 
-    /// How many bytes are kept of the rows before one.
+    /// Number of bytes that are kept of the rows before one.
     #[inline(always)]
     pub(crate) fn kept_before(&self, row: usize) -> usize {
         let before = row.saturating_sub(self.rows.start) * words(self.stride);
@@ -103,7 +101,7 @@ impl<'a> SetRows<'a> {
         masks.map(|mask| mask.count_ones() as usize).sum()
     }
 
-    /// Puts all rows into `plain`, as they were before they were packed.
+    /// Unpacks all rows into `plain`.
     pub(super) fn unpack(&self, plain: &mut Vec<Byte>) {
         plain.clear();
         let mut kept = self.bytes.iter();
@@ -120,7 +118,7 @@ impl<'a> SetRows<'a> {
 
 #[cfg(test)]
 impl SetRows<'_> {
-    /// Packs rows of as many bytes each, of which the first has this number.
+    /// Packs rows of equal length, the first of which has the number `first`.
     pub(crate) fn of(first: usize, plain: &[Vec<Byte>], then: impl FnOnce(&SetRows<'_>)) {
         let stride = plain.first().map_or(1, Vec::len);
         let mut packed = PackedRows::default();

@@ -23,16 +23,16 @@ pub(in crate::search) struct Scratch {
     pub(super) queue: Queue,
     /// Headings at which blocks of 8 × 8 cells may matter.
     pub(super) windows: Vec<Window>,
-    /// The bounds of these blocks: of all, once the search is done, whose bound
-    /// is not below the floor.
+    /// Bounds of these blocks; once the search is done, of all whose bound is not below the
+    /// floor.
     pub fine: Vec<BoundedBlock>,
     /// Headings at which blocks of 4 × 4 cells may matter.
     pub(super) candidates: Vec<Candidate>,
-    /// The poses that matter.
+    /// Poses that matter.
     pub collector: Collector,
-    /// How many were counted.
+    /// Number of poses that were counted.
     pub poses_evaluated: u64,
-    /// The most votes that any pose can have that the search did not reach.
+    /// Most votes of any pose that the search did not reach because it was cut.
     pub left: u16,
     pub(super) tally: Tally,
 }
@@ -45,7 +45,7 @@ pub(super) struct Candidate {
 }
 
 impl Scratch {
-    /// Makes scratch for a task; nothing is left of the one before.
+    /// Prepares the buffers for a task; drops the contents of the one before.
     pub(super) fn start(&mut self, task: &Task<'_>) {
         let programs = task.programs;
         self.set_bounds.fit(&programs.sets, task.headings());
