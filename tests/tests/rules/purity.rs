@@ -22,7 +22,8 @@ fn the_codecs_of_lasers_know_no_socket_clock_or_file_and_nothing_of_ours() {
 
 #[test]
 fn the_simulation_knows_no_engine_process_clock_or_file() {
-    let allowed = BTreeSet::from(["geometry", "map"].map(str::to_owned));
+    // The parsers of its options are those of all commands.
+    let allowed = BTreeSet::from(["command_line", "geometry", "map"].map(str::to_owned));
     assert_eq!(known("simulation"), allowed);
     is_pure("common/simulation/src");
 }

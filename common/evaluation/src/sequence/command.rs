@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use command_line::stdout;
-use drawing::Scene;
 use map::OccupancyGrid;
 use offline::{Accepted, Options, Session};
-use plots::{PlotError, draw_drive};
+use plots::draw_drive;
 use progress::{Progress, say};
 
 use super::drive::Moment;
@@ -135,13 +134,7 @@ fn show(
         let words = (name.to_owned(), course::doubts(said));
         let stops = course::stops(moments, said);
         let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
-        save(&scene, folder.join(format!("{name}.png")))?;
+        course::save(&scene, folder.join(format!("{name}.png")))?;
     }
     Ok(())
-}
-
-/// Writes a drawn scene to a PNG file.
-pub(super) fn save(scene: &Scene, file: PathBuf) -> Result<(), PlotError> {
-    let picture = drawing::to_png(scene)?;
-    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })
 }

@@ -2,12 +2,13 @@
 //! trajectories and a picture.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use drawing::Scene;
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
 use offline::World;
-use plots::Stop;
+use plots::{PlotError, Stop};
 
 use super::drive::Moment;
 use super::errors::Errors;
@@ -53,6 +54,12 @@ pub(super) fn write(
     };
     save(format!("{name}.tum"), trajectory(tracked))?;
     save(format!("{name}_truth.tum"), trajectory(truths))
+}
+
+/// Writes a drawn scene to a PNG file.
+pub(super) fn save(scene: &Scene, file: PathBuf) -> Result<(), PlotError> {
+    let picture = drawing::to_png(scene)?;
+    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })
 }
 
 /// Errors of the tracked poses that [`write`] writes.

@@ -9,7 +9,6 @@ use offline::{Accepted, Options, Session, map_in};
 use plots::draw_drive;
 use progress::{Progress, say};
 
-use super::super::command::save;
 use super::super::limits::Reached;
 use super::super::{SequenceOptions, course, drive, names};
 use super::figures::Figures;
@@ -166,5 +165,8 @@ fn picture(
         &stops,
         (title, words(wrong)),
     )?;
-    Ok(save(&scene, folder.join(format!("{name}_{variant}.png")))?)
+    Ok(course::save(
+        &scene,
+        folder.join(format!("{name}_{variant}.png")),
+    )?)
 }
