@@ -237,7 +237,6 @@ impl Job<'_> {
                     };
                     let beams = &plan.beams[batch.beams.clone()];
                     match S::Bytes::AT_A_TIME {
-                        5 => kernel::sweep::<S, M, 5>(set, &mut stretch, beams),
                         3 => kernel::sweep::<S, M, 3>(set, &mut stretch, beams),
                         _ => kernel::sweep::<S, M, 1>(set, &mut stretch, beams),
                     }

@@ -261,9 +261,8 @@ impl<S: Set, M: Sum> Row<'_, S, M> {
         match vectors - start {
             0 => {}
             1 => self.block::<D, 1, BLOCKED>(beams, places, start),
-            2 => self.block::<D, 2, BLOCKED>(beams, places, start),
-            3 => self.block::<D, 3, BLOCKED>(beams, places, start),
-            _ => self.block::<D, 4, BLOCKED>(beams, places, start),
+            // At most three are swept at a time.
+            _ => self.block::<D, 2, BLOCKED>(beams, places, start),
         }
     }
 

@@ -71,7 +71,7 @@ pub(crate) trait Lanes: Copy {
 
     /// Number of cells of a vector: a power of two, at most 64.
     const WIDTH: usize;
-    /// Number of vectors that are swept at a time, 1, 3 or 5: with their votes they fill the
+    /// Number of vectors that are swept at a time, 1 or 3: with their votes they fill the
     /// registers.
     const AT_A_TIME: usize;
 
