@@ -39,7 +39,7 @@ pub struct Located<'w> {
     pub outcome: &'w Outcome,
     /// Places, each with the number of its map, and the verdict.
     pub places: &'w Places,
-    /// The same in the form that is merged with results of other processes on other maps.
+    /// Places in the form that is merged with results of other processes on other maps.
     pub found: &'w Found,
     /// Beams of the scan as they were compared with that map; `None` if the votes alone decide.
     pub ends: Option<&'w Ends>,

@@ -7,7 +7,7 @@ use map::OccupancyGrid;
 /// Checks that a map can be searched, without preparing it.
 ///
 /// # Errors
-/// The same as those of the engine: invalid sides, or no occupied or no free cell.
+/// Errors of the engine: invalid sides, or no occupied or no free cell.
 pub fn check_map(map: &OccupancyGrid, rules: CellRules) -> Result<(), EngineError> {
     let (width, height) = sides_of(map);
     let grid = Grid::new(width, height, &map.cells, rules)?;

@@ -131,7 +131,7 @@ impl<'a> Session<'a> {
     /// Opens a session that searches several maps together for each scan.
     ///
     /// # Errors
-    /// The same as those of [`Session::open`].
+    /// Fails like [`Session::open`].
     pub fn open_on(
         recording: &'a Recording,
         options: &Options,
@@ -164,10 +164,10 @@ impl<'a> Session<'a> {
         Ok(&self.prepared()?.map)
     }
 
-    /// The same map, ready to be searched.
+    /// Returns the map prepared for searches.
     ///
     /// # Errors
-    /// The same as those of [`Session::map`].
+    /// Fails like [`Session::map`].
     pub fn world(&self) -> Result<&World, OfflineError> {
         Ok(&self.prepared()?.world)
     }

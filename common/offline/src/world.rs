@@ -121,7 +121,7 @@ impl World {
     /// Like [`World::prepare`], with an index cache.
     ///
     /// # Errors
-    /// The same as those of [`World::prepare`].
+    /// Fails like [`World::prepare`].
     pub fn prepare_with(
         map: &OccupancyGrid,
         options: &EngineOptions,
@@ -136,7 +136,7 @@ impl World {
     /// Like [`World::prepare_with`], for several maps that are searched together.
     ///
     /// # Errors
-    /// The same as those of [`World::prepare`], with the map's name.
+    /// Fails like [`World::prepare`], with the map's name.
     pub fn of_set(
         maps: &[NamedMap],
         options: &EngineOptions,

@@ -16,7 +16,7 @@ use crate::space::Space;
 pub struct Ends {
     chosen: Chosen,
     pub(crate) ends: Vec<End>,
-    /// The same ends in groups of eight.
+    /// Copy of `ends` in groups of eight.
     pub(super) lanes: Vec<EndLanes>,
     silent: Vec<f64>,
     readings: Readings,

@@ -215,7 +215,7 @@ struct Sums {
     weight: f64,
 }
 
-/// The same per lane.
+/// Normal equations of a step, lane by lane.
 #[derive(Debug, Default)]
 struct LaneSums {
     products: [Lanes; 6],

@@ -27,7 +27,7 @@ struct Driven {
     nodes: Vec<NodeProcess>,
     transforms: Robot,
     joined: Joined,
-    /// The step of the drive at which the robot starts anew: it has not moved.
+    /// Step of the drive at which the robot starts again: it has not moved.
     step: u64,
 }
 

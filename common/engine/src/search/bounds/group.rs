@@ -36,7 +36,7 @@ pub(in crate::search) struct Group {
 #[derive(Debug, Clone, Default)]
 struct Plane {
     windows: Vec<Window>,
-    /// The same windows in fours, sorted by how often each is read.
+    /// Windows in fours, sorted by how often each is read.
     fours: Vec<[Window; 4]>,
     /// The remaining windows in pairs; a window that sees nothing fills up the last pair.
     pairs: Vec<[Window; 2]>,

@@ -30,7 +30,7 @@ pub(in crate::search) struct Task<'a> {
     pub programs: &'a Programs,
     /// Bound of each coarse block in which poses are searched.
     pub coarse_bounds: &'a [AtomicU16],
-    /// The same for each chunk of headings.
+    /// Bound of each coarse block in each chunk of headings.
     by_chunk: &'a [AtomicU16],
     /// Best pose so far, found by any thread on any map.
     lead: &'a Lead,
