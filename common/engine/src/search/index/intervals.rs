@@ -98,7 +98,7 @@ impl RangeIntervals {
         bins: (&Bins, &BinSteps),
         blocks: BlockIds,
     ) -> (Self, WideViews) {
-        Self::with(grid, directions, bins, blocks, (InstructionSet::best(), 1))
+        Self::with(grid, directions, bins, blocks, InstructionSet::best())
     }
 
     #[cfg(test)]
@@ -111,14 +111,13 @@ impl RangeIntervals {
         Self::new(grid, directions, bins, BlockIds::all(blocks))
     }
 
-    /// Does the same as [`RangeIntervals::new`] with a given instruction set and number of
-    /// threads.
+    /// Does the same as [`RangeIntervals::new`] with a given instruction set.
     pub(crate) fn with(
         grid: &Grid,
         directions: &Directions,
         (bins, steps): (&Bins, &BinSteps),
         ids: BlockIds,
-        (set, threads): (InstructionSet, usize),
+        set: InstructionSet,
     ) -> (Self, WideViews) {
         let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
         let mut packed = vec![0; PACKED * directions.count() * ids.count()];
@@ -130,7 +129,7 @@ impl RangeIntervals {
             ids: &ids,
         };
         let simd = Simd::new(set);
-        let views = build::build(source, simd, threads, &mut packed);
+        let views = build::build(source, simd, &mut packed);
         let wide = WideViews::new(ids.count(), &views);
         let intervals = RangeIntervals {
             columns,
@@ -245,19 +244,17 @@ mod tests {
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
             let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
-            let with = |set, threads| {
+            let with = |set| {
                 let ids = BlockIds::all(blocks);
-                RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads))
+                RangeIntervals::with(&grid, directions, (&bins, &steps), ids, set)
             };
-            let (intervals, noted) = with(InstructionSet::Portable, 1);
+            let (intervals, noted) = with(InstructionSet::Portable);
             let views = |wide: &WideViews, block| wide.of(block).collect::<BTreeMap<_, _>>();
             for set in InstructionSet::available() {
-                for threads in 1..4 {
-                    let (other, others) = with(set, threads);
-                    prop_assert!(other.packed == intervals.packed, "{} {}", set, threads);
-                    for block in 0..intervals.columns * intervals.rows {
-                        prop_assert_eq!(views(&others, block), views(&noted, block), "{} {}", set, threads);
-                    }
+                let (other, others) = with(set);
+                prop_assert!(other.packed == intervals.packed, "{}", set);
+                for block in 0..intervals.columns * intervals.rows {
+                    prop_assert_eq!(views(&others, block), views(&noted, block), "{}", set);
                 }
             }
             let mut read = BlockIntervals::default();
@@ -308,7 +305,7 @@ mod tests {
         #[test]
         fn blocks_that_are_left_out_change_nothing_of_the_others(
             grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
-            headings in prop_oneof![1u32..12, Just(45)], kept in vec(any::<bool>(), 300), threads in 1usize..4,
+            headings in prop_oneof![1u32..12, Just(45)], kept in vec(any::<bool>(), 300),
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
@@ -317,9 +314,9 @@ mod tests {
             let blocks = all.columns * all.rows;
             for set in InstructionSet::available() {
                 let ids = BlockIds::new(&kept[..blocks]);
-                let (some, others) = RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads));
+                let (some, others) = RangeIntervals::with(&grid, directions, (&bins, &steps), ids, set);
                 for block in (0..blocks).filter(|&block| kept[block]) {
-                    prop_assert_eq!(some.packed(block), all.packed(block), "{} {}", set, threads);
+                    prop_assert_eq!(some.packed(block), all.packed(block), "{}", set);
                     let views = |wide: &WideViews, id| wide.of(id).collect::<BTreeMap<_, _>>();
                     prop_assert_eq!(views(&others, some.ids.before(block)), views(&noted, block));
                 }

@@ -13,8 +13,6 @@ mod build;
 mod marks;
 mod packed;
 
-use std::convert::Infallible;
-
 use super::intervals::{self, RangeIntervals, WideViews};
 use super::prefetch::prefetch;
 use crate::directions::Directions;
@@ -22,7 +20,6 @@ use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::simd::Simd;
 use crate::simd::words::{BYTES, QUAD};
-use crate::threads;
 use build::{Rows, build};
 pub(crate) use packed::SetRows;
 use packed::{PackedRows, words};
@@ -72,32 +69,18 @@ struct Start {
 impl RangeSets {
     /// Builds the sets of blocks of 2 × 2 blocks of intervals.
     pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
-        Self::with(intervals, wide, InstructionSet::best(), 1)
+        Self::with(intervals, wide, InstructionSet::best())
     }
 
-    /// Does the same with a given instruction set and number of threads.
+    /// Does the same with a given instruction set.
     pub(crate) fn with(
         intervals: &RangeIntervals,
         wide: &WideViews,
         set: InstructionSet,
-        threads: usize,
     ) -> Self {
-        let simd = Simd::new(set);
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
-        let quad_rows = rows.div_ceil(2);
-        let piece = quad_rows.div_ceil(threads);
-        let pieces = (0..quad_rows).step_by(piece);
-        let pieces = pieces.map(|start| (start..quad_rows.min(start + piece), Rows::default()));
-        let mut pieces: Vec<_> = pieces.collect();
-        let Ok(()) = threads::run(&mut pieces, &|| false, |_, (rows, built), _| {
-            *built = build(simd, (intervals, wide), rows.clone());
-            Ok::<(), Infallible>(())
-        });
-        let mut pieces = pieces.into_iter().map(|(_, built)| built);
-        let mut rows_of = pieces.next().unwrap_or_default();
-        pieces.for_each(|piece| rows_of.append(piece));
-        let side = 2 * intervals::SIDE;
-        let stride = intervals.directions / 8;
+        let (side, stride) = (2 * intervals::SIDE, intervals.directions / 8);
+        let rows_of = build(Simd::new(set), (intervals, wide));
         Self::of_rows(side, (columns, rows), stride, rows_of)
     }
 
@@ -325,12 +308,10 @@ mod tests {
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
             let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
-            let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable, 1);
+            let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable);
             for set in InstructionSet::available() {
-                for threads in 1..4 {
-                    let other = RangeSets::with(&intervals, &wide, set, threads);
-                    prop_assert!(other.packed == fine.packed && other.starts == fine.starts, "{} {}", set, threads);
-                }
+                let other = RangeSets::with(&intervals, &wide, set);
+                prop_assert!(other.packed == fine.packed && other.starts == fine.starts, "{}", set);
             }
             for sets in [&fine, &fine.joined()] {
                 for (y, x) in (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (y, x))) {

@@ -34,9 +34,6 @@ const COARSE_SHARE: usize = 6;
 /// On large maps, one in this number of coarse blocks is split.
 const COARSE_PART: usize = 16;
 
-/// Number of blocks of 8 × 8 cells that are searched for each candidate.
-const FINE_SHARE: usize = 1;
-
 /// Share of the bound of the last coarse block that is split, in parts of 16, which the
 /// bounds of all searched 8 × 8 blocks likely reach.
 const LIKELY_SIXTEENTHS: u32 = 13;
@@ -95,8 +92,7 @@ impl<'a> Alternatives<'a> {
         (floor, least): (u16, u16),
         scratches: Option<&[descent::Scratch]>,
     ) {
-        let count = FINE_SHARE * wanted;
-        self.scratch.fine.start(count);
+        self.scratch.fine.start(wanted);
         match scratches {
             Some(scratches) => {
                 let bounded = scratches.iter().flat_map(|scratch| &scratch.fine);
@@ -109,7 +105,7 @@ impl<'a> Alternatives<'a> {
             }
         }
         if !self.scratch.fine.is_full() {
-            self.split_highest(wanted, count, least);
+            self.split_highest(wanted, least);
         }
         self.scratch.spots.clear();
         for i in 0..self.scratch.fine.blocks().len() {
@@ -131,16 +127,16 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Chooses `count` 8 × 8 blocks in the coarse ones with the highest bounds, none of them
-    /// below `least`.
-    fn split_highest(&mut self, wanted: usize, count: usize, least: u16) {
+    /// Chooses 8 × 8 blocks in the coarse ones with the highest bounds, none of them below
+    /// `least`.
+    fn split_highest(&mut self, wanted: usize, least: u16) {
         let part = self.task.coarse_bounds.len() / COARSE_PART;
         self.take_highest(part.max(COARSE_SHARE * wanted));
         // With a guess of what the last one reaches, most others are dropped early.
         let last = self.scratch.coarse.last().map_or(0, |&(bound, _)| bound);
         let likely = (u32::from(last) * LIKELY_SIXTEENTHS / 16) as u16;
         for floor in [likely.max(least), least] {
-            self.scratch.fine.start(count);
+            self.scratch.fine.start(wanted);
             self.choose(floor);
             if self.scratch.fine.is_full() {
                 break;

@@ -17,8 +17,8 @@ use crate::search::index::intervals::CELLS;
 use crate::search::index::prefetch::prefetch;
 use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
-use crate::search::task::budget::{Budget, LEVELS};
-use crate::search::task::{End, Programs, Task};
+use crate::search::task::budget::Budget;
+use crate::search::task::{End, Task};
 use crate::simd::headings::HEADINGS;
 use scratch::Candidate;
 pub(in crate::search) use scratch::Scratch;
@@ -86,18 +86,15 @@ impl<'a> Descent<'a> {
             }
             Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
         }
-        let Programs { simd, beams, .. } = self.task.programs;
-        let cost = self.scratch.tally.take(simd.set(), *beams);
-        self.budget.spend(level.number(), cost);
+        let cost = self.scratch.tally.take(self.task.programs.beams);
+        self.budget.spend(matches!(level, Level::Leaf { .. }), cost);
         // Some pose has to be found: without any it would seem that no beam votes.
         if self.budget.is_used_up(elsewhere) && self.task.best() > 0 {
             let left = self.scratch.queue.iter().map(|block| block.bound).max();
             self.scratch.left = left.unwrap_or(0);
             return Some(End::Done);
         }
-        let left = self.budget.is_up().then(|| self.left());
-        let is_hopeless = left.is_some_and(|left| self.budget.is_hopeless(left, elsewhere));
-        is_hopeless.then_some(End::Hopeless)
+        self.budget.is_hopeless(elsewhere).then_some(End::Hopeless)
     }
 
     /// Bounds one of `parts` of the coarse quads, and queues them.
@@ -160,21 +157,6 @@ impl<'a> Descent<'a> {
                 intervals.prefetch(index);
             }
         }
-    }
-
-    /// Number of blocks of each level that are left and may matter.
-    fn left(&self) -> [usize; LEVELS] {
-        let mut left = [0; LEVELS];
-        let floor = self.scratch.collector.floor();
-        for block in self
-            .scratch
-            .queue
-            .iter()
-            .filter(|block| block.bound >= floor)
-        {
-            left[block.level.number()] += 1;
-        }
-        left
     }
 
     fn push(&mut self, bound: u16, index: usize, level: Level) {

@@ -166,17 +166,6 @@ pub(in crate::search) enum Level {
     Leaf { start: u32, end: u32 },
 }
 
-impl Level {
-    /// Number of the level, counted from the largest blocks on.
-    pub(in crate::search) fn number(self) -> usize {
-        match self {
-            Level::Coarse => 0,
-            Level::Fine { .. } => 1,
-            Level::Leaf { .. } => 2,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::collection::vec;

@@ -110,7 +110,7 @@ impl<'a> Task<'a> {
             by_chunk: &shared.by_chunk,
             lead,
             possible: program.highest_possible() as u16,
-            brute_force: Cost::of_brute_force(simd.set(), grid, program, space),
+            brute_force: Cost::of_brute_force(grid, program, space),
         }
     }
 

@@ -4,10 +4,7 @@
 //! blocks is done in all of them before the next one, so that what is built
 //! leaves the cache once, with the bytes of a block side by side.
 
-use std::convert::Infallible;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 use super::pool::pool;
 use super::strip::{Row, RowLayout, StripMasks};
@@ -22,7 +19,6 @@ use crate::search::index::bits;
 use crate::search::index::block_ids::BlockIds;
 use crate::search::index::steps::BinSteps;
 use crate::simd::{Kernel, Set, Simd};
-use crate::threads;
 
 /// Input for building the intervals.
 #[derive(Debug, Clone, Copy)]
@@ -35,68 +31,27 @@ pub(super) struct Source<'a> {
     pub ids: &'a BlockIds,
 }
 
-/// The packed intervals of the wanted blocks in [`TILE`] rows of blocks. Threads fill
-/// them in different directions and take turns at that.
-struct Band<'a> {
-    /// Number of its first wanted block.
-    first: usize,
-    packed: Mutex<&'a mut [u8]>,
-}
-
 /// Fills the packed intervals of the wanted blocks, row by row. Returns the views where
-/// they are wide, as each thread found them.
-pub(super) fn build(
-    source: Source<'_>,
-    simd: Simd,
-    threads: usize,
-    packed: &mut [u8],
-) -> Vec<Vec<WideView>> {
-    let bands = bands(source, packed);
-    let parts = parts(source.directions, threads);
-    let next = AtomicUsize::new(0);
-    let mut views = vec![Vec::new(); threads];
-    let Ok(()) = threads::run(&mut views, &|| false, |_, views, _| {
-        let bands = &bands;
-        let mut built = Built { bands, views };
-        while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let built = &mut built;
-            simd.run(Sweeping {
-                source,
-                part,
-                built,
-            });
-        }
-        Ok::<(), Infallible>(())
-    });
+/// they are wide.
+pub(super) fn build(source: Source<'_>, simd: Simd, packed: &mut [u8]) -> Vec<WideView> {
+    let mut views = Vec::new();
+    for part in &parts(source.directions) {
+        let built = &mut Built {
+            packed: &mut *packed,
+            views: &mut views,
+        };
+        simd.run(Sweeping {
+            source,
+            part,
+            built,
+        });
+    }
     views
 }
 
-fn bands<'a>(source: Source<'_>, mut packed: &'a mut [u8]) -> Vec<Band<'a>> {
-    let Source {
-        grid,
-        directions,
-        ids,
-        ..
-    } = source;
-    let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
-    let mut bands = Vec::with_capacity(rows.div_ceil(TILE));
-    for row in (0..rows).step_by(TILE) {
-        let first = ids.before(row * columns);
-        let end = ids.before((row + TILE).min(rows) * columns);
-        let bytes = (end - first) * PACKED * directions.count();
-        let (band, rest) = packed.split_at_mut(bytes);
-        bands.push(Band {
-            first,
-            packed: Mutex::new(band),
-        });
-        packed = rest;
-    }
-    bands
-}
-
 /// Output: the packed intervals, and the views where they are wide.
-struct Built<'a, 'b> {
-    bands: &'a [Band<'b>],
+struct Built<'a> {
+    packed: &'a mut [u8],
     views: &'a mut Vec<WideView>,
 }
 
@@ -109,36 +64,30 @@ struct Part {
     directions: Vec<usize>,
 }
 
-/// Returns all directions by major axis and sense, in as many pieces as threads need.
-fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
-    let mut parts = Vec::new();
-    for (x_major, forward) in [(true, true), (true, false), (false, true), (false, false)] {
+/// Returns all directions by major axis and sense.
+fn parts(directions: &Directions) -> [Part; 4] {
+    let senses = [(true, true), (true, false), (false, true), (false, false)];
+    senses.map(|(x_major, forward)| {
         let alike = |&d: &usize| {
             let direction = directions.get(d);
             direction.x_major == x_major && (direction.step > 0) == forward
         };
-        let all: Vec<usize> = (0..directions.count()).filter(alike).collect();
-        let pieces = threads.div_ceil(2);
-        parts.extend(
-            all.chunks(all.len().div_ceil(pieces).max(1))
-                .map(|piece| Part {
-                    x_major,
-                    forward,
-                    directions: piece.to_vec(),
-                }),
-        );
-    }
-    parts
+        Part {
+            x_major,
+            forward,
+            directions: (0..directions.count()).filter(alike).collect(),
+        }
+    })
 }
 
 /// Kernel that sweeps in the directions of a part.
-struct Sweeping<'a, 'b, 'c> {
+struct Sweeping<'a, 'b> {
     source: Source<'a>,
     part: &'a Part,
-    built: &'a mut Built<'b, 'c>,
+    built: &'a mut Built<'b>,
 }
 
-impl Kernel for Sweeping<'_, '_, '_> {
+impl Kernel for Sweeping<'_, '_> {
     type Result = ();
 
     #[inline(always)]
@@ -148,7 +97,7 @@ impl Kernel for Sweeping<'_, '_, '_> {
 }
 
 #[inline(always)]
-fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_>) {
     let (width, height) = (source.grid.width(), source.grid.height());
     let longest = (width.max(height) - 1) as u16;
     let (majors, minors) = swap_unless(part.x_major, (width, height));
@@ -209,7 +158,7 @@ fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_
                 );
             }
         }
-        planes.write(part, strip, &strip_blocks, built.bands);
+        planes.write(&strip_blocks, built.packed);
     }
 }
 
@@ -259,22 +208,16 @@ impl Planes {
 
     /// Writes what was filled in into the wanted blocks of a strip.
     #[inline(always)]
-    fn write(&mut self, part: &Part, strip: usize, blocks: &StripBlocks<'_>, bands: &[Band<'_>]) {
+    fn write(&mut self, blocks: &StripBlocks<'_>, packed: &mut [u8]) {
         let bytes = PACKED * self.directions;
-        for tile in 0..blocks.tiles() {
-            let start = tile * TILE;
+        for start in (0..blocks.tiles()).map(|tile| tile * TILE) {
             let wanted = blocks.wanted(start, TILE);
             if wanted == 0 {
                 continue;
             }
-            // A tile along a column of blocks is as high as a band.
-            let band = if part.x_major { tile } else { strip / TILE };
-            let Band { first, packed } = &bands[band];
-            let place = |block: usize| bytes * (blocks.id(start + block) - first);
-            let mut packed = packed.lock().unwrap_or_else(PoisonError::into_inner);
             self.turn(start);
             for block in bits::ones(wanted) {
-                self.write_block(block, &mut packed[place(block)..][..bytes]);
+                self.write_block(block, &mut packed[bytes * blocks.id(start + block)..][..bytes]);
             }
         }
     }

@@ -38,9 +38,9 @@ pub(crate) struct WideViews {
 
 impl WideViews {
     /// Sorts views by block; `blocks` is the number of blocks.
-    pub(super) fn new(blocks: usize, lists: &[Vec<WideView>]) -> Self {
+    pub(super) fn new(blocks: usize, views: &[WideView]) -> Self {
         let mut starts = vec![0; blocks + 1];
-        for view in lists.iter().flatten() {
+        for view in views {
             starts[view.block as usize] += 1;
         }
         let mut at = 0;
@@ -49,7 +49,7 @@ impl WideViews {
             *start = at;
         }
         let (mut directions, mut rows) = (vec![0; at as usize], vec![0; at as usize]);
-        for view in lists.iter().flatten() {
+        for view in views {
             let start = &mut starts[view.block as usize];
             *start -= 1;
             directions[*start as usize] = view.direction;

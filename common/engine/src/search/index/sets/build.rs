@@ -39,46 +39,37 @@ impl Rows {
         }
         self.quads.push((rows, self.packed.bytes.len() - before));
     }
-
-    /// Adds the rows of other quads.
-    pub(super) fn append(&mut self, mut other: Self) {
-        self.quads.append(&mut other.quads);
-        self.packed.append(other.packed);
-    }
 }
 
 /// Input from which the sets are built.
 pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
 
-/// Builds the rows of the quads in some rows of quads.
-pub(super) fn build(simd: Simd, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
-    simd.run(Joining { source, quad_rows })
+/// Builds the rows of all quads.
+pub(super) fn build(simd: Simd, source: Source<'_>) -> Rows {
+    simd.run(Joining(source))
 }
 
-/// Kernel that joins the sets of some rows of quads.
-struct Joining<'a> {
-    source: Source<'a>,
-    quad_rows: Range<usize>,
-}
+/// Kernel that joins the sets of all quads.
+struct Joining<'a>(Source<'a>);
 
 impl Kernel for Joining<'_> {
     type Result = Rows;
 
     #[inline(always)]
     fn run<S: Set>(self, set: S) -> Rows {
-        join(set, self.source, self.quad_rows)
+        join(set, self.0)
     }
 }
 
 #[inline(always)]
-fn join<S: Set>(set: S, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+fn join<S: Set>(set: S, source: Source<'_>) -> Rows {
     let (intervals, _) = source;
     let stride = intervals.directions / 8;
     let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
     let (mut joined, mut turn) = (Rows::default(), vec![[0; QUAD]; stride]);
     // For each block of a quad, a row of words for each row of bits.
     let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
-    for y in quad_rows {
+    for y in 0..intervals.rows.div_ceil(4) {
         for x in 0..intervals.columns.div_ceil(4) {
             let mut rows = NONE;
             for (place, words) in words.iter_mut().enumerate() {

@@ -52,11 +52,6 @@ impl PackedRows {
         }
     }
 
-    pub(super) fn append(&mut self, mut other: Self) {
-        self.masks.append(&mut other.masks);
-        self.bytes.append(&mut other.bytes);
-    }
-
     /// Lets words be read from any byte on, and gives back unused capacity.
     pub(super) fn finish(&mut self) {
         self.bytes.resize(self.bytes.len() + READ, NOTHING);
