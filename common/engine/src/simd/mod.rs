@@ -207,14 +207,6 @@ impl Simd {
         }
     }
 
-    pub(crate) fn set(self) -> InstructionSet {
-        match self {
-            Simd::Portable(_) => InstructionSet::Portable,
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx2(_) => InstructionSet::Avx2,
-        }
-    }
-
     /// Runs a kernel compiled for this set.
     #[inline(always)]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Result {

@@ -1,7 +1,6 @@
 //! Upper bounds of the votes in the blocks of a quad, by heading.
 
-use super::set_program::GROUPS;
-use crate::search::index::bits::{self, Planes};
+use crate::search::index::bits;
 use crate::simd::words::{EMPTY, QUAD, Words};
 
 /// Bounds of the blocks of a quad for all headings.
@@ -17,8 +16,6 @@ pub(crate) struct HeadingBounds {
 /// Bounds at the headings of a chunk.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Chunk {
-    /// Sums of the votes, noted after each group but the last, in units.
-    pub after: [Planes; GROUPS - 1],
     /// Greatest bound of each block, in units.
     pub greatest: [u16; QUAD],
     /// A bit for each heading that matters.
@@ -35,7 +32,6 @@ impl HeadingBounds {
         self.greatest = [0; QUAD];
         self.chunks.clear();
         let chunks = headings.map(|valid| Chunk {
-            after: [[EMPTY; bits::PLANES]; GROUPS - 1],
             greatest: [0; QUAD],
             valid,
             reach: EMPTY,

@@ -8,28 +8,15 @@ use crate::simd::Simd;
 use crate::simd::headings::BinVotes;
 use crate::tables::TABLE;
 
-/// Number of beams whose votes, at most 16 each, fit a byte together.
-const BEAMS_OF_A_BYTE: usize = 15;
-
 /// A scan program laid out for bounds from intervals; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
     pub(in crate::search) directions: usize,
     pub(in crate::search) simd: Simd,
-    pub(in crate::search) by_sector: Order,
-    /// Beams in the groups of the bounds from sets.
-    pub(in crate::search) by_group: Order,
-    /// Most votes that all beams from each sector on give.
-    pub(in crate::search) possible_from: Vec<u16>,
-}
-
-/// An order in which beams are added.
-#[derive(Debug, Clone, Default)]
-pub(in crate::search) struct Order {
+    /// Beams by sector.
     beams: Vec<IntervalBeam>,
-    /// Pieces whose votes fit a byte: the end of each, and the number of sectors or groups that
-    /// are complete there.
-    pieces: Vec<(usize, usize)>,
+    /// Most votes that all beams after each sector give.
+    rests: Vec<u16>,
 }
 
 /// A beam and its votes for ranges in bins: the table fills one cache line, the rest is in
@@ -42,59 +29,35 @@ pub(in crate::search) struct IntervalBeam {
 }
 
 impl IntervalProgram {
-    /// Lays out a program. Its beams are in the order of [`sectors::order`]; `shifts` gives
-    /// their groups, see [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
+    /// Lays out a program. Its beams are in the order of [`sectors::order`].
     pub(crate) fn make(
         &mut self,
         (program, order): (&ScanProgram, &[usize]),
         directions: &Directions,
         steps: &BinSteps,
-        shifts: impl Iterator<Item = u32>,
         simd: Simd,
     ) {
         self.directions = directions.count();
         self.simd = simd;
-        let sectors = sectors::count(program.beams());
-        self.possible_from.clear();
-        self.possible_from.resize(sectors + 1, 0);
-        self.by_sector.clear();
-        for (place, &beam) in order.iter().enumerate() {
-            self.possible_from[place / sectors::BEAMS] += program.peak(beam);
-            let beam = IntervalBeam::new(program, beam, directions, steps);
-            self.by_sector.beams.push(beam);
-        }
-        for sector in (0..sectors).rev() {
-            self.possible_from[sector] += self.possible_from[sector + 1];
-        }
-        let ends = (0..sectors).map(|sector| sectors::beams(sector, program.beams()).end);
-        self.by_sector.pieces.extend(ends.zip(1..));
-        self.by_group.clear();
-        for (group, shift) in shifts.enumerate() {
-            let beams = self.by_sector.beams.iter();
-            let beams = beams.filter(|beam| u32::from(beam.bearing % 8) == shift);
-            let start = self.by_group.beams.len();
-            self.by_group.beams.extend(beams.cloned());
-            let end = self.by_group.beams.len();
-            let full = (start..end).step_by(BEAMS_OF_A_BYTE).skip(1);
-            let pieces = full.map(|end| (end, group)).chain([(end, group + 1)]);
-            self.by_group.pieces.extend(pieces);
-        }
-    }
-}
-
-impl Order {
-    fn clear(&mut self) {
         self.beams.clear();
-        self.pieces.clear();
+        let beams = order.iter();
+        let beams = beams.map(|&beam| IntervalBeam::new(program, beam, directions, steps));
+        self.beams.extend(beams);
+        self.rests.clear();
+        let mut rest = 0;
+        for sector in order.chunks(sectors::BEAMS).rev() {
+            self.rests.push(rest);
+            rest += sector.iter().map(|&beam| program.peak(beam)).sum::<u16>();
+        }
+        self.rests.reverse();
     }
 
+    /// Returns the beams of each sector, and the most votes that those after it give.
     #[inline(always)]
-    pub(in crate::search) fn pieces(&self) -> impl Iterator<Item = (&[IntervalBeam], usize)> {
-        let mut start = 0;
-        self.pieces.iter().map(move |&(end, complete)| {
-            let beams = &self.beams[std::mem::replace(&mut start, end)..end];
-            (beams, complete)
-        })
+    pub(in crate::search) fn sectors(&self) -> impl Iterator<Item = (&[IntervalBeam], u16)> {
+        self.beams
+            .chunks(sectors::BEAMS)
+            .zip(self.rests.iter().copied())
     }
 }
 

@@ -11,22 +11,15 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use super::group::{Aligned, Carries, Group};
 use super::heading_bounds::HeadingBounds;
 use super::quad_rows::{QuadRows, Reader};
-use super::set_program::{GROUPS, SetProgram};
+use super::set_program::SetProgram;
 use crate::search::index::bits;
 use crate::search::index::sets::{Quad, RangeSets};
 use crate::simd::words::{BitWords, EMPTY, QUAD};
 use crate::simd::{Kernel, Set};
 
-/// Most votes that the beams from each group on give: `u16::MAX` for the first group, and 0
-/// after the last.
-pub(crate) type Rests = [u16; GROUPS + 1];
-
 /// Known limits of the blocks of a quad: votes that none of them exceeds in each chunk, and
 /// the least votes that matter.
 pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
-
-/// Bounds of a quad, and the place of a block in it.
-pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
 
 /// Bounds of the blocks of a quad, with the buffers for finding them.
 #[derive(Debug, Clone, Default)]
@@ -55,28 +48,8 @@ impl SetBounds {
 }
 
 impl SetProgram {
-    /// Returns the most votes that the beams from each group on give at the headings of a
-    /// window, from the sums that were noted.
-    pub(crate) fn rests(&self, (bounds, place): Placed<'_>, (first, among): (usize, u64)) -> Rests {
-        let chunks = &bounds.chunks;
-        let others = self.groups().len().saturating_sub(1);
-        let mut rests = Rests::default();
-        rests[0] = u16::MAX;
-        for (group, rest) in rests.iter_mut().enumerate().take(others + 1).skip(1) {
-            // The last groups were added first.
-            let after = |chunk: usize| &chunks[chunk].after[others - group];
-            let sums = |plane: usize| {
-                let of_chunk = |chunk| bits::of_block(&after(chunk)[plane], place);
-                bits::window_of(chunks.len(), of_chunk, first)
-            };
-            *rest = self.unit * bits::greatest(self.planes, sums, among);
-        }
-        rests
-    }
-
     /// Bounds the votes of blocks at all headings or, with `known`, at those where any may have
-    /// as many as matter. Then the bounds at other headings are left unfinished, and the sums
-    /// after each group are noted for the smaller blocks inside.
+    /// as many as matter. Then the bounds at other headings are left unfinished.
     pub(crate) fn bound<'a>(
         &self,
         blocks: (&RangeSets, &Quad),
@@ -100,11 +73,7 @@ impl SetProgram {
         bounds: &mut SetBounds,
         mut take: impl FnMut(&Quad, &HeadingBounds),
     ) {
-        let mut quads = quads.peekable();
-        while let Some(quad) = quads.next() {
-            if let Some(next) = quads.peek() {
-                sets.prefetch(next.index);
-            }
+        for quad in quads {
             take(&quad, self.bound((sets, &quad), None, bounds));
         }
     }
@@ -182,12 +151,6 @@ impl SetProgram {
             reach = bits::at_least(set, self.planes, |plane| total[plane], least, valid);
             if reach.is_empty() {
                 break;
-            }
-            if left > 0 {
-                let after = &mut chunk.after[groups.len() - left - 1];
-                for (after, total) in after.iter_mut().zip(&*total) {
-                    *after = total.to_words();
-                }
             }
         }
         chunk.reach = reach.to_words();

@@ -79,11 +79,6 @@ impl SetProgram {
             .map_or(0, |plane| plane as usize + 1);
     }
 
-    /// Returns the bearing modulo 8 of each group that has beams.
-    pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> {
-        self.groups().iter().map(Group::shift)
-    }
-
     /// Returns the groups that have beams.
     pub(in crate::search) fn groups(&self) -> &[Group] {
         &self.groups[..self.used]

@@ -14,9 +14,6 @@ const WHOLE: u128 = u128::MAX >> (128 - CHUNK);
 /// Largest number of planes: numbers fit 16 bits.
 pub(crate) const PLANES: usize = 16;
 
-/// The numbers of a quad in a chunk, by plane.
-pub(crate) type Planes = [Words; PLANES];
-
 /// Returns the 128 bits of a block.
 #[inline(always)]
 pub(crate) fn of_block(words: &Words, block: usize) -> u128 {
@@ -31,20 +28,6 @@ pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
         words.map(|word| word as u64),
         words.map(|word| (word >> 64) as u64),
     ]
-}
-
-/// Returns the greatest of the numbers, of this many planes, that `among` selects.
-#[inline(always)]
-pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64) -> u16 {
-    let (mut candidates, mut value) = (among, 0);
-    for plane in (0..planes).rev() {
-        let higher = candidates & number(plane);
-        if higher != 0 {
-            candidates = higher;
-            value |= 1 << plane;
-        }
-    }
-    value
 }
 
 /// Returns the greatest of the numbers of each block, of this many planes, that `among`
@@ -172,10 +155,8 @@ mod tests {
                 let numbers = &plain[128 * block..][..128];
                 let is_selected = |i: usize| among >> i & 1 == 1;
                 let selected = |i: &usize| is_selected(*i);
-                let most = |places: std::ops::Range<usize>| places.filter(selected).map(|i| numbers[i]).max();
-                prop_assert_eq!(greatest_of_each[block], most(0..128).unwrap_or(0));
-                let low = |plane: usize| planes[plane][0][block];
-                prop_assert_eq!(greatest(PLANES, low, among as u64), most(0..64).unwrap_or(0));
+                let most = (0..128).filter(selected).map(|i| numbers[i]).max();
+                prop_assert_eq!(greatest_of_each[block], most.unwrap_or(0));
                 for (i, &number) in numbers.iter().enumerate() {
                     prop_assert_eq!(found >> i & 1 == 1, is_selected(i) && number >= least);
                 }

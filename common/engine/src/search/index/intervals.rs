@@ -13,7 +13,6 @@ mod wide;
 
 use super::bins::Bins;
 use super::block_ids::BlockIds;
-use super::prefetch::prefetch;
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::grid::{CellSet, Grid};
@@ -187,13 +186,6 @@ impl RangeIntervals {
         let (nearest, rest) = packed.split_at(self.directions);
         let (farthest, widths) = rest.split_at(self.directions);
         [nearest, farthest, widths]
-    }
-
-    /// Prefetches the intervals of a block that is soon to be read, if it is kept.
-    pub(crate) fn prefetch(&self, block: usize) {
-        if self.ids.holds(block) {
-            self.packed(block).into_iter().for_each(prefetch);
-        }
     }
 
     /// Unpacks the intervals of a block that is kept.

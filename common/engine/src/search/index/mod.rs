@@ -12,7 +12,6 @@ pub(in crate::search) mod intervals;
 mod key;
 mod needed;
 pub(in crate::search) mod obstacles;
-pub(in crate::search) mod prefetch;
 mod sections;
 pub(in crate::search) mod sets;
 pub(in crate::search) mod steps;

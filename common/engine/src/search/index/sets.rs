@@ -14,7 +14,6 @@ mod marks;
 mod packed;
 
 use super::intervals::{self, RangeIntervals, WideViews};
-use super::prefetch::prefetch;
 use crate::directions::Directions;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -73,11 +72,7 @@ impl RangeSets {
     }
 
     /// Does the same with a given instruction set.
-    pub(crate) fn with(
-        intervals: &RangeIntervals,
-        wide: &WideViews,
-        set: InstructionSet,
-    ) -> Self {
+    pub(crate) fn with(intervals: &RangeIntervals, wide: &WideViews, set: InstructionSet) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
         let (side, stride) = (2 * intervals::SIDE, intervals.directions / 8);
         let rows_of = build(Simd::new(set), (intervals, wide));
@@ -245,13 +240,6 @@ impl RangeSets {
         let masks = &self.packed.masks[row * words..(row + rows) * words];
         let bytes = &self.packed.bytes[start.byte as usize..end.byte as usize + READ];
         SetRows::new(first..first + rows, self.stride, (masks, bytes))
-    }
-
-    /// Prefetches the rows of a quad that is soon to be read.
-    pub(crate) fn prefetch(&self, quad: usize) {
-        let rows = self.quad(quad);
-        prefetch(rows.masks);
-        prefetch(rows.bytes);
     }
 }
 

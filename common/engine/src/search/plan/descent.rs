@@ -10,11 +10,10 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::queue::{Block, Level};
-use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
+use crate::search::bounds::interval_bounds::IntervalBounds;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
 use crate::search::index::intervals::CELLS;
-use crate::search::index::prefetch::prefetch;
 use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
 use crate::search::task::budget::Budget;
@@ -75,9 +74,6 @@ impl<'a> Descent<'a> {
         if stop() {
             return Some(End::Stopped);
         }
-        if let Some(next) = self.scratch.queue.peek(self.budget.prefers_leaves()) {
-            self.prefetch(&next);
-        }
         let (level, index) = (block.level, block.index as usize);
         match level {
             Level::Coarse => self.split_coarse(index),
@@ -87,11 +83,10 @@ impl<'a> Descent<'a> {
             Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
         }
         let cost = self.scratch.tally.take(self.task.programs.beams);
-        self.budget.spend(matches!(level, Level::Leaf { .. }), cost);
+        self.budget.spend(cost);
         // Some pose has to be found: without any it would seem that no beam votes.
         if self.budget.is_used_up(elsewhere) && self.task.best() > 0 {
-            let left = self.scratch.queue.iter().map(|block| block.bound).max();
-            self.scratch.left = left.unwrap_or(0);
+            self.scratch.left = self.scratch.queue.peek().map_or(0, |block| block.bound);
             return Some(End::Done);
         }
         self.budget.is_hopeless(elsewhere).then_some(End::Hopeless)
@@ -130,33 +125,9 @@ impl<'a> Descent<'a> {
     /// Takes the next block that may matter from the queue.
     fn next(&mut self) -> Option<Block> {
         self.scratch.collector.raise_best(self.task.best());
-        self.scratch
-            .queue
-            .pop(self.budget.prefers_leaves(), self.scratch.collector.floor())
-    }
-
-    /// Prefetches the data of a block that is likely the next one.
-    fn prefetch(&self, block: &Block) {
-        let SearchIndex {
-            fine, intervals, ..
-        } = self.task.index;
-        let index = block.index as usize;
-        match block.level {
-            // A coarse block has the index of the quad of 8 × 8 blocks within.
-            Level::Coarse => fine.prefetch(index),
-            Level::Fine { start, end } => {
-                prefetch(&self.scratch.windows[start as usize..end as usize]);
-                let sides = (intervals.columns, intervals.rows);
-                // The others are prefetched one by one: more at a time would be waited for.
-                if let Some(first) = quarters(index, fine.columns, sides).next() {
-                    intervals.prefetch(first);
-                }
-            }
-            Level::Leaf { start, end } => {
-                prefetch(&self.scratch.candidates[start as usize..end as usize]);
-                intervals.prefetch(index);
-            }
-        }
+        let floor = self.scratch.collector.floor();
+        let next = self.scratch.queue.pop();
+        next.filter(|block| block.bound >= floor)
     }
 
     fn push(&mut self, bound: u16, index: usize, level: Level) {
@@ -188,22 +159,17 @@ impl<'a> Descent<'a> {
     /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
     /// may matter.
     fn queue_fine(&mut self, index: usize, place: usize) {
-        let program = &self.task.programs.sets;
         let Scratch {
             windows,
             set_bounds,
             ..
         } = &mut *self.scratch;
-        let bounds = (&set_bounds.found, place);
+        let bounds = &set_bounds.found;
         let start = windows.len();
-        windows.extend(bounds.0.reach(place).map(|(first, among)| Window {
-            first: first as u16,
-            among,
-            rests: program.rests(bounds, (first, among)),
-        }));
+        windows.extend(bounds.reach(place));
         let (start, end) = (start as u32, windows.len() as u32);
         if start < end {
-            let bound = bounds.0.greatest(place);
+            let bound = bounds.greatest(place);
             self.scratch.fine.push((bound, Reverse(index as u32)));
             self.push(bound, index, Level::Fine { start, end });
         }
@@ -213,13 +179,7 @@ impl<'a> Descent<'a> {
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
-        let mut searched = quarters
-            .filter(|&block| intervals.ids.holds(block))
-            .peekable();
-        while let Some(block) = searched.next() {
-            if let Some(&next) = searched.peek() {
-                intervals.prefetch(next);
-            }
+        for block in quarters.filter(|&block| intervals.ids.holds(block)) {
             self.queue_leaf(block, windows.clone());
         }
     }
@@ -238,15 +198,15 @@ impl<'a> Descent<'a> {
         } = &mut *self.scratch;
         self.task.index.intervals.read(index, intervals);
         let program = &self.task.programs.interval;
-        for window in &known[windows] {
+        for &(first, among) in &known[windows] {
             tally.windows += 1;
-            if !program.bound_within(intervals, window, floor, bounds) {
+            if !program.bound::<false>(intervals, (first, among), floor, bounds) {
                 continue;
             }
-            let bounded = bits::ones(window.among).map(|lane| (lane, bounds.all[lane]));
+            let bounded = bits::ones(among).map(|lane| (lane, bounds.all[lane]));
             let left = bounded.filter(|&(_, bound)| bound >= floor);
             candidates.extend(left.map(|(lane, bound)| Candidate {
-                heading: window.first + lane as u16,
+                heading: (first + lane) as u16,
                 bound,
             }));
         }
@@ -272,7 +232,7 @@ impl<'a> Descent<'a> {
             );
             let program = &self.task.programs.interval;
             self.scratch.tally.windows += 1;
-            if program.bound(intervals, first, among, floor, bounds) {
+            if program.bound::<true>(intervals, (first, among), floor, bounds) {
                 self.count_at(first, among);
             }
         }

@@ -35,8 +35,6 @@ pub(in crate::search) struct Budget {
     /// Cost of counting every pose.
     counting: f64,
     spent: f64,
-    /// Part of the cost that went into the smallest blocks.
-    spent_on_leaves: f64,
 }
 
 // Measured cost of the parts of a search, in nanoseconds.
@@ -46,9 +44,6 @@ const SECTOR: f64 = 40.0;
 const CAST: f64 = 60.0;
 /// Cost of counting every pose, for each heading, cell and beam.
 const VOTE: f64 = 0.03;
-
-/// Share of the work that goes into the smallest blocks before their turn.
-const LEAF_SHARE: f64 = 0.4;
 
 /// Cost at which a search is given up, as a share of counting every pose: this much is lost.
 const HOPELESS: f64 = 0.25;
@@ -90,22 +85,12 @@ impl Budget {
             limit: most_steps / parts as f64,
             counting: brute_force.0 / parts as f64,
             spent: 0.0,
-            spent_on_leaves: 0.0,
         }
     }
 
     /// Adds the cost of a block.
-    pub(in crate::search) fn spend(&mut self, is_leaf: bool, cost: Cost) {
+    pub(in crate::search) fn spend(&mut self, cost: Cost) {
         self.spent += cost.0;
-        if is_leaf {
-            self.spent_on_leaves += cost.0;
-        }
-    }
-
-    /// True if the smallest block with the highest bound comes next, even if larger blocks have
-    /// higher bounds: as long as the smallest blocks have cost a small part.
-    pub(in crate::search) fn prefers_leaves(&self) -> bool {
-        self.spent_on_leaves < self.spent * LEAF_SHARE
     }
 
     /// Cost of the search so far.
@@ -132,29 +117,20 @@ mod tests {
     #[test]
     fn a_search_is_given_up_after_a_quarter_of_the_cost_of_counting() {
         let mut budget = Budget::new(Cost(800.0), f64::INFINITY, 2);
-        budget.spend(false, Cost(99.0));
+        budget.spend(Cost(99.0));
         assert!(!budget.is_hopeless(0.0));
-        budget.spend(true, Cost(1.0));
+        budget.spend(Cost(1.0));
         assert!(budget.is_hopeless(0.0));
-    }
-
-    #[test]
-    fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
-        let mut budget = Budget::new(Cost(1.0), f64::INFINITY, 1);
-        assert!(!budget.prefers_leaves(), "nothing was done");
-        budget.spend(false, Cost(100.0));
-        assert!(budget.prefers_leaves());
-        budget.spend(true, Cost(10.0));
-        assert!(budget.prefers_leaves());
-        budget.spend(true, Cost(60.0));
-        assert!(!budget.prefers_leaves(), "70 of 170");
     }
 
     #[test]
     fn a_search_ends_where_its_limit_is_used_up() {
         let mut budget = Budget::new(Cost(500.0), 600.0, 2);
-        budget.spend(false, Cost(70.0));
-        assert!(budget.is_hopeless(-20.0), "counting ends at the limit of 300");
+        budget.spend(Cost(70.0));
+        assert!(
+            budget.is_hopeless(-20.0),
+            "counting ends at the limit of 300"
+        );
         assert!(!budget.is_hopeless(0.0), "and would end beyond it");
         assert!(!budget.is_used_up(229.0) && budget.is_used_up(230.0));
     }

@@ -75,8 +75,8 @@ impl Programs {
         let (directions, steps) = (&space.directions, &index.steps);
         self.sets.make(program, directions, steps, simd);
         self.leaf.make(program, directions, simd);
-        let (shifts, ordered) = (self.sets.shifts(), (program, self.leaf.order()));
-        self.interval.make(ordered, directions, steps, shifts, simd);
+        let ordered = (program, self.leaf.order());
+        self.interval.make(ordered, directions, steps, simd);
         self.beams = program.beams();
         self.simd = simd;
     }

@@ -217,7 +217,10 @@ impl Planes {
             }
             self.turn(start);
             for block in bits::ones(wanted) {
-                self.write_block(block, &mut packed[bytes * blocks.id(start + block)..][..bytes]);
+                self.write_block(
+                    block,
+                    &mut packed[bytes * blocks.id(start + block)..][..bytes],
+                );
             }
         }
     }

@@ -1,11 +1,13 @@
 //! Buffers of one thread's search.
 
-use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
+use std::collections::BinaryHeap;
+
+use crate::search::bounds::interval_bounds::IntervalBounds;
 use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::intervals::BlockIntervals;
 use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
-use crate::search::plan::queue::{BoundedBlock, Queue};
+use crate::search::plan::queue::{Block, BoundedBlock};
 use crate::search::task::Task;
 use crate::search::task::budget::Tally;
 use crate::simd::headings::HEADINGS;
@@ -20,9 +22,10 @@ pub(in crate::search) struct Scratch {
     pub(super) block_ranges: BlockRanges,
     /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
     pub(super) counts: Vec<Count>,
-    pub(super) queue: Queue,
-    /// Headings at which blocks of 8 × 8 cells may matter.
-    pub(super) windows: Vec<Window>,
+    pub(super) queue: BinaryHeap<Block>,
+    /// Headings at which blocks of 8 × 8 cells may matter: the first, and a bit for each from
+    /// there on.
+    pub(super) windows: Vec<(usize, u64)>,
     /// Bounds of these blocks; once the search is done, of all whose bound is not below the
     /// floor.
     pub fine: Vec<BoundedBlock>,
