@@ -20,7 +20,8 @@ pub(crate) struct RecordedFile {
 
 #[derive(Debug)]
 enum Bytes {
-    Mapped(Mmap),
+    /// The file, and its bytes.
+    Mapped(File, Mmap),
     Owned(Vec<u8>),
 }
 
@@ -69,11 +70,12 @@ impl RecordedFile {
 
     /// Maps a file; errors call it `path`.
     fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
+        let file = file.try_clone().map_err(RecordingError::open(path))?;
         // SAFETY: the map is only read. If another process writes to the file, bytes change under
-        // the reader, which checks each of them as untrusted input; if one truncates it, the system
-        // ends this process.
-        let map = unsafe { Mmap::map(file) }.map_err(RecordingError::open(path))?;
-        RecordedFile::new(path.to_owned(), Bytes::Mapped(map))
+        // the reader, which checks each of them as untrusted input. If one truncates it, reading
+        // behind its end would end this process: see `ensure_long`.
+        let map = unsafe { Mmap::map(&file) }.map_err(RecordingError::open(path))?;
+        RecordedFile::new(path.to_owned(), Bytes::Mapped(file, map))
     }
 
     /// Opens a file in memory; errors call it `path`.
@@ -115,6 +117,23 @@ impl RecordedFile {
     pub(crate) fn bytes(&self) -> &[u8] {
         self.bytes.as_slice()
     }
+
+    /// Checks that the file still has its first `end` bytes, for the record that starts at byte
+    /// `at`. Reading what another process has cut off would end this process (SIGBUS).
+    ///
+    /// # Errors
+    /// [`Damage::Truncated`] if the file was cut since it was opened.
+    pub(crate) fn ensure_long(&self, end: usize, at: usize) -> Result<(), Damage> {
+        let Bytes::Mapped(file, _) = &self.bytes else {
+            return Ok(());
+        };
+        let length = file.metadata().map_or(0, |found| found.len());
+        if end as u64 <= length {
+            return Ok(());
+        }
+        let at = at as u64;
+        Err(Damage::Truncated { length, at })
+    }
 }
 
 fn damaged(path: PathBuf, damage: Damage) -> RecordingError {
@@ -128,7 +147,7 @@ fn damaged(path: PathBuf, damage: Damage) -> RecordingError {
 impl Bytes {
     fn as_slice(&self) -> &[u8] {
         match self {
-            Bytes::Mapped(map) => map,
+            Bytes::Mapped(_, map) => map,
             Bytes::Owned(bytes) => bytes,
         }
     }

@@ -145,11 +145,13 @@ impl Recording {
         &self.attachments
     }
 
-    /// Content of an attachment from [`Recording::attachments`]; empty for one of another
-    /// recording.
+    /// Content of an attachment from [`Recording::attachments`]; empty for one of another recording,
+    /// or if the file was cut since it was opened.
     #[must_use]
     pub fn content_of(&self, attached: &AttachedFile) -> &[u8] {
+        let end = attached.bytes.end;
         let file = self.files.get(attached.file);
+        let file = file.filter(|file| file.ensure_long(end, attached.bytes.start).is_ok());
         let bytes = file.and_then(|file| file.bytes().get(attached.bytes.clone()));
         bytes.unwrap_or_default()
     }

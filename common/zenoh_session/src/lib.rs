@@ -13,7 +13,7 @@ mod session;
 
 pub use error::{Cause, KeyError, NetworkError};
 pub use options::Options;
-pub use queue::{Past, Queue, QueueLimits};
+pub use queue::{ENVELOPE_BYTES, Past, Queue, QueueLimits, message_bytes};
 pub use report::Report;
 pub use routers::Routers;
 pub use session::{LOG, open, settings};

@@ -3,11 +3,13 @@
 //! Zenoh calls back on its own threads; they only put messages into a bounded queue and wake the
 //! event loop. In a flood, the oldest messages are dropped and counted.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use crossbeam::queue::ArrayQueue;
 use transport::Waker;
+use zenoh::bytes::{Encoding, ZBytes};
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
@@ -18,12 +20,29 @@ use crate::KeyError;
 /// Verb for errors.
 const ACTION: &str = "subscribe to";
 
+/// Largest size of what comes with a payload: the encoding and an attachment, in bytes.
+pub const ENVELOPE_BYTES: usize = 4096;
+
+/// Returns the size of a message in bytes. Its payload is only a part of what its sender chooses,
+/// and of what is kept while it waits.
+#[must_use]
+pub fn message_bytes(encoding: Option<&Encoding>, parts: [Option<&ZBytes>; 2]) -> usize {
+    let parts = parts.into_iter().flatten().map(ZBytes::len);
+    let encoding = encoding.map_or(0, |encoding| Cow::from(encoding).len());
+    parts.fold(encoding, usize::saturating_add)
+}
+
+fn sample_bytes(sample: &Sample) -> usize {
+    let parts = [Some(sample.payload()), sample.attachment()];
+    message_bytes(Some(sample.encoding()), parts)
+}
+
 /// Limits of a queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueueLimits {
     /// Largest number of waiting messages.
     pub messages: usize,
-    /// Largest size of one message, in bytes.
+    /// Largest size of one message, in bytes, without [`ENVELOPE_BYTES`].
     pub message_bytes: usize,
     /// Largest total size of waiting messages, in bytes.
     pub bytes: usize,
@@ -68,7 +87,7 @@ enum Subscription {
 struct Waiting {
     samples: ArrayQueue<Sample>,
     limits: QueueLimits,
-    /// Total size of the waiting payloads, in bytes.
+    /// Total size of the waiting messages, in bytes.
     bytes: AtomicUsize,
     /// Messages dropped because the queue was full.
     dropped: AtomicU64,
@@ -160,8 +179,8 @@ impl Queue {
 
 impl Waiting {
     fn put(&self, sample: Sample) {
-        let bytes = sample.payload().len();
-        if bytes > self.limits.message_bytes {
+        let bytes = sample_bytes(&sample);
+        if bytes > self.limits.message_bytes.saturating_add(ENVELOPE_BYTES) {
             self.too_long_bytes.store(bytes, Ordering::Relaxed);
             self.too_long.fetch_add(1, Ordering::Relaxed);
             return;
@@ -184,7 +203,7 @@ impl Waiting {
     }
 
     fn forget(&self, sample: &Sample) {
-        let bytes = sample.payload().len();
-        self.bytes.fetch_sub(bytes, Ordering::Relaxed);
+        self.bytes
+            .fetch_sub(sample_bytes(sample), Ordering::Relaxed);
     }
 }

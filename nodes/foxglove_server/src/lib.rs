@@ -7,6 +7,7 @@
 mod channels;
 mod config;
 mod error;
+mod listening;
 mod run;
 mod serving;
 

@@ -3,21 +3,18 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use foxglove::{Context, WebSocketServerHandle};
+use foxglove::Context;
 use messages::{NodeState, topic};
 use ros_export::{Entry, Inputs, Listener, Transcript};
-use tokio::runtime::Handle;
 use transport::{Flow, Graph, Subscriber};
 
 use crate::channels::Channels;
+use crate::listening::Listening;
 use crate::serving::Serving;
 use crate::{Config, ServerError};
 
 /// Longest delay of an image and of a health report.
 const TICK: Duration = Duration::from_millis(50);
-
-/// Number of messages queued for each viewer; beyond it the oldest ones are dropped.
-const BACKLOG: usize = 256;
 
 /// Serves viewers until the stop flag is set.
 ///
@@ -27,7 +24,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
     let context = Context::new();
     let serving = Serving::start().map_err(ServerError::Start)?;
     let channels = Arc::new(Channels::new(&context)?);
-    let server = start((&context, serving.handle()), &channels, config)?;
+    let mut listening = Listening::start(&context, serving.handle(), &channels, config)?;
     let inputs = Inputs::open(graph, false)?;
     let mut node = Node {
         transcript: Transcript::new(graph, &config.transcript)?,
@@ -37,35 +34,15 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
     };
     node.transcript.health.state(NodeState::Ready)?;
     let outcome = graph.run(&inputs.all(), TICK, |wake| {
+        if let Some(problem) = listening.check() {
+            tracing::warn!("{problem}");
+            node.transcript.health.error(&problem)?;
+        }
         node.step(graph, &inputs, wake.tick)?;
         Ok(Flow::Continue)
     });
-    server.stop().wait_blocking();
+    listening.stop();
     outcome
-}
-
-fn start(
-    (context, handle): (&Arc<Context>, &Handle),
-    channels: &Arc<Channels>,
-    config: &Config,
-) -> Result<WebSocketServerHandle, ServerError> {
-    let listen = config.listen;
-    let server = context
-        .websocket_server()
-        .name(config.robot())
-        .bind(listen.ip().to_string(), listen.port())
-        .listener(Arc::clone(channels) as _)
-        .message_backlog_size(BACKLOG)
-        .tokio_runtime(handle)
-        .start_blocking();
-    let server = server.map_err(|source| ServerError::Listen {
-        address: listen,
-        source,
-    })?;
-    let mut address = listen;
-    address.set_port(server.port());
-    tracing::info!("watch it in Foxglove or Lichtblick: open a connection to ws://{address}");
-    Ok(server)
 }
 
 struct Node {

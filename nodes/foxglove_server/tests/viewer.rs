@@ -16,7 +16,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use tests::drawn_map::DrawnMap;
 use tests::http::Site;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
@@ -47,8 +47,11 @@ impl World {
         let maps = graph.publisher().unwrap();
         let (scans, hypotheses) = (graph.publisher().unwrap(), graph.publisher().unwrap());
         let fields = graph.publisher().unwrap();
-        let arguments = ["--listen", &listen, "--robot", "r7"];
-        let node = NodeProcess::start(env!("CARGO_BIN_EXE_foxglove_server"), &graph, arguments);
+        // With few file descriptors, so that a test can use them up.
+        let limited = ["-c", "ulimit -n 512 && exec \"$@\"", "sh"];
+        let node = env!("CARGO_BIN_EXE_foxglove_server");
+        let arguments = [node, "--listen", &listen, "--robot", "r7"];
+        let node = NodeProcess::start("sh", &graph, limited.iter().chain(&arguments));
         wait_until_ready(&graph, "foxglove_server");
         World {
             node: Some(node),
@@ -345,4 +348,25 @@ fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
     let mut viewer = Viewer::connect(world.site);
     viewer.subscribe("/map");
     viewer.next("/map");
+}
+
+#[test]
+fn silent_connections_lock_nobody_out_and_delay_no_end() {
+    let world = World::new("fox-silent");
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    DrawnMap::small().send(&world.maps);
+    // More than the node has file descriptors; those that cannot be accepted wait in the system.
+    let silent: Vec<_> = (0..600)
+        .map_while(|_| TcpStream::connect(world.site.0).ok())
+        .collect();
+    wait_until(&world.graph, &health, |_, error| {
+        error.starts_with(b"too many connections")
+    });
+    drop(silent);
+    let mut viewer = Viewer::connect(world.site);
+    viewer.subscribe("/map");
+    viewer.next("/map");
+    // It is still there when the node is stopped.
+    let _silent = TcpStream::connect(world.site.0).unwrap();
+    drop(world);
 }

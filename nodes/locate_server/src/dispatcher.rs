@@ -8,9 +8,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, TrySendError, bounded, unbounded};
+use messages::topic;
+use network_payload::Wire;
 use zenoh::bytes::Encoding;
 use zenoh::query::{Query, Reply};
 use zenoh::{Session, Wait};
+use zenoh_session::{ENVELOPE_BYTES, message_bytes};
 
 use crate::LocateError;
 use crate::counts::Counts;
@@ -173,11 +176,14 @@ impl Dispatcher {
         }
     }
 
-    /// Reads the deadline of a request; refuses the request if it is invalid.
+    /// Reads the deadline of a request; refuses the request if that is invalid, or if the request is
+    /// too long to be kept until a worker is free.
     fn open(&self, query: Query, key: Arc<str>, is_handed_on: bool) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
-        match deadline(said.as_deref(), self.default_deadline) {
+        let allowed =
+            ensure_short(&query).and_then(|()| deadline(said.as_deref(), self.default_deadline));
+        match allowed {
             Ok(allowed) => Some(Job {
                 query,
                 key,
@@ -290,6 +296,16 @@ impl Drop for Handed {
 /// Returns true if the error concerns the request itself, not a busy server or Zenoh.
 fn is_about_the_request(encoding: &Encoding) -> bool {
     encoding.to_string() == REFUSED
+}
+
+fn ensure_short(query: &Query) -> Result<(), LocateError> {
+    let parts = [query.payload(), query.attachment()];
+    let found = message_bytes(query.encoding(), parts) + query.parameters().as_str().len();
+    let most = topic::Scan::MAX_BYTES;
+    if found <= most + ENVELOPE_BYTES {
+        return Ok(());
+    }
+    Err(LocateError::TooLong { found, most })
 }
 
 fn deadline(said: Option<&str>, default: Duration) -> Result<Duration, LocateError> {

@@ -363,6 +363,25 @@ fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
 }
 
 #[test]
+fn a_recording_that_is_cut_while_it_is_open_is_played_as_far_as_it_goes() {
+    let mut world = World::new("cut-open");
+    let mut health = world.graph.health().unwrap();
+    world.start(&three_scans(), &["--wait-for", "accumulator"]);
+    // By then it has read the recording once.
+    world.wait_for_state(NodeState::Waiting);
+    let path = world.folder.path().join("world.mcap");
+    let file = std::fs::File::options().write(true).open(path);
+    file.unwrap().set_len(0).unwrap();
+    health.state(NodeState::Ready).unwrap();
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(3), "{status} {log}");
+    assert!(
+        log.contains("world.mcap: the file is cut short: it ends at byte 0"),
+        "{log}"
+    );
+}
+
+#[test]
 fn a_message_that_is_none_is_counted_and_the_rest_played() {
     let mut world = World::new("bad");
     let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();

@@ -111,6 +111,7 @@ impl<'a> RawRecords<'a> {
         let registry = &file.survey.registry;
         let (is_wanted, next) = (&self.is_wanted, &mut self.next);
         let mut place = 0;
+        file.ensure_long(block.bytes.end, block.at)?;
         block.each_record(file.bytes(), |opcode, body| {
             place += 1;
             if opcode != op::MESSAGE {

@@ -230,14 +230,16 @@ fn what_strangers_send_is_refused_and_counted() {
         network_payload::encode::<topic::Scan>(&preamble, &scan(sequence), &[1.0, 2.0]).unwrap()
     };
     let key = network_payload::key::<topic::Scan>("r1");
-    let put = |encoding: &str, payload: Vec<u8>| {
+    let put_with = |attachment: Vec<u8>, encoding: &str, payload: Vec<u8>| {
         let put = stranger
             .put(&key, payload)
-            .encoding(Encoding::from(encoding));
+            .encoding(Encoding::from(encoding))
+            .attachment(attachment);
         put.congestion_control(zenoh::qos::CongestionControl::Block)
             .wait()
             .unwrap();
     };
+    let put = |encoding: &str, payload: Vec<u8>| put_with(Vec::new(), encoding, payload);
     let sound = network_payload::encoding::<topic::Scan>();
     let mut nan = good(1);
     let angle = (-1.5f64).to_le_bytes();
@@ -264,6 +266,11 @@ fn what_strangers_send_is_refused_and_counted() {
         assert_eq!(report.refused, count, "{error}");
         assert!(!error.is_empty());
     }
+    // What comes with a payload is kept with it, and counts.
+    put_with(vec![0; 2 * topic::Scan::MAX_BYTES], &sound, good(4));
+    wait_for_health(&engine.graph, &health, |report| {
+        report.node.as_str() == "bridge" && report.refused == count + 1
+    });
     // The bridge continues, and accepts each valid message once.
     for sequence in [5, 5, 6] {
         put(&sound, good(sequence));

@@ -202,8 +202,15 @@ fn what_is_no_request_is_refused_and_counted() {
         assert_eq!(error.encoding().to_string(), REFUSED);
         assert!(!error.payload().is_empty());
     }
+    // What comes with a request waits with it, and counts.
+    let get = session.get("backcast/locate/corridor");
+    let get = get.payload(sound.clone()).encoding(postcard.as_str());
+    let replies = get.attachment(vec![0; 2 << 20]).timeout(TIMEOUT).wait();
+    let reply = replies.unwrap().recv().unwrap();
+    let error = reply.into_result().unwrap_err();
+    assert_eq!(error.encoding().to_string(), REFUSED);
     let health = server.graph.subscriber::<topic::Health>().unwrap();
-    wait_for_health(&server.graph, &health, |report| report.refused == count);
+    wait_for_health(&server.graph, &health, |report| report.refused == count + 1);
     // The client does not repeat such a request either, since that would not help.
     let empty = ask(&session, "corridor", (&scan.0, &[]), TIMEOUT);
     assert!(

@@ -8,6 +8,10 @@ use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_cau
 
 use super::Summary;
 
+/// Most beams that lasers have, so that the publisher need not grow for a scan: it gets this room at
+/// the start, of which only what is used takes memory.
+const USUAL_BEAMS: usize = 4096;
+
 pub(super) struct Outlet {
     scans: Publisher<topic::Scan>,
     poses: Poses,
@@ -21,7 +25,7 @@ pub(super) struct Outlet {
 impl Outlet {
     pub(super) fn open(graph: &Graph) -> Result<Self, TransportError> {
         Ok(Outlet {
-            scans: graph.publisher()?,
+            scans: graph.publisher_for(USUAL_BEAMS)?,
             poses: Poses::open(graph)?,
             health: graph.health()?,
             summary: Summary::default(),
