@@ -36,35 +36,33 @@ pub fn of_graph(
         "--recording",
         recording.to_str().unwrap(),
     ];
-    of_graph_fed_by(tag, map, scans, accumulator, &("replayer", &source), None)
+    of_graph_fed_by(tag, map, scans, accumulator, &source)
 }
 
-/// Lets `player` feed a graph of its own, through `reader` if there is one, until there are results
-/// of `scans` scans; the player ends by itself then.
+/// Lets a replayer with these arguments feed a graph of its own until there are results of `scans`
+/// scans; the replayer ends by itself then.
 #[must_use]
 pub fn of_graph_fed_by(
     tag: &str,
     map: &Path,
     scans: usize,
     accumulator: &[&str],
-    player: &(&str, &[&str]),
-    reader: Option<&(&str, &[&str])>,
+    replayer: &[&str],
 ) -> Answers {
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();
     let hypotheses = graph.subscriber::<topic::Hypotheses>().unwrap();
     let start = |name: &str, arguments: &[&str]| executables::start(name, &graph, arguments);
-    let mut nodes = vec![
+    let nodes = [
         start("map_server", &["--map", map.to_str().unwrap()]),
         start("boundary_extractor", &[]),
         start("accumulator", accumulator),
         start("peak_extractor", &[]),
     ];
-    nodes.extend(reader.map(|(name, arguments)| start(name, arguments)));
-    let source = start(player.0, player.1);
+    let source = start("replayer", replayer);
     let answers = collect(&graph, &votes, &hypotheses, scans);
-    assert_eq!(source.exit_code(), Some(0), "the player lost something");
+    assert_eq!(source.exit_code(), Some(0), "the replayer lost something");
     for node in nodes {
         node.stop();
     }

@@ -65,30 +65,3 @@ pub fn first_cells(text: &str, title: &str) -> Vec<String> {
         .map(|(name, _)| name.to_owned())
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TEXT: &str = "# The way: 1 & 2\n\n[a](b.md#c), ![p](d.png) and `[no](link)`\n\
-                        ```sh\n# no heading\n[no](code)\n```\n## Topic `pose`\n\n\
-                        | field | |\n|---|---|\n| `x` | m |\n| `y`, `z` | m |\n\n## Twice\n\n\
-                        | `w` | |\n\n## Twice\n[over\n](lines.md)\n";
-
-    #[test]
-    fn links_stand_outside_code() {
-        assert_eq!(links(TEXT), ["b.md#c", "d.png", "lines.md"]);
-    }
-
-    #[test]
-    fn anchors_are_those_of_headings() {
-        let expected = ["the-way-1--2", "topic-pose", "twice", "twice-1"];
-        assert_eq!(anchors(TEXT), expected);
-    }
-
-    #[test]
-    fn a_section_has_its_rows() {
-        assert_eq!(first_cells(TEXT, "Topic `pose`"), ["x", "y"]);
-        assert!(first_cells(TEXT, "None").is_empty());
-    }
-}

@@ -76,36 +76,3 @@ impl Need {
         writeln!(file, "{test}: {name}: {why}").unwrap();
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn in_ci_tools_must_be_there_unless_the_list_says_otherwise() {
-        let required = |list, in_ci| {
-            [
-                Need::Browser,
-                Need::Python,
-                Need::Npm,
-                Need::Namespaces,
-                Need::Overlay,
-                Need::Root,
-                Need::Data,
-            ]
-            .map(|need| need.is_required(list, in_ci))
-        };
-        assert_eq!(required(None, false), [false; 7]);
-        assert_eq!(
-            required(None, true),
-            [true, true, true, true, false, false, false]
-        );
-        assert_eq!(required(Some("all"), false), [true; 7]);
-        assert_eq!(required(Some("none"), true), [false; 7]);
-        let some = Some("python, data");
-        assert_eq!(
-            required(some, true),
-            [false, true, false, false, false, false, true]
-        );
-    }
-}

@@ -35,25 +35,16 @@ impl World {
         self.folder.join("map.yaml")
     }
 
-    /// Returns the map's cells, and resolution and pose of their grid.
+    /// Returns the engine with its default settings, on this map.
     #[must_use]
-    pub fn grid(&self) -> (Grid, GridFrame) {
+    pub fn localizer(&self, prior: Prior) -> Localizer {
         let map = map::load(self.map()).unwrap();
         let frame = GridFrame {
             resolution_m: map.resolution_m,
             map_from_grid: map.map_from_grid,
         };
         let (width, height) = (map.width as usize, map.height as usize);
-        (
-            Grid::new(width, height, &map.cells, CellRules::default()).unwrap(),
-            frame,
-        )
-    }
-
-    /// Returns the engine with its default settings, on this map.
-    #[must_use]
-    pub fn localizer(&self, prior: Prior) -> Localizer {
-        let (grid, frame) = self.grid();
+        let grid = Grid::new(width, height, &map.cells, CellRules::default()).unwrap();
         Localizer::new(frame, grid, LocalizerConfig::default(), prior).unwrap()
     }
 

@@ -83,15 +83,6 @@ mod tests {
     }
 
     #[test]
-    fn robots_are_found_by_their_names() {
-        let robots: Robots = ["r2", "r10", "a"].map(robot).into_iter().collect();
-        assert_eq!(robots.names(), ["a", "r10", "r2"]);
-        assert_eq!(robots.get("r10").unwrap().name(), "r10");
-        assert!(robots.get("r1").is_none());
-        assert!(!robots.add(robot("a")), "it is there already");
-    }
-
-    #[test]
     fn made_up_names_do_not_fill_the_memory() {
         let robots = Robots::default();
         let added = (0..1000).filter(|i| robots.add(robot(&i.to_string())));

@@ -126,19 +126,3 @@ impl RestartPolicy {
         ("always", RestartPolicy::Always),
     ];
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_executable_is_the_last_part_of_the_path() {
-        let node = |path: &str| {
-            let text = format!("nodes: [{{id: a, path: {path}}}]");
-            crate::parse(&text, &crate::Topics::default())
-                .unwrap()
-                .nodes
-                .remove(0)
-        };
-        assert_eq!(node("target/release/replayer").executable(), "replayer");
-        assert_eq!(node("replayer").executable(), "replayer");
-    }
-}

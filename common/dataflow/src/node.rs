@@ -302,16 +302,6 @@ nodes:
     }
 
     #[test]
-    fn absent_keys_have_their_defaults() {
-        let node = parse("nodes: [{id: a, path: x}]", &Topics::default())
-            .unwrap()
-            .nodes
-            .remove(0);
-        assert_eq!(node.restart, Restart::DEFAULT);
-        assert!(node.args.is_empty() && node.env.is_empty() && node.build.is_empty());
-    }
-
-    #[test]
     fn all_problems_are_reported_in_the_order_of_the_file() {
         let said = faults(
             "nodes:\n  - path: ''\n    args: \"it's\"\n  - id: a b\n    restart_policy: on_failure\n\

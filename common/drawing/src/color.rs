@@ -53,13 +53,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hexadecimal_digits_are_read_in_pairs() {
-        let color = Color::rgb(0x12_34AB);
-        assert_eq!((color.red, color.green, color.blue), (0x12, 0x34, 0xAB));
-        assert_eq!(color.opacity, 1.0);
-    }
-
-    #[test]
     fn half_way_lies_in_the_middle() {
         let clear = Color::rgb(0x00_0000).with_opacity(0.0);
         let middle = clear.towards(Color::rgb(0xFF_0002), 0.5);

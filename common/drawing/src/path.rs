@@ -269,14 +269,4 @@ mod tests {
         let path = Path::polyline([(2.0, 5.0), (6.0, 5.0), (6.0, 7.0)]).turned_up((2.0, 5.0));
         assert_eq!(corners(&path), [(2.0, 5.0), (2.0, 1.0), (4.0, 1.0)]);
     }
-
-    #[test]
-    fn a_rectangle_goes_around_its_corners() {
-        let path = Path::rect(Rect::new(1.0, 2.0, 3.0, 4.0));
-        assert_eq!(
-            corners(&path),
-            [(1.0, 2.0), (4.0, 2.0), (4.0, 6.0), (1.0, 6.0)]
-        );
-        assert_eq!(path.pieces.last(), Some(&Piece::Close));
-    }
 }

@@ -284,13 +284,4 @@ mod tests {
         assert_eq!(MAX_RESOLUTION_M, map::MAX_RESOLUTION_M);
         assert_eq!(MAX_ORIGIN_M, map::MAX_ORIGIN_M);
     }
-
-    #[test]
-    fn rows_run_upwards_from_the_lowest_y() {
-        let grid = drawn::grid(&["#..", "..."]);
-        assert_eq!(grid.get(0, 1), Some(Cell::Occupied));
-        assert_eq!(grid.get(0, 0), Some(Cell::Open));
-        assert_eq!(grid.get(0, 2), None);
-        assert!(grid.touches_open(0, 1));
-    }
 }

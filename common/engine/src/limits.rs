@@ -204,17 +204,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_limited_by_default() {
-        let limits = limits(&LimitsConfig::default()).unwrap();
-        assert_eq!(limits, Limits::none(6));
-        assert!(limits.hold_cell(0, 0) && limits.hold_heading(7));
-        assert_eq!(
-            limits.blocks(1, &grid(&ROOM))[..8],
-            [false, false, false, false, false, false, false, true]
-        );
-    }
-
-    #[test]
     fn unknown_cells_are_limited_by_how_far_the_next_free_one_is() {
         let drawn_at = |rows: &[&str], unknown_reach| {
             let config = LimitsConfig {

@@ -202,12 +202,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_equals_what_was_made() {
-        let made = preparation(1).finish().unwrap().search_index().unwrap();
-        assert_eq!(read_back(&file()).unwrap().sections(), made.sections());
-    }
-
-    #[test]
     fn each_byte_of_the_header_counts() {
         let mut bytes = file();
         for place in 0..size_of::<Header>() {

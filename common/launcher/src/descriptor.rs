@@ -83,26 +83,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_descriptor_of_the_repository_is_sound() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dataflow.yaml");
-        let descriptor = load(Path::new(file), Builds::Run).unwrap();
-        let ids: Vec<_> = descriptor.dataflow.nodes.iter().map(|n| &*n.id).collect();
-        assert!(ids.contains(&"accumulator"), "{ids:?}");
-        assert!(descriptor.folder.join("Cargo.toml").exists());
-    }
-
-    #[test]
-    fn a_missing_descriptor_says_what_to_do() {
-        let error = load(Path::new("no/such.yaml"), Builds::Run).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = error.to_string();
-        assert!(
-            said.contains("no/such.yaml") && said.contains("backcast run path"),
-            "{said}"
-        );
-    }
-
-    #[test]
     fn wrong_wiring_and_missing_executables_are_failures() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("g.yaml");

@@ -263,25 +263,6 @@ mod tests {
     }
 
     #[test]
-    fn unknown_keys_are_noted_and_the_map_is_read() {
-        let yaml = format!("{YAML}frame_id: map\nlayers: [{{a: 1}}, b]\n");
-        let folder = folder(&yaml, "floor.pgm", b"P5 1 1 255\n\x00");
-        let mut notes = Vec::new();
-        let path = folder.path().join("floor.yaml");
-        let map = load_within(MemoryLimit::NONE, &path, |key| notes.push(key.to_string())).unwrap();
-        assert_eq!(map.cells, [100]);
-        let place = |line: u32, key: &str| {
-            let path = path.display();
-            format!("{path}:{line}:1: the key {key} is not known and has no effect; known are ")
-        };
-        assert_eq!(notes.len(), 2);
-        assert!(notes[0].starts_with(&place(7, "frame_id")), "{notes:?}");
-        assert!(notes[1].starts_with(&place(8, "layers")), "{notes:?}");
-        assert!(notes[1].ends_with("free_thresh, mode"), "{notes:?}");
-        assert_eq!(load(&path).unwrap(), map);
-    }
-
-    #[test]
     fn a_map_that_the_graph_could_not_hold_is_refused_by_its_header() {
         let memory_limit = Some(100);
         let limit = MemoryOptions { memory_limit }.limit();

@@ -19,9 +19,3 @@ pub struct AttentionHeader {
     /// Stamp of the scan; with several lasers, of the first laser's scan.
     pub stamp: Stamp,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(AttentionHeader, size 24, align 8, { stamp: 0 });
-}

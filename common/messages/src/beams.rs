@@ -55,14 +55,3 @@ crate::codes! {
         NoReturn = 4,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(BeamsHeader, size 56, align 8, { stamp: 0, map_id: 24, map_from_laser: 32 });
-
-    mod beam {
-        use super::*;
-        crate::pin_layout!(Beam, size 16, align 4, { bearing: 0, range_m: 4, weight: 8, fate: 12 });
-    }
-}

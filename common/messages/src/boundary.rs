@@ -42,16 +42,3 @@ pub struct BoundaryCell {
     /// Row: cells along y from the grid's origin.
     pub y: u16,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(BoundaryHeader, size 56, align 8, {
-        stamp: 0, map_id: 24, free_cells: 32, boundary_cells: 40, occupied_cells: 48,
-    });
-
-    mod cell {
-        use super::*;
-        crate::pin_layout!(BoundaryCell, size 4, align 2, { x: 0, y: 2 });
-    }
-}

@@ -46,12 +46,3 @@ crate::codes! {
         UpperBound = 1,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(FieldHeader, size 64, align 8, {
-        stamp: 0, map_id: 24, width: 32, height: 36, block: 40, kind: 44, best: 48,
-        highest_possible: 52, heading: 56,
-    });
-}

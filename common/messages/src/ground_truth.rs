@@ -23,9 +23,3 @@ pub struct GroundTruth {
     /// Frame of the pose.
     pub frame: FrameName,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(GroundTruth, size 304, align 8, { stamp: 0, map_from_laser: 24, frame: 48 });
-}

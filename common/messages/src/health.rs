@@ -56,11 +56,3 @@ crate::codes! {
         Busy = 4 => "busy",
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(HealthHeader, size 80, align 8, {
-        node: 0, sent_ns: 32, received: 40, sent: 48, dropped: 56, refused: 64, pid: 72, state: 76,
-    });
-}

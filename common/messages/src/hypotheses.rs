@@ -103,21 +103,3 @@ impl std::fmt::Display for Verdict {
         f.pad(self.as_str())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(HypothesesHeader, size 96, align 8, {
-        stamp: 0, map_id: 24, sent_ns: 32, search_ns: 40, extract_ns: 48, verdict: 56,
-        alternatives: 60, confidence: 64, inlier_share: 68, best: 72, highest_possible: 76,
-        mount_known: 80, searched: 88,
-    });
-
-    mod hypothesis {
-        use super::*;
-        crate::pin_layout!(Hypothesis, size 152, align 8, {
-            map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120,
-            probability: 124, intensity: 128, support: 136, map_id: 144,
-        });
-    }
-}

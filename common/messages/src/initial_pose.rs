@@ -38,11 +38,3 @@ crate::codes! {
         Anywhere = 2,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(InitialPose, size 128, align 8, {
-        stamp: 0, kind: 24, map_from_base: 32, covariance: 56,
-    });
-}

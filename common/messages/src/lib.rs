@@ -59,6 +59,8 @@ mod ground_truth;
 mod health;
 mod hypotheses;
 mod initial_pose;
+#[cfg(test)]
+mod layouts;
 mod log;
 mod map;
 mod maps;
@@ -102,18 +104,3 @@ pub use stamp::Stamp;
 pub use topic::{Message, Topic};
 pub use tracked_pose::{PoseHeader, TrackReason, TrackState};
 pub use votes::{SearchOutcome, Vote, VotesByMapHeader, VotesHeader};
-
-/// Tests a message's size, alignment and the offset of every field.
-#[cfg(test)]
-macro_rules! pin_layout {
-    ($type:ty, size $size:literal, align $align:literal, { $($field:ident: $offset:literal),+ $(,)? }) => {
-        #[test]
-        fn layout_is_pinned() {
-            assert_eq!(size_of::<$type>(), $size, "size");
-            assert_eq!(align_of::<$type>(), $align, "alignment");
-            $(assert_eq!(std::mem::offset_of!($type, $field), $offset, stringify!($field));)+
-        }
-    };
-}
-#[cfg(test)]
-pub(crate) use pin_layout;

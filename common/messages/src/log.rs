@@ -49,11 +49,3 @@ crate::codes! {
         Error = 40,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(LogHeader, size 72, align 8, {
-        node: 0, written_ns: 32, wall_ns: 40, counter: 48, dropped: 56, level: 64, pid: 68,
-    });
-}

@@ -166,9 +166,4 @@ mod tests {
             "it lies elsewhere"
         );
     }
-
-    crate::pin_layout!(MapHeader, size 152, align 8, {
-        stamp: 0, map_id: 24, width: 32, height: 36, resolution_m: 40, map_from_grid: 48,
-        occupied_from: 72, free_to: 76, unknown_blocks: 80, name: 88,
-    });
 }

@@ -222,10 +222,6 @@ impl std::error::Error for InvalidMapSet {}
 mod tests {
     use super::*;
 
-    crate::pin_layout!(MapsHeader, size 40, align 8, {
-        stamp: 0, set_id: 24, maps: 32, transitions: 36,
-    });
-
     fn map(width: u32, cells: &[u8]) -> (MapHeader, &[u8]) {
         let mut map = MapHeader {
             width,

@@ -25,11 +25,3 @@ pub struct Odometry {
     /// Frame that moves: the robot's base or the laser.
     pub child_frame: FrameName,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(Odometry, size 656, align 8, {
-        stamp: 0, odom_from_child: 24, twist: 48, covariance: 72, frame: 144, child_frame: 400,
-    });
-}

@@ -33,16 +33,3 @@ pub struct Particle {
     /// Pose of the robot's base in the map; the laser's if the mount is unknown.
     pub map_from_base: Pose2,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(ParticlesHeader, size 40, align 8, {
-        stamp: 0, map_id: 24, mount_known: 32,
-    });
-
-    mod particle {
-        use super::*;
-        crate::pin_layout!(Particle, size 24, align 8, { map_from_base: 0 });
-    }
-}

@@ -31,9 +31,3 @@ impl From<Pose2> for Pose {
         Pose::new(x, y, yaw)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(Pose2, size 24, align 8, { x: 0, y: 8, yaw: 16 });
-}

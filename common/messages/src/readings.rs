@@ -37,16 +37,3 @@ pub struct Reading {
     /// Weight of the beam; 0 without a return.
     pub weight: f64,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(ReadingsHeader, size 24, align 8, { stamp: 0 });
-
-    mod reading {
-        use super::*;
-        crate::pin_layout!(Reading, size 40, align 8, {
-            from_x: 0, from_y: 8, bearing: 16, range_m: 24, weight: 32,
-        });
-    }
-}

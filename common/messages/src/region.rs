@@ -31,14 +31,3 @@ pub struct Corner {
     /// Position along y in metres.
     pub y: f64,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(RegionHeader, size 24, align 8, { stamp: 0 });
-
-    mod corner {
-        use super::*;
-        crate::pin_layout!(Corner, size 16, align 8, { x: 0, y: 8 });
-    }
-}

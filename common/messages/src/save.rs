@@ -15,9 +15,3 @@ pub struct SaveHeader {
     /// Time of the request; the counter counts the requests.
     pub stamp: Stamp,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(SaveHeader, size 24, align 8, { stamp: 0 });
-}

@@ -39,13 +39,3 @@ pub struct ScanHeader {
     /// Frame of the laser.
     pub frame: FrameName,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(ScanHeader, size 392, align 8, {
-        stamp: 0, angle_min: 24, angle_increment: 32, time_increment_s: 40, scan_time_s: 48,
-        range_min_m: 56, range_max_m: 60, base_from_laser: 64, mount_known: 88, upside_down: 96,
-        laser: 104, frame: 136,
-    });
-}

@@ -141,15 +141,3 @@ crate::codes! {
         NoPlace = 8,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(PoseHeader, size 592, align 8, {
-        stamp: 0, map_id: 24, sent_ns: 32, tracking_ns: 40, since_ns: 48, since_m: 56,
-        map_from_laser: 64, map_from_base: 88, map_from_odom: 112, laser_covariance: 136,
-        base_covariance: 208, probability: 280, lead: 288, score: 296, state: 304, reason: 308,
-        places: 312, from_scan: 316, pose_known: 320, mount_known: 324, odom_known: 328,
-        odom_frame: 336,
-    });
-}

@@ -126,26 +126,3 @@ pub struct Vote {
     /// Sum of the tapers of all beams.
     pub intensity: u16,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    crate::pin_layout!(VotesHeader, size 184, align 8, {
-        stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
-        headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
-        truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
-        bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
-        max_beams: 144, pooling: 148, beam_arc_m: 152, has_readings: 160,
-        lasers_used: 164, maps: 168, searched: 176,
-    });
-
-    mod by_map {
-        use super::*;
-        crate::pin_layout!(VotesByMapHeader, size 24, align 8, { stamp: 0 });
-    }
-
-    mod vote {
-        use super::*;
-        crate::pin_layout!(Vote, size 8, align 2, { x: 0, y: 2, heading: 4, intensity: 6 });
-    }
-}

@@ -145,12 +145,4 @@ mod tests {
             assert_eq!(header_version, schema_version, "{header}, {schema}");
         }
     }
-
-    #[test]
-    fn what_is_said_once_is_kept() {
-        const { assert!(topic::Map::KEPT && topic::Map::COMPRESSED) };
-        const { assert!(topic::Boundary::KEPT && topic::Region::KEPT) };
-        const { assert!(topic::Field::COMPRESSED && topic::Field::ON_DEMAND) };
-        const { assert!(!topic::Scan::KEPT && !topic::Scan::ON_DEMAND) };
-    }
 }

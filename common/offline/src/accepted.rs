@@ -40,37 +40,3 @@ impl Accepted {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use engine::EngineError;
-
-    use super::*;
-
-    fn refusal() -> Reply<'static> {
-        Reply {
-            map_id: 1,
-            cpu_ms: 0.0,
-            answer: Err(OfflineError::Refused(EngineError::EmptyScan)),
-        }
-    }
-
-    #[test]
-    fn only_where_every_scan_was_refused_there_is_an_error() {
-        let file = Path::new("r.mcap");
-        assert!(Accepted::default().check(file).is_ok());
-        let mut all = Accepted::default();
-        all.count(&refusal());
-        all.count(&refusal());
-        let mixed = Accepted {
-            scans: all.scans + 1,
-            ..all.clone()
-        };
-        assert!(mixed.check(file).is_ok());
-        assert_eq!(
-            all.check(file).unwrap_err().to_string(),
-            "r.mcap: every scan was rejected, 2 in all; the first: the scan is empty: it has no \
-             ranges"
-        );
-    }
-}

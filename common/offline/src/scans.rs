@@ -231,43 +231,6 @@ mod tests {
         Recording::from_bytes("r.mcap", bytes).unwrap()
     }
 
-    fn seconds(recording: &Recording, every: u64) -> Vec<i64> {
-        let scans = Scans::of(recording, vec!["/scan".into()], every);
-        let total = scans.total();
-        let seconds: Vec<i64> = scans
-            .map(|scan| scan.unwrap().stamp_ns / 1_000_000_000)
-            .collect();
-        assert_eq!(seconds.len() as u64, total);
-        seconds
-    }
-
-    #[test]
-    fn each_nth_scan_of_the_channel_is_taken() {
-        let recording = recording(&["/scan", "/scan", "/rear", "/scan", "/scan", "/scan"]);
-        assert_eq!(seconds(&recording, 1), [0, 1, 3, 4, 5]);
-        assert_eq!(seconds(&recording, 2), [0, 3, 5]);
-        assert_eq!(seconds(&recording, 9), [0]);
-    }
-
-    #[test]
-    fn a_scan_that_does_not_decode_is_reported_and_not_the_end() {
-        let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
-        let sound = Message::Scan(LaserScan::default());
-        writer.write("/scan", 0, &sound).unwrap();
-        let (schema, text) = ("sensor_msgs/msg/LaserScan", "float32[] ranges");
-        for topic in ["/scan", "/rear"] {
-            writer
-                .write_bytes(topic, schema, text, "cdr", 1, &[0, 1, 0, 0, 9])
-                .unwrap();
-        }
-        writer.write("/scan", 2, &sound).unwrap();
-        let bytes = writer.finish().unwrap().into_inner();
-        let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
-        let scans = Scans::of(&recording, vec!["/scan".into()], 1);
-        let sound: Vec<bool> = scans.map(|scan| scan.is_ok()).collect();
-        assert_eq!(sound, [true, false, true]);
-    }
-
     #[test]
     fn the_scans_of_other_lasers_come_with_the_next_of_the_first() {
         let recording = recording(&["/front", "/rear", "/front", "/scan"]);

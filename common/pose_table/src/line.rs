@@ -159,18 +159,6 @@ mod tests {
     }
 
     #[test]
-    fn json_keeps_every_figure() {
-        let (header, found) = message(7, 0, Verdict::Unique as u32);
-        let json = serde_json::to_string(&Line::new(&header, &found)).unwrap();
-        assert_eq!(
-            json,
-            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place, fit 0.88","latency_ms":25.0,"engine_ms":24.0}"#
-        );
-        let none = serde_json::to_value(Line::new(&header, &[])).unwrap();
-        assert!(none["x"].is_null() && none["score"].is_null());
-    }
-
-    #[test]
     fn foreign_values_do_not_panic() {
         let (mut header, found) = message(i64::MIN, 0, 99);
         header.sent_ns = i64::MAX;

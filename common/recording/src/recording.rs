@@ -340,33 +340,3 @@ fn opened(listed: &[Listed]) -> Result<Vec<RecordedFile>, RecordingError> {
         _ => Ok(files),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sample;
-    use crate::write::Packing;
-
-    #[test]
-    fn channels_are_listed_with_their_counts() {
-        let recording = Recording::from_bytes("r.mcap", sample::bytes(Packing::Plain)).unwrap();
-        let mut channels: Vec<_> = recording
-            .channels()
-            .map(|channel| (&*channel.topic, channel.kind, channel.messages))
-            .collect();
-        channels.sort_unstable_by_key(|channel| channel.0);
-        let scans = sample::SCANS as u64;
-        assert_eq!(
-            channels,
-            [
-                ("/ground_truth", Some(Kind::PoseStamped), scans),
-                ("/map", Some(Kind::Map), 1),
-                ("/odom", Some(Kind::Odometry), scans),
-                ("/rosout", None, 1),
-                ("/scan", Some(Kind::Scan), scans),
-                ("/tf_static", Some(Kind::StaticTransforms), 1),
-            ]
-        );
-        assert_eq!(recording.messages(), 3 * scans + 3);
-    }
-}

@@ -70,28 +70,3 @@ float32[] intensities
         Header,
     );
 }
-
-#[cfg(test)]
-mod tests {
-    use bytemuck::Zeroable;
-    use messages::FrameName;
-
-    use super::*;
-
-    #[test]
-    fn a_scan_ends_where_its_last_beam_points() {
-        let header = ScanHeader {
-            angle_min: -1.5,
-            angle_increment: 0.5,
-            range_max_m: 80.0,
-            frame: FrameName::new("laser"),
-            ..ScanHeader::zeroed()
-        };
-        let message = LaserScan::of(Time::default(), &header, &[1.0, f32::INFINITY, 3.0]);
-        assert_eq!((message.angle_min, message.angle_max), (-1.5, -0.5));
-        assert_eq!(message.ranges, [1.0, f32::INFINITY, 3.0]);
-        assert_eq!(message.header.frame_id, "laser");
-        let empty = LaserScan::of(Time::default(), &header, &[]);
-        assert_eq!(empty.angle_max, -1.5);
-    }
-}

@@ -83,27 +83,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scan_without_a_mount_says_so() {
-        let scan = LaserScan {
-            header: ros::Header::new(Time { sec: 7, nanosec: 5 }, "laser"),
-            angle_min: -1.5,
-            angle_increment: 0.25,
-            ..LaserScan::default()
-        };
-        let header = scan_header(&scan, frame("laser").unwrap(), None);
-        assert_eq!(header.stamp.measured_ns, 7_000_000_005);
-        assert_eq!((header.angle_min, header.angle_increment), (-1.5, 0.25));
-        assert_eq!(header.mount_known, 0);
-        let ahead = Mount {
-            base_from_laser: geometry::Pose::new(0.5, 0.0, 0.0),
-            is_upside_down: true,
-        };
-        let header = scan_header(&scan, header.frame, Some(ahead));
-        assert_eq!((header.base_from_laser.x, header.mount_known), (0.5, 1));
-        assert_eq!(header.upside_down, 1);
-    }
-
-    #[test]
     fn what_the_graph_cannot_say_is_refused() {
         let mut message = ros::Odometry::default();
         assert!(odometry(&message).is_ok());

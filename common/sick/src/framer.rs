@@ -238,11 +238,6 @@ impl<P: Protocol> Framer<P> {
             self.at = 0;
         }
     }
-
-    #[cfg(test)]
-    pub(crate) fn capacity(&self) -> usize {
-        self.bytes.capacity()
-    }
 }
 
 impl<P: Protocol + Default> Default for Framer<P> {

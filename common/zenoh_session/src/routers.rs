@@ -43,28 +43,3 @@ impl Routers {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn who_is_missing_is_named() {
-        let words = |connect: &[&str]| {
-            let connect = connect
-                .iter()
-                .map(|&endpoint| endpoint.to_owned())
-                .collect();
-            let options = Options {
-                connect,
-                ..Options::default()
-            };
-            Routers::of(&options).unwrap().awaited()
-        };
-        assert_eq!(words(&[]), "");
-        assert_eq!(
-            words(&["tcp/10.0.0.1:7447", "tcp/10.0.0.2:7447"]),
-            "a router: none at tcp/10.0.0.1:7447, tcp/10.0.0.2:7447"
-        );
-    }
-}

@@ -86,11 +86,7 @@ fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
 
 #[cfg(test)]
 mod tests {
-    use std::io;
-
     use clap::CommandFactory;
-    use command_line::OutputError;
-    use launcher::LauncherError;
 
     use super::*;
 
@@ -163,14 +159,5 @@ mod tests {
             let error = parse(line).expect_err(line);
             assert_eq!(error.exit_code(), 2, "{line}");
         }
-    }
-
-    #[test]
-    fn causes_are_reported_once() {
-        let output = LauncherError::from(OutputError(io::Error::other("the disk is full")));
-        assert_eq!(
-            transport::with_causes(&output),
-            "cannot write to standard output: the disk is full"
-        );
     }
 }

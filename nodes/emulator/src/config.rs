@@ -113,16 +113,6 @@ mod tests {
     }
 
     #[test]
-    fn options() {
-        let config = parse("--recording a --listen tcp://127.0.0.1:2112").unwrap();
-        assert_eq!(config.listen.as_deref(), Some("127.0.0.1:2112"));
-        assert_eq!((config.baud, config.rate), (Baud::B9600, Rate::Factor(1.0)));
-        let config = parse("--recording a --pty b --baud 500000 --fault drop=0.5,split").unwrap();
-        assert_eq!((config.baud, config.fault.drop), (Baud::B500000, 0.5));
-        assert!(config.fault.split && !config.fault.merge);
-    }
-
-    #[test]
     fn what_is_refused_says_what_is_allowed() {
         let refuse = |arguments: &str, expected: &str| {
             let text = parse(&format!("--recording a {arguments}")).unwrap_err();

@@ -8,7 +8,6 @@ mod floors;
 mod hard_cases;
 mod lost_searches;
 mod many_maps;
-mod reference;
 mod side_by_side;
 mod starting_over;
 mod tracking;

@@ -5,14 +5,12 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use messages::topic;
-use recording::write::{Packing, RecordingWriter};
-use recording::{Message, Recording};
+use tests::executables;
 use tests::world::World;
-use tests::{answers, executables};
 use transport::testing::{Isolated, NodeProcess};
 use transport::{Flow, Graph, Subscriber, TransportError};
 
@@ -153,92 +151,6 @@ fn nothing_wrong_gets_through(tag: &str, cable: &Cable, sound: &[Vec<f32>]) {
     }
     robot.reader.stop();
     robot.emulator.stop();
-}
-
-/// Converts a range to a device's units and back; one outside them is infinite.
-type Quantise = fn(f32) -> f32;
-
-/// Steps of two millimetres in 16 bits; the lowest values are codes.
-fn as_cola(range_m: f32) -> f32 {
-    let units = (f64::from(range_m) * 500.0).round();
-    match (16.0..=65535.0).contains(&units) {
-        true => (units * 2.0 * 1e-3) as f32,
-        false => f32::INFINITY,
-    }
-}
-
-/// Steps of a centimetre in 13 bits; the highest values are codes.
-fn as_lms2xx(range_m: f32) -> f32 {
-    let units = (f64::from(range_m) * 100.0).round();
-    match (0.0..=8182.0).contains(&units) {
-        true => (units * 0.01) as f32,
-        false => f32::INFINITY,
-    }
-}
-
-/// Makes a copy of the corridor's recording with the ranges that a device measures, and with the
-/// angles and limits of its reader.
-fn quantised(folder: &Path, quantise: Quantise) -> PathBuf {
-    let original = Recording::open(World::of("malaga_corridor").recording()).unwrap();
-    let path = folder.join("quantised.mcap");
-    let mut writer = RecordingWriter::create(&path, Packing::Zstd).unwrap();
-    for record in original.records() {
-        let mut record = record.unwrap();
-        if let Message::Scan(scan) = &mut record.message {
-            scan.angle_min = (-90f64).to_radians() as f32;
-            scan.angle_increment = 0.5f64.to_radians() as f32;
-            (scan.range_min, scan.range_max) = (0.05, 80.0);
-            for range in &mut scan.ranges {
-                *range = quantise(*range);
-            }
-        }
-        let (topic, time) = (&record.topic, record.log_time_ns);
-        writer.write(topic, time, &record.message).unwrap();
-    }
-    writer.finish().unwrap();
-    path
-}
-
-/// Checks that the results on the corridor through a device are bit for bit those on a replay of
-/// the ranges that the device can measure.
-fn the_graph_answers_as_to_a_replay(tag: &str, cable: &Cable, quantise: Quantise) {
-    let world = World::of("malaga_corridor");
-    let scans = world.scans().len();
-    let folder = tempfile::tempdir().unwrap();
-    let (map, recording) = (world.map(), world.recording());
-    let replay = quantised(folder.path(), quantise);
-    let expected = answers::of_graph(&format!("{tag}r"), &replay, &map, scans, &[]);
-
-    let (_link, device, mut reader) = ends(cable);
-    reader.extend(["--mount", "0.78,0,0"].map(str::to_owned));
-    let mut player = vec!["--recording", recording.to_str().unwrap(), "--rate", "max"];
-    player.extend(["--wait-for", "accumulator,peak_extractor"]);
-    player.extend(device.iter().map(String::as_str));
-    let reader: Vec<&str> = reader.iter().map(String::as_str).collect();
-    let (player, reader) = (("emulator", &player[..]), ("lms_reader", &reader[..]));
-    let found = answers::of_graph_fed_by(tag, &map, scans, &[], &player, Some(&reader));
-
-    assert_eq!((found.votes.len(), found.hypotheses.len()), (scans, scans));
-    for index in 0..scans {
-        let (found_votes, expected_votes) = (&found.votes[index], &expected.votes[index]);
-        assert_eq!(found_votes.0.stamp.counter, index as u64);
-        assert_eq!(found_votes.1, expected_votes.1, "scan {index}");
-        assert_eq!(found_votes.0.total, expected_votes.0.total);
-        let ((header, poses), (expected_header, expected_poses)) =
-            (&found.hypotheses[index], &expected.hypotheses[index]);
-        assert_eq!(header.verdict, expected_header.verdict, "scan {index}");
-        assert_eq!(poses, expected_poses, "scan {index}");
-    }
-}
-
-#[test]
-fn poses_by_an_lms2xx_are_those_of_a_replay() {
-    the_graph_answers_as_to_a_replay("lmsposes", &Cable::Serial, as_lms2xx);
-}
-
-#[test]
-fn poses_by_cola_b_are_those_of_a_replay() {
-    the_graph_answers_as_to_a_replay("colabposes", &Cable::Tcp("cola-b"), as_cola);
 }
 
 #[test]

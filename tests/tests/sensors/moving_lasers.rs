@@ -61,8 +61,7 @@ fn by_graph(
     let player = [&always[..], topics].concat();
     let map = World::of("malaga_corridor").map();
     let map: &Path = &map;
-    let answers =
-        answers::of_graph_fed_by(tag, map, scans, accumulator, &("replayer", &player), None);
+    let answers = answers::of_graph_fed_by(tag, map, scans, accumulator, &player);
     assert!(
         answers
             .votes

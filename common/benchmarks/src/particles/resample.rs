@@ -37,17 +37,6 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn a_draw_falls_where_the_sums_say() {
-        let drawn = |offset| -> Vec<usize> {
-            let weights = [1.0, 0.0, 3.0];
-            copies(weights.into_iter(), 4.0, 6, offset).collect()
-        };
-        // Draws at 0.4, 1.4, …, 5.4 of 6; the first weight reaches to 1.5.
-        assert_eq!(drawn(0.4), [2, 0, 4]);
-        assert_eq!(drawn(0.6), [1, 0, 5]);
-    }
-
     proptest! {
         #[test]
         fn each_is_drawn_within_one_of_its_share(

@@ -8,6 +8,10 @@ fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Cho
     chosen
 }
 
+fn by_default(scan: &Scan<'_>) -> Chosen {
+    choose(scan, 0.0, &space(), &BeamConfig::default())
+}
+
 fn half_degrees(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -90f64.to_radians(),
@@ -25,12 +29,7 @@ fn space() -> Space {
 #[test]
 fn a_fine_scan_is_thinned_to_beams_on_the_heading_grid() {
     let ranges = [3.0; 361];
-    let chosen = choose(
-        &half_degrees(&ranges),
-        0.0,
-        &space(),
-        &BeamConfig::default(),
-    );
+    let chosen = by_default(&half_degrees(&ranges));
     assert_eq!(chosen.beams.len(), 180);
     // A half degree is the worst rounding; all but the odd sector avoid it.
     let exact = chosen
@@ -48,12 +47,7 @@ fn a_sector_falls_back_on_the_reading_that_returned() {
     for i in (1..360).step_by(2) {
         ranges[i] = 4.0;
     }
-    let chosen = choose(
-        &half_degrees(&ranges),
-        0.0,
-        &space(),
-        &BeamConfig::default(),
-    );
+    let chosen = by_default(&half_degrees(&ranges));
     assert_eq!((chosen.beams.len(), chosen.silent.len()), (180, 0));
 }
 
@@ -65,7 +59,7 @@ fn near_beams_count_by_the_arc_that_they_cover() {
         angle_increment: 1f64.to_radians(),
         ..half_degrees(&ranges)
     };
-    let chosen = choose(&scan, 0.0, &space(), &BeamConfig::default());
+    let chosen = by_default(&scan);
     let arc = 1f64.to_radians();
     let weights: Vec<f64> = chosen.beams.iter().map(|beam| beam.weight).collect();
     assert_eq!(weights, [arc / 0.20 + 0.05, 1.05]);
@@ -76,12 +70,7 @@ fn near_beams_count_by_the_arc_that_they_cover() {
 fn readings_beyond_the_map_are_silent() {
     // The diagonal of 50 m x 50 m is 70.7 m.
     let ranges = [70.0, 71.0];
-    let chosen = choose(
-        &half_degrees(&ranges),
-        0.0,
-        &space(),
-        &BeamConfig::default(),
-    );
+    let chosen = by_default(&half_degrees(&ranges));
     assert_eq!((chosen.beams.len(), chosen.silent.len()), (1, 1));
 }
 

@@ -215,19 +215,6 @@ mod tests {
     }
 
     #[test]
-    fn places_on_several_maps_have_no_distance() {
-        let floors = Report {
-            maps: 2,
-            apart_m: (0.0, 0.0),
-            ..report(TrackState::Doubtful, TrackReason::SeveralPlaces)
-        };
-        assert_eq!(
-            floors.words(),
-            "2 places fit, on 2 maps, since 3 m: drive a few metres or turn on the spot, or mark a region"
-        );
-    }
-
-    #[test]
     fn one_spot_in_two_headings_is_distinguished_by_turning() {
         let spot = Report {
             apart_m: (0.1, 0.3),

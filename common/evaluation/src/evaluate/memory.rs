@@ -42,14 +42,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_peak_is_read_from_its_line() {
-        let status = "Name:\tx\nVmPeak:\t  99 kB\nVmHWM:\t    1968 kB\nVmRSS:\t 5 kB\n";
-        assert_eq!(peak_in(status), Some(1968.0));
-        assert_eq!(peak_in("Name:\tx\n"), None);
-        assert_eq!(peak_in("VmHWM:\tmuch\n"), None);
-    }
-
-    #[test]
     fn the_peak_grows_with_what_is_held_and_can_be_forgotten() {
         let held = vec![1u8; 256 << 20];
         let sum: u64 = held.iter().map(|&byte| u64::from(byte)).sum();

@@ -67,33 +67,4 @@ mod tests {
         let all = [5, 65, 3_700, 100_000].map(duration);
         assert_eq!(all, ["5 s", "1 min 5 s", "1 h 1 min", "1 d 3 h"]);
     }
-
-    #[test]
-    fn a_graph_is_a_paragraph() {
-        let node = NodeStatus {
-            id: "tracker".into(),
-            state: "running".into(),
-            pid: Some(42),
-            uptime_s: Some(61),
-            reported_s: Some(1),
-            restarts: 2,
-            last_end: Some("signal: 9 (SIGKILL)".into()),
-            fails: Some("tracker ended 3 times in a row".into()),
-        };
-        let shown = status(&Status {
-            graph: "robot7".into(),
-            pid: 7,
-            descriptor: "/opt/dataflow.yaml".into(),
-            uptime_s: 4000,
-            given_up: vec!["recorder stays away".into()],
-            nodes: vec![node],
-        });
-        let expected = "\
-graph robot7: /opt/dataflow.yaml, launcher is process 7, up 1 h 6 min
-  tracker              running                  42  1 min 1 s  reported 1 s ago  restarts 2  last ended with signal: 9 (SIGKILL)
-  recorder stays away
-  tracker ended 3 times in a row
-";
-        assert_eq!(shown, expected);
-    }
 }

@@ -188,13 +188,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rates_read_back_as_written() {
-        for text in ["max", "0.5", "10"] {
-            assert_eq!(text.parse::<Rate>().unwrap().to_string(), text);
-        }
-    }
-
-    #[test]
     fn a_graph_that_nobody_names_has_a_name_of_its_own() {
         let named = Options {
             graph: GraphName::new("robot7").ok(),

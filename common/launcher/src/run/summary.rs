@@ -169,27 +169,6 @@ mod tests {
     }
 
     #[test]
-    fn people_get_lines() {
-        // The first lines are as with a tracker, see below.
-        let text = summary(&judged()).text();
-        assert!(
-            text.ends_with("graph      p50 0.50 ms, p99 5.00 ms on top"),
-            "{text}"
-        );
-        let unjudged = summary(&Accuracy::new(1)).text();
-        assert!(unjudged.contains("none received"), "{unjudged}");
-    }
-
-    #[test]
-    fn programs_get_the_keys_of_the_evaluation() {
-        let json = serde_json::to_value(summary(&judged())).unwrap();
-        assert_eq!(json["success_50cm_10deg"], 1.0);
-        assert_eq!(json["error_m"]["median"], 0.1);
-        assert_eq!(json["latency_ms"]["p99"], 200.0);
-        assert_eq!(json["truths"], 1);
-    }
-
-    #[test]
     fn a_gap_anywhere_is_lost_data() {
         let mut figures = summary(&judged());
         assert!(figures.lost_data());

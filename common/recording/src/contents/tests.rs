@@ -1,7 +1,6 @@
 use geometry::Pose;
 
 use super::*;
-use crate::sample;
 use crate::write::{Packing, RecordingWriter};
 use ros::{PoseStamped, TfMessage, TransformStamped};
 
@@ -22,27 +21,6 @@ fn pose(sec: i32, x: f64) -> Message {
     stamped.header.stamp.sec = sec;
     stamped.header.frame_id = "map".to_owned();
     Message::PoseStamped(stamped)
-}
-
-#[test]
-fn a_sample_gives_its_map_truths_and_mount() {
-    let bytes = sample::bytes(Packing::Lz4);
-    let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
-    assert_eq!(recording.damage(), None);
-    assert_eq!(recording.map().unwrap().unwrap(), sample::grid());
-    let truths = recording.ground_truths().unwrap();
-    assert_eq!(truths.len(), sample::SCANS);
-    let first = &truths[&sample::stamp_ns(0)];
-    assert_eq!(first.frame, "map");
-    // Tolerance: a conversion to a quaternion and back costs a few units in the last place.
-    assert!(first.pose.is_within(sample::truth(0), 1e-12, 1e-12));
-    let mount = recording.base_from_laser("laser").unwrap().unwrap();
-    assert_eq!(mount.base_frame, "base_link");
-    assert!(mount.base_from_laser.is_within(sample::MOUNT, 1e-12, 1e-12));
-    assert_eq!(recording.base_from_laser("camera").unwrap(), None);
-    let (first, last) = recording.time_range_ns().unwrap();
-    assert_eq!(first, sample::stamp_ns(0));
-    assert_eq!(last, sample::stamp_ns(sample::SCANS - 1));
 }
 
 #[test]

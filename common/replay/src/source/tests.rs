@@ -144,14 +144,3 @@ fn what_cannot_be_said_in_a_message_is_refused_one_by_one() {
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
-
-#[test]
-fn a_recording_without_scans_says_what_it_has() {
-    let recording = recording(&[("/ground_truth", truth(0))]);
-    let text = Channels::of(&recording, &Selection::all())
-        .unwrap_err()
-        .to_string();
-    for expected in ["world.mcap", "LaserScan", "/ground_truth"] {
-        assert!(text.contains(expected), "{text}");
-    }
-}

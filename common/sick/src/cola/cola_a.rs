@@ -95,21 +95,4 @@ mod tests {
             "{seen:?}"
         );
     }
-
-    proptest::proptest! {
-        #[test]
-        fn any_split_gives_the_same(
-            contents in proptest::collection::vec("s[a-z ]{2,20}", 0..6),
-            garbage in proptest::collection::vec(0u8..4, 0..12),
-            cut in 1usize..9,
-        ) {
-            let mut stream = garbage.clone();
-            for content in &contents {
-                stream.extend([&[2], content.as_bytes(), &[3]].concat());
-                stream.extend(&garbage);
-            }
-            let pieces: Vec<&[u8]> = stream.chunks(cut).collect();
-            proptest::prop_assert_eq!(read(&pieces), read(&[&stream]));
-        }
-    }
 }

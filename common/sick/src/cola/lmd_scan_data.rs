@@ -239,33 +239,6 @@ mod tests {
     }
 
     #[test]
-    fn every_field_of_a_full_telegram() {
-        let bytes = full();
-        let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
-        assert_eq!((data.version, data.device_number), (1, 7));
-        assert_eq!(data.serial_number, 0x0001_0203);
-        assert_eq!(data.status, [0, 2]);
-        assert_eq!((data.telegram_counter, data.scan_counter), (0xffff, 0));
-        assert_eq!(data.time_since_start_up_us, 0xffff_fff0);
-        assert_eq!(data.time_of_transmission_us, 0x10);
-        assert_eq!(
-            (data.digital_inputs, data.digital_outputs),
-            ([3, 0], [7, 0])
-        );
-        assert_eq!(data.layer_angle_raw, -2638);
-        assert_eq!(data.scan_frequency_raw_1e2_hz, 5000);
-        assert_eq!(data.measurement_frequency_raw, 360);
-        assert_eq!(data.channels_16_bit.count(), 0);
-        let narrow = data.channels_8_bit.named(b"RSSI1").unwrap();
-        assert_eq!(narrow.values.collect::<Vec<_>>(), [200, 201]);
-        assert_eq!(data.name, Some(&b"LMS"[..]));
-        assert_eq!(data.comment, Some(&b"hi"[..]));
-        let time = data.time.unwrap();
-        assert_eq!((time.year, time.minute, time.second), (1970, 50, 14));
-        assert_eq!(time.microsecond, 136_000);
-    }
-
-    #[test]
     fn every_field_that_is_kept_survives_both_encodings() {
         let bytes = full();
         let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();

@@ -182,19 +182,6 @@ mod tests {
     }
 
     #[test]
-    fn commands_as_the_listing_writes_them() {
-        let read = |text: &'static str| Telegram::read(Encoding::Text, text.as_bytes()).unwrap();
-        assert_eq!(
-            read("sMN mLMPsetscancfg +5000 +1 +5000 -450000 +2250000"),
-            command(Command::Call(Method::SetScanConfig(SCAN)))
-        );
-        assert_eq!(
-            read("sWN LMDscandatacfg 01 00 0 1 0 00 00 0 0 0 1 +1"),
-            command(Command::Write(Value::ScanDataConfig(DATA)))
-        );
-    }
-
-    #[test]
     fn the_binary_request_is_byte_for_byte_that_of_the_listing() {
         let request = [
             2, 2, 2, 2, 0, 0, 0, 0x11, 0x73, 0x45, 0x4e, 0x20, 0x4c, 0x4d, 0x44, 0x73, 0x63, 0x61,

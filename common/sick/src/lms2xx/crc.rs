@@ -18,26 +18,3 @@ pub fn crc(bytes: &[u8]) -> u16 {
     }
     crc
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn of_the_telegrams_in_the_manual() {
-        assert_eq!(crc(&[2, 0, 2, 0, 0x20, 0x24]), 0x0834);
-        assert_eq!(crc(&[2, 0, 1, 0, 0x31]), 0x1215);
-        assert_eq!(crc(&[]), 0);
-    }
-
-    #[test]
-    fn every_flipped_bit_shows() {
-        let mut bytes: Vec<u8> = (0..=255).collect();
-        let whole = crc(&bytes);
-        for bit in 0..bytes.len() * 8 {
-            bytes[bit / 8] ^= 1 << (bit % 8);
-            assert_ne!(crc(&bytes), whole, "bit {bit}");
-            bytes[bit / 8] ^= 1 << (bit % 8);
-        }
-    }
-}

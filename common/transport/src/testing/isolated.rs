@@ -109,15 +109,3 @@ fn collect(folder: &Path, part: &str, found: &mut Vec<PathBuf>) {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn graphs_of_the_same_tag_have_names_of_their_own() {
-        let [first, second] = [0, 1].map(|_| name("eleven-long"));
-        assert_ne!(first, second);
-        assert_eq!(in_base_36(4_194_304), "2hwcg");
-    }
-}

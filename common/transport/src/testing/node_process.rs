@@ -76,9 +76,18 @@ impl NodeProcess {
     /// # Panics
     /// The exit status is a failure.
     pub fn stop(self) {
+        self.stop_with_log();
+    }
+
+    /// Like [`NodeProcess::stop`], but returns the log.
+    ///
+    /// # Panics
+    /// The exit status is a failure.
+    pub fn stop_with_log(self) -> String {
         self.interrupt();
         let (status, log) = self.finish();
         assert!(status.success(), "{status}\n{log}");
+        log
     }
 
     /// Kills it with SIGKILL.
@@ -116,37 +125,4 @@ fn read_all(mut pipe: ChildStderr) -> Vec<u8> {
     let mut log = Vec::new();
     pipe.read_to_end(&mut log).unwrap();
     log
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::Isolated;
-
-    fn shell(graph: &Graph, script: &str) -> NodeProcess {
-        NodeProcess::start("/bin/sh", graph, ["-c", script])
-    }
-
-    #[test]
-    fn a_process_shows_its_graph_its_log_and_its_code() {
-        let isolated = Isolated::new("process");
-        let graph = isolated.join("test");
-        // More than a pipe holds.
-        let script = "head -c 200000 /dev/zero | tr '\\0' x >&2; echo $BACKCAST_GRAPH >&2; exit 3";
-        let (status, log) = shell(&graph, script).finish();
-        assert_eq!(status.code(), Some(3));
-        assert_eq!(log.len(), 200_000 + isolated.name().as_str().len() + 1);
-        assert!(log.trim_end().ends_with(isolated.name().as_str()));
-        assert_eq!(shell(&graph, "exit 2").exit_code(), Some(2));
-    }
-
-    #[test]
-    fn a_process_that_would_stay_can_be_ended() {
-        let isolated = Isolated::new("end");
-        let graph = isolated.join("test");
-        shell(&graph, "exec sleep 86400").kill();
-        let sleeps = shell(&graph, "exec sleep 86400");
-        sleeps.interrupt();
-        assert_eq!(sleeps.exit_code(), None, "the signal ended it");
-    }
 }

@@ -9,8 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use bytemuck::Zeroable;
 use engine::localizer::Prior;
 use messages::{
-    FieldHeader, FieldKind, FrameName, GroundTruth, NodeState, Odometry, Pose2, SearchOutcome,
-    Stamp, topic,
+    FieldHeader, FieldKind, FrameName, NodeState, Odometry, Pose2, SearchOutcome, Stamp, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 
@@ -148,31 +147,5 @@ fn headings_come_from_odometry_of_the_base() {
     assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 2);
     assert!(error.contains("1900000000 ns before the scan"), "{error}");
-    node.stop();
-}
-
-#[test]
-fn headings_come_from_the_truth_of_the_scan() {
-    let isolated = Isolated::new("truth");
-    let world = World::new(&isolated);
-    let truths = world.graph.publisher::<topic::GroundTruthTopic>().unwrap();
-    let node = start(&world, &["--heading-from", "truth"]);
-    let mut loan = truths.loan(0).unwrap();
-    *loan.header_mut() = GroundTruth {
-        stamp: at(0),
-        map_from_laser: turned(map_heading()),
-        frame: FrameName::new("map"),
-    };
-    loan.send().unwrap();
-    let ranges = ranges(&ROOM, 3, 3, HEADING);
-    let (votes, poses) = world.ask(&ranges);
-    assert_eq!(votes.known_heading, map_heading());
-    assert_eq!(poses.first().map(|best| (best.x, best.y)), Some((3, 3)));
-    let (votes, _) = world.ask(&ranges);
-    assert_eq!(
-        votes.outcome,
-        SearchOutcome::Refused as u32,
-        "no truth came"
-    );
     node.stop();
 }

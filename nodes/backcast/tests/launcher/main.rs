@@ -19,7 +19,7 @@ use std::{
     process::{Child, ChildStderr, Command, ExitStatus, Output, Stdio},
 };
 
-use messages::{HypothesesHeader, Hypothesis, NodeState, Pose2, Stamp, Verdict, topic};
+use messages::{NodeState, topic};
 use nix::{
     sys::signal::{Signal, kill},
     sys::stat::Mode,

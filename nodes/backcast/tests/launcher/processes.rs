@@ -19,18 +19,6 @@ fn a_run_ends_with_its_source_and_stops_the_rest() {
 }
 
 #[test]
-fn json_is_all_that_is_printed_with_json() {
-    let (code, stdout, _) = run(&["id: source, outputs: [scan], args: -c true"], &["--json"]);
-    assert_eq!(code, 0);
-    let lines: Vec<serde_json::Value> = stdout
-        .lines()
-        .map(|l| serde_json::from_str(l).unwrap())
-        .collect();
-    assert_eq!(lines.len(), 1);
-    assert_eq!(lines[0]["summary"]["scans"], 0);
-}
-
-#[test]
 fn nodes_find_their_folder_graph_and_environment() {
     let folder = graph(&[
         "id: a, env: {TAG: 7}, args: \"-c 'echo $0 $TAG $BACKCAST_GRAPH; pwd -P' 'two words'\"",
@@ -82,13 +70,6 @@ fn a_node_that_fails_each_time_is_shown_with_its_reason() {
     assert!(status.contains("\n  loops ended "), "{status}");
     running.signal(Signal::SIGTERM);
     assert!(running.wait().0.success());
-}
-
-#[test]
-fn a_signal_is_a_failure_like_any_other() {
-    let (code, _, stderr) = run(&["id: bad, args: \"-c 'kill -KILL $$'\""], &[]);
-    assert_eq!(code, 1);
-    assert!(stderr.contains("node bad ended with signal: 9"), "{stderr}");
 }
 
 #[test]
@@ -170,83 +151,4 @@ fn a_killed_launcher_leaves_no_orphans() {
     let (status, _) = running.wait();
     assert_eq!(status.signal(), Some(9));
     transport::remove_leftovers(&GraphName::new("test-kill").unwrap()).unwrap();
-}
-
-/// Returns the stamp of scan `counter`, measured at `counter` milliseconds.
-fn stamp(counter: u64) -> Stamp {
-    Stamp {
-        measured_ns: i64::try_from(counter).unwrap() * 1_000_000,
-        entered_ns: transport::monotonic_ns(),
-        counter,
-    }
-}
-
-#[test]
-fn answers_are_printed_and_summed_up() {
-    let name = "test-answers";
-    let folder = graph(&["id: source, outputs: [scan], args: -c 'read line < pipe'"]);
-    let pipe = folder.path().join("pipe");
-    mkfifo(&pipe, Mode::S_IRWXU).unwrap();
-    let mut running = Running::start(&folder, &["--graph", name]);
-    let mut printed = BufReader::new(running.child.stdout.take().unwrap()).lines();
-    assert!(printed.next().unwrap().unwrap().contains("stamp s"));
-
-    let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
-    let scans = member.publisher::<topic::Scan>().unwrap();
-    let hypotheses = member.publisher::<topic::Hypotheses>().unwrap();
-    let truths = member.publisher::<topic::GroundTruthTopic>().unwrap();
-    for counter in 0..2 {
-        let pose = Pose2 {
-            x: 1.5,
-            y: -2.0,
-            yaw: 0.5,
-        };
-        let stamp = stamp(counter);
-        let mut truth = truths.loan(0).unwrap();
-        truth.header_mut().stamp = stamp;
-        truth.header_mut().map_from_laser = pose;
-        truth.send().unwrap();
-        let mut scan = scans.loan(0).unwrap();
-        scan.header_mut().stamp = stamp;
-        scan.send().unwrap();
-        let refused = counter == 1;
-        let mut answer = hypotheses.loan(usize::from(!refused)).unwrap();
-        *answer.header_mut() = HypothesesHeader {
-            stamp,
-            sent_ns: transport::monotonic_ns(),
-            verdict: if refused {
-                Verdict::NoScan
-            } else {
-                Verdict::Unique
-            } as u32,
-            ..bytemuck::Zeroable::zeroed()
-        };
-        if let Some(found) = answer.items_mut().first_mut() {
-            *found = Hypothesis {
-                map_from_laser: pose,
-                ..bytemuck::Zeroable::zeroed()
-            };
-        }
-        answer.send().unwrap();
-        let line = printed.next().unwrap().unwrap();
-        let expected = if refused {
-            "0.001          -"
-        } else {
-            "0.000      1.500     -2.000        28.65"
-        };
-        assert!(line.trim_start().starts_with(expected), "{line}");
-    }
-    drop((scans, hypotheses, truths, member));
-
-    // Writing ends the source and thereby the run.
-    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
-    std::io::Write::write_all(&mut writer, b"\n").unwrap();
-    let rest: Vec<String> = printed.map(Result::unwrap).collect();
-    let rest = rest.join("\n");
-    assert!(rest.contains("scans      2, answered 2"), "{rest}");
-    assert!(rest.contains("50.0 % within 0.5 m and 10 deg"), "{rest}");
-    assert!(rest.contains("of 2 with known truth"), "{rest}");
-    let (status, said) = running.wait();
-    assert_eq!(status.code(), Some(0), "{said}");
-    assert_eq!(shared_memory_of(name), [""; 0]);
 }

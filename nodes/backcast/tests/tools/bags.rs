@@ -13,8 +13,8 @@ use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 
 use crate::drawn::{
-    HERE, THERE, folder, map_message, mount_message, record, recordings, room, run, scan, scan_at,
-    truth_at,
+    HERE, THERE, folder, framed_map, map_message, mount_message, record, recordings, room, run,
+    scan, scan_at, truth_at,
 };
 
 /// Returns the map of the room with only the first `rows` rows known.
@@ -101,15 +101,6 @@ fn where_every_scan_is_refused_there_is_an_error() {
         stdout.contains("problem  /scan: 2 odd scans; of the first angle_increment is 0"),
         "{stdout}"
     );
-}
-
-/// Returns the map with a frame name, which `doctor` requires.
-fn framed_map() -> (&'static str, Message) {
-    let (topic, mut map) = map_message();
-    if let Message::Map(map) = &mut map {
-        map.header.frame_id = "map".to_owned();
-    }
-    (topic, map)
 }
 
 #[test]

@@ -7,11 +7,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use geometry::Pose;
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
@@ -166,47 +163,6 @@ fn raw(words: &[&str], number: u8, start: f64, step: f64) -> Vec<String> {
 }
 
 #[test]
-fn a_log_is_read_by_what_it_holds_packed_or_not() {
-    let corridor = Corridor::new();
-    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
-    packed.write_all(corridor.log.as_bytes()).unwrap();
-    let packed = packed.finish().unwrap();
-    for name in ["b.LOG", "b.clf", "b.Txt", "b", "b.log.1"] {
-        let (_, scans) = corridor.converted(name, corridor.log.as_bytes());
-        corridor.assert_same(&scans, 0, name);
-    }
-    for name in ["c.log.gz", "c.CLF.GZ", "c.gz", "c.log"] {
-        corridor.assert_same(&corridor.converted(name, &packed).1, 0, name);
-    }
-}
-
-#[test]
-fn raw_lines_of_any_laser_and_either_direction_are_scans() {
-    let corridor = Corridor::new();
-    let (half, step) = (FRAC_PI_2, 0.008_727);
-    for number in 1..=5 {
-        let log = corridor.with("", |words| raw(&words, number, -half, step));
-        let (said, scans) = corridor.converted("b.log", log.as_bytes());
-        corridor.assert_same(&scans, 0, &said);
-        assert!(
-            said.contains(&format!("/scan holds RAWLASER{number}: 37 scans")),
-            "{said}"
-        );
-        assert_eq!(scans[0].range_max, 81.9);
-    }
-    let log = corridor.with("", |words| {
-        let words = reversed(&words);
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        raw(&words, 1, half, -step)
-    });
-    corridor.assert_same(
-        &corridor.converted("b.log", log.as_bytes()).1,
-        0,
-        "clockwise",
-    );
-}
-
-#[test]
 fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
     let corridor = Corridor::new();
     for flipped in ["laser_front_laser_flipped 1", "laser_laser1_flipped on"] {
@@ -225,26 +181,6 @@ fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
             said.contains("before they were logged, and are kept"),
             "{said}"
         );
-    }
-}
-
-#[test]
-fn parameters_show_the_field_of_view_of_old_lines() {
-    let corridor = Corridor::new();
-    let narrow = |words: Vec<&str>| {
-        // The middle 201 of 361 beams.
-        [
-            &owned(&["FLASER", "201"]),
-            &owned(&words[82..283])[..],
-            &owned(&words[363..]),
-        ]
-        .concat()
-    };
-    for view in ["1.745329", "100"] {
-        let head = format!("PARAM laser_front_laser_fov {view} nohost 0");
-        let (said, scans) = corridor.converted("b.log", corridor.with(&head, narrow).as_bytes());
-        corridor.assert_same(&scans, 80, view);
-        assert!(said.contains("201 beams from -50.0 to 50.0°"), "{said}");
     }
 }
 
@@ -272,24 +208,6 @@ fn several_lasers_become_topics_with_their_mounts() {
         mount.base_from_laser.is_within(back, 1e-9, 1e-9),
         "{mount:?}"
     );
-}
-
-#[test]
-fn a_reading_that_is_no_number_is_one_missing_beam() {
-    let corridor = Corridor::new();
-    let log = corridor.with("", |mut words| {
-        words[22] = "nan";
-        words[62] = "???";
-        owned(&words)
-    });
-    let (said, scans) = corridor.converted("b.log", log.as_bytes());
-    assert!(said.contains("74 readings are not numbers"), "{said}");
-    assert_eq!(scans.len(), 37);
-    for (found, scan) in scans.iter().zip(&corridor.scans) {
-        let missing: Vec<usize> = (0..361).filter(|i| found.ranges[*i].is_nan()).collect();
-        assert_eq!(missing, [20, 60]);
-        assert_eq!(found.ranges[61..], scan.ranges[61..]);
-    }
 }
 
 #[test]

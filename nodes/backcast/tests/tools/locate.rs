@@ -13,8 +13,8 @@ use serde_json::Value;
 
 use crate::drawn::{
     BASE_FROM_LASER, HERE, ODOMETRY_OFFSET_DEG, RESOLUTION_M, SECOND_NS, THERE, backcast, folder,
-    keys, lines, map_from_laser, map_message, mount_message, objects, odometry_at, recordings,
-    room, run, scan_at, truth_at, word,
+    lines, map_from_laser, map_message, mount_message, objects, odometry_at, recordings, room, run,
+    scan_at, truth_at, word,
 };
 
 fn pose(object: &Value) -> Pose {
@@ -114,74 +114,18 @@ fn limits_that_leave_no_pose_are_refused() {
 fn an_object_shows_votes_and_hypotheses() {
     let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
     let object = &objects(folder.path(), "")[0];
-    assert_eq!(
-        keys(object),
-        [
-            "alternatives",
-            "beams",
-            "confidence",
-            "cpu_ms",
-            "floor",
-            "hypotheses",
-            "map",
-            "map_id",
-            "particles",
-            "refused",
-            "says",
-            "schema",
-            "stamp_ns",
-            "verdict",
-            "votes"
-        ]
-    );
     assert_eq!(object["stamp_ns"], 7 * SECOND_NS);
     assert_eq!(object["map_id"], format!("{:016x}", room().id()));
     assert_eq!(object["verdict"], "Unique");
     assert_eq!(object["refused"], Value::Null);
-    assert_eq!(
-        keys(&object["votes"]),
-        [
-            "beams_silent",
-            "beams_used",
-            "bearing_rounding",
-            "best",
-            "certified_floor",
-            "floor",
-            "headings",
-            "highest_possible",
-            "known_heading",
-            "poses_evaluated",
-            "total",
-            "truncated"
-        ]
-    );
     let votes = &object["votes"];
     let beams = object["beams"].as_object().unwrap();
-    assert_eq!(
-        beams.keys().collect::<Vec<_>>(),
-        ["hit", "short", "through", "unknown"]
-    );
     let all: u64 = beams.values().map(|count| count.as_u64().unwrap()).sum();
     assert_eq!(all, votes["beams_used"].as_u64().unwrap());
     assert_eq!(votes["best"], votes["highest_possible"]);
     assert_eq!(votes["headings"], 360);
     assert_eq!(votes["known_heading"], Value::Null);
     let best = &object["hypotheses"][0];
-    assert_eq!(
-        keys(best),
-        [
-            "covariance",
-            "intensity",
-            "map",
-            "map_from_base",
-            "probability",
-            "score",
-            "support",
-            "x",
-            "y",
-            "yaw"
-        ]
-    );
     assert_eq!(best["covariance"].as_array().unwrap().len(), 9);
     assert_eq!(best["intensity"], votes["best"]);
     assert_near(pose(best), map_from_laser(HERE));
@@ -213,28 +157,6 @@ fn particles_gather_around_the_place_the_same_with_a_seed() {
         lines[2].trim_start().starts_with("particle of the base"),
         "{lines:?}"
     );
-}
-
-#[test]
-fn without_a_mount_there_is_no_base() {
-    let folder = folder(&[map_message(), scan_at(7, HERE)]);
-    let object = &objects(folder.path(), "")[0];
-    assert_eq!(object["hypotheses"][0]["map_from_base"], Value::Null);
-}
-
-#[test]
-fn each_nth_scan_is_taken() {
-    let scans = (0..5).map(|second| scan_at(second, HERE));
-    let messages: Vec<_> = [map_message()].into_iter().chain(scans).collect();
-    let folder = folder(&messages);
-    let stamps = |options| -> Vec<i64> {
-        let objects = objects(folder.path(), options);
-        let stamps = objects.iter().map(|object| object["stamp_ns"].as_i64());
-        stamps.map(|ns| ns.unwrap() / SECOND_NS).collect()
-    };
-    assert_eq!(stamps(""), [0, 1, 2, 3, 4]);
-    assert_eq!(stamps("--every 2"), [0, 2, 4]);
-    assert_eq!(stamps("--every 100"), [0]);
 }
 
 #[test]

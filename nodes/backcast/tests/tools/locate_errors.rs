@@ -168,28 +168,3 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
     assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
 }
-
-#[test]
-fn wrong_use_is_reported_before_anything_is_opened() {
-    let folder = tempfile::tempdir().unwrap();
-    for (options, expected) in [
-        ("", "<FILE>..."),
-        ("--bag r.mcap --every 0", "0 is not in 1.."),
-        ("--bag r.mcap --headings 100", "a multiple of 8"),
-        ("--bag r.mcap --heading 400", "-360 to 360"),
-        (
-            "--bag r.mcap --heading 4 --heading-from truth",
-            "cannot be used with",
-        ),
-        (
-            "--bag r.mcap --heading-from truth --heading-offset 4",
-            "--heading-offset needs --heading-from odometry",
-        ),
-        ("--bag r.mcap --ambiguous-share 2", "not within 0 to 1"),
-        ("--bag r.mcap --beams 9", "unexpected argument"),
-    ] {
-        let (code, stdout, stderr) = run(folder.path(), &format!("locate {options}"));
-        assert_eq!((code, stdout.as_str()), (2, ""), "{options}: {stderr}");
-        assert!(stderr.contains(expected), "{options}: {stderr}");
-    }
-}

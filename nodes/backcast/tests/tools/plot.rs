@@ -14,8 +14,7 @@ use recording::Message;
 use tempfile::TempDir;
 
 use crate::drawn::{
-    HERE, THERE, folder, map_from_laser, map_message, recordings, room, run, scan, scan_at,
-    truth_at,
+    HERE, THERE, folder, map_from_laser, map_message, room, run, scan, scan_at, truth_at,
 };
 
 /// Colour of the best place, which the legend uses as well.
@@ -134,20 +133,6 @@ fn a_map_needs_no_recording() {
     assert_eq!(code, 2, "{stderr}");
     assert!(stderr.contains("is the map itself"), "{stderr}");
     assert_eq!(fs::read(&image).unwrap(), before);
-}
-
-#[test]
-fn a_real_recording_on_its_own_and_on_another_map() {
-    let folder = tempfile::tempdir().unwrap();
-    let bag = recordings().join("malaga_corridor/recording.mcap");
-    let map = recordings().join("malaga_courtyard/map.yaml");
-    let own = format!("scan --bag {} --scan 20", bag.display());
-    assert_eq!(decoded(&plot(folder.path(), &own, "own.png")).width(), 1200);
-    let other = format!("{own} --map {} --no-truth", map.display());
-    assert_eq!(
-        decoded(&plot(folder.path(), &other, "other.png")).width(),
-        1200
-    );
 }
 
 #[test]

@@ -170,13 +170,3 @@ fn other_devices_turn_and_count_otherwise() {
     // Four of 360 steps at 50 Hz take 222 µs.
     assert_eq!(first_us - unix_us, 222);
 }
-
-#[test]
-fn it_says_which_device_it_is() {
-    let mut device = ColaDevice::new(model("NAV310"), Encoding::Text, &five_beams(1.0));
-    let ident = Command::Read(Variable::DeviceIdent);
-    match ask(&mut device, &mut Session::default(), ident) {
-        Answer::Value(Value::DeviceIdent { name, .. }) => assert_eq!(name, b"NAV310"),
-        other => panic!("{other:?}"),
-    }
-}

@@ -214,14 +214,3 @@ fn an_unknown_device_that_looks_elsewhere_is_not_changed() {
     let error = receive(Answer::Value(Value::ScanConfig(around_zero))).unwrap_err();
     assert!(error.to_string().contains("--zero-deg"), "{error}");
 }
-
-#[test]
-fn scans_wait_for_the_name() {
-    let mut setup = Setup::new(Wanted::default(), None);
-    assert!(setup.is_identifying());
-    setup.next(0).unwrap();
-    setup
-        .receive(&Answer::Fault(Fault::UNKNOWN_VARIABLE))
-        .unwrap();
-    assert!(!setup.is_identifying());
-}

@@ -9,15 +9,6 @@ fn parse(arguments: &str) -> Result<Config, String> {
 }
 
 #[test]
-fn defaults() {
-    let config = parse("--tcp 192.168.0.1:2112").unwrap();
-    assert!(config.start_stream && !config.looped);
-    assert_eq!(config.rate, Rate::Device);
-    assert_eq!(config.scan_settings().base_from_laser, None);
-    assert_eq!(config.frame.as_str(), "laser");
-}
-
-#[test]
 fn a_device_whose_zero_is_elsewhere() {
     let angles = |arguments: &str| parse(arguments).unwrap().stated_angles();
     assert_eq!(angles("--capture a"), None);

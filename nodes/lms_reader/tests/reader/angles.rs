@@ -87,8 +87,7 @@ impl Bench {
             first = Some((*header, ranges.to_vec()));
             true
         });
-        node.interrupt();
-        let (_, log) = node.finish();
+        let log = node.stop_with_log();
         let (header, ranges) = first.unwrap();
         (header, ranges, log)
     }
@@ -142,41 +141,6 @@ fn a_tim240_without_a_name_is_refused_and_with_one_read() {
     let (header, _, log) = Bench::new("tim3").first(&named, &[]);
     assert_eq!(header.angle_min, radians(-120.0));
     assert!(log.contains("TiM2xx") && log.contains("issue 478"), "{log}");
-}
-
-#[test]
-fn a_clockwise_device_is_published_counter_clockwise() {
-    // A full turn with 0° behind: the middle of the field is at 180°.
-    let telegram = scan(0, 360);
-    says_what_to_state(&Bench::new("nav0").refusal(&telegram, &[]));
-    for (tag, options) in [
-        ("nav1", &["--device", "NAV310"][..]),
-        ("nav2", &["--zero-deg", "180", "--clockwise"]),
-    ] {
-        let (header, ranges, log) = Bench::new(tag).first(&telegram, options);
-        assert_eq!(header.angle_min, radians(-179.0), "{log}");
-        assert_eq!(header.angle_increment, radians(1.0));
-        assert!(header.time_increment_s < 0.0);
-        // The device's 90° is to the left, which is beam 269.
-        assert_eq!((ranges.len(), ranges[269]), (360, 1.09));
-        assert!(ranges.iter().all(|&range| range < header.range_max_m));
-    }
-}
-
-#[test]
-fn a_part_of_a_field_needs_a_name() {
-    let telegram = scan(0, 91);
-    says_what_to_state(&Bench::new("part0").refusal(&telegram, &[]));
-    let unknown = [ident("XY7"), telegram.clone()].concat();
-    let log = Bench::new("part1").refusal(&unknown, &[]);
-    assert!(log.contains("XY7 is not in the table"), "{log}");
-    let named = [ident("LMS10x_FieldEval"), telegram.clone()].concat();
-    let (header, ranges, _) = Bench::new("part2").first(&named, &[]);
-    assert_eq!((header.angle_min, ranges.len()), (radians(-90.0), 91));
-    // The stated device takes precedence over the reported name.
-    let options = ["--device", "TiM240"];
-    let (header, _, _) = Bench::new("part3").first(&named, &options);
-    assert_eq!(header.angle_min, 0.0);
 }
 
 /// Accepts the node's connection; sends `early` at once, the name on request, and `late` when asked

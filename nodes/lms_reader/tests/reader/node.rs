@@ -54,18 +54,6 @@ fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
 }
 
 #[test]
-fn a_capture_ends_by_itself() {
-    let isolated = Isolated::new("end");
-    let graph = isolated.join("test");
-    let (status, log) = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
-    assert!(status.success(), "{log}");
-    assert!(
-        log.contains("end of the capture sent=16 refused=0"),
-        "{log}"
-    );
-}
-
-#[test]
 fn the_last_scans_of_a_capture_wait_for_a_subscriber_that_is_late() {
     let isolated = Isolated::new("tail");
     let graph = isolated.join("test");
@@ -114,14 +102,6 @@ fn a_file_without_scans_is_an_error_that_names_it() {
         log.contains("/nowhere/at/all.bin: cannot read the capture"),
         "{log}"
     );
-}
-
-#[test]
-fn usage_errors_end_with_two() {
-    let isolated = Isolated::new("usage");
-    let graph = isolated.join("test");
-    let node = start(&graph, &["--capture", "a", "--range-max-m", "0"]);
-    assert_eq!(node.exit_code(), Some(2));
 }
 
 /// Accepts the node's connection; rejects each command until the node subscribes to scans.
@@ -194,9 +174,7 @@ fn a_device_that_is_not_there_does_not_hold_up_a_stop() {
         let reason = String::from_utf8_lossy(error);
         header.state == NodeState::Degraded as u32 && reason.contains("refused")
     });
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{log}");
+    let log = node.stop_with_log();
     assert_eq!(log.matches("cannot connect").count(), 1, "{log}");
 }
 
@@ -208,7 +186,6 @@ fn a_silent_device_is_given_up_and_tried_again() {
     let node = start(&graph, &["--tcp", &address, "--silence", "0.2"]);
     let _silent = accept(&listener);
     let _again = accept(&listener);
-    node.interrupt();
-    let (_, log) = node.finish();
+    let log = node.stop_with_log();
     assert!(log.contains("no data for 0.2 s"), "{log}");
 }

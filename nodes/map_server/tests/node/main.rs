@@ -9,7 +9,6 @@ mod sets;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
 use recording::write::{Packing, RecordingWriter};
@@ -101,12 +100,8 @@ impl World {
         wait_for_health(&self.graph, health, |report| report.state == state as u32)
     }
 
-    fn interrupt(&self) {
-        self.node.as_ref().unwrap().interrupt();
-    }
-
-    fn finish(&mut self) -> (ExitStatus, String) {
-        self.node.take().unwrap().finish()
+    fn stop(&mut self) -> String {
+        self.node.take().unwrap().stop_with_log()
     }
 }
 
@@ -134,9 +129,7 @@ fn the_map_is_served_also_to_those_who_join_late() {
         assert_eq!((header.map_id, cells), (expected.id(), &expected.cells[..]));
         true
     });
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }
 
 #[test]
@@ -155,18 +148,14 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
         assert_eq!((header.map_id, cells), (recorded.id(), &recorded.cells[..]));
         true
     });
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 
     // Played on another map, which is served with a warning.
     world.start_with(&[OsStr::new("--played"), OsStr::new(file)]);
     let late = world.graph.subscriber::<topic::Map>().unwrap();
     world.wait(&late, |_, cells| cells == [100, 0]);
     wait_until_ready(&world.graph, "map_server");
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    let log = world.stop();
     assert!(log.contains("recorded on another map"), "{log}");
     // Played on its own map, without a warning.
     let own = Path::new(file).with_file_name("map.yaml");
@@ -178,9 +167,8 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     ];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_map_server"), &world.graph, options);
     wait_until_ready(&world.graph, "map_server");
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success() && !log.contains("another map"), "{log}");
+    let log = node.stop_with_log();
+    assert!(!log.contains("another map"), "{log}");
 
     // A recording without a map: the map of the file is served.
     let empty = world.at("empty.mcap");
@@ -191,9 +179,7 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     world.start_with(&[OsStr::new("--recorded"), empty.as_os_str()]);
     let late = world.graph.subscriber::<topic::Map>().unwrap();
     world.wait(&late, |_, cells| cells == [100, 0]);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    let log = world.stop();
     assert!(log.contains("holds no map"), "{log}");
 }
 
@@ -205,9 +191,7 @@ fn a_key_that_is_not_known_is_logged_and_the_map_is_served() {
     let maps = world.graph.subscriber::<topic::Map>().unwrap();
     world.start();
     world.wait_for_cells(&maps, 0, &[100, 0]);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    let log = world.stop();
     assert!(log.contains("the key frame_id is not known"), "{log}");
 }
 
@@ -226,9 +210,7 @@ fn a_map_that_is_missing_at_the_start_is_waited_for() {
     fs::write(world.at("map.pgm"), image_bytes).unwrap();
     world.wait_for_cells(&maps, 0, &[100, 0]);
     world.wait_for_state(&health, NodeState::Ready);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    let log = world.stop();
     assert!(log.contains("waiting for the map"), "{log}");
 }
 
@@ -262,9 +244,7 @@ fn a_changed_map_is_served_and_a_broken_one_refused() {
     fs::write(world.at("map.pgm"), whole).unwrap();
     world.wait_for_cells(&maps, 3, &[0, 0, 100]);
     world.wait_for_state(&health, NodeState::Ready);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }
 
 #[test]
@@ -282,7 +262,5 @@ fn a_broken_map_at_the_start_is_named_and_waited_for() {
     fs::write(world.at("map.pgm"), image(&[0])).unwrap();
     world.wait_for_cells(&maps, 0, &[100]);
     world.wait_for_state(&health, NodeState::Ready);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }

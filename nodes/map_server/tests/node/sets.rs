@@ -100,9 +100,7 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
     let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
     assert!(error.contains("there are no maps"), "{error}");
     assert!(sets.receive().unwrap().is_none() && shown.receive().unwrap().is_none());
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }
 
 #[test]
@@ -135,9 +133,7 @@ fn maps_that_come_into_the_folder_are_served_and_other_files_are_not_looked_at()
     fs::write(world.at("dataflow.yaml"), "nodes: []").unwrap();
     sleep(Duration::from_secs(1));
     assert!(sets.receive().unwrap().is_none());
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    let log = world.stop();
     assert!(!log.contains("rewritten"), "{log}");
 }
 
@@ -168,9 +164,7 @@ fn only_a_pose_that_is_believed_changes_the_map_that_is_shown_at_once() {
         assert_eq!((map.map_id, map.stamp.counter), (maps[1], counter + 1));
         true
     });
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }
 
 #[test]
@@ -219,7 +213,5 @@ fn without_room_a_set_and_a_map_are_not_sent_and_the_node_goes_on() {
     world.replace("map.pgm", &image(&[0, 255, 0]));
     world.wait_for_maps(&sets, 2);
     world.wait_for_state(&health, NodeState::Ready);
-    world.interrupt();
-    let (status, log) = world.finish();
-    assert!(status.success(), "{log}");
+    world.stop();
 }

@@ -19,10 +19,7 @@ fn log(form: &str, listen: &str) -> String {
     ];
     let node = NodeProcess::start("/usr/bin/env", &graph, arguments);
     wait_until_ready(&graph, "monitor");
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{status}: {log}");
-    log
+    node.stop_with_log()
 }
 
 #[test]

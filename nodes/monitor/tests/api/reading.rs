@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use bytemuck::Zeroable;
-use messages::{BeamsHeader, FieldHeader, TrackState, topic};
+use messages::{BeamsHeader, FieldHeader, topic};
 use serde_json::{Value, json};
 use tests::drawn_map::DrawnMap;
 use transport::{Flow, TransportError};
@@ -38,29 +38,6 @@ fn what_flows_in_the_graph_is_reported() {
         .map(|n| &n["name"])
         .collect();
     assert_eq!(names, ["monitor"]);
-}
-
-#[test]
-fn the_trackers_pose_is_reported_with_its_age() {
-    let world = World::new("tracked");
-    world.wait_for_state(|known| !known["map"].is_null());
-    let mut socket = world.stream();
-    assert_eq!(next(&mut socket)["pose"], Value::Null, "no tracker yet");
-    world.answer(7, 9.0);
-    world.track(7, TrackState::Unique, 1.5, 61);
-    let pose = next_of(&mut socket, "pose");
-    assert_eq!(
-        (&pose["state"], &pose["laser"]["x"]),
-        (&json!("Unique"), &json!(1.5))
-    );
-    assert_eq!(pose["says"], "one place is left");
-    let known = world.site.get("/api/v1/robots/r");
-    assert_eq!(known["pose"]["counter"], 7);
-    assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
-    assert_eq!(known["track"], json!([[1.5, 2.0, "U", 0.5]]));
-    // A later viewer gets the age of the pose.
-    let age_s = known["ages"]["scan_s"].as_f64().unwrap();
-    assert!(age_s >= 61.0, "{age_s}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::client::{active, ask, of_scan, parameters, state, until_now};
+use super::client::{active, ask, of_scan, state, until_now};
 use super::tracked::{poses_of, send_pose, tracked};
 use super::*;
 
@@ -15,39 +15,6 @@ fn stamp(ms: i64) -> Stamp {
         entered_ns: transport::monotonic_ns(),
         counter: 0,
     }
-}
-
-#[test]
-fn two_lasers_in_a_namespace_share_the_transforms_of_all_robots() {
-    let scans = ["--scan", "front/scan", "--scan", "rear/scan"];
-    let shared = ["--tf", "/tf", "--tf-static", "/tf_static"];
-    let options = [&scans[..], &shared[..]].concat();
-    let Some(mut joined) = active("ros-shared", "/r2", &["save_pose_rate: 0.0"], &options) else {
-        return;
-    };
-    let graph = &joined.graph;
-    let robot = &mut joined.robot;
-    let scans_in = graph.subscriber::<topic::Scan>().unwrap();
-    robot.order("hear", json!({ "topic": "/tf" }));
-    robot.order("join", json!({ "name": "rviz" }));
-    let level = [0.0, 0.0, 0.0, 1.0];
-    let lasers = json!([["front", 0.5, level], ["rear", -0.4, level]]);
-    robot.order("mounts", json!({ "lasers": lasers, "topic": "/tf_static" }));
-    for (laser, x) in [("front", 0.5), ("rear", -0.4)] {
-        robot.order("scan_of", json!({ "laser": laser, "index": 0 }));
-        let header: ScanHeader = wait_for(graph, &scans_in, |header, _| Some(*header));
-        assert_eq!((header.laser.as_str(), header.mount_known), (laser, 1));
-        assert_eq!(header.base_from_laser, pose2(x, 0.0, 0.0));
-    }
-    let sent = tracked(stamp(0));
-    let poses = poses_of(graph);
-    send_pose(&poses, &sent);
-    let tf = robot.wait_for("/tf");
-    assert_eq!((&tf["same"], &tf["child"]), (&json!(true), &json!("odom")));
-    assert_near(&tf["pose"], Pose::new(-2.0, 0.5, 0.25));
-    let pose = of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
-    assert_near(&pose["pose"], Pose::new(3.0, 1.0, 0.25));
-    joined.stop();
 }
 
 #[test]
@@ -260,28 +227,6 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     );
     assert_eq!(std::fs::read_to_string(&private).unwrap(), "mine");
     joined.stop();
-}
-
-/// A link that another user could have planted in the place of the saved pose ends the start.
-#[test]
-fn a_saved_pose_is_not_written_through_a_link() {
-    let folder = tempfile::tempdir().unwrap();
-    let (private, link) = (folder.path().join("private"), folder.path().join("link"));
-    std::fs::write(&private, "mine").unwrap();
-    std::os::unix::fs::symlink(&private, &link).unwrap();
-    let file = format!("saved_pose_filepath: {}", link.display());
-    let file = parameters("ros-link.yaml", &[&file]);
-    let mut gateway = std::process::Command::new(env!("CARGO_BIN_EXE_ros2_gateway"));
-    gateway.args(["--as", "amcl", "--params-file"]).arg(file);
-    let isolated = Isolated::new("ros-link");
-    let output = gateway
-        .env("BACKCAST_GRAPH", isolated.name().as_str())
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success(), "{said}");
-    assert!(said.contains(link.to_str().unwrap()), "{said}");
-    assert_eq!(std::fs::read_to_string(&private).unwrap(), "mine");
 }
 
 #[test]

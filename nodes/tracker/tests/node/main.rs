@@ -16,10 +16,7 @@ use world::{Drawn, HALL, Step, World, ids, searched, with_a_box};
 #[test]
 fn a_pose_that_nobody_searched_for_is_not_unique() {
     let isolated = Isolated::new("refused");
-    let drawn = Drawn {
-        name: "",
-        rows: HALL.into(),
-    };
+    let drawn = hall("");
     let world = World::of_map(&isolated, &drawn);
     let start = world.pose_at(6);
     let hint = format!("{},{},0", start.x, start.y);
@@ -46,10 +43,7 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
 #[test]
 fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searched() {
     let isolated = Isolated::new("remember");
-    let drawn = Drawn {
-        name: "",
-        rows: HALL.into(),
-    };
+    let drawn = hall("");
     let world = World::of_map(&isolated, &drawn);
     let health = isolated.join("watcher");
     let reports = health.subscriber::<topic::Health>().unwrap();
@@ -89,13 +83,16 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
     );
 }
 
-/// Returns two floors that look alike.
-fn floors() -> Vec<Drawn> {
-    let floor = |name| Drawn {
+fn hall(name: &'static str) -> Drawn {
+    Drawn {
         name,
         rows: HALL.into(),
-    };
-    vec![floor("ground"), floor("first")]
+    }
+}
+
+/// Returns two floors that look alike.
+fn floors() -> Vec<Drawn> {
+    vec![hall("ground"), hall("first")]
 }
 
 /// Returns the floors after the one with this number was edited.
@@ -198,40 +195,5 @@ fn a_pose_on_a_floor_that_was_edited_is_tried_and_the_old_one_goes_out_no_more()
     let first = ids(&edited(1))[1];
     assert_eq!((pose.map_id, pose.pose_known), (first, 1));
     assert!(!pose.is_unique());
-    node.stop();
-}
-
-#[test]
-fn hints_leave_the_pose_that_is_believed() {
-    let isolated = Isolated::new("hints");
-    let drawn = Drawn {
-        name: "",
-        rows: HALL.into(),
-    };
-    let world = World::of_map(&isolated, &drawn);
-    let node = world.start(&[]);
-    let id = drawn.header().map_id;
-    world.say(InitialPoseKind::Believed, 6);
-    assert!(world.step(6, id, Some(id)).pose.is_unique());
-    for x in (8..24).step_by(2) {
-        // Hints at the robot's place and elsewhere, several times.
-        for _ in 0..5 {
-            world.say(InitialPoseKind::Hint, x);
-        }
-        let Step {
-            pose, was_asked, ..
-        } = world.step(x, id, Some(id));
-        assert!(pose.is_unique() && !was_asked, "{x}: {pose:?}");
-        for _ in 0..5 {
-            world.say(InitialPoseKind::Hint, x + 12);
-        }
-        let pose = world.step(x + 1, id, Some(id)).pose;
-        let (here, found) = (
-            world.pose_at(x + 1),
-            geometry::Pose::from(pose.map_from_base),
-        );
-        assert!(pose.is_believed(), "{x}: {pose:?}");
-        assert!(found.is_within(here, 0.2, 0.1), "{found:?} {here:?}");
-    }
     node.stop();
 }

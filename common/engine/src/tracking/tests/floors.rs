@@ -148,13 +148,6 @@ fn goes_up(floors: &Floors, tracker: &mut Tracker, pose: Pose) {
 }
 
 #[test]
-fn a_robot_that_takes_the_lift_is_found_on_the_other_floor() {
-    let floors = Floors::of(&[&UNLIKE, &ABOVE]);
-    let (mut tracker, pose) = in_the_lift(&floors);
-    goes_up(&floors, &mut tracker, pose);
-}
-
-#[test]
 fn a_robot_that_leaves_the_lift_where_it_came_in_stays_on_its_floor() {
     let floors = Floors::of(&[&UNLIKE, &ABOVE]);
     let (mut tracker, pose) = in_the_lift(&floors);

@@ -142,24 +142,6 @@ fn an_option_without_its_node_is_refused() {
 }
 
 #[test]
-fn a_map_goes_to_its_server() {
-    let text = "nodes: [{id: m, path: bin/map_server, args: --map a.yaml}]";
-    let options = Options {
-        map: Some("/maps/b.yaml".into()),
-        ..Options::default()
-    };
-    let args = applied(&options, parsed(text)).unwrap();
-    assert_eq!(args, [["--map=/maps/b.yaml"]]);
-    let several = Options {
-        maps: Some("/maps".into()),
-        ..Options::default()
-    };
-    assert_eq!(applied(&several, parsed(text)).unwrap(), [["--maps=/maps"]]);
-    let error = applied(&options, graph("", "")).unwrap_err().to_string();
-    assert!(error.contains("--map is for the map_server"), "{error}");
-}
-
-#[test]
 fn a_graph_on_a_set_is_run_on_another_one_on_a_map_or_on_a_recording() {
     let text = "nodes:
   - {id: m, path: bin/map_server, args: --maps floors/ --on ground}

@@ -97,6 +97,13 @@ pub(crate) fn map_message() -> (&'static str, Message) {
     ("/map", Message::Map(OccupancyGridMsg::from_grid(&room())))
 }
 
+/// Returns the map with a frame name, which `doctor` requires.
+pub(crate) fn framed_map() -> (&'static str, Message) {
+    let mut map = OccupancyGridMsg::from_grid(&room());
+    map.header.frame_id = "map".to_owned();
+    ("/map", Message::Map(map))
+}
+
 pub(crate) fn truth_at(second: i32, place: Place) -> (&'static str, Message) {
     let message = ros::PoseStamped {
         header: header(second, "map"),
@@ -178,18 +185,6 @@ pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
 /// Returns the folder of the repository's recordings.
 pub(crate) fn recordings() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../recordings"))
-}
-
-/// Returns the sorted keys of a JSON object.
-pub(crate) fn keys(object: &Value) -> Vec<&str> {
-    let mut keys: Vec<&str> = object
-        .as_object()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect();
-    keys.sort_unstable();
-    keys
 }
 
 /// Creates a folder with the recording `r.mcap`.

@@ -78,16 +78,6 @@ fn names_are_listed_by_prefix_and_depth() {
     assert!(list(&["initial"], 0).names.is_empty());
 }
 
-#[test]
-fn what_is_not_there_has_no_type() {
-    let parameters = Parameters::default();
-    assert_eq!(parameters.get("none").r#type, 0);
-    assert_eq!(parameters.describe("none").r#type, 0);
-    let described = parameters.describe("transform_tolerance");
-    assert_eq!(described.floating_point_range[0].to_value, 10.0);
-    assert!(!described.read_only && parameters.describe("scan_topic").read_only);
-}
-
 /// Names of files, frames and topics do not come over the network.
 #[test]
 fn no_text_that_counts_changes_while_the_node_runs() {
