@@ -101,7 +101,7 @@ mod tests {
             assert_eq!(checked(sound), "", "{sound}");
         }
         assert!(checked("--map AT/no.yaml").contains("no.yaml: No such file"));
-        assert!(checked("--map AT/map.png").contains("map.png has "));
+        assert!(checked("--map AT/map.png").contains("not UTF-8"));
         assert!(checked("--maps AT/expected.json").contains("expected.json: "));
         assert!(checked("--recorded AT/map.yaml").contains("map.yaml"));
     }
