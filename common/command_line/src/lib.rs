@@ -1,6 +1,9 @@
-//! Common parts of commands and nodes: exit codes, numbers in options, standard output.
+//! Common parts of commands and nodes: exit codes, numbers in options, standard output, output
+//! files.
 
+pub mod names;
 mod number;
+pub mod output;
 pub mod stdout;
 
 pub use number::{number, within};

@@ -19,15 +19,19 @@ pub struct Mount {
     pub is_upside_down: bool,
 }
 
+/// Largest distance of a laser from the base of its robot, in metres.
+const MAX_DISTANCE_M: f64 = 10.0;
+
 /// Error of a text that is not a mount.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MountError;
 
 impl Display for MountError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "expected are three finite numbers, X,Y,YAW_DEG, and of a laser upside down 180 as \
-             the fourth",
+        write!(
+            f,
+            "expected are three finite numbers, X,Y,YAW_DEG, within {MAX_DISTANCE_M} metres (not \
+             millimetres) of the base, and of a laser upside down 180 as the fourth"
         )
     }
 }
@@ -47,6 +51,9 @@ impl FromStr for Mount {
             }
             _ => return Err(MountError),
         };
+        if x.hypot(y) > MAX_DISTANCE_M {
+            return Err(MountError);
+        }
         Ok(Mount {
             base_from_laser: Pose::new(x, y, yaw_deg.to_radians()),
             is_upside_down,
@@ -83,6 +90,8 @@ mod tests {
             "1,2,3,x",
             "1,2,3,90",
             "1,2,3,0,0",
+            "780,0,0",
+            "8,8,0",
         ] {
             assert_eq!(wrong.parse::<Mount>(), Err(MountError), "{wrong}");
         }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ArgGroup;
-use command_line::stdout;
+use command_line::{output, stdout};
 use geometry::Mount;
 use launcher::descriptor::{self, Builds};
 use progress::say;
@@ -29,6 +29,10 @@ Examples:
   backcast init --replay drive.mcap --map map.yaml --out graph.yaml
 
 Exit codes: 0 written, 1 the laser, the robot, the map or the recording cannot be used, 2 wrong use";
+
+/// Error of a graph without a map.
+const NEEDED: &str = "--map is missing, the map of the building, a YAML file beside its image; or \
+                      --maps, a folder of several";
 
 /// Options of `backcast init`.
 #[derive(Debug, clap::Args)]
@@ -54,7 +58,7 @@ pub struct Config {
     replay: Option<PathBuf>,
 
     /// The map of the building, a YAML file of map_server of ROS 2; by default a ROS 2 robot
-    /// publishes its own
+    /// publishes its own, and a recording is played on the one that it holds
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
@@ -85,21 +89,20 @@ pub struct Config {
 /// # Errors
 /// The laser does not answer, map or recording cannot be used, or the file exists already.
 pub fn run(config: &Config) -> Result<ExitCode, InitError> {
-    let source = source(config)?;
-    if config.out.exists() && !config.force {
-        let file = config.out.clone();
-        return Err(InitError::Exists { file });
-    }
-    let map = match (&config.map, &config.maps) {
-        (Some(file), _) => Some(Served::Map(used_map(file)?)),
-        (None, Some(set)) => Some(Served::Set(used_set(set)?)),
-        (None, None) => None,
-    };
-    let text = descriptor_of(&source, map.as_ref());
     let failed = |source| InitError::Write {
         file: config.out.clone(),
         source,
     };
+    // A laser or a robot takes seconds to answer, so it is asked last.
+    let map = match (&config.map, &config.maps, &config.replay) {
+        (Some(file), ..) => Some(Served::Map(used_map(file)?)),
+        (None, Some(set), _) => Some(Served::Set(used_set(set)?)),
+        (None, None, Some(recording)) => Some(Served::Recorded(used_recording(recording)?)),
+        (None, None, None) => None,
+    };
+    output::prepare(&config.out, config.force).map_err(failed)?;
+    let source = source(config)?;
+    let text = descriptor_of(&source, map.as_ref());
     write(&config.out, &text).map_err(failed)?;
     descriptor::load(&config.out, Builds::Run)?;
     stdout::print(&format!(
@@ -112,10 +115,7 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
 
 /// Writes the file atomically.
 fn write(file: &Path, text: &str) -> io::Result<()> {
-    let folder = match file.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = output::folder_of(file);
     let mut written = tempfile::Builder::new()
         .permissions(Permissions::from_mode(0o644))
         .tempfile_in(folder)?;
@@ -128,10 +128,8 @@ fn source(config: &Config) -> Result<Source, InitError> {
     let mount = config.mount.as_deref().map(mount).transpose()?;
     let is_robot = config.ros2.is_some();
     let has_map = config.map.is_some() || config.maps.is_some();
-    if !has_map && !is_robot {
-        let needed = "--map is missing, the map of the building, a YAML file beside its image; \
-                      or --maps, a folder of several";
-        return Err(InitError::Usage(needed.to_owned()));
+    if !has_map && !is_robot && config.replay.is_none() {
+        return Err(InitError::Usage(NEEDED.to_owned()));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
         let options = reader_options(config, device)?;
@@ -195,11 +193,31 @@ fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitErro
     })
 }
 
-/// Checks the mount and returns it as one word.
+/// Checks the mount and returns it as one word. Zeros get a fourth one, which says that they are
+/// meant.
 fn mount(text: &str) -> Result<String, InitError> {
-    let is_mount: Result<Mount, _> = text.parse();
-    is_mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
-    Ok(text.replace(' ', ""))
+    let mount: Result<Mount, _> = text.parse();
+    let mount = mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
+    let word = text.replace(' ', "");
+    match mount == Mount::default() && word.matches(',').count() == 2 {
+        true => Ok(word + ",0"),
+        false => Ok(word),
+    }
+}
+
+/// Checks that a recording holds a map to serve, and returns its absolute path.
+fn used_recording(file: &Path) -> Result<String, InitError> {
+    let recording = Recording::open(file)?;
+    match recording.maps()?.last() {
+        Some(map) => {
+            map?;
+            absolute(file)
+        }
+        None => Err(InitError::Usage(format!(
+            "{NEEDED}: {} holds none",
+            file.display()
+        ))),
+    }
 }
 
 /// Checks the map and returns its absolute path.
@@ -221,13 +239,13 @@ fn used_set(path: &Path) -> Result<String, InitError> {
     absolute(path)
 }
 
+/// Returns the whole path of a file or folder that nodes read, also again.
 fn absolute(file: &Path) -> Result<String, InitError> {
-    let path = file.canonicalize().map_err(|source| InitError::Write {
-        file: file.to_owned(),
-        source,
-    })?;
-    let path = path.to_str().map(str::to_owned);
-    path.ok_or_else(|| InitError::Usage(format!("{} is no UTF-8", file.display())))
+    let path = file.canonicalize().ok();
+    let path = path.filter(|path| path.is_file() || path.is_dir());
+    let path = path.ok_or("no file or folder, which nodes could read again: save it to one");
+    let path = path.and_then(|path| path.to_str().map(str::to_owned).ok_or("no UTF-8"));
+    path.map_err(|reason| InitError::Usage(format!("{} is {reason}", file.display())))
 }
 
 #[cfg(test)]
@@ -237,6 +255,8 @@ mod tests {
     #[test]
     fn a_mount_is_kept_as_one_word() {
         assert_eq!(mount("0.2, 0,-90").unwrap(), "0.2,0,-90");
+        assert_eq!(mount("0,0,0").unwrap(), "0,0,0,0");
+        assert!(mount("780,0,0").is_err());
         let error = mount("1,2").unwrap_err().to_string();
         assert!(
             error.starts_with("--mount \"1,2\": expected are three"),

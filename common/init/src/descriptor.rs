@@ -171,11 +171,19 @@ pub(crate) enum Served {
     Map(String),
     /// Maps of this folder, or of a file that lists them.
     Set(String),
+    /// Last map in this recording.
+    Recorded(String),
 }
 
 impl Served {
     fn yaml(&self) -> String {
         let (comment, option, file, ports) = match self {
+            Served::Recorded(file) => (
+                "Serves the map that the recording holds.",
+                "--recorded",
+                file,
+                "    outputs: [map]",
+            ),
             Served::Map(file) => (
                 "Serves the map, and serves it again when the file changes.",
                 "--map",
@@ -367,7 +375,7 @@ mod tests {
     fn what_is_written_is_a_sound_descriptor_with_the_arguments_as_given() {
         let folder = tempfile::tempdir().unwrap();
         let file = || "/maps/my house.yaml".to_owned();
-        let served = [Served::Map(file()), Served::Set(file())];
+        let served = [Served::Map, Served::Set, Served::Recorded].map(|of| of(file()));
         let sources = sources().into_iter();
         for (source, map) in
             sources.flat_map(|source| served.each_ref().map(|map| (source.clone(), map)))
@@ -387,6 +395,9 @@ mod tests {
             match map {
                 Some(Served::Map(file)) => assert_eq!(args("map_server"), ["--map", file]),
                 Some(Served::Set(file)) => assert_eq!(args("map_server"), ["--maps", file]),
+                Some(Served::Recorded(file)) => {
+                    assert_eq!(args("map_server"), ["--recorded", file]);
+                }
                 None => {}
             }
             let fed_by = args(source.node());

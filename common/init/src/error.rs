@@ -43,12 +43,6 @@ pub enum InitError {
     /// Options that exclude each other or are missing.
     #[error("{0}")]
     Usage(String),
-    /// The descriptor exists already.
-    #[error("{} is there already; --force overwrites it", file.display())]
-    Exists {
-        /// Path as given.
-        file: PathBuf,
-    },
     /// The descriptor cannot be written.
     #[error("cannot write {}", file.display())]
     Write {
@@ -67,7 +61,10 @@ pub enum InitError {
 impl CommandError for InitError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Exists { .. } => WRONG_USE,
+            Self::Usage(_) => WRONG_USE,
+            Self::Write { source, .. } if source.kind() == io::ErrorKind::AlreadyExists => {
+                WRONG_USE
+            }
             _ => FAILED,
         }
     }

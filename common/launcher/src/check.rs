@@ -1,5 +1,6 @@
 //! `backcast check`: reports all errors in a descriptor and in its nodes' arguments, and prints the
-//! graph as text. It builds and changes nothing; nodes are started only to check their arguments.
+//! graph as text. It builds and changes nothing; nodes are started only to check their arguments,
+//! and the map server also its maps.
 
 use std::{
     fmt::Write as _,
@@ -13,10 +14,14 @@ use transport::node::CHECK_ARGUMENTS_VARIABLE;
 
 use crate::{
     LauncherError,
-    descriptor::{self, Builds},
+    descriptor::{self, Builds, Descriptor},
     installed::is_ours,
-    run::executable,
+    run::{arguments::value, executable},
 };
+
+/// Node that reads a laser, and node that takes scans of a ROS 2 robot.
+const LASER: &str = "lms_reader";
+const GATEWAY: &str = "ros2_gateway";
 
 #[derive(Debug, clap::Args)]
 pub struct Config {
@@ -28,37 +33,75 @@ pub struct Config {
 /// Checks the descriptor and prints the graph.
 ///
 /// # Errors
-/// The descriptor is missing or wrong, or a node rejects its arguments.
+/// The descriptor is missing or wrong, a node rejects its arguments, or arguments are wrong that a
+/// node cannot judge by itself. Where the only problem is that nodes are not built, the graph is
+/// printed nevertheless.
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
-    let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
-    let nodes = descriptor.dataflow.nodes.iter();
+    let Descriptor {
+        dataflow,
+        file,
+        folder,
+    } = descriptor::load(&config.dataflow, Builds::Run)?;
     // Only our nodes can end after checking their arguments.
-    let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = nodes
-        .filter(|node| is_ours(node))
-        .partition(|node| executable(node, &descriptor.folder).is_file());
-    let refused: Vec<String> = built
+    let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = dataflow
+        .nodes
         .iter()
-        .filter_map(|node| refused_arguments(node, &descriptor.folder).transpose())
+        .filter(|node| is_ours(node))
+        .partition(|node| executable(node, &folder).is_file());
+    let mut refused: Vec<String> = built
+        .iter()
+        .filter_map(|node| refused_arguments(node, &folder).transpose())
         .collect::<Result<_, _>>()?;
-    if !refused.is_empty() {
-        return Err(LauncherError::Arguments {
-            file: descriptor.file,
-            refused: refused.join("\n"),
-        });
-    }
-    let picture = picture(&descriptor.dataflow);
-    let mut text = format!("{} is sound\n", descriptor.file.display());
-    if !unbuilt.is_empty() {
+    refused.extend(tildes(&dataflow));
+    refused.extend(unset_mount(&dataflow));
+    let picture = picture(&dataflow);
+    if refused.is_empty() && !unbuilt.is_empty() {
         let ids: Vec<&str> = unbuilt.iter().map(|node| node.id.as_str()).collect();
-        let ids = ids.join(", ");
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "not checked, as they are not built: arguments of {ids}"
-        );
+        refused.push(format!(
+            "not checked, as they are not built: arguments of {}; `backcast run` builds them",
+            ids.join(", ")
+        ));
+        stdout::print(&picture)?;
     }
-    stdout::print(&format!("{text}\n{picture}"))?;
+    if !refused.is_empty() {
+        let refused = refused.join("\n");
+        return Err(LauncherError::Arguments { file, refused });
+    }
+    stdout::print(&format!("{} is sound\n\n{picture}", file.display()))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Returns a line for each argument of our nodes with a `~`, which only a shell would expand. The
+/// gateway is left out: to ROS, `~` is the namespace of a node.
+fn tildes(dataflow: &Dataflow) -> impl Iterator<Item = String> {
+    let nodes = dataflow.nodes.iter();
+    let nodes = nodes.filter(|node| is_ours(node) && node.executable() != GATEWAY);
+    nodes.flat_map(|node| {
+        let words = node.args.iter();
+        let words = words.filter(|word| word.starts_with('~') || word.contains("=~"));
+        words.map(|word| {
+            let id = &node.id;
+            format!("node {id}: {word}: no shell expands `~` here, write the whole path")
+        })
+    })
+}
+
+/// Returns a line if a mount is given, and each is that of an example: 0,0,0.
+fn unset_mount(dataflow: &Dataflow) -> Option<String> {
+    let nodes = dataflow.nodes.iter();
+    let nodes = nodes.filter(|node| [LASER, GATEWAY].contains(&node.executable()));
+    let mut mounts = nodes.filter_map(|node| Some((&node.id, value(node, "--mount")?)));
+    let is_zero = |text: &str| {
+        let numbers = text.split(',').map(|number| number.trim().parse());
+        numbers.collect::<Result<Vec<f64>, _>>().as_deref() == Ok(&[0.0; 3])
+    };
+    let (id, mount) = mounts.clone().next()?;
+    mounts.all(|(_, mount)| is_zero(mount)).then(|| {
+        format!(
+            "node {id}: --mount {mount} looks as if it was never set: measure metres ahead, metres \
+             to the left and degrees; a laser exactly on the base has {mount},0"
+        )
+    })
 }
 
 /// Returns the node's error message if it rejects its arguments.
@@ -147,5 +190,40 @@ b (y, restarted on failure up to 3 times)
     -> votes          (no node of this graph)
 "
         );
+    }
+
+    #[test]
+    fn a_tilde_is_no_path_to_a_node_and_a_name_to_ros() {
+        let text = "nodes:
+  - {id: m, path: map_server, args: --map ~/map.yaml}
+  - {id: r, path: bin/replayer, args: --recording=~/r.mcap --rate a~b}
+  - {id: g, path: ros2_gateway, args: --scan ~/scan}
+  - {id: x, path: /bin/sh, args: -c ~/run}
+";
+        let said: Vec<String> = tildes(&parsed(text)).collect();
+        assert!(
+            said[0].starts_with("node m: ~/map.yaml: no shell"),
+            "{said:?}"
+        );
+        assert!(
+            said[1].starts_with("node r: --recording=~/r.mcap: no shell"),
+            "{said:?}"
+        );
+        assert_eq!(said.len(), 2);
+    }
+
+    #[test]
+    fn a_mount_of_zeros_is_doubted_unless_it_is_meant() {
+        let said = |lasers: &[&str]| {
+            let node = |(n, mount)| format!("{{id: n{n}, path: lms_reader, args: \"{mount}\"}}");
+            let nodes: Vec<String> = lasers.iter().enumerate().map(node).collect();
+            unset_mount(&parsed(&format!("nodes: [{}]", nodes.join(", "))))
+        };
+        for set in [&["--tcp a"][..], &["--mount 0,0,0,0"], &["--mount 0,0,90"]] {
+            assert_eq!(said(set), None, "{set:?}");
+        }
+        assert_eq!(said(&["--mount=0,0,0", "--mount 0.5,0,180"]), None);
+        let zeros = said(&["--mount 0.0,0,-0"]).unwrap();
+        assert!(zeros.contains("has 0.0,0,-0,0"), "{zeros}");
     }
 }

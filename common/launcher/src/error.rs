@@ -112,7 +112,7 @@ pub enum LauncherError {
         folder: PathBuf,
         source: io::Error,
     },
-    /// Nodes reject the arguments that the descriptor gives them.
+    /// Arguments that the descriptor gives to nodes are wrong, or cannot be checked.
     #[error("{}: {refused}", file.display())]
     Arguments {
         file: PathBuf,

@@ -17,6 +17,14 @@ pub enum MapError {
         path: PathBuf,
         source: io::Error,
     },
+    /// The file is a map of another program.
+    #[error("{} is {name}: {advice}", path.display())]
+    Foreign {
+        path: PathBuf,
+        name: &'static str,
+        /// Commands that make a map of it.
+        advice: String,
+    },
     /// A set of maps is invalid.
     #[error("{}: {reason}", path.display())]
     Set {

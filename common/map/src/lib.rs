@@ -10,6 +10,7 @@ mod bmp;
 mod claim;
 mod description;
 mod error;
+mod foreign;
 mod grid;
 mod keys;
 mod kind;
@@ -24,6 +25,7 @@ mod save;
 mod set;
 
 pub use error::MapError;
+pub use foreign::check_kind;
 pub use grid::{OccupancyGrid, UNKNOWN};
 pub use keys::UnknownKey;
 pub use limits::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::claim::HEAD_BYTES;
 use crate::description::Description;
 use crate::raster::Raster;
-use crate::{MapError, MemoryLimit, OccupancyGrid, UnknownKey, kind};
+use crate::{MapError, MemoryLimit, OccupancyGrid, UnknownKey, check_kind, kind};
 
 /// Largest size of a description in bytes; a valid one has a few hundred.
 const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
@@ -83,6 +83,7 @@ fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
 
 /// Reads the text of a description.
 pub(crate) fn read_text(yaml: &Path) -> Result<String, MapError> {
+    check_kind(yaml)?;
     let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
         MapError::Description {
             path: yaml.to_owned(),

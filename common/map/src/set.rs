@@ -27,10 +27,10 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_saphyr::{MessageFormatter, UserMessageFormatter};
 
-use crate::MapError;
 use crate::description::is_of_something_else;
 use crate::keys::Scalar;
 use crate::load::read_text;
+use crate::{MapError, check_kind};
 pub use transition::Transition;
 use transition::TransitionEntry;
 
@@ -207,6 +207,7 @@ fn named(yaml: &Path) -> MapFile {
 }
 
 fn listed(path: &Path) -> Result<MapSet, MapError> {
+    check_kind(path)?;
     let failed = |source| MapError::Description {
         path: path.to_owned(),
         source,

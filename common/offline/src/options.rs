@@ -135,6 +135,7 @@ impl Options {
     }
 
     fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {
+        map::check_kind(file)?;
         if !recording::is_recording(file) {
             let grid = map::load_within(map::MemoryLimit::NONE, file, |key| say(&key.to_string()))?;
             return Ok(grid);
@@ -150,6 +151,19 @@ impl Options {
             recording.prefer(Kind::Map, topic)?;
         }
         map_in(&recording)
+    }
+
+    /// Separates maps from recordings among files given in any order; returns the options with
+    /// these maps, and the recordings. Where all look like maps, they are taken for recordings.
+    #[must_use]
+    pub fn sorted(&self, files: &[PathBuf]) -> (Self, Vec<PathBuf>) {
+        let (maps, recordings): (Vec<_>, Vec<_>) = files.iter().cloned().partition(|f| is_map(f));
+        let mut options = self.clone();
+        if recordings.is_empty() {
+            return (options, maps);
+        }
+        options.map.extend(maps);
+        (options, recordings)
     }
 
     /// Opens a recording, which may consist of several files.
@@ -173,9 +187,11 @@ impl Options {
     }
 }
 
-/// True if the file has an extension of maps and is not a recording.
+/// True if the file has an extension of maps and is not a recording, or looks like a map of another
+/// kind.
 fn is_map(path: &Path) -> bool {
     let endings = ["yaml", "yml", "pgm", "png", "bmp"];
     let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| endings.contains(&ending)) && !recording::is_recording(path)
+    let is_ended = ending.is_some_and(|ending| endings.contains(&ending));
+    map::check_kind(path).is_err() || (is_ended && !recording::is_recording(path))
 }

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{output, stdout};
 use drawing::Scene;
 use engine::grid::Grid;
 use engine::localizer::Prior;
@@ -30,6 +31,8 @@ use crate::PlotError;
 /// refused, or the picture cannot be written.
 pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
     let format = config.check()?;
+    // Before anything is read, so that a failure costs no work.
+    unwritable(config, fs::metadata(output::folder_of(&config.out)))?;
     let given = config.options.load_map(&config.bag)?;
     if config.kind == Kind::Drive {
         return run_drive(config, given.as_ref());
@@ -69,7 +72,11 @@ fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> Result<ExitCode,
 }
 
 fn write(config: &Config, bytes: &[u8]) -> Result<(), PlotError> {
-    fs::write(&config.out, bytes).map_err(|source| PlotError::Picture {
+    unwritable(config, fs::write(&config.out, bytes))
+}
+
+fn unwritable<T>(config: &Config, outcome: io::Result<T>) -> Result<T, PlotError> {
+    outcome.map_err(|source| PlotError::Picture {
         file: config.out.clone(),
         source,
     })

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use mcap::MAGIC;
 
-use crate::RecordingError;
+use crate::{RecordingError, unpack};
 
 /// Magic of an SQLite 3 database.
 const SQLITE: &[u8] = b"SQLite format 3\0";
@@ -76,13 +76,16 @@ pub(crate) enum Content {
 }
 
 impl Content {
-    /// Detects the format of the file.
+    /// Detects the format of the file; a pipe is not read and unknown.
     ///
     /// # Errors
     /// If it cannot be read.
     pub(crate) fn of(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = RecordingError::open(path);
         let mut start = Vec::new();
+        if unpack::is_stream(path) {
+            return Ok(Content::Unknown);
+        }
         let file = File::open(path).map_err(unreadable)?;
         file.take(START)
             .read_to_end(&mut start)

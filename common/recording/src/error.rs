@@ -80,7 +80,7 @@ pub enum RecordingError {
         source: ConversionError,
     },
     /// The recording has no messages of the requested kind.
-    #[error("{} has no {kind}; it has {}", path.display(), listed(found))]
+    #[error("{} has no {kind}; it has {}{}", path.display(), listed(found), way_out(*kind, found))]
     NoTopic {
         path: PathBuf,
         kind: Kind,
@@ -152,9 +152,41 @@ impl RecordingError {
     }
 }
 
+/// Returns what to do with a recording whose only lasers are in point clouds, if that is so.
+fn way_out(kind: Kind, found: &[String]) -> String {
+    let is_cloud = |channel: &&String| {
+        channel.contains("(sensor_msgs/msg/PointCloud2)") || channel.contains("(livox_ros_driver")
+    };
+    match found
+        .iter()
+        .find(is_cloud)
+        .and_then(|cloud| cloud.split(' ').next())
+    {
+        Some(topic) if kind == Kind::Scan => format!(
+            ". It has point clouds and no laser scans: while the bag plays, `ros2 run \
+             pointcloud_to_laserscan pointcloud_to_laserscan_node --ros-args -r \
+             cloud_in:={topic}` makes scans of sensor_msgs/msg/PointCloud2; record them"
+        ),
+        _ => String::new(),
+    }
+}
+
 fn listed(found: &[String]) -> String {
     match found {
         [] => "no channels".to_owned(),
         found => found.join(", "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn point_clouds_alone_have_a_way_out() {
+        let clouds = ["/a (sensor_msgs/msg/PointCloud2)".to_owned()];
+        assert!(way_out(Kind::Scan, &clouds).contains("cloud_in:=/a`"));
+        assert_eq!(way_out(Kind::Map, &clouds), "");
+        assert_eq!(way_out(Kind::Scan, &["/a (b/msg/C)".to_owned()]), "");
     }
 }

@@ -26,12 +26,21 @@ enum Bytes {
 }
 
 impl RecordedFile {
-    /// Opens an MCAP file or an SQLite bag, also if it is compressed with zstd.
+    /// Opens an MCAP file or an SQLite bag, also if it is compressed with zstd, and also from a pipe.
     ///
     /// # Errors
     /// It cannot be read, or does not even start as a recording.
     pub(crate) fn open(listed: &Listed) -> Result<Self, RecordingError> {
         let path = &listed.path;
+        if unpack::is_stream(path) {
+            let saved = unpack::saved(path)?;
+            return RecordedFile::at(listed, saved.path());
+        }
+        RecordedFile::at(listed, path)
+    }
+
+    /// Opens the file at `path`; errors call it by its listed name.
+    fn at(listed: &Listed, path: &Path) -> Result<Self, RecordingError> {
         let content = Content::of(path)?;
         if content != Content::Zstd {
             return RecordedFile::with_content(listed, path, content);
@@ -39,7 +48,7 @@ impl RecordedFile {
         let unpacked = unpack::file(path, |start| match Content::of_bytes(start) {
             Content::Mcap | Content::Sqlite => Ok(()),
             _ => Err(RecordingError::Unpack {
-                path: path.clone(),
+                path: listed.path.clone(),
                 reason: "what zstd packed there is neither an MCAP file nor a bag in SQLite".into(),
             }),
         })?;

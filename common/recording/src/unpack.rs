@@ -45,6 +45,29 @@ fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
     }
 }
 
+/// True for a pipe or a device, which can be read only once; `-` is standard input.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    match path.metadata() {
+        Ok(found) => !found.is_file() && !found.is_dir(),
+        Err(_) => path == Path::new("-"),
+    }
+}
+
+/// Saves what comes through a pipe to a temporary file that is deleted when it is dropped.
+///
+/// # Errors
+/// If it cannot be read, or the disk is full.
+pub(crate) fn saved(path: &Path) -> Result<NamedTempFile, RecordingError> {
+    let source = match path == Path::new("-") {
+        true => Path::new("/dev/stdin"),
+        false => path,
+    };
+    let mut stream = File::open(source).map_err(RecordingError::open(path))?;
+    let mut sink = NamedTempFile::new().map_err(|error| no_room(path, &error))?;
+    std::io::copy(&mut stream, &mut sink).map_err(|error| no_room(path, &error))?;
+    Ok(sink)
+}
+
 /// Decompresses a file to a temporary one that is deleted when it is dropped. `allows` checks the
 /// first bytes before the rest is decompressed.
 ///
@@ -107,6 +130,21 @@ fn no_room(path: &Path, error: &std::io::Error) -> RecordingError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::write::Packing;
+    use crate::{Recording, sample};
+
+    #[test]
+    fn a_pipe_is_read_to_its_end() {
+        use std::os::fd::AsRawFd;
+        let bytes = sample::bytes(Packing::Zstd);
+        let direct = Recording::from_bytes("r.mcap", bytes.clone()).unwrap();
+        let (reader, mut writer) = std::io::pipe().unwrap();
+        let path = format!("/proc/self/fd/{}", reader.as_raw_fd());
+        let fed = std::thread::spawn(move || writer.write_all(&bytes));
+        let piped = Recording::open(path).unwrap();
+        fed.join().unwrap().unwrap();
+        assert_eq!(piped.messages(), direct.messages());
+    }
 
     fn packed(bytes: &[u8]) -> Vec<u8> {
         zstd::encode_all(bytes, 3).unwrap()

@@ -3,12 +3,19 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use command_line::names;
 use launcher::LauncherError;
+use recording::Recording;
 
 use super::answer::Answer;
 use crate::RegressionError;
 
-/// A folder with a recording, its map and the expected results.
+/// Files of a case.
+const RECORDING: &str = "recording.mcap";
+const MAP: &str = "map.yaml";
+const EXPECTATION: &str = "expected.json";
+
+/// A folder with a recording, the expected results, and its map unless the recording holds it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Case {
     pub(super) name: String,
@@ -16,51 +23,76 @@ pub(super) struct Case {
     folder: PathBuf,
 }
 
+/// Returns the cases of these folders: each folder itself if it is one, else all in it, sorted.
+///
+/// # Errors
+/// A folder cannot be read or contains no case, or a case has no recording.
+pub(super) fn all_in(folders: &[PathBuf]) -> Result<Vec<Case>, RegressionError> {
+    let mut found = Vec::new();
+    for folder in folders {
+        found.extend(cases_in(folder)?);
+    }
+    let names = names::of(&found).into_iter();
+    let cases = names.zip(found);
+    Ok(cases.map(|(name, folder)| Case { name, folder }).collect())
+}
+
+fn cases_in(folder: &Path) -> Result<Vec<PathBuf>, RegressionError> {
+    let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
+    if recording_in(&folder).is_some() {
+        return Ok(vec![folder]);
+    }
+    let unreadable = |source| failed("read", &folder, source);
+    let mut cases = Vec::new();
+    for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
+        let inner = entry.map_err(unreadable)?.path();
+        let mut halves = [MAP, EXPECTATION].into_iter();
+        if recording_in(&inner).is_some() {
+            cases.push(inner);
+        } else if let Some(found) = halves.find(|name| inner.join(name).exists()) {
+            let folder = inner;
+            return Err(RegressionError::HalfCase { folder, found });
+        }
+    }
+    cases.sort();
+    match cases.is_empty() {
+        true => Err(RegressionError::NoCases { folder }),
+        false => Ok(cases),
+    }
+}
+
+/// Returns the path of the recording of a case: a file, or the folder of a bag.
+fn recording_in(folder: &Path) -> Option<PathBuf> {
+    let names = [RECORDING, "recording", "recording.db3"];
+    let mut paths = names.map(|name| folder.join(name)).into_iter();
+    paths.find(|path| path.exists())
+}
+
 impl Case {
-    /// Returns the folder itself if it is a case, else all cases in it, sorted by name.
-    ///
-    /// # Errors
-    /// It cannot be read, or contains no case.
-    pub(super) fn all_in(folder: &Path) -> Result<Vec<Self>, RegressionError> {
-        let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
-        if let Some(case) = Case::of(&folder) {
-            return Ok(vec![case]);
-        }
-        let unreadable = |source| failed("read", &folder, source);
-        let entries = std::fs::read_dir(&folder).map_err(unreadable)?;
-        let paths: Vec<PathBuf> = entries
-            .map(|entry| Ok(entry.map_err(unreadable)?.path()))
-            .collect::<Result<_, RegressionError>>()?;
-        let mut cases: Vec<Case> = paths.iter().filter_map(|path| Case::of(path)).collect();
-        cases.sort_by(|a, b| a.name.cmp(&b.name));
-        match cases.is_empty() {
-            true => Err(RegressionError::NoCases { folder }),
-            false => Ok(cases),
-        }
-    }
-
-    fn of(folder: &Path) -> Option<Self> {
-        let case = Case {
-            name: folder.file_name()?.to_string_lossy().into_owned(),
-            folder: folder.to_owned(),
-        };
-        (case.recording().exists() && case.map().is_file()).then_some(case)
-    }
-
     /// Path of the recording: a file, or the folder of a bag.
     pub(super) fn recording(&self) -> PathBuf {
-        let names = ["recording.mcap", "recording", "recording.db3"];
-        let mut paths = names.map(|name| self.folder.join(name)).into_iter();
-        let found = paths.find(|path| path.exists());
-        found.unwrap_or_else(|| self.folder.join("recording.mcap"))
+        recording_in(&self.folder).unwrap_or_else(|| self.folder.join(RECORDING))
     }
 
-    pub(super) fn map(&self) -> PathBuf {
-        self.folder.join("map.yaml")
+    /// Path of the map; `None` if it is to be taken from the recording.
+    ///
+    /// # Errors
+    /// The recording cannot be read or has no map either.
+    pub(super) fn map(&self) -> Result<Option<PathBuf>, RegressionError> {
+        let map = self.folder.join(MAP);
+        if map.exists() {
+            return Ok(Some(map));
+        }
+        match Recording::open(self.recording())?.maps()?.next() {
+            Some(_) => Ok(None),
+            None => Err(RegressionError::NoMap {
+                folder: self.folder.clone(),
+            }),
+        }
     }
 
     fn expectation(&self) -> PathBuf {
-        self.folder.join("expected.json")
+        self.folder.join(EXPECTATION)
     }
 
     /// Reads the expected results; `None` if the file does not exist.
@@ -103,45 +135,76 @@ pub(super) fn failed(action: &'static str, file: &Path, source: io::Error) -> Re
 
 #[cfg(test)]
 mod tests {
+    use recording::write::{Packing, RecordingWriter};
     use tempfile::TempDir;
 
     use super::*;
 
     #[test]
-    fn a_case_has_a_recording_and_a_map() {
+    fn cases_have_names_of_their_own_and_half_a_case_is_an_error() {
         let folder = TempDir::new().unwrap();
-        let none = Case::all_in(folder.path()).unwrap_err();
+        let none = all_in(&[folder.path().to_owned()]).unwrap_err();
         assert!(
             none.to_string()
                 .contains("not a folder with recording.mcap"),
             "{none}"
         );
-        for (name, files) in [
-            ("b", &["recording.mcap", "map.yaml"][..]),
-            ("a", &["recording.mcap", "map.yaml"]),
-            ("c", &["recording.mcap"]),
+        for file in [
+            "x/b/recording.mcap",
+            "x/b/map.yaml",
+            "x/a/recording.db3",
+            "y/a/recording.mcap",
+            "y/notes/map.txt",
+            "z/c/expected.json",
         ] {
-            let inner = folder.path().join(name);
-            std::fs::create_dir(&inner).unwrap();
-            for file in files {
-                std::fs::write(inner.join(file), "").unwrap();
-            }
+            let file = folder.path().join(file);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
         }
-        let names = |folder: &Path| -> Vec<String> {
-            let cases = Case::all_in(folder).unwrap();
-            cases.into_iter().map(|case| case.name).collect()
+        let names = |folders: &[&str]| {
+            let folders = folders.iter().map(|name| folder.path().join(name));
+            let cases = all_in(&folders.collect::<Vec<_>>()).map_err(|error| error.to_string());
+            cases.map(|cases| cases.into_iter().map(|case| case.name).collect::<Vec<_>>())
         };
-        assert_eq!(names(folder.path()), ["a", "b"]);
-        assert_eq!(names(&folder.path().join("b")), ["b"]);
+        assert_eq!(names(&["x"]).unwrap(), ["a", "b"]);
+        assert_eq!(names(&["x/b"]).unwrap(), ["b"]);
+        assert_eq!(names(&["x", "y"]).unwrap(), ["x_a", "x_b", "y_a"]);
+        let half = names(&["x", "z"]).unwrap_err();
+        assert!(
+            half.contains("z/c has expected.json, but no recording"),
+            "{half}"
+        );
+    }
+
+    #[test]
+    fn the_map_is_that_of_the_folder_or_of_the_recording() {
+        let corridor = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../recordings/malaga_corridor/recording.mcap"
+        );
+        let folder = TempDir::new().unwrap();
+        let case = Case {
+            name: "a".to_owned(),
+            folder: folder.path().to_owned(),
+        };
+        std::fs::copy(corridor, case.recording()).unwrap();
+        assert_eq!(case.map().unwrap(), None);
+        let without = RecordingWriter::create(case.recording(), Packing::Plain).unwrap();
+        without.finish().unwrap();
+        let neither = case.map().unwrap_err().to_string();
+        assert!(
+            neither.ends_with("has no map.yaml, and its recording no map"),
+            "{neither}"
+        );
+        std::fs::write(folder.path().join(MAP), "").unwrap();
+        assert_eq!(case.map().unwrap(), Some(folder.path().join(MAP)));
     }
 
     #[test]
     fn expectations_are_written_and_read_back() {
         let folder = TempDir::new().unwrap();
-        for file in ["recording.mcap", "map.yaml"] {
-            std::fs::write(folder.path().join(file), "").unwrap();
-        }
-        let case = Case::all_in(folder.path()).unwrap().remove(0);
+        std::fs::write(folder.path().join(RECORDING), "").unwrap();
+        let case = all_in(&[folder.path().to_owned()]).unwrap().remove(0);
         assert_eq!(case.expected().unwrap(), None);
         case.accept(&[Answer::default()]).unwrap();
         assert_eq!(case.expected().unwrap(), Some(vec![Answer::default()]));

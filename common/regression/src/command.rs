@@ -1,10 +1,10 @@
 //! The command `backcast regress`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use command_line::stdout;
+use command_line::{output, stdout};
 use launcher::LauncherError;
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
@@ -19,8 +19,8 @@ use crate::RegressionError;
 
 /// Notes below the options in the help text.
 pub const NOTES: &str = "\
-A case is a folder with recording.mcap (or the folder recording, of a bag), map.yaml and
-expected.json. With --tolerance exact, votes, verdicts, the tracker's states and counts must
+A case is a folder with recording.mcap (or the folder recording, of a bag), expected.json, and
+map.yaml unless the recording holds the map. With --tolerance exact, votes, verdicts, the tracker's states and counts must
 come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 With --tolerance pose, verdicts and states must, and where both are Unique the pose within
 5 cm and 1 degree: what a robot would notice of another version of the engine.
@@ -59,15 +59,10 @@ pub struct Config {
 /// There is no recording, the graph cannot be built, or a file cannot be written.
 pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
-    if let Some(folder) = config.junit.as_deref().and_then(Path::parent) {
-        // Before the replay, so that a failure costs no work.
-        std::fs::create_dir_all(folder)
-            .map_err(|source| case::failed("make the folder", folder, source))?;
+    if let Some(file) = &config.junit {
+        output::prepare(file, true).map_err(|source| case::failed("write", file, source))?;
     }
-    let mut cases = Vec::new();
-    for folder in &config.folders {
-        cases.extend(Case::all_in(folder)?);
-    }
+    let cases = case::all_in(&config.folders)?;
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     // The replayer is the same for all cases, and is built with the other nodes.
     if let Some(case) = cases.first() {

@@ -17,10 +17,18 @@ pub enum RegressionError {
     #[error(transparent)]
     Transport(#[from] TransportError),
     #[error(
-        "{} is not a folder with recording.mcap and map.yaml and contains none",
+        "{} is not a folder with recording.mcap and contains none",
         folder.display()
     )]
     NoCases { folder: PathBuf },
+    #[error("{} has {found}, but no recording.mcap, recording.db3 or folder recording", folder.display())]
+    HalfCase {
+        folder: PathBuf,
+        /// Name of the file that makes it look like a case.
+        found: &'static str,
+    },
+    #[error("{} has no map.yaml, and its recording no map", folder.display())]
+    NoMap { folder: PathBuf },
     #[error("{} does not say what is expected: --accept writes it again", file.display())]
     Expectation {
         file: PathBuf,
@@ -42,7 +50,7 @@ impl CommandError for RegressionError {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Launcher(error) => error.exit_code(),
-            Self::NoCases { .. } => WRONG_USE,
+            Self::NoCases { .. } | Self::HalfCase { .. } => WRONG_USE,
             _ => FAILED,
         }
     }

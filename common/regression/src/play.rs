@@ -27,7 +27,7 @@ const TIMEOUT: Duration = Duration::from_secs(20);
 /// Configures the graph to replay this recording on its map, as fast as it can process it.
 ///
 /// # Errors
-/// The graph has no map server.
+/// The graph has no map server, or the case no map.
 pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), RegressionError> {
     let Descriptor { dataflow, file, .. } = descriptor;
     leave_out_monitors(dataflow);
@@ -36,7 +36,17 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Reg
     add_to_list(replayer, "--in-step", NAME);
     unset(replayer, "--loop", false);
     let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
-    set(server, "--map", Some(&case.map().to_string_lossy()));
+    for option in ["--map", "--maps", "--on", "--recorded", "--played"] {
+        unset(server, option, true);
+    }
+    match case.map()? {
+        Some(map) => set(server, "--map", Some(&map.to_string_lossy())),
+        None => set(
+            server,
+            "--recorded",
+            Some(&case.recording().to_string_lossy()),
+        ),
+    }
     tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
         // Logs problems only; results are in the table.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use command_line::output;
 use command_line::stdout::print;
 use dataflow::RestartPolicy;
 use geometry::Pose;
@@ -115,7 +116,11 @@ pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
         pause: Duration::from_secs_f64(config.pause),
         faults: config.faults.clone(),
         seed: config.seed,
-        disk: config.record.as_deref().map(folder_of),
+        disk: config
+            .record
+            .as_deref()
+            .map(output::folder_of)
+            .map(Path::to_owned),
     };
     let report = Course::start(plan, maps, truths)?.run()?;
     print(&match config.json {
@@ -210,16 +215,9 @@ fn check_room(config: &Config) -> Result<(), SoakError> {
             let needed = "--faults disk fills the disk of --record, which is not given";
             return Err(LauncherError::Usage(needed.to_owned()).into());
         };
-        filler::check(&folder_of(record))?;
+        filler::check(output::folder_of(record))?;
     }
     Ok(())
-}
-
-fn folder_of(file: &Path) -> PathBuf {
-    match file.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

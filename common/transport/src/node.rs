@@ -23,8 +23,8 @@ use crate::{Graph, log_lines, with_causes};
 /// neither date, microseconds nor module path. Default: `short` on a terminal, else `text`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 
-/// Environment variable that makes a node exit after parsing its arguments, before it joins a graph
-/// or opens anything: with code 0, or 2 if they are wrong.
+/// Environment variable that makes a node exit after checking its arguments, before it joins a
+/// graph: with code 0, or 2 if they are wrong.
 pub const CHECK_ARGUMENTS_VARIABLE: &str = "BACKCAST_CHECK_ARGUMENTS";
 
 /// Runs one node: starts logging to standard error and topic `log`, joins the graph as `name` and

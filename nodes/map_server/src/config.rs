@@ -10,7 +10,7 @@ use clap::Parser;
 pub struct Config {
     /// Map to serve: a YAML file in the format of ROS's map_server, with a PGM, PNG or BMP image
     /// next to it.
-    #[arg(long, value_name = "FILE", required_unless_present = "maps")]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["maps", "recorded"])]
     pub map: Option<PathBuf>,
 
     /// Several maps to serve instead, which are searched together: a folder, or a file that lists
@@ -23,8 +23,8 @@ pub struct Config {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', requires = "maps")]
     pub on: Vec<String>,
 
-    /// Recording whose last map is served instead of `--map`, if it contains one: scans played from
-    /// it were recorded on that map.
+    /// Recording whose last map is served instead of `--map`, if it contains one, and without
+    /// `--map` has to: scans played from it were recorded on that map.
     #[arg(long, value_name = "FILE")]
     pub recorded: Option<PathBuf>,
 

@@ -10,6 +10,10 @@ pub enum MapServerError {
         path: PathBuf,
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    #[error("the recording {} holds no map, and --map names none", path.display())]
+    NoMap { path: PathBuf },
+    #[error(transparent)]
+    Map(#[from] map::MapError),
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
 }

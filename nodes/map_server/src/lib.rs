@@ -15,4 +15,4 @@ mod watch;
 
 pub use config::Config;
 pub use error::MapServerError;
-pub use run::run;
+pub use run::{check, run};

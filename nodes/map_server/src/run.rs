@@ -23,11 +23,24 @@ const TICK: Duration = Duration::from_millis(250);
 /// broken at the start are waited for; later, a broken map is reported in `health` and the previous
 /// one stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
-    match (&config.maps, &config.map) {
-        (Some(set), _) => several::run(graph, config, set),
-        (None, Some(map)) => one::run(graph, config, map),
-        (None, None) => unreachable!("the command line asks for one of them"),
+    match &config.maps {
+        Some(set) => several::run(graph, config, set),
+        None => one::run(graph, config),
     }
+}
+
+/// Checks that the map or the maps can be served now.
+///
+/// # Errors
+/// If they are missing, broken or too large.
+pub fn check(config: &Config) -> Result<(), MapServerError> {
+    match &config.maps {
+        Some(set) => several::load(config, set).map(drop)?,
+        None => {
+            one::first(config)?.0?;
+        }
+    }
+    Ok(())
 }
 
 /// Reports that no map can be served until a file changes, and why.
@@ -58,5 +71,38 @@ fn now(served: u64) -> Stamp {
         measured_ns: transport::wall_ns(),
         entered_ns: transport::monotonic_ns(),
         counter: served,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use transport::with_causes;
+
+    use super::*;
+
+    #[test]
+    fn maps_that_are_missing_or_broken_are_found_before_a_graph_starts() {
+        let corridor = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../recordings/malaga_corridor"
+        );
+        let checked = |options: &str| {
+            let options = options.replace("AT", corridor);
+            let words = ["map_server"].into_iter().chain(options.split(' '));
+            let checked = check(&Config::try_parse_from(words).unwrap());
+            checked.map_or_else(|error| with_causes(&error), |()| String::new())
+        };
+        for sound in [
+            "--map AT/map.yaml",
+            "--maps AT",
+            "--recorded AT/recording.mcap",
+        ] {
+            assert_eq!(checked(sound), "", "{sound}");
+        }
+        assert!(checked("--map AT/no.yaml").contains("no.yaml: No such file"));
+        assert!(checked("--map AT/map.png").contains("not UTF-8"));
+        assert!(checked("--maps AT/expected.json").contains("expected.json: "));
+        assert!(checked("--recorded AT/map.yaml").contains("map.yaml"));
     }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use command_line::output;
 use drawing::Scene;
 use plots::PlotError;
 
@@ -31,11 +32,8 @@ impl Folder {
             folder: path.to_owned(),
             source,
         };
-        fs::create_dir_all(path).map_err(error)?;
         // An hour of measuring must not end with a file that cannot be written.
-        let trial = path.join(".backcast-trial");
-        fs::write(&trial, []).map_err(error)?;
-        fs::remove_file(&trial).map_err(error)?;
+        output::make_folder(path).map_err(error)?;
         Ok(Folder {
             path: path.to_owned(),
         })

@@ -29,10 +29,10 @@ Below, the probabilities of the best places of all files, and how many of those 
 Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wrong use";
 
 /// Options of `backcast evaluate`.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Config {
     /// Recordings with true poses on /ground_truth, evaluated one by one: MCAP files, or bags of
-    /// rosbag2 (their folders, or .db3)
+    /// rosbag2 (their folders, or .db3); a map among them is taken for that of --map
     #[arg(required_unless_present = "stress", value_name = "FILE")]
     bags: Vec<PathBuf>,
 
@@ -62,6 +62,12 @@ pub struct Config {
 /// # Errors
 /// The options or the given map cannot be used, or output cannot be written.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+    let (options, bags) = config.options.sorted(&config.bags);
+    let config = &Config {
+        options,
+        bags,
+        ..config.clone()
+    };
     config.options.check()?;
     let mut bags = config.bags.clone();
     bags.splice(0..0, config.sequence.stressed_file());

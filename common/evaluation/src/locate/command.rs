@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use command_line::{LOST_DATA, stdout};
-use offline::{Accepted, Options, Session};
+use offline::{Accepted, OfflineError, Options, Session};
 use pose_table::Line;
 use progress::Progress;
 use recording::RecordingError;
@@ -15,10 +15,10 @@ use super::row;
 use crate::EvaluationError;
 
 /// Options of `backcast locate`.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Config {
     /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3); several files are
-    /// read as one
+    /// read as one, and a map among them is taken for that of --map
     #[arg(value_name = "FILE", required_unless_present = "bag")]
     recordings: Vec<PathBuf>,
 
@@ -53,9 +53,20 @@ pub struct Config {
 /// Map or recording cannot be used, every scan was rejected, or the recording is damaged; damage is
 /// reported after the scans before it.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+    let (options, files) = config.options.sorted(&config.recordings);
+    let config = &Config {
+        options,
+        ..config.clone()
+    };
     config.options.check_settings()?;
-    let files = [&config.recordings[..], &config.bag].concat();
+    let files = [&files[..], &config.bag].concat();
     let set = config.maps.as_deref();
+    if let (Some(set), Some(map)) = (set, config.options.map.first()) {
+        let (set, map) = (set.display(), map.display());
+        let usage =
+            format!("{map} is a map, and --maps {set} names others: allowed is one of both");
+        return Err(OfflineError::Usage(usage).into());
+    }
     let maps = config.options.load_set(set, &config.on, &files)?;
     let map = match maps.is_empty() {
         true => config.options.load_map(&files)?,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{names, output, stdout};
 use map::OccupancyGrid;
 use offline::{Accepted, Options, Session};
 use plots::draw_drive;
@@ -12,7 +12,7 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
-use super::{SequenceOptions, course, drive, follow, jumps, names, outages, starts, stress};
+use super::{SequenceOptions, course, drive, follow, jumps, outages, starts, stress};
 use crate::EvaluationError;
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
@@ -27,8 +27,7 @@ pub(crate) fn evaluate(
     (options, sequence): (&Options, &SequenceOptions),
 ) -> Result<ExitCode, EvaluationError> {
     for folder in sequence.trajectories.iter().chain(&sequence.pictures) {
-        // Before the evaluation, so that a failure costs no work.
-        std::fs::create_dir_all(folder).map_err(|source| EvaluationError::File {
+        output::make_folder(folder).map_err(|source| EvaluationError::File {
             action: "make the folder",
             file: folder.clone(),
             source,

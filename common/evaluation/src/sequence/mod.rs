@@ -11,7 +11,6 @@ mod follow;
 mod interruption;
 mod jumps;
 mod limits;
-mod names;
 mod options;
 mod outages;
 mod run;

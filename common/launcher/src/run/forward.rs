@@ -82,6 +82,16 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
              `locate`, `evaluate` and `plot` take the one in the recording"
         )));
     }
+    // Nodes read a recording several times, and in processes of their own.
+    let is_stream = |path: &&PathBuf| {
+        **path == Path::new("-") || (path.exists() && !path.is_file() && !path.is_dir())
+    };
+    if let Some(stream) = options.replay.iter().find(is_stream) {
+        return Err(LauncherError::Usage(format!(
+            "--replay {} is no file: save the recording to one first",
+            stream.display()
+        )));
+    }
     let absolute = options.replay.iter().map(std::path::absolute);
     let recordings: Vec<PathBuf> = absolute
         .collect::<Result<_, _>>()

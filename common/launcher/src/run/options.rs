@@ -105,6 +105,10 @@ pub struct RecordOptions {
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
 
+    /// With --record: overwrite the file
+    #[arg(long, requires = "record")]
+    pub force: bool,
+
     /// With --record: keep only this much time in memory, e.g. 10m, and save it when the
     /// pose is lost or the recorder gets SIGUSR1
     #[arg(long, value_name = "TIME", requires = "record")]

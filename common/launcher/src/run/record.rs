@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use command_line::output;
 use dataflow::Dataflow;
 
 use super::added;
@@ -17,7 +18,7 @@ pub(super) const RECORDER: &str = "recorder";
 /// Adds a recorder if the options ask for one. `file` and `folder` are those of the descriptor.
 ///
 /// # Errors
-/// The output file exists already, or the graph has a recorder.
+/// The output file exists already or cannot be written, or the graph has a recorder.
 pub(crate) fn add(
     options: &RecordOptions,
     dataflow: &mut Dataflow,
@@ -65,13 +66,14 @@ fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<
     added::check_new(dataflow, "--record", RECORDER)?;
     let is_whole =
         options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
-    if is_whole && output.exists() {
-        let output = output.display();
-        return Err(LauncherError::Usage(format!(
-            "--record: {output} exists already; remove it or name another file"
-        )));
-    }
-    Ok(())
+    let prepared = output::prepare(output, options.force || !is_whole);
+    // The recorder overwrites nothing, and would add a number to the name.
+    let prepared = prepared.and_then(|()| match is_whole && output.exists() {
+        true => std::fs::remove_file(output),
+        false => Ok(()),
+    });
+    prepared
+        .map_err(|error| LauncherError::Usage(format!("--record {}: {error}", output.display())))
 }
 
 /// Returns the files to attach to the recording: the descriptor, the served map and its image.
@@ -116,9 +118,10 @@ mod tests {
     fn the_recorder_joins_the_others_and_sources_wait_for_it() {
         let mut dataflow = parsed(GRAPH);
         let folder = tempfile::TempDir::new().unwrap();
+        let output = folder.path().join("no/such/folder/r.mcap");
         let options = RecordOptions {
             split_time: Some("10m".to_owned()),
-            ..options(Path::new("/tmp/no_such_folder/r.mcap"))
+            ..options(&output)
         };
         add(&options, &mut dataflow, Path::new("g.yaml"), folder.path()).unwrap();
         let [replayer, accumulator, other, recorder] = &dataflow.nodes[..] else {
@@ -131,8 +134,12 @@ mod tests {
         );
         assert_eq!(
             recorder.args,
-            ["--output=/tmp/no_such_folder/r.mcap", "--split-time=10m"]
+            [
+                &format!("--output={}", output.display()),
+                "--split-time=10m"
+            ]
         );
+        assert!(output.parent().unwrap().is_dir());
         let build = "cargo build --package replayer --package recorder";
         for node in [replayer, accumulator, recorder] {
             assert_eq!(node.build[0].to_string(), build);
@@ -151,7 +158,16 @@ mod tests {
             outcome.unwrap_err().to_string()
         };
         let exists = refused(&options(&existing), GRAPH);
-        assert!(exists.contains("r.mcap exists already"), "{exists}");
+        assert!(exists.contains("r.mcap: it is there already"), "{exists}");
+        let below = refused(&options(&existing.join("s.mcap")), GRAPH);
+        assert!(below.contains("r.mcap/s.mcap: not a directory"), "{below}");
+        let forced = RecordOptions {
+            force: true,
+            ..options(&existing)
+        };
+        let mut dataflow = parsed(GRAPH);
+        add(&forced, &mut dataflow, Path::new("g.yaml"), folder.path()).unwrap();
+        assert!(!existing.exists());
         let other = options(&folder.path().join("s.mcap"));
         let twice = refused(&other, "nodes: [{id: x, path: bin/recorder}]");
         assert!(twice.contains("has one already"), "{twice}");

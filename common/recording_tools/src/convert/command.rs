@@ -4,11 +4,15 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::thread;
 
-use command_line::LOST_DATA;
+use command_line::{LOST_DATA, output};
 use progress::say;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level::emulate_default_handler;
 
 use super::file::{self, ending};
 use super::report::Report;
@@ -34,6 +38,10 @@ pub struct Config {
     /// The file to write: .mcap
     #[arg(value_name = "TO")]
     to: PathBuf,
+
+    /// Overwrite the file
+    #[arg(long)]
+    force: bool,
 
     /// The log's laser poses are corrected: write them as /ground_truth
     #[arg(long)]
@@ -61,6 +69,13 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     if ending(&config.to) != "mcap" || ends_packed(&config.to) {
         return Err(none());
     }
+    let from = &config.from;
+    if from == Path::new("-") || (from.exists() && !from.is_file() && !from.is_dir()) {
+        let from = from.display();
+        return Err(RecordingToolsError::Usage(format!(
+            "{from} is no file, and is read twice: save it to one first"
+        )));
+    }
     let convert = match file::kind(&config.from).map_err(failed("read", &config.from))? {
         file::Kind::Log => log_to_recording,
         file::Kind::Recording if is_bag(&config.from) => bag_to_recording,
@@ -71,7 +86,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         }
         file::Kind::Unknown => return Err(none()),
     };
-    let (file, unfinished) = create(&config.to)?;
+    let (file, unfinished) = create(&config.to, config.force)?;
     let report = convert(config, file)?;
     if report.scans == 0 && report.messages == 0 {
         return Err(RecordingToolsError::NothingConverted {
@@ -169,7 +184,7 @@ fn finish(
     flushed.map_err(failed("write", &config.to))
 }
 
-/// A file that is deleted on drop unless it is kept.
+/// A file that is deleted on drop unless it is kept, and by a signal that ends the command.
 struct Unfinished(Option<PathBuf>);
 
 impl Unfinished {
@@ -187,8 +202,22 @@ impl Drop for Unfinished {
     }
 }
 
-fn create(path: &Path) -> Result<(BufWriter<File>, Unfinished), RecordingToolsError> {
-    let file = File::create_new(path).map_err(failed("create", path))?;
+fn create(
+    path: &Path,
+    overwrites: bool,
+) -> Result<(BufWriter<File>, Unfinished), RecordingToolsError> {
+    let prepared = output::prepare(path, overwrites);
+    let signals = prepared.and_then(|()| Signals::new([SIGINT, SIGTERM]));
+    let mut signals = signals.map_err(failed("create", path))?;
+    let unfinished = path.to_owned();
+    thread::spawn(move || {
+        for signal in signals.forever() {
+            // The command ends anyway.
+            let _ = std::fs::remove_file(&unfinished);
+            let _ = emulate_default_handler(signal);
+        }
+    });
+    let file = File::create(path).map_err(failed("create", path))?;
     Ok((BufWriter::new(file), Unfinished(Some(path.to_owned()))))
 }
 

@@ -162,8 +162,14 @@ fn a_map_and_a_recording_that_are_swapped_are_reported() {
             "backcast: room.yaml is a map, and --map r.mcap a recording: the two look swapped\n";
         assert_eq!((code, stderr.as_str()), (2, said));
     }
-    let (code, found, _) = verdicts(folder.path(), "--bag r.mcap --map room.yaml");
-    assert_eq!((code, found), (0, vec!["Unique".to_owned()]));
+    for files in [
+        "--bag r.mcap --map room.yaml",
+        "room.yaml r.mcap",
+        "r.mcap room.yaml",
+    ] {
+        let (code, found, _) = verdicts(folder.path(), files);
+        assert_eq!((code, found), (0, vec!["Unique".to_owned()]), "{files}");
+    }
 }
 
 #[test]

@@ -7,13 +7,16 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 
 use geometry::Pose;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
 
-use crate::drawn::{folder, recordings, run};
+use crate::drawn::{backcast, folder, recordings, run};
 
 #[test]
 fn a_destination_that_exists_or_is_no_recording_is_refused() {
@@ -28,9 +31,30 @@ fn a_destination_that_exists_or_is_no_recording_is_refused() {
     let (code, _, said) = convert("a.log a.mcap");
     assert_eq!(code, 1, "what exists is kept");
     assert!(said.contains("cannot create a.mcap"), "{said}");
+    assert_eq!(convert("a.log new/folder/a.mcap").0, 0);
+    assert_eq!(convert("a.log a.mcap --force").0, 0);
+    assert_eq!(convert("- b.mcap").0, 2, "a pipe cannot be read twice");
     for to in ["c.bag", "c.log", "c.mcap.gz"] {
         assert_eq!(convert(&format!("a.log {to}")).0, 2, "{to}");
     }
+}
+
+#[test]
+fn what_is_interrupted_leaves_no_file() {
+    let corridor = Corridor::new();
+    // Takes far longer to convert than to interrupt.
+    let long = corridor.log.repeat(500);
+    fs::write(corridor.folder.path().join("long.log"), long).unwrap();
+    let mut child = backcast(corridor.folder.path(), "convert long.log a.mcap")
+        .spawn()
+        .unwrap();
+    let file = corridor.folder.path().join("a.mcap");
+    while !file.exists() {
+        std::thread::yield_now();
+    }
+    kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGINT).unwrap();
+    assert_eq!(child.wait().unwrap().signal(), Some(2));
+    assert!(!file.exists());
 }
 
 /// Returns the scans on `/scan` of a recording.

@@ -32,6 +32,7 @@ fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
         ),
         ("serial.yaml", "--serial /dev/ttyUSB7 --no-probe --map MAP"),
         ("replay.yaml", "--replay DRIVE --map MAP"),
+        ("own_map.yaml", "--replay DRIVE"),
     ] {
         let (code, stdout, stderr) = init(folder.path(), &format!("{options} --out {file}"));
         assert_eq!(code, 0, "{stderr}");
@@ -66,8 +67,10 @@ fn what_cannot_be_meant_leaves_no_file() {
         ("--replay MAP --map MAP", 1, "map.yaml"),
         ("--replay DRIVE --map DRIVE", 2, "is a recording"),
         ("--replay DRIVE --map nowhere.yaml", 1, "nowhere.yaml"),
-        ("--replay DRIVE", 2, "--map is missing"),
-        ("--replay DRIVE", 2, "or --maps, a folder of several"),
+        ("--laser a", 2, "--map is missing"),
+        ("--laser a", 2, "or --maps, a folder of several"),
+        ("--laser a --map nowhere.yaml", 1, "nowhere.yaml"),
+        ("--ros2 --mount 780,0,0", 2, "within 10 metres"),
         ("--replay DRIVE --map MAP --mount 1,2,3", 2, "/tf_static"),
         ("--ros2 --mount 1,2", 2, "X,Y,YAW_DEG"),
     ] {
@@ -97,11 +100,13 @@ fn arguments_that_a_node_does_not_take_are_named() {
     );
     assert!(stderr.contains("\nnode w: "), "{stderr}");
     assert!(!stderr.contains("node t"), "{stderr}");
+    let map = recordings().join("malaga_corridor/map.yaml");
     let fewer = nodes
-        .replace("--mapp x", "--map x")
+        .replace("--mapp x", &format!("--map {}", map.display()))
         .replace(", args: --remember", "");
     fs::write(folder.path().join("g.yaml"), fewer).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
-    assert_eq!(code, 0, "{stderr}");
-    assert!(stdout.contains("not built: arguments of b"), "{stdout}");
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("not built: arguments of b"), "{stderr}");
+    assert!(stdout.starts_with("m ("), "{stdout}");
 }

@@ -14,7 +14,9 @@ use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
 
 /// Serves the map until the stop flag is set.
-pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), MapServerError> {
+pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
+    // Without a map file, the recording is the only source, and is not watched.
+    let path = config.map.as_deref().unwrap_or(Path::new(""));
     let mut files = Files::new(path);
     let mut server = Server {
         publisher: graph.publisher()?,
@@ -26,10 +28,8 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     // Checked before loading, so that changes in between are noticed.
     let mut watch = Watch::new(files.look());
     server.health.state(NodeState::Busy)?;
-    let recorded = recorded(config)?;
-    // The map in a recording does not change.
-    let is_watched = recorded.is_none();
-    match recorded.map_or_else(|| load(config, path), Ok) {
+    let (first, is_watched) = first(config)?;
+    match first {
         Ok(grid) => {
             server.serve(&grid)?;
             compare((config, path), &grid);
@@ -47,6 +47,23 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
         server.health.tick()?;
         Ok(Flow::Continue)
     })
+}
+
+/// Returns the first map to serve, and true if its files may change: the map in a recording does
+/// not.
+///
+/// # Errors
+/// If the recording of `--recorded` is broken, or holds no map and there is no `--map`.
+pub(super) fn first(
+    config: &Config,
+) -> Result<(Result<OccupancyGrid, map::MapError>, bool), MapServerError> {
+    match (recorded(config)?, &config.map, &config.recorded) {
+        (Some(grid), ..) => Ok((Ok(grid), false)),
+        (None, Some(map), _) => Ok((load(config, map), true)),
+        (None, None, path) => Err(MapServerError::NoMap {
+            path: path.clone().unwrap_or_default(),
+        }),
+    }
 }
 
 /// Loads the map, if it fits into the graph's memory; logs unknown keys of its description.

@@ -57,7 +57,7 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
 
 /// Maps of a set, in order.
 #[derive(Default)]
-struct Loaded {
+pub(super) struct Loaded {
     maps: Vec<LoadedMap>,
     transitions: Vec<Transition>,
 }
@@ -79,7 +79,7 @@ struct LoadedMap {
 }
 
 /// Loads the maps, if all of them fit into the graph's memory.
-fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
+pub(super) fn load(config: &Config, path: &Path) -> Result<Loaded, MapError> {
     let set = map::set_of_noting(path, |line| tracing::info!("{line}"))?.select(&config.on)?;
     let mut limit = config.memory.limit();
     let mut maps = Vec::with_capacity(set.maps.len());

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use ::map::OccupancyGrid;
-use command_line::stdout;
+use command_line::{names, stdout};
 use offline::{Accepted, Options, Session, map_in};
 use plots::draw_drive;
 use progress::{Progress, say};
 
 use super::super::limits::Reached;
-use super::super::{SequenceOptions, course, drive, names};
+use super::super::{SequenceOptions, course, drive};
 use super::figures::Figures;
 use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};

@@ -1,23 +1,29 @@
-//! Names for the output files of a drive.
+//! Names of the recordings that a command is given.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Returns a name for each recording: its path relative to the common folder, without extension and
-/// with `_` for `/`; for a single recording, its file name.
-pub(super) fn of(recordings: &[PathBuf]) -> Vec<String> {
-    let bare = recordings.iter().map(|path| path.with_extension(""));
-    let bare: Vec<PathBuf> = bare.collect();
+/// Returns a name for each path, different from all others: the path relative to the common folder,
+/// without extension and with `_` for `/`, and with a number if another has the same; for a single
+/// path, its file name.
+#[must_use]
+pub fn of(paths: &[PathBuf]) -> Vec<String> {
+    let bare: Vec<PathBuf> = paths.iter().map(|path| path.with_extension("")).collect();
     let parts: Vec<Vec<&str>> = bare.iter().map(|path| parts(path)).collect();
     let shortest = parts.iter().map(|parts| parts.len() - 1).min();
     let is_common = |at: &usize| parts.iter().all(|path| path[*at] == parts[0][*at]);
-    let common = match recordings {
+    let common = match paths {
         [_] => shortest.unwrap_or_default(),
         _ => (0..shortest.unwrap_or_default())
             .take_while(is_common)
             .count(),
     };
-    let names = parts.iter().map(|parts| parts[common..].join("_"));
-    names.collect()
+    let mut names: Vec<String> = Vec::new();
+    for name in parts.iter().map(|parts| parts[common..].join("_")) {
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        let mut free = std::iter::once(name.clone()).chain(numbered);
+        names.extend(free.find(|name| !names.contains(name)));
+    }
+    names
 }
 
 /// Components of a path; at least one.
@@ -45,5 +51,9 @@ mod tests {
         assert_eq!(of(&all), ["a_recording", "b_c_recording"]);
         assert_eq!(of(&["x/one.mcap", "x/two.db3"]), ["one", "two"]);
         assert_eq!(of(&["..", "two"]), ["drive", "two"]);
+        assert_eq!(
+            of(&["a/b.mcap", "a_b", "a/b.db3"]),
+            ["a_b", "a_b_2", "a_b_3"]
+        );
     }
 }
