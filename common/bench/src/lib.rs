@@ -5,7 +5,6 @@
 mod command;
 mod contest;
 mod engine_methods;
-mod error;
 mod line_up;
 mod measure;
 mod method;
@@ -16,4 +15,3 @@ mod scope;
 mod text;
 
 pub use command::{Config, NOTES, run};
-pub use error::BenchError;

@@ -4,8 +4,6 @@
 use command_line::stdout;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::BenchError;
-
 /// The bar; it goes when it is dropped.
 pub(super) struct Progress(ProgressBar);
 
@@ -36,7 +34,7 @@ impl Progress {
     ///
     /// # Errors
     /// Writing failed.
-    pub(super) fn print(&self, text: &str) -> Result<(), BenchError> {
+    pub(super) fn print(&self, text: &str) -> anyhow::Result<()> {
         Ok(self.0.suspend(|| stdout::print(text))?)
     }
 }

@@ -7,8 +7,9 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::ArgGroup;
-use command_line::stdout;
+use command_line::{stdout, wrong_use};
 use geometry::Mount;
 use launcher::descriptor::{self, Builds};
 use progress::say;
@@ -88,7 +89,10 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
     let source = source(config)?;
     if config.out.exists() && !config.force {
         let file = config.out.clone();
-        return Err(InitError::Exists { file });
+        let file = file.display();
+        return Err(wrong_use(format!(
+            "{file} is there already; --force overwrites it"
+        )));
     }
     let map = match (&config.map, &config.maps) {
         (Some(file), _) => Some(Served::Map(used_map(file)?)),
@@ -96,11 +100,7 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
         (None, None) => None,
     };
     let text = descriptor_of(&source, map.as_ref());
-    let failed = |source| InitError::Write {
-        file: config.out.clone(),
-        source,
-    };
-    write(&config.out, &text).map_err(failed)?;
+    write(&config.out, &text).with_context(|| not_written(&config.out))?;
     descriptor::load(&config.out, Builds::Run)?;
     stdout::print(&format!(
         "{file}: {source}\n\nbackcast check {file}\nbackcast run {file}\n",
@@ -131,7 +131,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
     if !has_map && !is_robot {
         let needed = "--map is missing, the map of the building, a YAML file beside its image; \
                       or --maps, a folder of several";
-        return Err(InitError::Usage(needed.to_owned()));
+        return Err(wrong_use(needed));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
         let options = reader_options(config, device)?;
@@ -168,7 +168,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
     }
     if mount.is_some() {
         let reason = "--mount is not for a recording, whose /tf_static says where its laser sits";
-        return Err(InitError::Usage(reason.to_owned()));
+        return Err(wrong_use(reason));
     }
     let file = config.replay.clone().unwrap_or_default();
     let recording = Recording::open(&file)?;
@@ -189,23 +189,29 @@ fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitErro
         return Ok(probe::default_reader_options(device, is_serial));
     }
     say(&format!("asking the laser at {device}"));
-    probe::reader_options(device, is_serial).map_err(|source| InitError::Laser {
-        device: device.to_owned(),
-        source,
+    probe::reader_options(device, is_serial).with_context(|| {
+        format!(
+            "the laser gives no answer; --no-probe writes the descriptor without asking it, and \
+             `backcast probe {device}` says more"
+        )
     })
 }
 
 /// Checks the mount and returns it as one word.
 fn mount(text: &str) -> Result<String, InitError> {
     let is_mount: Result<Mount, _> = text.parse();
-    is_mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
+    is_mount.map_err(|error| wrong_use(format!("--mount {text:?}: {error}")))?;
     Ok(text.replace(' ', ""))
+}
+
+fn not_written(file: &Path) -> String {
+    format!("cannot write {}", file.display())
 }
 
 /// Checks the map and returns its absolute path.
 fn used_map(file: &Path) -> Result<String, InitError> {
     if file.extension() == Some(OsStr::new("mcap")) {
-        return Err(InitError::Usage(format!(
+        return Err(wrong_use(format!(
             "--map {} is a recording; a map is a YAML file beside its image",
             file.display()
         )));
@@ -222,12 +228,9 @@ fn used_set(path: &Path) -> Result<String, InitError> {
 }
 
 fn absolute(file: &Path) -> Result<String, InitError> {
-    let path = file.canonicalize().map_err(|source| InitError::Write {
-        file: file.to_owned(),
-        source,
-    })?;
+    let path = file.canonicalize().with_context(|| not_written(file))?;
     let path = path.to_str().map(str::to_owned);
-    path.ok_or_else(|| InitError::Usage(format!("{} is no UTF-8", file.display())))
+    path.ok_or_else(|| wrong_use(format!("{} is no UTF-8", file.display())))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
+use anyhow::anyhow;
 use ros::lasers;
 use serde::Deserialize;
 use transport::GRAPH_VARIABLE;
@@ -49,7 +50,9 @@ pub(crate) struct Robot {
 /// # Errors
 /// The gateway cannot be started or ends with an error.
 pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> Result<Robot, InitError> {
-    let failed = |reason: String| InitError::Robot { reason };
+    let failed = |reason: String| {
+        anyhow!("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")
+    };
     let gateway = launcher::node("ros2_gateway").ok_or_else(|| {
         failed("ros2_gateway is not built; `cargo build --release -p ros2_gateway` does".into())
     })?;

@@ -7,15 +7,15 @@ use std::{
     process::{Command as Process, ExitCode, Stdio},
 };
 
+use anyhow::{Context, bail};
 use command_line::stdout;
 use dataflow::{Dataflow, Node, RestartPolicy};
 use transport::node::CHECK_ARGUMENTS_VARIABLE;
 
 use crate::{
-    LauncherError,
     descriptor::{self, Builds},
     installed::is_ours,
-    run::executable,
+    run::{executable, not_started},
 };
 
 #[derive(Debug, clap::Args)]
@@ -29,7 +29,7 @@ pub struct Config {
 ///
 /// # Errors
 /// The descriptor is missing or wrong, or a node rejects its arguments.
-pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     let nodes = descriptor.dataflow.nodes.iter();
     // Only our nodes can end after checking their arguments.
@@ -41,10 +41,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         .filter_map(|node| refused_arguments(node, &descriptor.folder).transpose())
         .collect::<Result<_, _>>()?;
     if !refused.is_empty() {
-        return Err(LauncherError::Arguments {
-            file: descriptor.file,
-            refused: refused.join("\n"),
-        });
+        bail!("{}: {}", descriptor.file.display(), refused.join("\n"));
     }
     let picture = picture(&descriptor.dataflow);
     let mut text = format!("{} is sound\n", descriptor.file.display());
@@ -62,7 +59,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
 }
 
 /// Returns the node's error message if it rejects its arguments.
-fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, LauncherError> {
+fn refused_arguments(node: &Node, folder: &Path) -> anyhow::Result<Option<String>> {
     let output = Process::new(executable(node, folder))
         .args(&node.args)
         .envs(node.env.iter().map(|(name, value)| (name, value)))
@@ -70,12 +67,7 @@ fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, Launc
         .current_dir(folder)
         .stdin(Stdio::null())
         .output()
-        .map_err(|source| LauncherError::NotStarted {
-            node: node.id.clone(),
-            path: executable(node, folder),
-            folder: folder.to_owned(),
-            source,
-        })?;
+        .with_context(|| not_started(node, folder))?;
     let said = String::from_utf8_lossy(&output.stderr);
     // The first paragraph is the error, the rest is usage.
     let reason = said.split("\n\n").next().unwrap_or_default();

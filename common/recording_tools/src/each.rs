@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use command_line::OutputError;
 use progress::say;
-use transport::with_causes;
 
 use crate::RecordingToolsError;
 
@@ -20,11 +20,11 @@ pub(crate) fn each(
     for path in paths {
         match act(path) {
             Ok(()) => {}
-            Err(error) if paths.len() == 1 || matches!(error, RecordingToolsError::Output(_)) => {
+            Err(error) if paths.len() == 1 || error.is::<OutputError>() => {
                 return Err(error);
             }
             Err(error) => {
-                say(&with_causes(&error));
+                say(&format!("{error:#}"));
                 any_failed = true;
             }
         }

@@ -4,8 +4,7 @@
 pub mod convert;
 pub mod doctor;
 mod each;
-mod error;
 pub mod info;
 pub mod simulate;
 
-pub use error::RecordingToolsError;
+pub use anyhow::Error as RecordingToolsError;

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use launcher::LauncherError;
+use anyhow::Context;
+use command_line::wrong_use;
 
 use super::answer::Answer;
-use crate::RegressionError;
 
 /// A folder with a recording, its map and the expected results.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,20 +21,23 @@ impl Case {
     ///
     /// # Errors
     /// It cannot be read, or contains no case.
-    pub(super) fn all_in(folder: &Path) -> Result<Vec<Self>, RegressionError> {
-        let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
+    pub(super) fn all_in(folder: &Path) -> anyhow::Result<Vec<Self>> {
+        let folder = std::path::absolute(folder).context("cannot find the current directory")?;
         if let Some(case) = Case::of(&folder) {
             return Ok(vec![case]);
         }
-        let unreadable = |source| failed("read", &folder, source);
-        let entries = std::fs::read_dir(&folder).map_err(unreadable)?;
+        let unreadable = || failed("read", &folder);
+        let entries = std::fs::read_dir(&folder).with_context(unreadable)?;
         let paths: Vec<PathBuf> = entries
-            .map(|entry| Ok(entry.map_err(unreadable)?.path()))
-            .collect::<Result<_, RegressionError>>()?;
+            .map(|entry| Ok(entry.with_context(unreadable)?.path()))
+            .collect::<anyhow::Result<_>>()?;
         let mut cases: Vec<Case> = paths.iter().filter_map(|path| Case::of(path)).collect();
         cases.sort_by(|a, b| a.name.cmp(&b.name));
         match cases.is_empty() {
-            true => Err(RegressionError::NoCases { folder }),
+            true => Err(wrong_use(format!(
+                "{} is not a folder with recording.mcap and map.yaml and contains none",
+                folder.display()
+            ))),
             false => Ok(cases),
         }
     }
@@ -67,38 +70,32 @@ impl Case {
     ///
     /// # Errors
     /// The file cannot be read, or has another format.
-    pub(super) fn expected(&self) -> Result<Option<Vec<Answer>>, RegressionError> {
+    pub(super) fn expected(&self) -> anyhow::Result<Option<Vec<Answer>>> {
         let file = self.expectation();
         let text = match std::fs::read_to_string(&file) {
-            Ok(text) => text,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(failed("read", &file, source)),
+            read => read.with_context(|| failed("read", &file))?,
         };
-        let answers = serde_json::from_str(&text);
-        answers
-            .map(Some)
-            .map_err(|source| RegressionError::Expectation { file, source })
+        serde_json::from_str(&text).map(Some).with_context(|| {
+            let file = file.display();
+            format!("{file} does not say what is expected: --accept writes it again")
+        })
     }
 
     /// Writes these results as the expected ones.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(super) fn accept(&self, answers: &[Answer]) -> Result<(), RegressionError> {
+    pub(super) fn accept(&self, answers: &[Answer]) -> anyhow::Result<()> {
         let file = self.expectation();
         // Strings and finite numbers always serialize.
         let text = serde_json::to_string_pretty(answers).unwrap_or_default() + "\n";
-        std::fs::write(&file, text).map_err(|source| failed("write", &file, source))
+        std::fs::write(&file, text).with_context(|| failed("write", &file))
     }
 }
 
-pub(super) fn failed(action: &'static str, file: &Path, source: io::Error) -> RegressionError {
-    LauncherError::File {
-        action,
-        file: file.to_owned(),
-        source,
-    }
-    .into()
+pub(super) fn failed(action: &str, file: &Path) -> String {
+    format!("cannot {action} {}", file.display())
 }
 
 #[cfg(test)]

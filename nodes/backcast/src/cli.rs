@@ -8,7 +8,7 @@ mod tools;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use command_line::CommandError;
+use command_line::exit_code;
 use launcher::{check, control, run};
 
 #[cfg(feature = "tools")]
@@ -77,20 +77,16 @@ pub fn main() -> ExitCode {
 }
 
 /// Prints the error of a failed command on standard error; returns the exit code.
-fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
+fn end(outcome: anyhow::Result<ExitCode>) -> ExitCode {
     outcome.unwrap_or_else(|error| {
-        eprintln!("backcast: {}", transport::with_causes(&error));
-        ExitCode::from(error.exit_code())
+        eprintln!("backcast: {error:#}");
+        ExitCode::from(exit_code(&error))
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use std::io;
-
     use clap::CommandFactory;
-    use command_line::OutputError;
-    use launcher::LauncherError;
 
     use super::*;
 
@@ -163,14 +159,5 @@ mod tests {
             let error = parse(line).expect_err(line);
             assert_eq!(error.exit_code(), 2, "{line}");
         }
-    }
-
-    #[test]
-    fn causes_are_reported_once() {
-        let output = LauncherError::from(OutputError(io::Error::other("the disk is full")));
-        assert_eq!(
-            transport::with_causes(&output),
-            "cannot write to standard output: the disk is full"
-        );
     }
 }

@@ -8,7 +8,6 @@ use super::super::progress::Progress;
 use super::super::scope::Table;
 use super::folder::Folder;
 use super::{aid, corridor, counts, method, sonar, tables};
-use crate::BenchError;
 
 /// A part of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -134,7 +133,7 @@ pub(in super::super) fn run(
     config: &Config,
     is_quick: bool,
     seed: u64,
-) -> Result<ExitCode, BenchError> {
+) -> anyhow::Result<ExitCode> {
     let out = config.out.clone().unwrap_or_else(|| "docs/paper".into());
     let folder = Folder::open(&out)?;
     let parts = match &config.part[..] {
@@ -160,20 +159,20 @@ pub(in super::super) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-fn method_part(folder: &Folder) -> Result<(), BenchError> {
+fn method_part(folder: &Folder) -> anyhow::Result<()> {
     folder.picture("figure1.png", &method::draw_figure_1()?)?;
     folder.picture("figure2.png", &method::draw_figure_2()?)?;
     folder.picture("figure3.png", &method::draw_figure_3()?)
 }
 
-fn counts_part(folder: &Folder, scope: Scope) -> Result<(), BenchError> {
+fn counts_part(folder: &Folder, scope: Scope) -> anyhow::Result<()> {
     let (side, scans) = scope.counts();
     let counted = counts::count(side, scans, scope.seed)?;
     folder.table("counts.csv", &counts::csv(&counted))?;
     folder.picture("counts.png", &counts::draw(&counted)?)
 }
 
-fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> Result<(), BenchError> {
+fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> anyhow::Result<()> {
     let mut done = 0;
     let judged = sonar::judge(scope.sonar_poses(), scope.seed, || {
         done += 1;
@@ -195,7 +194,7 @@ fn table_part(
     table: Table,
     extent: tables::Extent,
     say: impl Fn(String),
-) -> Result<(), BenchError> {
+) -> anyhow::Result<()> {
     let measured = tables::measure(table, extent, say)?;
     let name = table.name();
     folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
@@ -203,7 +202,7 @@ fn table_part(
     folder.picture(&format!("{name}.png"), &picture)
 }
 
-fn corridor_part(folder: &Folder, config: &Config) -> Result<(), BenchError> {
+fn corridor_part(folder: &Folder, config: &Config) -> anyhow::Result<()> {
     let file = config.recording.clone();
     let file = file.unwrap_or_else(|| "recordings/malaga_corridor/recording.mcap".into());
     let corridor = corridor::localize(&file)?;
@@ -216,7 +215,7 @@ fn corridor_part(folder: &Folder, config: &Config) -> Result<(), BenchError> {
     Ok(())
 }
 
-fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> Result<(), BenchError> {
+fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> anyhow::Result<()> {
     let extent = scope.aid();
     let saved = aid::measure(extent, scope.seed, say)?;
     folder.table("aid.csv", &aid::csv(&saved))?;

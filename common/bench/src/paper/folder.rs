@@ -3,10 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use drawing::Scene;
-use plots::PlotError;
-
-use crate::BenchError;
 
 /// A folder that can be written into.
 #[derive(Debug)]
@@ -26,16 +24,12 @@ impl Folder {
     ///
     /// # Errors
     /// It cannot be made, or no file can be written into it.
-    pub(super) fn open(path: &Path) -> Result<Self, BenchError> {
-        let error = |source| BenchError::OutFolder {
-            folder: path.to_owned(),
-            source,
-        };
-        fs::create_dir_all(path).map_err(error)?;
+    pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         // An hour of measuring must not end with a file that cannot be written.
         let trial = path.join(".backcast-trial");
-        fs::write(&trial, []).map_err(error)?;
-        fs::remove_file(&trial).map_err(error)?;
+        let tried = fs::create_dir_all(path).and_then(|()| fs::write(&trial, []));
+        let tried = tried.and_then(|()| fs::remove_file(&trial));
+        tried.with_context(|| format!("cannot write into the folder {}", path.display()))?;
         Ok(Folder {
             path: path.to_owned(),
         })
@@ -45,19 +39,18 @@ impl Folder {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(super) fn table(&self, name: &str, csv: &Csv) -> Result<(), BenchError> {
+    pub(super) fn table(&self, name: &str, csv: &Csv) -> anyhow::Result<()> {
         let file = self.path.join(name);
-        fs::write(&file, &csv.text).map_err(|source| BenchError::Table { file, source })
+        fs::write(&file, &csv.text)
+            .with_context(|| format!("cannot write the table {}", file.display()))
     }
 
     /// Writes a picture as PNG.
     ///
     /// # Errors
     /// The picture cannot be encoded, or the file not be written.
-    pub(super) fn picture(&self, name: &str, scene: &Scene) -> Result<(), BenchError> {
-        let file = self.path.join(name);
-        let png = drawing::to_png(scene)?;
-        Ok(fs::write(&file, png).map_err(|source| PlotError::Picture { file, source })?)
+    pub(super) fn picture(&self, name: &str, scene: &Scene) -> anyhow::Result<()> {
+        plots::save_png(scene, &self.path.join(name))
     }
 }
 

@@ -12,7 +12,6 @@ use recording::RecordingError;
 use super::object::Object;
 use super::particles::{Particles, ParticlesOptions};
 use super::row;
-use crate::EvaluationError;
 
 /// Options of `backcast locate`.
 #[derive(Debug, clap::Args)]
@@ -52,7 +51,7 @@ pub struct Config {
 /// # Errors
 /// Map or recording cannot be used, every scan was rejected, or the recording is damaged; damage is
 /// reported after the scans before it.
-pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     config.options.check_settings()?;
     let files = [&config.recordings[..], &config.bag].concat();
     let set = config.maps.as_deref();

@@ -5,7 +5,6 @@ use offline::World;
 
 use super::drive::Moment;
 use super::run::{Run, Said, Tally};
-use crate::EvaluationError;
 
 /// Distances at which a start is judged, in metres.
 pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
@@ -54,7 +53,7 @@ pub(super) fn evaluate(
     moments: &[Moment],
     chosen: &[usize],
     config: TrackingConfig,
-) -> Result<Starts, EvaluationError> {
+) -> anyhow::Result<Starts> {
     let mut all = Starts::default();
     for &start in chosen {
         all.starts += 1;

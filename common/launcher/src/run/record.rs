@@ -5,12 +5,14 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
+use command_line::wrong_use;
 use dataflow::Dataflow;
 
 use super::added;
 use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
 use super::options::RecordOptions;
-use crate::LauncherError;
+use crate::descriptor::NO_FOLDER;
 
 pub(super) const RECORDER: &str = "recorder";
 
@@ -23,11 +25,11 @@ pub(crate) fn add(
     dataflow: &mut Dataflow,
     file: &Path,
     folder: &Path,
-) -> Result<(), LauncherError> {
+) -> anyhow::Result<()> {
     let Some(output) = &options.record else {
         return Ok(());
     };
-    let output = std::path::absolute(output).map_err(LauncherError::Folder)?;
+    let output = std::path::absolute(output).context(NO_FOLDER)?;
     check(&output, options, dataflow)?;
     let mut args = vec![argument("--output", &output.to_string_lossy())];
     let passed_on = [
@@ -61,13 +63,13 @@ pub(crate) fn add(
     Ok(())
 }
 
-fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<(), LauncherError> {
+fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--record", RECORDER)?;
     let is_whole =
         options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
     if is_whole && output.exists() {
         let output = output.display();
-        return Err(LauncherError::Usage(format!(
+        return Err(wrong_use(format!(
             "--record: {output} exists already; remove it or name another file"
         )));
     }

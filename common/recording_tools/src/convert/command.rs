@@ -5,7 +5,8 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use command_line::LOST_DATA;
+use anyhow::bail;
+use command_line::{LOST_DATA, wrong_use};
 use progress::say;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag};
@@ -74,10 +75,8 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let (file, unfinished) = create(&config.to)?;
     let report = convert(config, file)?;
     if report.scans == 0 && report.messages == 0 {
-        return Err(RecordingToolsError::NothingConverted {
-            file: config.from.clone(),
-            reason: report.why_nothing(),
-        });
+        let (from, reason) = (config.from.display(), report.why_nothing());
+        bail!("nothing in {from} could be converted, and no file was written: {reason}");
     }
     unfinished.keep();
     Ok(print_report(&report, &config.to))
@@ -85,7 +84,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
 
 fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
     let to = to.extension().unwrap_or_default().to_string_lossy();
-    RecordingToolsError::Usage(format!(
+    wrong_use(format!(
         "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap"
     ))
 }
@@ -196,9 +195,6 @@ fn failed<'p>(
     action: &'static str,
     path: &'p Path,
 ) -> impl FnOnce(std::io::Error) -> RecordingToolsError + 'p {
-    move |source| RecordingToolsError::File {
-        action,
-        file: path.to_owned(),
-        source,
-    }
+    let text = format!("cannot {action} {}", path.display());
+    move |source| RecordingToolsError::new(source).context(text)
 }

@@ -4,7 +4,7 @@ use clap::Parser;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
-use offline::{OfflineError, Options, Session, TakenScan};
+use offline::{Options, Session, TakenScan};
 use recording::Recording;
 
 use crate::RecordingToolsError;
@@ -86,7 +86,7 @@ impl Located {
     }
 }
 
-fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedScan>, OfflineError> {
+fn locate(session: &mut Session<'_>, scan: TakenScan) -> anyhow::Result<Option<LocatedScan>> {
     let Ok(answer) = session.ask(&scan)?.answer else {
         return Ok(None);
     };
@@ -100,10 +100,7 @@ fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedSc
 }
 
 /// Score of a scan at each scale.
-fn scores(
-    session: &mut Session<'_>,
-    found: &LocatedScan,
-) -> Result<[f64; SCALES.len()], OfflineError> {
+fn scores(session: &mut Session<'_>, found: &LocatedScan) -> anyhow::Result<[f64; SCALES.len()]> {
     let mut scores = [found.score; SCALES.len()];
     let changed = scores.iter_mut().zip(SCALES);
     for (score, scale) in changed.filter(|(_, scale)| *scale != 1.0) {

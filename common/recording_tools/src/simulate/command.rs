@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{stdout, wrong_use};
 use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
@@ -51,7 +51,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     if config.out.exists() && !config.force {
         let file = config.out.display();
         let reason = format!("{file} is there already; --force overwrites it");
-        return Err(RecordingToolsError::Usage(reason));
+        return Err(wrong_use(reason));
     }
     let map = map::load_within(map::MemoryLimit::NONE, &config.map, |key| {
         say(&key.to_string());

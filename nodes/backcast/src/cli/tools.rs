@@ -102,23 +102,3 @@ impl OnTheSide {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::io;
-
-    use evaluation::EvaluationError;
-    use recording::RecordingError;
-
-    #[test]
-    fn causes_are_reported_once() {
-        let recording = EvaluationError::from(RecordingError::Open {
-            path: "r.mcap".into(),
-            source: io::Error::other("gone"),
-        });
-        assert_eq!(
-            transport::with_causes(&recording),
-            "cannot read the recording r.mcap: gone"
-        );
-    }
-}
