@@ -112,6 +112,5 @@ fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
         return false;
     };
     let covariance = Covariance(said.report.covariance).carried(target, laser);
-    let off = (truth.x - laser.x, truth.y - laser.y);
-    statistics::holds(covariance, off)
+    statistics::holds(covariance, laser, truth)
 }

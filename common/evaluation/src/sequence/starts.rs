@@ -2,9 +2,11 @@
 
 use engine::tracking::{MIN_BEAMS, TrackingConfig};
 use offline::World;
+use serde::{Serialize, Serializer};
 
 use super::drive::Moment;
 use super::run::{Run, Said, Tally};
+use crate::text::share;
 
 /// Distances at which a start is judged, in metres.
 pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
@@ -30,6 +32,24 @@ pub(super) struct Starts {
     pub(super) tally: Tally,
     pub(super) scans: u64,
     pub(super) searches: u64,
+}
+
+/// Shares of the starts, by metres after the start.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct After(pub(super) Vec<(f64, Option<f64>)>);
+
+impl After {
+    /// Shares of the judged starts, for the distances of [`AFTER_M`].
+    pub(super) fn of(parts: &[u64; 5], judged: &[u64; 5]) -> Self {
+        let shares = parts.iter().zip(judged).map(|(&part, &of)| share(part, of));
+        After(AFTER_M.into_iter().zip(shares).collect())
+    }
+}
+
+impl Serialize for After {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(m, share)| (m.to_string(), share)))
+    }
 }
 
 /// Chooses scans with a truth as starts, evenly spaced along the drive.
