@@ -5,10 +5,10 @@ use std::process::ExitCode;
 use clap::builder::PossibleValue;
 use command_line::wrong_use;
 use engine::instruction_set::InstructionSet;
+use progress::Progress;
 
 use super::contest::{Contest, Effort};
 use super::paper;
-use super::progress::Progress;
 use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases};
 use super::text;
@@ -142,22 +142,23 @@ fn run_table(config: &Config, table: Table) -> anyhow::Result<ExitCode> {
     let cases = cases(table, config.quick, &config.filter);
     config.check(&cases)?;
     let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
-    let progress = Progress::new(sights * Contest::rows(table));
+    let measurements = sights * Contest::rows(table);
+    let progress = Progress::counting("measuring", "measurements", measurements as u64);
     if !config.json {
         let instructions = InstructionSet::best().to_string();
-        progress.print(&text::title(table, &instructions))?;
+        progress.write(&text::title(table, &instructions))?;
     }
     for (place, sights) in cases {
-        progress.say(format!("{} is prepared", name(&place)));
+        progress.show(format!("{} is prepared", name(&place)));
         let mut contest = Contest::new(table, place, config.seed)?;
         for sight in sights {
-            progress.say(format!("{}, {} beams", name(&place), sight.beams));
+            progress.show(format!("{}, {} beams", name(&place), sight.beams));
             let rows = contest.run(&sight, config.effort(), || progress.step())?;
-            progress.print(&printed(&rows, config.json))?;
+            progress.write(&printed(&rows, config.json))?;
         }
     }
     if !config.json {
-        progress.print(text::LEGEND)?;
+        progress.write(text::LEGEND)?;
     }
     Ok(ExitCode::SUCCESS)
 }

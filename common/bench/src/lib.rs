@@ -9,7 +9,6 @@ mod line_up;
 mod measure;
 mod method;
 mod paper;
-mod progress;
 mod row;
 mod scope;
 mod text;

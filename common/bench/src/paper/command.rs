@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use progress::Progress;
+
 use super::super::contest::Effort;
-use super::super::progress::Progress;
 use super::super::scope::Table;
 use super::folder::Folder;
 use super::{aid, corridor, counts, method, sonar, tables};
@@ -141,9 +142,9 @@ pub(in super::super) fn run(
         asked => asked,
     };
     let scope = Scope { is_quick, seed };
-    let progress = Progress::new(parts.len());
+    let progress = Progress::counting("measuring", "parts", parts.len() as u64);
     for part in ALL.iter().filter(|part| parts.contains(part)) {
-        let say = |what: String| progress.say(what);
+        let say = |what: String| progress.show(what);
         match part {
             Part::Method => method_part(&folder)?,
             Part::Counts => counts_part(&folder, scope)?,
@@ -155,7 +156,7 @@ pub(in super::super) fn run(
         }
         progress.step();
     }
-    progress.print(&format!("{}: written\n", out.display()))?;
+    progress.write(&format!("{}: written\n", out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
