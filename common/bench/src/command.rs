@@ -3,16 +3,15 @@
 use std::process::ExitCode;
 
 use clap::builder::PossibleValue;
+use command_line::wrong_use;
 use engine::instruction_set::InstructionSet;
-use offline::OfflineError;
+use progress::Progress;
 
 use super::contest::{Contest, Effort};
 use super::paper;
-use super::progress::Progress;
 use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases};
 use super::text;
-use crate::BenchError;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -98,16 +97,15 @@ impl Config {
 
     /// # Errors
     /// If beams do not fall on the heading grid.
-    fn check(&self, cases: &Cases) -> Result<(), BenchError> {
+    fn check(&self, cases: &Cases) -> anyhow::Result<()> {
         for (place, sights) in cases {
             for sight in sights {
                 if !place.headings.is_multiple_of(sight.beams) {
-                    return Err(OfflineError::Usage(format!(
+                    return Err(wrong_use(format!(
                         "{} beams do not fall on a grid of {} headings: use --beams and --headings \
                          of which the second is a multiple of the first",
                         sight.beams, place.headings
-                    ))
-                    .into());
+                    )));
                 }
             }
         }
@@ -119,22 +117,20 @@ impl Config {
 ///
 /// # Errors
 /// Options contradict each other, a case cannot be set up, or output cannot be written.
-pub fn run(config: &Config) -> Result<ExitCode, BenchError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     match config.table {
         Measured::Table(table) if config.paper.is_empty() => run_table(config, table),
-        Measured::Table(table) => Err(OfflineError::Usage(format!(
+        Measured::Table(table) => Err(wrong_use(format!(
             "--out, --part and --recording are for `bench paper`, not for {}",
             table.name()
-        ))
-        .into()),
+        ))),
         Measured::Paper => {
             let has_others =
                 config.json || config.scans.is_some() || config.filter != Filter::default();
             if has_others {
-                return Err(OfflineError::Usage(
-                    "`bench paper` takes --quick, --seed, --out, --part and --recording".into(),
-                )
-                .into());
+                return Err(wrong_use(
+                    "`bench paper` takes --quick, --seed, --out, --part and --recording",
+                ));
             }
             paper::run(&config.paper, config.quick, config.seed)
         }
@@ -142,26 +138,27 @@ pub fn run(config: &Config) -> Result<ExitCode, BenchError> {
 }
 
 /// Measures case by case, and prints each as soon as it is done.
-fn run_table(config: &Config, table: Table) -> Result<ExitCode, BenchError> {
+fn run_table(config: &Config, table: Table) -> anyhow::Result<ExitCode> {
     let cases = cases(table, config.quick, &config.filter);
     config.check(&cases)?;
     let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
-    let progress = Progress::new(sights * Contest::rows(table));
+    let measurements = sights * Contest::rows(table);
+    let progress = Progress::counting("measuring", "measurements", measurements as u64);
     if !config.json {
         let instructions = InstructionSet::best().to_string();
-        progress.print(&text::title(table, &instructions))?;
+        progress.write(&text::title(table, &instructions))?;
     }
     for (place, sights) in cases {
-        progress.say(format!("{} is prepared", name(&place)));
+        progress.show(format!("{} is prepared", name(&place)));
         let mut contest = Contest::new(table, place, config.seed)?;
         for sight in sights {
-            progress.say(format!("{}, {} beams", name(&place), sight.beams));
+            progress.show(format!("{}, {} beams", name(&place), sight.beams));
             let rows = contest.run(&sight, config.effort(), || progress.step())?;
-            progress.print(&printed(&rows, config.json))?;
+            progress.write(&printed(&rows, config.json))?;
         }
     }
     if !config.json {
-        progress.print(text::LEGEND)?;
+        progress.write(text::LEGEND)?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -7,14 +7,12 @@ use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::space::Space;
 use engine::taper::TaperShape;
-use offline::OfflineError;
 
 use super::line_up::{Contestant, LineUp};
 use super::measure::{Task, measure};
 use super::method::{Method, Sizes};
 use super::row::Row;
 use super::scope::{Place, Sight, Table};
-use crate::BenchError;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +47,7 @@ impl Contest {
     ///
     /// # Errors
     /// If there is no such place.
-    pub(super) fn new(table: Table, place: Place, seed: u64) -> Result<Self, BenchError> {
+    pub(super) fn new(table: Table, place: Place, seed: u64) -> anyhow::Result<Self> {
         Ok(Contest {
             table,
             place,
@@ -66,7 +64,7 @@ impl Contest {
         sight: &Sight,
         effort: Effort,
         mut step: impl FnMut(),
-    ) -> Result<Vec<Row>, BenchError> {
+    ) -> anyhow::Result<Vec<Row>> {
         let config = ScanConfig {
             beams: sight.beams as usize,
             noise_percent: sight.noise_percent,
@@ -123,7 +121,7 @@ impl Contest {
     }
 
     /// What all rows of a case share.
-    fn template(&self, sight: &Sight, tasks: &[Task<'_>]) -> Result<Row, BenchError> {
+    fn template(&self, sight: &Sight, tasks: &[Task<'_>]) -> anyhow::Result<Row> {
         Ok(Row {
             table: self.table.name(),
             method: "",
@@ -170,7 +168,7 @@ fn tasks<'a>(
     space: &'a Space,
     sight: &Sight,
     config: &ScanConfig,
-) -> Result<Vec<Task<'a>>, BenchError> {
+) -> anyhow::Result<Vec<Task<'a>>> {
     let votes = config.votes(sight.taper);
     let task = |scan: &'a SimulatedScan| {
         Ok(Task {
@@ -188,11 +186,10 @@ fn tasks<'a>(
 }
 
 /// The paper's k: cells that a taper covers along an axis, on average.
-fn taper_cells(tasks: &[Task<'_>]) -> Result<f64, BenchError> {
+fn taper_cells(tasks: &[Task<'_>]) -> anyhow::Result<f64> {
     let (mut cells, mut beams) = (0, 0);
     for task in tasks {
-        let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes)
-            .map_err(OfflineError::Refused)?;
+        let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes)?;
         beams += program.beams();
         let width = |beam| 2 * program.taper(beam, 0).profile.len() - 1;
         cells += (0..program.beams()).map(width).sum::<usize>();

@@ -14,10 +14,8 @@ use engine::search::{SearchIndex, Workspace};
 use engine::sweep::FieldSweep;
 use engine::votes::{CollectConfig, VoteSet, distinct};
 use messages::Vote;
-use offline::OfflineError;
 
 use super::measure::{Answer, Locate, Pose, Task};
-use crate::BenchError;
 
 /// Only the best pose.
 const ARGMAX: CollectConfig = CollectConfig {
@@ -27,9 +25,9 @@ const ARGMAX: CollectConfig = CollectConfig {
     work_limit: None,
 };
 
-fn program(task: &Task<'_>) -> Result<ScanProgram, BenchError> {
+fn program(task: &Task<'_>) -> anyhow::Result<ScanProgram> {
     let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes);
-    Ok(program.map_err(OfflineError::Refused)?)
+    Ok(program?)
 }
 
 fn best(found: &VoteSet) -> Option<Pose> {

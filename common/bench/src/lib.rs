@@ -5,15 +5,12 @@
 mod command;
 mod contest;
 mod engine_methods;
-mod error;
 mod line_up;
 mod measure;
 mod method;
 mod paper;
-mod progress;
 mod row;
 mod scope;
 mod text;
 
 pub use command::{Config, NOTES, run};
-pub use error::BenchError;

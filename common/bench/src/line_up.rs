@@ -14,7 +14,6 @@ use super::engine_methods as reverse;
 use super::measure::{Answer, Locate, Pose, Task};
 use super::method::Method;
 use super::scope::{Place, Table};
-use crate::BenchError;
 
 /// Range tables are left out where they would take more, bytes.
 const MAX_TABLE_BYTES: usize = 4 << 30;
@@ -57,7 +56,7 @@ impl LineUp {
     ///
     /// # Errors
     /// If there is no such place.
-    pub(super) fn new(table: Table, place: Place, seed: u64) -> Result<Self, BenchError> {
+    pub(super) fn new(table: Table, place: Place, seed: u64) -> anyhow::Result<Self> {
         let side = place.size as usize;
         let world = World::generate(place.kind, (side, side), place.p_over_n / 100.0, seed)?;
         let space = world.space(place.headings)?;

@@ -6,8 +6,6 @@ use benchmarks::timing::{cpu_ms, median};
 use engine::program::VoteConfig;
 use engine::space::Space;
 
-use crate::BenchError;
-
 /// A pose on the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pose {
@@ -38,7 +36,7 @@ pub(super) enum Answer {
 
 /// A method that is ready for a case; it is given a scan and the headings to
 /// search.
-pub(super) type Locate<'a> = Box<dyn FnMut(&Task<'_>, &[usize]) -> Result<Answer, BenchError> + 'a>;
+pub(super) type Locate<'a> = Box<dyn FnMut(&Task<'_>, &[usize]) -> anyhow::Result<Answer> + 'a>;
 
 /// What was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +64,7 @@ pub(super) fn measure(
     tasks: &[Task<'_>],
     budget_ms: f64,
     least_headings: Option<usize>,
-) -> Result<Option<Measured>, BenchError> {
+) -> anyhow::Result<Option<Measured>> {
     let all = tasks.first().map_or(0, |task| task.headings.len());
     let mut count = all;
     if let Some(least) = least_headings.filter(|&least| least < all) {

@@ -8,7 +8,6 @@
 
 use std::hint::black_box;
 
-use benchmarks::BenchmarksError;
 use benchmarks::baselines::{
     Baseline, FieldCorrelation, MonteCarlo, MonteCarloConfig, PatchCorrelation, RangeTable,
     RayCasting, Readings,
@@ -37,7 +36,7 @@ struct Case {
 }
 
 impl Case {
-    fn new() -> Result<Self, BenchmarksError> {
+    fn new() -> anyhow::Result<Self> {
         let config = ScanConfig {
             beams: 180,
             noise_percent: 5.0,
@@ -57,7 +56,7 @@ impl Case {
     }
 }
 
-fn main() -> Result<(), BenchmarksError> {
+fn main() -> anyhow::Result<()> {
     let case = Case::new()?;
     let mut criterion = Criterion::default().configure_from_args();
     prepare(&mut criterion, &case);

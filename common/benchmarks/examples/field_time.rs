@@ -7,7 +7,6 @@
 
 use std::time::Instant;
 
-use benchmarks::BenchmarksError;
 use benchmarks::scans::{ScanConfig, simulate};
 use benchmarks::timing::{cpu_ms, median};
 use benchmarks::worlds::{Kind, World};
@@ -40,7 +39,7 @@ struct Options {
     threads: usize,
 }
 
-fn main() -> Result<(), BenchmarksError> {
+fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     let size = (options.side, options.side);
     let world = World::generate(options.kind, size, options.p_over_n / 100.0, 1)?;

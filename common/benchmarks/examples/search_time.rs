@@ -4,7 +4,6 @@
 //! cargo run --release -p benchmarks --example search_time -- rooms 1200 5 2 trapezoid
 //! ```
 
-use benchmarks::BenchmarksError;
 use benchmarks::scans::{ScanConfig, simulate};
 use benchmarks::timing::{cpu_ms, median};
 use benchmarks::worlds::{Kind, World};
@@ -51,7 +50,7 @@ struct Options {
     each: bool,
 }
 
-fn main() -> Result<(), BenchmarksError> {
+fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     let size = (options.side, options.side);
     let world = World::generate(options.kind, size, options.p_over_n / 100.0, options.seed)?;

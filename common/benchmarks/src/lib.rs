@@ -5,13 +5,10 @@
 
 pub mod baselines;
 pub mod counted;
-mod error;
 pub mod particles;
 pub mod scans;
 pub mod timing;
 pub mod worlds;
-
-pub use error::BenchmarksError;
 
 /// Side of a cell of every generated world, in metres.
 pub const RESOLUTION_M: f64 = 0.05;

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use anyhow::anyhow;
 use engine::program::VoteConfig;
 use engine::reference;
 use engine::scan::Scan;
@@ -12,7 +13,6 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::BenchmarksError;
 use crate::worlds::World;
 
 /// Share of the beams that must have a return.
@@ -88,11 +88,10 @@ pub fn simulate_ring(
     ring: &RingConfig<'_>,
     count: usize,
     seed: u64,
-) -> Result<Vec<SimulatedScan>, BenchmarksError> {
+) -> anyhow::Result<Vec<SimulatedScan>> {
     let headings = space.directions.count();
     if headings != RING_BEARINGS {
-        let beams = RING_BEARINGS;
-        return Err(BenchmarksError::Beams { beams, headings });
+        return Err(misfit(RING_BEARINGS, headings));
     }
     // Simulates all bearings and drops those in between, so that each reading is equal to that of a
     // full scan with the same seed.
@@ -158,13 +157,10 @@ pub fn simulate(
     config: &ScanConfig,
     count: usize,
     seed: u64,
-) -> Result<Vec<SimulatedScan>, BenchmarksError> {
+) -> anyhow::Result<Vec<SimulatedScan>> {
     let headings = space.directions.count();
     if config.beams == 0 || !headings.is_multiple_of(config.beams) {
-        return Err(BenchmarksError::Beams {
-            beams: config.beams,
-            headings,
-        });
+        return Err(misfit(config.beams, headings));
     }
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     (0..count)
@@ -177,7 +173,7 @@ fn simulate_one(
     space: &Space,
     config: &ScanConfig,
     rng: &mut Xoshiro256PlusPlus,
-) -> Result<SimulatedScan, BenchmarksError> {
+) -> anyhow::Result<SimulatedScan> {
     for _ in 0..TRIES {
         let (x, y) = (
             rng.random_range(0..world.grid.width()),
@@ -198,7 +194,12 @@ fn simulate_one(
             });
         }
     }
-    Err(BenchmarksError::NoPose { tried: TRIES })
+    Err(anyhow!("none of {TRIES} random poses has enough returns"))
+}
+
+/// Error of beams whose number does not divide the number of headings.
+fn misfit(beams: usize, headings: usize) -> anyhow::Error {
+    anyhow!("{beams} beams do not fall on a grid of {headings} headings: it must be a multiple")
 }
 
 /// Readings of all beams from one pose.

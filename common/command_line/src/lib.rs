@@ -8,7 +8,6 @@ pub mod stdout;
 
 pub use number::{number, within};
 
-use std::error::Error;
 use std::io;
 
 use clap::{Parser, error::ErrorKind};
@@ -31,11 +30,21 @@ pub fn parse<C: Parser>(check: impl FnOnce(&C) -> Result<(), String>) -> C {
     config
 }
 
-/// An error that ends a command.
-pub trait CommandError: Error {
-    /// Returns the exit code of this error.
-    fn exit_code(&self) -> u8 {
-        FAILED
+/// Wrong options or settings of a command, found after parsing.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct WrongUse(String);
+
+/// Returns an error that ends a command with [`WRONG_USE`].
+pub fn wrong_use(message: impl Into<String>) -> anyhow::Error {
+    WrongUse(message.into()).into()
+}
+
+/// Returns the exit code of a command that ends with this error.
+pub fn exit_code(error: &anyhow::Error) -> u8 {
+    match error.is::<WrongUse>() {
+        true => WRONG_USE,
+        false => FAILED,
     }
 }
 

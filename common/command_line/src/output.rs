@@ -5,23 +5,30 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
+use anyhow::Context;
+
+use crate::wrong_use;
+
 /// Makes the folder of an output file, and checks that the file can be written there.
 ///
 /// # Errors
-/// The folder cannot be made or written into, or there is a folder in place of the file; of kind
-/// [`ErrorKind::AlreadyExists`] if the file exists and is not to be overwritten.
-pub fn prepare(file: &Path, overwrites: bool) -> io::Result<()> {
-    if file.is_dir() {
-        return Err(ErrorKind::IsADirectory.into());
+/// The folder cannot be made or written into, there is a folder in place of the file, or the file
+/// exists and is not to be overwritten, which is wrong use. The error names the file.
+pub fn prepare(file: &Path, overwrites: bool) -> anyhow::Result<()> {
+    let path = file.display();
+    if file.exists() && !file.is_dir() {
+        return match overwrites {
+            true => Ok(()),
+            false => Err(wrong_use(format!(
+                "{path} is there already; --force overwrites it"
+            ))),
+        };
     }
-    match (file.exists(), overwrites) {
-        (true, false) => Err(io::Error::new(
-            ErrorKind::AlreadyExists,
-            "it is there already; --force overwrites it",
-        )),
-        (true, true) => Ok(()),
-        (false, _) => make_folder(folder_of(file)),
-    }
+    let prepared = match file.is_dir() {
+        true => Err(ErrorKind::IsADirectory.into()),
+        false => make_folder(folder_of(file)),
+    };
+    prepared.with_context(|| format!("cannot write {path}"))
 }
 
 /// Makes a folder and those above it, and checks that files can be written into it.
@@ -50,22 +57,20 @@ pub fn folder_of(file: &Path) -> &Path {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{FAILED, WRONG_USE, exit_code};
 
     #[test]
     fn folders_are_made_and_what_cannot_be_written_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let prepared = |name: &str, overwrites| {
             let outcome = prepare(&folder.path().join(name), overwrites);
-            outcome.map_err(|error| error.kind())
+            outcome.map_err(|error| exit_code(&error))
         };
         assert_eq!(prepared("a/b/r.mcap", false), Ok(()));
         fs::write(folder.path().join("a/b/r.mcap"), "").unwrap();
         assert_eq!(prepared("a/b/r.mcap", true), Ok(()));
-        assert_eq!(prepared("a/b/r.mcap", false), Err(ErrorKind::AlreadyExists));
-        assert_eq!(prepared("a/b", true), Err(ErrorKind::IsADirectory));
-        assert_eq!(
-            prepared("a/b/r.mcap/s", true),
-            Err(ErrorKind::NotADirectory)
-        );
+        assert_eq!(prepared("a/b/r.mcap", false), Err(WRONG_USE));
+        assert_eq!(prepared("a/b", true), Err(FAILED));
+        assert_eq!(prepared("a/b/r.mcap/s", true), Err(FAILED));
     }
 }

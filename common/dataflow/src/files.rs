@@ -3,7 +3,7 @@
 
 use std::{fs::File, io::Read, os::unix::fs::PermissionsExt, path::Path};
 
-use crate::{Dataflow, DataflowError, Fault, MAX_FILE_BYTES, Node, Problem};
+use crate::{Dataflow, DataflowError, MAX_FILE_BYTES, Node, Problem};
 
 /// Reads the text of the descriptor.
 pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
@@ -41,10 +41,7 @@ fn missing(node: &Node, folder: &Path) -> Option<Problem> {
     };
     Some(Problem {
         place: node.path_place,
-        fault: Fault::NoExecutable {
-            path: node.path.clone(),
-            state,
-        },
+        fault: format!("`{}` {state}, and nothing builds it", node.path),
     })
 }
 

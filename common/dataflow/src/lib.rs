@@ -36,7 +36,7 @@ mod wiring;
 mod words;
 
 pub use descriptor::{Command, Dataflow, Input, Node, Restart, RestartPolicy};
-pub use error::{DataflowError, Fault};
+pub use error::DataflowError;
 pub use files::check_executables;
 pub use place::{Place, Problem};
 pub use wiring::Topics;

@@ -3,8 +3,7 @@
 use serde_saphyr::Spanned;
 
 use crate::{
-    Dataflow, Fault, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy,
-    Topics,
+    Dataflow, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy, Topics,
     raw::{RawDataflow, RawNode, Text},
     scalar, words,
 };
@@ -22,10 +21,10 @@ pub(crate) fn read_all(
         problems.push(Problem { place, fault });
     };
     if found == 0 {
-        list_fault(Fault::NoNodes);
+        list_fault("the list of nodes is empty; a graph has at least one".to_owned());
     }
     if found > MAX_NODES {
-        list_fault(Fault::TooManyNodes { found });
+        list_fault(format!("{found} nodes; at most {MAX_NODES} are allowed"));
     }
     let mut reader = Reader {
         source,
@@ -73,10 +72,10 @@ impl Reader<'_> {
         text: Option<&'t Text>,
         key: &'static str,
         node: Place,
-        check: fn(&str) -> Result<(), Fault>,
+        check: fn(&str) -> Result<(), String>,
     ) -> &'t str {
         let Some(text) = text else {
-            self.note(node, Fault::MissingKey { key });
+            self.note(node, format!("`{key}` is missing"));
             return "";
         };
         if let Err(fault) = check(&text.value) {
@@ -88,7 +87,7 @@ impl Reader<'_> {
     fn optional<T: Default>(
         &mut self,
         text: Option<&Text>,
-        read: impl FnOnce(&Text) -> Result<T, Fault>,
+        read: impl FnOnce(&Text) -> Result<T, String>,
     ) -> T {
         let Some(text) = text else {
             return T::default();
@@ -104,8 +103,11 @@ impl Reader<'_> {
         let mut env = Vec::new();
         for (name, value) in entries {
             if name.value.is_empty() || name.value.contains(['=', '\0']) {
-                let found = name.value.clone();
-                self.note(place_of(name), Fault::BadEnvName { found });
+                let found = &name.value;
+                let fault = format!(
+                    "`{found}` cannot name an environment variable; allowed is a text without `=`"
+                );
+                self.note(place_of(name), fault);
             }
             let source = self.source;
             let read = self.optional(Some(value), |v| scalar::read_env_value(v, source));
@@ -149,13 +151,16 @@ impl Reader<'_> {
         }
     }
 
-    fn note_unused(&mut self, key: &'static str, value: Option<&Text>) {
+    fn note_unused(&mut self, key: &str, value: Option<&Text>) {
         if let Some(text) = value {
-            self.note(place_of(text), Fault::NeverRestarted { key });
+            let fault = format!(
+                "`{key}` without a `restart_policy` of on-failure or always: the node is never restarted"
+            );
+            self.note(place_of(text), fault);
         }
     }
 
-    fn note(&mut self, place: Place, fault: Fault) {
+    fn note(&mut self, place: Place, fault: String) {
         self.problems.push(Problem { place, fault });
     }
 }
@@ -164,15 +169,19 @@ fn place_of(text: &Text) -> Place {
     text.referenced.into()
 }
 
-fn check_id(id: &str) -> Result<(), Fault> {
+fn check_id(id: &str) -> Result<(), String> {
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b'-');
     let good = (1..=MAX_ID_BYTES).contains(&id.len()) && id.bytes().all(allowed) && id != "dora";
-    let found = || id.chars().take(2 * MAX_ID_BYTES).collect();
-    good.then_some(())
-        .ok_or_else(|| Fault::BadId { found: found() })
+    good.then_some(()).ok_or_else(|| {
+        let found: String = id.chars().take(2 * MAX_ID_BYTES).collect();
+        format!(
+            "`{found}` cannot be a node's id; allowed are 1 to {MAX_ID_BYTES} of a-z A-Z 0-9 _ . - \
+             except the reserved `dora`"
+        )
+    })
 }
 
-fn check_path(path: &str) -> Result<(), Fault> {
+fn check_path(path: &str) -> Result<(), String> {
     let why = match path {
         "" => "it is empty",
         "dynamic" | "shell" => "dora reads it as a kind of node",
@@ -182,17 +191,19 @@ fn check_path(path: &str) -> Result<(), Fault> {
         p if p.ends_with('/') => "it names a folder",
         _ => return Ok(()),
     };
-    let found = path.to_owned();
-    Err(Fault::BadPath { found, why })
+    Err(format!(
+        "`{path}` cannot be a path: {why}; allowed is a file, absolute or from the descriptor's folder"
+    ))
 }
 
-fn read_policy(text: &Text) -> Result<RestartPolicy, Fault> {
+fn read_policy(text: &Text) -> Result<RestartPolicy, String> {
     RestartPolicy::NAMES
         .iter()
         .find(|(name, _)| *name == text.value)
         .map(|(_, policy)| *policy)
-        .ok_or_else(|| Fault::UnknownPolicy {
-            found: text.value.clone(),
+        .ok_or_else(|| {
+            let found = &text.value;
+            format!("unknown restart_policy `{found}`; allowed are never, on-failure and always")
         })
 }
 

@@ -4,8 +4,6 @@ use std::fmt;
 
 use serde_saphyr::Location;
 
-use crate::Fault;
-
 /// A position in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Place {
@@ -40,7 +38,8 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     pub place: Place,
-    pub fault: Fault,
+    /// Message with the value found and what is allowed.
+    pub fault: String,
 }
 
 impl fmt::Display for Problem {

@@ -9,7 +9,7 @@ use serde::{
 };
 use serde_saphyr::{Error, Location, MergeKeyPolicy, Spanned};
 
-use crate::{Fault, Place, Problem};
+use crate::{Place, Problem};
 
 /// A text with its place in the file.
 pub(crate) type Text = Spanned<String>;
@@ -134,10 +134,9 @@ fn refuse_null(empty: bool, at: Location, opening: char, text: &str) -> Result<(
         return Ok(());
     }
     let allowed = if opening == '[' { "a list" } else { "a map" };
-    let found = "nothing".to_owned();
     Err(Problem {
         place: at.into(),
-        fault: Fault::WrongType { found, allowed },
+        fault: format!("found `nothing` where {allowed} belongs"),
     })
 }
 
@@ -160,19 +159,21 @@ fn problem(error: &Error, text: &str) -> Problem {
     let fault = match error.without_snippet() {
         Error::SerdeUnknownField {
             field, expected, ..
-        } => Fault::UnknownKey {
-            key: field.clone(),
-            allowed: expected.join(", "),
-        },
-        Error::DuplicateMappingKey { key, .. } => Fault::DuplicateKey {
-            key: key.clone().unwrap_or_else(found),
-        },
-        Error::SerdeMissingField { field, .. } => Fault::MissingKey { key: field },
-        Error::NullIntoString { .. } => wrong_type(found(), "string"),
-        Error::Unexpected { expected, .. } => wrong_type(found(), expected),
-        other => Fault::Yaml {
-            what: without_place(&other.to_string(), at),
-        },
+        } => {
+            let allowed = expected.join(", ");
+            format!("unknown key `{field}`; allowed are {allowed}")
+        }
+        Error::DuplicateMappingKey { key, .. } => {
+            let key = key.clone().unwrap_or_else(found);
+            format!("the key `{key}` appears a second time here; each may appear once")
+        }
+        Error::SerdeMissingField { field, .. } => format!("`{field}` is missing"),
+        Error::NullIntoString { .. } => wrong_type(&found(), "string"),
+        Error::Unexpected { expected, .. } => wrong_type(&found(), expected),
+        other => format!(
+            "not a descriptor: {}",
+            without_place(&other.to_string(), at)
+        ),
     };
     Problem {
         place: at.map_or(Place::START, Place::from),
@@ -180,13 +181,13 @@ fn problem(error: &Error, text: &str) -> Problem {
     }
 }
 
-fn wrong_type(found: String, expected: &str) -> Fault {
+fn wrong_type(found: &str, expected: &str) -> String {
     let allowed = match expected {
         e if e.starts_with("mapping") => "a map",
         e if e.starts_with("sequence") => "a list",
         _ => "a text or number",
     };
-    Fault::WrongType { found, allowed }
+    format!("found `{found}` where {allowed} belongs")
 }
 
 /// Removes the place from the end of the parser's message; we put it in front.

@@ -3,10 +3,7 @@
 
 use std::time::Duration;
 
-use crate::{
-    Fault,
-    raw::{Text, rest_of_line},
-};
+use crate::raw::{Text, rest_of_line};
 
 /// Longest time of a key, in seconds.
 const MAX_SECONDS: f64 = 3600.0;
@@ -17,15 +14,14 @@ fn is_plain(text: &Text, source: &str) -> bool {
 }
 
 /// Reads a whole number from 0, for `max_restarts`.
-pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, Fault> {
+pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, String> {
     let digits = text.value.bytes().all(|b| b.is_ascii_digit());
     let number = text.value.parse().ok().filter(|_| digits);
     number
         .filter(|n: &u32| is_plain(text, source) && n.to_string() == text.value)
-        .ok_or_else(|| Fault::BadNumber {
-            key: "max_restarts",
-            found: text.value.clone(),
-            allowed: "a whole number from 0 to 4294967295",
+        .ok_or_else(|| {
+            let allowed = "a whole number from 0 to 4294967295";
+            bad_number("max_restarts", &text.value, allowed)
         })
 }
 
@@ -34,7 +30,7 @@ pub(crate) fn read_seconds(
     key: &'static str,
     text: &Text,
     source: &str,
-) -> Result<Duration, Fault> {
+) -> Result<Duration, String> {
     let looks_decimal = text.value.starts_with(|c: char| c.is_ascii_digit())
         && text.value.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     // Some YAML parsers read `007` and `1.` as text.
@@ -51,22 +47,21 @@ pub(crate) fn read_seconds(
         .ok()
         .filter(|s| looks_decimal && !ambiguous && is_allowed(s) && is_plain(text, source))
         .map(Duration::from_secs_f64)
-        .ok_or_else(|| Fault::BadNumber {
-            key,
-            found: text.value.clone(),
-            allowed,
-        })
+        .ok_or_else(|| bad_number(key, &text.value, allowed))
+}
+
+fn bad_number(key: &str, found: &str, allowed: &str) -> String {
+    format!("`{key}` is `{found}`; allowed is {allowed}, without quotes")
 }
 
 /// Reads the value of an environment variable, exactly as written.
-pub(crate) fn read_env_value(text: &Text, source: &str) -> Result<String, Fault> {
-    let refuse = |why: String| {
-        Err(Fault::BadEnvValue {
-            found: text.value.clone(),
-            why,
-        })
-    };
+pub(crate) fn read_env_value(text: &Text, source: &str) -> Result<String, String> {
     let value = &text.value;
+    let refuse = |why: String| {
+        Err(format!(
+            "the value `{value}` would not reach the process as written: {why}"
+        ))
+    };
     if value.contains('$') {
         return refuse("dora puts a variable in place of `$`; leave it out".to_owned());
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::{
-    Fault, Problem,
+    Problem,
     raw::{RawDataflow, RawNode, Text},
 };
 
@@ -64,19 +64,22 @@ pub(crate) fn check(raw: &RawDataflow, topics: &Topics, problems: &mut Vec<Probl
     }
 }
 
-fn check_ids(nodes: &[&RawNode], note: &mut impl FnMut(&Text, Fault)) {
+fn check_ids(nodes: &[&RawNode], note: &mut impl FnMut(&Text, String)) {
     let mut lines = HashMap::new();
     for id in nodes.iter().filter_map(|n| n.id.as_ref()) {
         if let Some(&first) = lines.get(&id.value) {
-            let id_text = id.value.clone();
-            note(id, Fault::DuplicateId { id: id_text, first });
+            let text = &id.value;
+            let fault = format!(
+                "a second node with the id `{text}`, first used in line {first}; ids are unique"
+            );
+            note(id, fault);
         } else {
             lines.insert(&id.value, id.referenced.line());
         }
     }
 }
 
-fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Text, Fault)) {
+fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Text, String)) {
     let mut senders = HashMap::new();
     for &node in nodes {
         for output in node.outputs() {
@@ -93,31 +96,31 @@ fn check_output<'a>(
     topic: &'a str,
     topics: &Topics,
     senders: &mut HashMap<&'a str, &'a RawNode>,
-) -> Result<(), Fault> {
+) -> Result<(), String> {
     check_name(topic, topics)?;
-    let topic_text = topic.to_owned();
     match senders.insert(topic, node) {
-        Some(first) if std::ptr::eq(first, node) => {
-            Err(Fault::DuplicateOutput { topic: topic_text })
-        }
+        Some(first) if std::ptr::eq(first, node) => Err(format!(
+            "the output `{topic}` is listed a second time; each may be listed once"
+        )),
         Some(first) if !topics.shared.contains(&topic) && !topics.several.contains(&topic) => {
-            Err(Fault::SecondSender {
-                topic: topic_text,
-                first: first.id().to_owned(),
-            })
+            let first = first.id();
+            Err(format!(
+                "`{topic}` is already sent by `{first}`, and a topic has one sender in a graph; \
+                 remove it from one of them"
+            ))
         }
         _ => Ok(()),
     }
 }
 
-fn check_name(found: &str, topics: &Topics) -> Result<(), Fault> {
+fn check_name(found: &str, topics: &Topics) -> Result<(), String> {
     if topics.names.contains(&topics.split(found).0) {
         return Ok(());
     }
-    Err(Fault::UnknownTopic {
-        found: found.to_owned(),
-        allowed: topics.names.join(", "),
-    })
+    let allowed = topics.names.join(", ");
+    Err(format!(
+        "there is no topic `{found}`; allowed are {allowed}"
+    ))
 }
 
 fn check_source(
@@ -125,44 +128,37 @@ fn check_source(
     (input, is_free): (&str, bool),
     source: &str,
     nodes: &[&RawNode],
-) -> Result<(), Fault> {
-    let input_text = input.to_owned();
+) -> Result<(), String> {
     let parts = source.split_once('/');
     let Some((from, topic)) = parts.filter(|(from, topic)| !from.is_empty() && !topic.is_empty())
     else {
-        let found = source.to_owned();
-        return Err(Fault::BadSource {
-            input: input_text,
-            found,
-        });
+        return Err(format!(
+            "the input `{input}` comes from `{source}`; allowed is `node/topic`"
+        ));
     };
     if from == node.id() {
-        return Err(Fault::OwnOutput {
-            input: input_text,
-            node: from.to_owned(),
-        });
+        return Err(format!(
+            "the input `{input}` of `{from}` comes from `{from}` itself"
+        ));
     }
     let Some(sender) = nodes.iter().find(|n| n.id() == from) else {
-        return Err(Fault::NoSuchNode {
-            input: input_text,
-            found: from.to_owned(),
-            allowed: list(nodes.iter().map(|n| n.id())),
-        });
+        let allowed = list(nodes.iter().map(|n| n.id()));
+        return Err(format!(
+            "the input `{input}` comes from `{from}`, which is no node; the nodes are {allowed}"
+        ));
     };
     if !sender.outputs().iter().any(|o| o.value == topic) {
-        return Err(Fault::NoSuchOutput {
-            input: input_text,
-            from: from.to_owned(),
-            found: topic.to_owned(),
-            allowed: list(sender.outputs().iter().map(|o| o.value.as_str())),
-        });
+        let allowed = list(sender.outputs().iter().map(|o| o.value.as_str()));
+        return Err(format!(
+            "the input `{input}` takes `{topic}` from `{from}`, which does not list it; its outputs \
+             are {allowed}"
+        ));
     }
     if topic != input && !is_free {
-        return Err(Fault::RenamedInput {
-            input: input_text,
-            topic: topic.to_owned(),
-            from: from.to_owned(),
-        });
+        return Err(format!(
+            "the input `{input}` takes the topic `{topic}`; nodes find topics by the names of their \
+             ports, so write `{topic}: {from}/{topic}`"
+        ));
     }
     Ok(())
 }

@@ -7,14 +7,14 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::ArgGroup;
-use command_line::{output, stdout};
+use command_line::{output, stdout, wrong_use};
 use geometry::Mount;
 use launcher::descriptor::{self, Builds};
 use progress::say;
 use recording::{Kind, Recording};
 
-use crate::InitError;
 use crate::descriptor::{Served, Source, descriptor_of};
 use crate::robot::{self, Lasers, Robot};
 
@@ -88,11 +88,7 @@ pub struct Config {
 ///
 /// # Errors
 /// The laser does not answer, map or recording cannot be used, or the file exists already.
-pub fn run(config: &Config) -> Result<ExitCode, InitError> {
-    let failed = |source| InitError::Write {
-        file: config.out.clone(),
-        source,
-    };
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     // A laser or a robot takes seconds to answer, so it is asked last.
     let map = match (&config.map, &config.maps, &config.replay) {
         (Some(file), ..) => Some(Served::Map(used_map(file)?)),
@@ -100,10 +96,10 @@ pub fn run(config: &Config) -> Result<ExitCode, InitError> {
         (None, None, Some(recording)) => Some(Served::Recorded(used_recording(recording)?)),
         (None, None, None) => None,
     };
-    output::prepare(&config.out, config.force).map_err(failed)?;
+    output::prepare(&config.out, config.force)?;
     let source = source(config)?;
     let text = descriptor_of(&source, map.as_ref());
-    write(&config.out, &text).map_err(failed)?;
+    write(&config.out, &text).with_context(|| not_written(&config.out))?;
     descriptor::load(&config.out, Builds::Run)?;
     stdout::print(&format!(
         "{file}: {source}\n\nbackcast check {file}\nbackcast run {file}\n",
@@ -124,12 +120,12 @@ fn write(file: &Path, text: &str) -> io::Result<()> {
     Ok(())
 }
 
-fn source(config: &Config) -> Result<Source, InitError> {
+fn source(config: &Config) -> anyhow::Result<Source> {
     let mount = config.mount.as_deref().map(mount).transpose()?;
     let is_robot = config.ros2.is_some();
     let has_map = config.map.is_some() || config.maps.is_some();
     if !has_map && !is_robot && config.replay.is_none() {
-        return Err(InitError::Usage(NEEDED.to_owned()));
+        return Err(wrong_use(NEEDED));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
         let options = reader_options(config, device)?;
@@ -166,7 +162,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
     }
     if mount.is_some() {
         let reason = "--mount is not for a recording, whose /tf_static says where its laser sits";
-        return Err(InitError::Usage(reason.to_owned()));
+        return Err(wrong_use(reason));
     }
     let file = config.replay.clone().unwrap_or_default();
     let recording = Recording::open(&file)?;
@@ -181,23 +177,25 @@ fn source(config: &Config) -> Result<Source, InitError> {
 }
 
 /// Returns the options that the laser answers to, or those of its factory settings.
-fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitError> {
+fn reader_options(config: &Config, device: &str) -> anyhow::Result<Vec<String>> {
     let is_serial = config.serial.is_some();
     if config.no_probe {
         return Ok(probe::default_reader_options(device, is_serial));
     }
     say(&format!("asking the laser at {device}"));
-    probe::reader_options(device, is_serial).map_err(|source| InitError::Laser {
-        device: device.to_owned(),
-        source,
+    probe::reader_options(device, is_serial).with_context(|| {
+        format!(
+            "the laser gives no answer; --no-probe writes the descriptor without asking it, and \
+             `backcast probe {device}` says more"
+        )
     })
 }
 
 /// Checks the mount and returns it as one word. Zeros get a fourth one, which says that they are
 /// meant.
-fn mount(text: &str) -> Result<String, InitError> {
+fn mount(text: &str) -> anyhow::Result<String> {
     let mount: Result<Mount, _> = text.parse();
-    let mount = mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
+    let mount = mount.map_err(|error| wrong_use(format!("--mount {text:?}: {error}")))?;
     let word = text.replace(' ', "");
     match mount == Mount::default() && word.matches(',').count() == 2 {
         true => Ok(word + ",0"),
@@ -206,24 +204,28 @@ fn mount(text: &str) -> Result<String, InitError> {
 }
 
 /// Checks that a recording holds a map to serve, and returns its absolute path.
-fn used_recording(file: &Path) -> Result<String, InitError> {
+fn used_recording(file: &Path) -> anyhow::Result<String> {
     let recording = Recording::open(file)?;
     match recording.maps()?.last() {
         Some(map) => {
             map?;
             absolute(file)
         }
-        None => Err(InitError::Usage(format!(
+        None => Err(wrong_use(format!(
             "{NEEDED}: {} holds none",
             file.display()
         ))),
     }
 }
 
+fn not_written(file: &Path) -> String {
+    format!("cannot write {}", file.display())
+}
+
 /// Checks the map and returns its absolute path.
-fn used_map(file: &Path) -> Result<String, InitError> {
+fn used_map(file: &Path) -> anyhow::Result<String> {
     if file.extension() == Some(OsStr::new("mcap")) {
-        return Err(InitError::Usage(format!(
+        return Err(wrong_use(format!(
             "--map {} is a recording; a map is a YAML file beside its image",
             file.display()
         )));
@@ -232,7 +234,7 @@ fn used_map(file: &Path) -> Result<String, InitError> {
     absolute(file)
 }
 
-fn used_set(path: &Path) -> Result<String, InitError> {
+fn used_set(path: &Path) -> anyhow::Result<String> {
     for map in map::set_of_noting(path, say)?.maps {
         map::load(map.yaml)?;
     }
@@ -240,12 +242,12 @@ fn used_set(path: &Path) -> Result<String, InitError> {
 }
 
 /// Returns the whole path of a file or folder that nodes read, also again.
-fn absolute(file: &Path) -> Result<String, InitError> {
+fn absolute(file: &Path) -> anyhow::Result<String> {
     let path = file.canonicalize().ok();
     let path = path.filter(|path| path.is_file() || path.is_dir());
     let path = path.ok_or("no file or folder, which nodes could read again: save it to one");
     let path = path.and_then(|path| path.to_str().map(str::to_owned).ok_or("no UTF-8"));
-    path.map_err(|reason| InitError::Usage(format!("{} is {reason}", file.display())))
+    path.map_err(|reason| wrong_use(format!("{} is {reason}", file.display())))
 }
 
 #[cfg(test)]

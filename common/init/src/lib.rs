@@ -4,10 +4,8 @@
 
 mod command;
 mod descriptor;
-mod error;
 mod live;
 mod robot;
 
 pub use command::{Config, NOTES, run};
-pub use error::InitError;
 pub use live::{Recorded, record};

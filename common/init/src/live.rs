@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use anyhow::anyhow;
 use messages::topic;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -14,7 +15,6 @@ use serde::Deserialize;
 use transport::node::LOG_FORMAT_VARIABLE;
 use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_causes};
 
-use crate::InitError;
 use crate::descriptor::quoted;
 use crate::robot::{self, Lasers};
 
@@ -51,8 +51,8 @@ const TICK: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// No robot is found, or the recording graph cannot be started.
-pub fn record(router: Option<&str>, length: Duration) -> Result<Recorded, InitError> {
-    let failed = |reason: String| InitError::Record { reason };
+pub fn record(router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
+    let failed = |reason: String| anyhow!("the robot cannot be recorded: {reason}");
     say("looking for the robot's nodes");
     let seen = robot::look(router, Lasers::First)?;
     seen.said.iter().for_each(|said| say(said));

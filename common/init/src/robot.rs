@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
+use anyhow::anyhow;
 use ros::lasers;
 use serde::Deserialize;
 use transport::GRAPH_VARIABLE;
-
-use crate::InitError;
 
 /// Search time on each middleware in seconds: nodes on DDS announce themselves every three seconds.
 const LOOK_S: &str = "6";
@@ -48,8 +47,10 @@ pub(crate) struct Robot {
 ///
 /// # Errors
 /// The gateway cannot be started or ends with an error.
-pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> Result<Robot, InitError> {
-    let failed = |reason: String| InitError::Robot { reason };
+pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> anyhow::Result<Robot> {
+    let failed = |reason: String| {
+        anyhow!("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")
+    };
     let gateway = launcher::node("ros2_gateway").ok_or_else(|| {
         failed("ros2_gateway is not built; `cargo build --release -p ros2_gateway` does".into())
     })?;

@@ -8,15 +8,15 @@ use std::{
     process::{Command as Process, ExitCode, Stdio},
 };
 
+use anyhow::{Context, bail};
 use command_line::stdout;
 use dataflow::{Dataflow, Node, RestartPolicy};
 use transport::node::CHECK_ARGUMENTS_VARIABLE;
 
 use crate::{
-    LauncherError,
     descriptor::{self, Builds, Descriptor},
     installed::is_ours,
-    run::{arguments::value, executable},
+    run::{arguments::value, executable, not_started},
 };
 
 /// Node that reads a laser, and node that takes scans of a ROS 2 robot.
@@ -36,7 +36,7 @@ pub struct Config {
 /// The descriptor is missing or wrong, a node rejects its arguments, or arguments are wrong that a
 /// node cannot judge by itself. Where the only problem is that nodes are not built, the graph is
 /// printed nevertheless.
-pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let Descriptor {
         dataflow,
         file,
@@ -65,7 +65,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     }
     if !refused.is_empty() {
         let refused = refused.join("\n");
-        return Err(LauncherError::Arguments { file, refused });
+        bail!("{}: {refused}", file.display());
     }
     stdout::print(&format!("{} is sound\n\n{picture}", file.display()))?;
     Ok(ExitCode::SUCCESS)
@@ -105,7 +105,7 @@ fn unset_mount(dataflow: &Dataflow) -> Option<String> {
 }
 
 /// Returns the node's error message if it rejects its arguments.
-fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, LauncherError> {
+fn refused_arguments(node: &Node, folder: &Path) -> anyhow::Result<Option<String>> {
     let output = Process::new(executable(node, folder))
         .args(&node.args)
         .envs(node.env.iter().map(|(name, value)| (name, value)))
@@ -113,12 +113,7 @@ fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, Launc
         .current_dir(folder)
         .stdin(Stdio::null())
         .output()
-        .map_err(|source| LauncherError::NotStarted {
-            node: node.id.clone(),
-            path: executable(node, folder),
-            folder: folder.to_owned(),
-            source,
-        })?;
+        .with_context(|| not_started(node, folder))?;
     let said = String::from_utf8_lossy(&output.stderr);
     // The first paragraph is the error, the rest is usage.
     let reason = said.split("\n\n").next().unwrap_or_default();

@@ -2,13 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
+use command_line::wrong_use;
 use dataflow::{Dataflow, DataflowError, Topics};
 use messages::{Topic, topic};
 
-use crate::{LauncherError, installed, run::supervision::is_essential};
+use crate::{installed, run::supervision::is_essential};
 
 /// Default path of the descriptor.
 pub const DEFAULT_FILE: &str = "dataflow.yaml";
+
+/// Message of a process without a current directory.
+pub const NO_FOLDER: &str = "cannot find the current directory";
 
 /// Topics that a descriptor may name. Every node publishes health and log.
 const TOPICS: Topics = Topics {
@@ -41,16 +46,18 @@ pub enum Builds {
 ///
 /// # Errors
 /// The descriptor is missing or wrong.
-pub fn load(file: &Path, builds: Builds) -> Result<Descriptor, LauncherError> {
+pub fn load(file: &Path, builds: Builds) -> anyhow::Result<Descriptor> {
     let is_default = file == Path::new(DEFAULT_FILE) && !file.exists();
     let installed = is_default.then(installed::demonstration).flatten();
     let file = installed.as_deref().unwrap_or(file);
-    let absolute = std::path::absolute(file).map_err(LauncherError::Folder)?;
+    let absolute = std::path::absolute(file).context(NO_FOLDER)?;
     if !absolute.exists() {
-        return Err(LauncherError::NoDescriptor {
-            file: file.to_owned(),
-            folder: std::env::current_dir().map_err(LauncherError::Folder)?,
-        });
+        let (file, folder) = (file.display(), std::env::current_dir().context(NO_FOLDER)?);
+        return Err(wrong_use(format!(
+            "there is no file {file} in {}: run in a folder that has one, as the repository's root does, \
+             or name it: `backcast run path/to/dataflow.yaml`",
+            folder.display()
+        )));
     }
     let mut dataflow = dataflow::load(file, &TOPICS)?;
     // A file always has a parent; the fallback is never used.
@@ -78,7 +85,7 @@ pub fn load(file: &Path, builds: Builds) -> Result<Descriptor, LauncherError> {
 
 #[cfg(test)]
 mod tests {
-    use command_line::CommandError;
+    use command_line::exit_code;
 
     use super::*;
 
@@ -89,7 +96,7 @@ mod tests {
         let check = |text: &str, expected: &str| {
             std::fs::write(&file, text).unwrap();
             let error = load(&file, Builds::LeaveOut).unwrap_err();
-            assert_eq!(error.exit_code(), 1);
+            assert_eq!(exit_code(&error), 1);
             let said = error.to_string();
             assert!(said.contains(expected), "{said}");
         };

@@ -5,9 +5,7 @@
 pub mod check;
 pub mod control;
 pub mod descriptor;
-mod error;
 mod installed;
 pub mod run;
 
-pub use error::LauncherError;
 pub use installed::node;

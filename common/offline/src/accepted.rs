@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use transport::with_causes;
+use anyhow::anyhow;
 
 use super::Reply;
-use crate::OfflineError;
 
 /// Number of scans searched and rejected, and the reason of the first rejection.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -21,7 +20,7 @@ impl Accepted {
         if let Err(refusal) = &reply.answer {
             self.refused += 1;
             self.first_refusal
-                .get_or_insert_with(|| with_causes(refusal));
+                .get_or_insert_with(|| format!("{refusal:#}"));
         }
     }
 
@@ -29,13 +28,13 @@ impl Accepted {
     ///
     /// # Errors
     /// Every scan was rejected; names the first reason.
-    pub fn check(self, file: &Path) -> Result<(), OfflineError> {
+    pub fn check(self, file: &Path) -> anyhow::Result<()> {
         match self.first_refusal {
-            Some(reason) if self.refused == self.scans => Err(OfflineError::AllRefused {
-                file: file.to_owned(),
-                scans: self.scans,
-                reason,
-            }),
+            Some(reason) if self.refused == self.scans => Err(anyhow!(
+                "{}: every scan was rejected, {} in all; the first: {reason}",
+                file.display(),
+                self.scans
+            )),
             _ => Ok(()),
         }
     }

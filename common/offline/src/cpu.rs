@@ -2,25 +2,25 @@
 
 use std::time::Duration;
 
+use anyhow::Context;
 use nix::time::{ClockId, clock_gettime};
-
-use crate::OfflineError;
 
 /// Runs `work` and returns its result, with its CPU time in milliseconds.
 ///
 /// # Errors
 /// The CPU clock cannot be read.
-pub fn timed<T>(work: impl FnOnce() -> T) -> Result<(T, f64), OfflineError> {
+pub fn timed<T>(work: impl FnOnce() -> T) -> anyhow::Result<(T, f64)> {
     let start = thread_time()?;
     let done = work();
     let cost = thread_time()?.saturating_sub(start);
     Ok((done, cost.as_secs_f64() * 1e3))
 }
 
-fn thread_time() -> Result<Duration, OfflineError> {
-    clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID)
-        .map(Duration::from)
-        .map_err(OfflineError::Clock)
+fn thread_time() -> anyhow::Result<Duration> {
+    let time = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
+    Ok(time
+        .context("cannot read the processor time of a thread")?
+        .into())
 }
 
 #[cfg(test)]

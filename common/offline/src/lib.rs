@@ -18,7 +18,7 @@ mod topics;
 mod world;
 
 pub use accepted::Accepted;
-pub use error::OfflineError;
+pub use error::{NoUsableMap, no_truth_taken, no_truths};
 pub use heading::each_odometry;
 pub use layout::{check_map, frame_of, sides_of};
 pub use maps::map_in;

@@ -4,12 +4,11 @@
 use std::borrow::Cow;
 use std::iter::Peekable;
 
+use anyhow::anyhow;
 use map::OccupancyGrid;
 use recording::{Recording, RecordingError};
 use ros::OccupancyGridMsg;
 use transport::with_causes;
-
-use crate::OfflineError;
 
 /// A recorded map with its log time.
 type Recorded = Result<(i64, OccupancyGridMsg), RecordingError>;
@@ -123,16 +122,15 @@ impl<'a> Arrived<'a> {
 ///
 /// # Errors
 /// It contains no map, or one that cannot be used.
-pub fn map_in(recording: &Recording) -> Result<OccupancyGrid, OfflineError> {
+pub fn map_in(recording: &Recording) -> anyhow::Result<OccupancyGrid> {
     recording.map()?.ok_or_else(|| no_map(recording))
 }
 
 /// Error for a recording without a map; its damage, if it is damaged.
-pub(super) fn no_map(recording: &Recording) -> OfflineError {
+pub(super) fn no_map(recording: &Recording) -> anyhow::Error {
+    let path = recording.path().display();
     match recording.damage_error() {
         Some(damage) => damage.into(),
-        None => OfflineError::NoMap {
-            recording: recording.path().to_owned(),
-        },
+        None => anyhow!("{path} has no map on /map: name one with --map map.yaml"),
     }
 }

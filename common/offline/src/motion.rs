@@ -11,7 +11,6 @@ use ros::lasers;
 
 use super::TakenScan;
 use super::heading::each_odometry;
-use crate::OfflineError;
 
 /// Scans of a recording's lasers, transformed to one time.
 pub(crate) struct Motion<'a> {
@@ -50,7 +49,7 @@ impl<'a> Motion<'a> {
     ///
     /// # Errors
     /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
-    pub(crate) fn take(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
+    pub(crate) fn take(&mut self, scan: &TakenScan) -> anyhow::Result<()> {
         let takes_time = self.joiner.targets_base() || scan.message.time_increment != 0.0;
         if takes_time && self.deskews {
             self.read_odometry()?;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use command_line::wrong_use;
 use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::heading::HeadingConfig;
@@ -15,7 +16,6 @@ use recording::{Kind, Recording};
 
 use super::maps::map_in;
 use super::topics::TopicOptions;
-use crate::OfflineError;
 
 /// Map, selection of scans, and settings of the search.
 #[derive(Debug, Clone, clap::Args)]
@@ -72,10 +72,10 @@ impl Options {
     ///
     /// # Errors
     /// Names the option and what is allowed.
-    pub fn check(&self) -> Result<(), OfflineError> {
+    pub fn check(&self) -> anyhow::Result<()> {
         let maps = self.map.len();
         if maps > 1 {
-            return Err(OfflineError::Usage(format!(
+            return Err(wrong_use(format!(
                 "--map is given {maps} times: only `backcast locate` searches several maps"
             )));
         }
@@ -86,9 +86,10 @@ impl Options {
     ///
     /// # Errors
     /// Names the option and what is allowed.
-    pub fn check_settings(&self) -> Result<(), OfflineError> {
-        Directions::new(self.engine.localizer.headings).map_err(OfflineError::Setting)?;
-        self.heading.check().map_err(OfflineError::Usage)
+    pub fn check_settings(&self) -> anyhow::Result<()> {
+        let headings = Directions::new(self.engine.localizer.headings);
+        headings.map_err(|error| wrong_use(error.to_string()))?;
+        self.heading.check().map_err(wrong_use)
     }
 
     /// The same options with this map.
@@ -105,7 +106,7 @@ impl Options {
     ///
     /// # Errors
     /// The map cannot be read.
-    pub fn load_map(&self, recordings: &[PathBuf]) -> Result<Option<OccupancyGrid>, OfflineError> {
+    pub fn load_map(&self, recordings: &[PathBuf]) -> anyhow::Result<Option<OccupancyGrid>> {
         let file = self.map.first();
         file.map(|file| self.load(file, recordings)).transpose()
     }
@@ -121,7 +122,7 @@ impl Options {
         set: Option<&Path>,
         on: &[String],
         recordings: &[PathBuf],
-    ) -> Result<Vec<NamedMap>, OfflineError> {
+    ) -> anyhow::Result<Vec<NamedMap>> {
         let files = match set {
             Some(set) => map::set_of_noting(set, say)?,
             None if self.map.len() > 1 || !on.is_empty() => map::set_of_files(&self.map)?,
@@ -134,7 +135,7 @@ impl Options {
         files.select(on)?.maps.into_iter().map(load).collect()
     }
 
-    fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {
+    fn load(&self, file: &Path, recordings: &[PathBuf]) -> anyhow::Result<OccupancyGrid> {
         map::check_kind(file)?;
         if !recording::is_recording(file) {
             let grid = map::load_within(map::MemoryLimit::NONE, file, |key| say(&key.to_string()))?;
@@ -142,7 +143,7 @@ impl Options {
         }
         if let Some(other) = recordings.iter().find(|path| is_map(path)) {
             let (other, file) = (other.display(), file.display());
-            return Err(OfflineError::Usage(format!(
+            return Err(wrong_use(format!(
                 "{other} is a map, and --map {file} a recording: the two look swapped"
             )));
         }
@@ -170,7 +171,7 @@ impl Options {
     ///
     /// # Errors
     /// It cannot be read, or does not contain a given channel.
-    pub fn open(&self, paths: &[PathBuf]) -> Result<Recording, OfflineError> {
+    pub fn open(&self, paths: &[PathBuf]) -> anyhow::Result<Recording> {
         let mut recording = Recording::open_all(paths)?;
         // With `--map`, the map's topic belongs to that file.
         let map_topic = self

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use engine::fit::Ends;
 use engine::joined::ByOdometry;
 use engine::peaks::Target;
@@ -20,9 +21,8 @@ use super::maps::{Arrived, Maps, no_map};
 use super::motion::Motion;
 use super::options::{EngineOptions, NamedMap};
 use super::scans::Scans;
-use super::world::{Answer, World};
-use super::{Options, TakenScan, cpu};
-use crate::OfflineError;
+use super::world::{Answer, World, unusable};
+use super::{NoUsableMap, Options, TakenScan, cpu};
 
 /// State of reading and searching a recording.
 pub struct Session<'a> {
@@ -68,7 +68,7 @@ pub struct Reply<'a> {
     /// CPU time from the scan to the verdict or rejection, in milliseconds, without decoding.
     pub cpu_ms: f64,
     /// The places, or the reason for the rejection.
-    pub answer: Result<Answer<'a>, OfflineError>,
+    pub answer: anyhow::Result<Answer<'a>>,
 }
 
 impl<'a> Session<'a> {
@@ -81,7 +81,7 @@ impl<'a> Session<'a> {
         recording: &'a Recording,
         options: &Options,
         given: Option<&'a OccupancyGrid>,
-    ) -> Result<Self, OfflineError> {
+    ) -> anyhow::Result<Self> {
         let mut session = Session::unprepared(recording, options)?;
         session.maps = match given {
             Some(map) => Maps::given(map),
@@ -93,15 +93,13 @@ impl<'a> Session<'a> {
         if let Some(map) = given {
             // An unusable given map is an error at once, since no scan could be searched.
             session.maps.since(i64::MIN, |_| Ok(()));
-            session.prepare(Cow::Borrowed(map))?.map_err(|source| {
-                let file = session.map_file.clone();
-                OfflineError::UnusableMap { file, source }
-            })?;
+            let prepared = session.prepare(Cow::Borrowed(map))?;
+            prepared.with_context(|| unusable(&session.map_file.to_string_lossy()))?;
         }
         Ok(session)
     }
 
-    fn unprepared(recording: &'a Recording, options: &Options) -> Result<Self, OfflineError> {
+    fn unprepared(recording: &'a Recording, options: &Options) -> anyhow::Result<Self> {
         let damage = |error| match error {
             RecordingError::NoTopic { .. } => recording.damage_error().unwrap_or(error),
             other => other,
@@ -136,7 +134,7 @@ impl<'a> Session<'a> {
         recording: &'a Recording,
         options: &Options,
         maps: &[NamedMap],
-    ) -> Result<Self, OfflineError> {
+    ) -> anyhow::Result<Self> {
         let Some(first) = maps.first() else {
             return Session::open(recording, options, None);
         };
@@ -160,7 +158,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// There is no usable map.
-    pub fn map(&self) -> Result<&OccupancyGrid, OfflineError> {
+    pub fn map(&self) -> anyhow::Result<&OccupancyGrid> {
         Ok(&self.prepared()?.map)
     }
 
@@ -168,7 +166,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// Fails like [`Session::map`].
-    pub fn world(&self) -> Result<&World, OfflineError> {
+    pub fn world(&self) -> anyhow::Result<&World> {
         Ok(&self.prepared()?.world)
     }
 
@@ -181,13 +179,13 @@ impl<'a> Session<'a> {
         notes
     }
 
-    fn prepared(&self) -> Result<&Prepared<'a>, OfflineError> {
+    fn prepared(&self) -> anyhow::Result<&Prepared<'a>> {
         let none = || no_usable_map(&self.map_file, &self.refusal);
         self.prepared.as_ref().ok_or_else(none)
     }
 
     /// Prepares the map for a scan. A map that cannot be used is ignored, as in the graph.
-    fn turn_to(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
+    fn turn_to(&mut self, scan: &TakenScan) -> anyhow::Result<()> {
         let rules = self.engine.cells;
         let check =
             |map: &OccupancyGrid| check_map(map, rules).map_err(|error| with_causes(&error));
@@ -209,7 +207,7 @@ impl<'a> Session<'a> {
     fn prepare(
         &mut self,
         map: Cow<'a, OccupancyGrid>,
-    ) -> Result<Result<(), engine::EngineError>, OfflineError> {
+    ) -> anyhow::Result<Result<(), engine::EngineError>> {
         let map_id = map.id();
         if self.prepared.as_ref().is_some_and(|p| p.map_id == map_id) {
             return Ok(Ok(()));
@@ -237,12 +235,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The remaining map cannot be used.
-    pub fn erase(
-        &mut self,
-        scan: &TakenScan,
-        centre: Pose,
-        radius_m: f64,
-    ) -> Result<(), OfflineError> {
+    pub fn erase(&mut self, scan: &TakenScan, centre: Pose, radius_m: f64) -> anyhow::Result<()> {
         self.turn_to(scan)?;
         let prior = self.headings.source().prior();
         let Some(prepared) = &mut self.prepared else {
@@ -257,8 +250,7 @@ impl<'a> Session<'a> {
             }
         }
         let world = World::prepare(&map, &self.engine, prior);
-        let file = self.map_file.clone();
-        prepared.world = world.map_err(|source| OfflineError::UnusableMap { file, source })?;
+        prepared.world = world.with_context(|| unusable(&self.map_file.to_string_lossy()))?;
         Ok(())
     }
 
@@ -266,7 +258,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The recording cannot be read.
-    pub fn read_odometry(&mut self) -> Result<(), OfflineError> {
+    pub fn read_odometry(&mut self) -> anyhow::Result<()> {
         Ok(self.motion.read_odometry()?)
     }
 
@@ -280,7 +272,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
-    pub fn by_odometry(&mut self, scan: &TakenScan) -> Result<Option<ByOdometry>, OfflineError> {
+    pub fn by_odometry(&mut self, scan: &TakenScan) -> anyhow::Result<Option<ByOdometry>> {
         self.motion.take(scan)?;
         Ok(self.motion.joiner.by_odometry())
     }
@@ -289,11 +281,11 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The scan is rejected.
-    pub fn view(&self, scan: &TakenScan) -> Result<View, OfflineError> {
+    pub fn view(&self, scan: &TakenScan) -> anyhow::Result<View> {
         let seen = self.motion.joiner.seen();
         let ends = self.world()?.ends(seen.observation());
         Ok(View {
-            ends: ends.map_err(OfflineError::Refused)?,
+            ends: ends?,
             by_odometry: self.motion.joiner.by_odometry(),
             target: Target::of(scan.base_from_laser, self.motion.joiner.targets_base()),
         })
@@ -303,7 +295,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The CPU clock cannot be read. A rejected scan is a reply.
-    pub fn ask(&mut self, scan: &TakenScan) -> Result<Reply<'_>, OfflineError> {
+    pub fn ask(&mut self, scan: &TakenScan) -> anyhow::Result<Reply<'_>> {
         self.turn_to(scan)?;
         let Some(prepared) = &mut self.prepared else {
             return Ok(Reply {
@@ -344,14 +336,12 @@ impl<'a> Session<'a> {
         Ok(Reply {
             map_id,
             cpu_ms,
-            answer: found.map_err(OfflineError::Refused),
+            answer: found.map_err(Into::into),
         })
     }
 }
 
-fn no_usable_map(file: &Path, reason: &str) -> OfflineError {
-    OfflineError::NoUsableMap {
-        file: file.into(),
-        reason: reason.to_owned(),
-    }
+fn no_usable_map(file: &Path, reason: &str) -> anyhow::Error {
+    let (file, reason) = (file.to_owned(), reason.to_owned());
+    NoUsableMap { file, reason }.into()
 }

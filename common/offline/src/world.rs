@@ -1,5 +1,6 @@
 //! A map that is ready to be searched, and the results of a search. Pure: no file, no clock.
 
+use anyhow::Context;
 use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
@@ -15,7 +16,6 @@ use map::OccupancyGrid;
 
 use super::layout::{frame_of, sides_of};
 use super::options::{EngineOptions, NamedMap};
-use crate::OfflineError;
 
 /// Maps prepared with all settings.
 #[derive(Debug)]
@@ -142,14 +142,11 @@ impl World {
         options: &EngineOptions,
         prior: Prior,
         cache: Option<&IndexCache>,
-    ) -> Result<(Self, Vec<Kept>), OfflineError> {
+    ) -> anyhow::Result<(Self, Vec<Kept>)> {
         let (mut known, mut locators, mut all_kept) = (Vec::new(), Vec::new(), Vec::new());
         for NamedMap { name, floor, grid } in maps {
             let prepared = locator_of(grid, options, prior, cache);
-            let (locator, kept) = prepared.map_err(|source| OfflineError::UnusableMap {
-                file: name.into(),
-                source,
-            })?;
+            let (locator, kept) = prepared.with_context(|| unusable(name))?;
             known.push(KnownMap::of(grid, name.clone(), floor.clone()));
             locators.push(locator);
             all_kept.push(kept);
@@ -301,6 +298,11 @@ impl KnownMap {
             cells: u64::from(map.width) * u64::from(map.height),
         }
     }
+}
+
+/// Message of a map that can be read, but not searched.
+pub(super) fn unusable(name: &str) -> String {
+    format!("{name} cannot be searched")
 }
 
 fn locator_of(

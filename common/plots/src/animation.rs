@@ -14,7 +14,6 @@ use super::scan::Size;
 use super::subject::{Ground, Subject};
 use super::view::View;
 use super::{axes, places, theme};
-use crate::PlotError;
 
 /// The body's height as a share of its width.
 const HEIGHTS: (f64, f64) = (0.25, 0.9);
@@ -46,7 +45,7 @@ pub(super) fn frames<'a>(
     subjects: &'a [Subject],
     bag: &'a str,
     size: Size,
-) -> impl ExactSizeIterator<Item = Result<Frame, PlotError>> + 'a {
+) -> impl ExactSizeIterator<Item = anyhow::Result<Frame>> + 'a {
     let mut extent = Extent::EMPTY;
     for subject in subjects {
         extent.include_all(subject.extent(ground, size.whole));
@@ -75,7 +74,7 @@ fn shown(subjects: &[Subject], i: usize) -> Duration {
 }
 
 impl Film<'_> {
-    fn draw(&self, i: usize) -> Result<Scene, PlotError> {
+    fn draw(&self, i: usize) -> anyhow::Result<Scene> {
         let mut page = self.page(i)?;
         let view = axes::view_within(self.extent, page.body, page.unit);
         page.legend = self.legend.clone();
@@ -85,7 +84,7 @@ impl Film<'_> {
         Ok(page.finish()?)
     }
 
-    fn page(&self, i: usize) -> Result<Page, PlotError> {
+    fn page(&self, i: usize) -> anyhow::Result<Page> {
         let ratio = (self.extent.height() / self.extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
         let (width, unit) = (page::body_width(self.width), page::unit(self.width));
         let height = axes::height_for(ratio, width, unit);

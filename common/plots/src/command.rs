@@ -6,14 +6,18 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
-use command_line::{output, stdout};
+use anyhow::{Context, anyhow, bail};
+use command_line::{output, stdout, wrong_use};
 use drawing::Scene;
+use engine::EngineError;
 use engine::grid::Grid;
+use engine::heading::HeadingError;
 use engine::localizer::Prior;
+use engine::peaks::Places;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
-use offline::{Field, OfflineError, Session, TakenScan, World, map_in};
+use offline::{Field, NoUsableMap, Session, TakenScan, World, map_in, no_truth_taken, no_truths};
 use progress::{Progress, say};
 use recording::{GroundTruth, Recording, RecordingError};
 
@@ -22,17 +26,16 @@ use super::errors::Judged;
 use super::field::Votes;
 use super::subject::Subject;
 use super::{animation, errors, field, outline, scan, surface};
-use crate::PlotError;
 
 /// Draws one picture and says how large it is.
 ///
 /// # Errors
 /// Options contradict each other, map or recording cannot be used, the scan is
 /// refused, or the picture cannot be written.
-pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let format = config.check()?;
     // Before anything is read, so that a failure costs no work.
-    unwritable(config, fs::metadata(output::folder_of(&config.out)))?;
+    unwritable(&config.out, fs::metadata(output::folder_of(&config.out)))?;
     let given = config.options.load_map(&config.bag)?;
     if config.kind == Kind::Drive {
         return run_drive(config, given.as_ref());
@@ -51,35 +54,40 @@ pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
         Format::Png => drawing::to_png(&scene)?,
         Format::Svg => drawing::to_svg(&scene)?.into_bytes(),
     };
-    write(config, &bytes)?;
+    write(&config.out, &bytes)?;
     let (width, height) = (scene.width(), scene.height());
     let file = config.out.display();
     stdout::print(&format!("{file}: {width} x {height} pixels\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> Result<ExitCode, PlotError> {
+fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> anyhow::Result<ExitCode> {
     let recording = config.options.open(&config.bag)?;
     let mut plot = Plot::open(config, &recording, given)?;
     let subjects = plot.subjects()?;
     let (ground, name) = (config.ground(plot.session.map()?), plot.name());
     let frames = animation::frames(&ground, &subjects, &name, config.size());
     let bytes = drawing::to_animated_png(frames)?;
-    write(config, &bytes)?;
+    write(&config.out, &bytes)?;
     let (file, scans, kilobytes) = (config.out.display(), subjects.len(), bytes.len() / 1000);
     stdout::print(&format!("{file}: {scans} scans, {kilobytes} kB\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn write(config: &Config, bytes: &[u8]) -> Result<(), PlotError> {
-    unwritable(config, fs::write(&config.out, bytes))
+/// Writes a scene to a PNG file.
+///
+/// # Errors
+/// The picture cannot be encoded, or the file not be written.
+pub fn save_png(scene: &Scene, file: &Path) -> anyhow::Result<()> {
+    write(file, &drawing::to_png(scene)?)
 }
 
-fn unwritable<T>(config: &Config, outcome: io::Result<T>) -> Result<T, PlotError> {
-    outcome.map_err(|source| PlotError::Picture {
-        file: config.out.clone(),
-        source,
-    })
+fn write(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    unwritable(file, fs::write(file, bytes))
+}
+
+fn unwritable<T>(file: &Path, outcome: io::Result<T>) -> anyhow::Result<T> {
+    outcome.with_context(|| format!("cannot write the picture {}", file.display()))
 }
 
 /// The map that is given, else the one in the recording.
@@ -87,21 +95,18 @@ fn draw_map(
     config: &Config,
     given: Option<OccupancyGrid>,
     recording: Option<&Recording>,
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let (map, file) = match (given, recording, config.options.map.first()) {
         (None, Some(recording), _) => (map_in(recording)?, recording.path()),
         (Some(map), _, Some(file)) => (map, file.as_path()),
         // `Config::check` asks for the one or the other.
-        _ => return Err(OfflineError::Usage("--map or --bag is missing".into()).into()),
+        _ => return Err(wrong_use("--map or --bag is missing")),
     };
     let (width, height) = (map.width as usize, map.height as usize);
     let rules = config.options.engine.cells;
-    let grid = Grid::new(width, height, &map.cells, rules);
-    let grid = grid.map_err(|source| OfflineError::UnusableMap {
-        file: file.to_owned(),
-        source,
-    })?;
     let name = file.display().to_string();
+    let grid = Grid::new(width, height, &map.cells, rules);
+    let grid = grid.with_context(|| format!("{name} cannot be searched"))?;
     outline::draw(&config.ground(&map), &grid, &name, config.size())
 }
 
@@ -119,7 +124,7 @@ impl<'a> Plot<'a> {
         config: &'a Config,
         recording: &'a Recording,
         given: Option<&'a OccupancyGrid>,
-    ) -> Result<Self, PlotError> {
+    ) -> anyhow::Result<Self> {
         let truths = match config.no_truth {
             true => BTreeMap::new(),
             false => recording.ground_truths()?,
@@ -133,7 +138,7 @@ impl<'a> Plot<'a> {
         })
     }
 
-    fn draw(&mut self) -> Result<Scene, PlotError> {
+    fn draw(&mut self) -> anyhow::Result<Scene> {
         match self.config.kind {
             Kind::Errors => self.draw_errors(),
             _ => self.draw_scan(),
@@ -144,7 +149,7 @@ impl<'a> Plot<'a> {
         self.bag.display().to_string()
     }
 
-    fn draw_scan(&mut self) -> Result<Scene, PlotError> {
+    fn draw_scan(&mut self) -> anyhow::Result<Scene> {
         let number = self.config.scan.unwrap_or(1);
         let scan = self.nth_scan(number)?;
         let subject = self.subject(number, &scan)?;
@@ -162,7 +167,7 @@ impl<'a> Plot<'a> {
     }
 
     /// The scan with a number from 1.
-    fn nth_scan(&mut self, number: u64) -> Result<TakenScan, PlotError> {
+    fn nth_scan(&mut self, number: u64) -> anyhow::Result<TakenScan> {
         let mut seen = 0;
         for scan in self.session.scans.by_ref() {
             seen += 1;
@@ -174,15 +179,11 @@ impl<'a> Plot<'a> {
                 Err(error) => return Err(error.into()),
             }
         }
-        Err(OfflineError::NoSuchScan {
-            file: self.bag.to_owned(),
-            wanted: number,
-            found: seen,
-        }
-        .into())
+        let file = self.bag.display();
+        bail!("{file}: there is no scan {number}; the scans taken are 1 to {seen}")
     }
 
-    fn subject(&mut self, number: u64, scan: &TakenScan) -> Result<Subject, PlotError> {
+    fn subject(&mut self, number: u64, scan: &TakenScan) -> anyhow::Result<Subject> {
         let answer = self.session.ask(scan)?.answer;
         let places = answer.map(|answer| answer.places.clone());
         for note in self.session.take_notes() {
@@ -190,33 +191,26 @@ impl<'a> Plot<'a> {
         }
         let truth = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose);
         let world = self.session.world()?;
-        let subject = Subject::new((number, scan), places?, truth, world);
-        Ok(subject.map_err(OfflineError::Refused)?)
+        Ok(Subject::new((number, scan), places?, truth, world)?)
     }
 
     /// The votes at the heading of the best place.
-    fn field(&self, scan: &TakenScan, subject: &Subject) -> Result<Field, PlotError> {
+    fn field(&self, scan: &TakenScan, subject: &Subject) -> anyhow::Result<Field> {
         let Some(best) = subject.shown.first() else {
-            return Err(PlotError::NoPlace {
-                file: self.bag.to_owned(),
-                number: subject.number,
-                says: subject.places.sentence(),
-            });
+            return Err(no_place(self.bag, subject.number, &subject.places));
         };
         let engine = &self.config.options.engine;
         let world = World::prepare(self.session.map()?, engine, Prior::Heading);
         let heading = best.place.map_from_laser.yaw;
-        let field = world.and_then(|world| world.field_at(&scan.borrowed(), heading));
-        Ok(field.map_err(OfflineError::Refused)?)
+        Ok(world.and_then(|world| world.field_at(&scan.borrowed(), heading))?)
     }
 
-    fn draw_errors(&mut self) -> Result<Scene, PlotError> {
+    fn draw_errors(&mut self) -> anyhow::Result<Scene> {
         if let Some(damage) = self.recording.damage_error() {
             return Err(damage.into());
         }
         if self.truths.is_empty() {
-            let file = self.bag.to_owned();
-            return Err(OfflineError::NoTruths { file }.into());
+            return Err(no_truths(self.bag));
         }
         let progress = Progress::new("locating", self.session.scans.total());
         let (mut judged, mut scans) = (Vec::new(), 0);
@@ -229,17 +223,12 @@ impl<'a> Plot<'a> {
             progress.step();
         }
         if judged.is_empty() {
-            return Err(OfflineError::NoTruthTaken {
-                file: self.bag.to_owned(),
-                scans,
-                truths: self.truths.len(),
-            }
-            .into());
+            return Err(no_truth_taken(self.bag, scans, self.truths.len()));
         }
         errors::draw(&judged, &self.name(), self.config.width)
     }
 
-    fn judge(&mut self, scan: &TakenScan, truth: Pose) -> Result<Judged, PlotError> {
+    fn judge(&mut self, scan: &TakenScan, truth: Pose) -> anyhow::Result<Judged> {
         let places = self.session.ask(scan)?.answer.ok();
         let places = places.map(|answer| answer.places);
         let best = places.and_then(|places| places.places.first());
@@ -255,7 +244,7 @@ impl<'a> Plot<'a> {
     }
 
     /// All scans that can be searched.
-    fn subjects(&mut self) -> Result<Vec<Subject>, PlotError> {
+    fn subjects(&mut self) -> anyhow::Result<Vec<Subject>> {
         let progress = Progress::new("locating", self.session.scans.total());
         let (mut subjects, mut number) = (Vec::new(), 0);
         while let Some(scan) = self.session.scans.next() {
@@ -272,10 +261,12 @@ impl<'a> Plot<'a> {
 }
 
 /// Whether it is of one scan alone, so that the others can be drawn.
-fn is_refusal(error: &PlotError) -> bool {
-    use OfflineError::{Heading, NoUsableMap, Refused};
-    matches!(
-        error,
-        PlotError::Offline(Refused(_) | Heading(_) | NoUsableMap { .. })
-    )
+fn is_refusal(error: &anyhow::Error) -> bool {
+    error.is::<EngineError>() || error.is::<HeadingError>() || error.is::<NoUsableMap>()
+}
+
+/// Error for a scan without a best place to draw anything at.
+pub fn no_place(file: &Path, number: u64, places: &Places) -> anyhow::Error {
+    let (file, says) = (file.display(), places.sentence());
+    anyhow!("{file}: scan {number} has no place on this map: {says}")
 }

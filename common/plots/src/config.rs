@@ -4,12 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use command_line::wrong_use;
 use map::OccupancyGrid;
-use offline::{OfflineError, Options};
+use offline::Options;
 
 use super::scan::Size;
 use super::subject::Ground;
-use crate::PlotError;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
@@ -97,9 +97,9 @@ impl Config {
     ///
     /// # Errors
     /// Names the option and what is allowed.
-    pub(super) fn check(&self) -> Result<Format, PlotError> {
+    pub(super) fn check(&self) -> anyhow::Result<Format> {
         self.options.check()?;
-        let usage = |text: String| Err(OfflineError::Usage(text).into());
+        let usage = |text: String| Err(wrong_use(text));
         if self.bag.is_empty() && (self.kind != Kind::Map || self.options.map.is_empty()) {
             return usage(
                 "--bag is missing: only the picture `map` does without, and then needs --map"
@@ -132,16 +132,15 @@ impl Config {
         Ok(format)
     }
 
-    fn format(&self) -> Result<Format, PlotError> {
+    fn format(&self) -> anyhow::Result<Format> {
         let extension = self.out.extension().and_then(|name| name.to_str());
         match extension.map(str::to_ascii_lowercase).as_deref() {
             Some("png") => Ok(Format::Png),
             Some("svg") => Ok(Format::Svg),
-            _ => Err(OfflineError::Usage(format!(
+            _ => Err(wrong_use(format!(
                 "--out {}: the name must end with .png or .svg",
                 self.out.display()
-            ))
-            .into()),
+            ))),
         }
     }
 

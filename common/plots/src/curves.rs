@@ -8,7 +8,6 @@ use super::page::{self, Heading, Page};
 use super::scale::Scale;
 use super::shapes::Shape;
 use super::theme;
-use crate::PlotError;
 
 /// The body's height as a share of its width.
 const HEIGHT: f64 = 0.5;
@@ -58,7 +57,7 @@ pub struct Curves {
 ///
 /// # Errors
 /// The picture would be too large.
-pub fn draw(chart: &Curves) -> Result<Scene, PlotError> {
+pub fn draw(chart: &Curves) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
     let heading = Heading {
         title: chart.title.clone(),

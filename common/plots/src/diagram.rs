@@ -8,7 +8,6 @@ use super::page::{self, Heading, Page};
 use super::scale::Scale;
 use super::shapes::Shape;
 use super::theme;
-use crate::PlotError;
 
 /// The caption above a panel, pixels of a picture of the common width.
 const CAPTION: f64 = 34.0;
@@ -77,7 +76,7 @@ pub struct Diagram {
 ///
 /// # Errors
 /// The picture would be too large.
-pub fn draw(diagram: &Diagram) -> Result<Scene, PlotError> {
+pub fn draw(diagram: &Diagram) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
     let unit = page::unit(width);
     let votes = Axis {

@@ -13,7 +13,6 @@ use super::page::{self, Heading, Page};
 use super::subject::Ground;
 use super::view::View;
 use super::{axes, theme};
-use crate::PlotError;
 
 /// A scan of a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +46,7 @@ pub fn draw(
     rules: CellRules,
     stops: &[Stop],
     (title, says): (String, String),
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let places = stops
         .iter()
         .flat_map(|stop| [stop.pose, stop.truth])

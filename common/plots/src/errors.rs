@@ -11,7 +11,6 @@ use super::page::{self, Heading, Page};
 use super::scale::Scale;
 use super::shapes::Shape;
 use super::theme;
-use crate::PlotError;
 
 /// A scan whose truth is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +45,7 @@ const MARK: f64 = 4.2;
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> Result<Scene, PlotError> {
+pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> anyhow::Result<Scene> {
     let unit = page::unit(width);
     let one = axes::height_for(HEIGHT, page::body_width(width), unit);
     let mut page = Page::new(width, 2.0 * one, &heading(judged, bag))?;

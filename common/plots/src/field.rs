@@ -18,7 +18,6 @@ use super::scan::Size;
 use super::subject::{Ground, Subject};
 use super::theme;
 use super::view::View;
-use crate::PlotError;
 
 const HEIGHTS: (f64, f64) = (0.25, 1.0);
 /// About what the bar of colours takes from the width.
@@ -109,7 +108,7 @@ fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
 ///
 /// # Errors
 /// The picture would be too large.
-pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
+pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
     let extent = votes.extent;
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
     let (width, unit) = (page::body_width(votes.width), page::unit(votes.width));
@@ -147,7 +146,7 @@ pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
 }
 
 /// Fills a view with the votes and the walls; whether there is a wall.
-fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<bool, PlotError> {
+fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> anyhow::Result<bool> {
     let (ground, field) = (&votes.ground, votes.field);
     let map = ground.map;
     let cells = Sampler::new(view, frame_of(map), sides_of(map));

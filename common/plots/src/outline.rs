@@ -11,7 +11,6 @@ use super::page::{self, Heading, Page};
 use super::scan::Size;
 use super::subject::Ground;
 use super::theme;
-use crate::PlotError;
 
 /// The body's height as a share of its width at most.
 const HIGHEST: f64 = 1.3;
@@ -25,7 +24,7 @@ pub(super) fn draw(
     grid: &Grid,
     name: &str,
     size: Size,
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let mut is_boundary = vec![false; ground.map.cells.len()];
     let boundary = boundary::extract(grid);
     for cell in &boundary {

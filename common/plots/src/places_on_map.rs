@@ -11,7 +11,6 @@ use super::numbers::Numbers;
 use super::page::{self, Heading, Page};
 use super::subject::Ground;
 use super::{axes, marks, theme};
-use crate::PlotError;
 
 /// The body's height as a share of its width.
 const HEIGHTS: (f64, f64) = (0.25, 0.9);
@@ -26,7 +25,7 @@ pub fn draw(
     path: &[Pose],
     places: &[(Pose, Pose)],
     (title, says): (String, String),
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
     let around = path.iter().map(|pose| (pose.x, pose.y));
     let all = Extent::of_map(map);

@@ -9,7 +9,6 @@ use super::extent::Extent;
 use super::page::{self, Page};
 use super::subject::{Ground, Subject};
 use super::{axes, marks, places, theme};
-use crate::PlotError;
 
 /// Most places that are shown from near.
 const MAX_NEAR: usize = 3;
@@ -58,7 +57,7 @@ pub(super) fn draw(
     subject: &Subject,
     bag: &str,
     size: Size,
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let extent = subject.extent(ground, size.whole);
     let near = worth_comparing(subject);
     let (unit, width) = (page::unit(size.width), page::body_width(size.width));
@@ -182,7 +181,7 @@ fn draw_near(
     ground: &Ground<'_>,
     (near, reach): (&Near<'_>, f64),
     area: Rect,
-) -> Result<(), PlotError> {
+) -> anyhow::Result<()> {
     let unit = page.unit;
     let style = theme::fitted(theme::text(unit).bold(), &near.name, area.width);
     let at = (area.x, area.y + 0.75 * CAPTION * unit);

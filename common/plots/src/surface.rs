@@ -13,7 +13,6 @@ use super::legend::Sample;
 use super::page::{self, Page};
 use super::view::View;
 use super::{marks, theme};
-use crate::PlotError;
 
 mod space;
 
@@ -199,7 +198,7 @@ impl Relief {
 ///
 /// # Errors
 /// The picture would be too large.
-pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
+pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
     let relief = Relief::of(votes);
     let width = page::body_width(votes.width);
     let height = (width * (HEIGHTS.0 + HEIGHTS.1)).round();

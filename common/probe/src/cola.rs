@@ -3,14 +3,15 @@
 use std::net::Ipv6Addr;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use sick::cola::{
     AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
     Value, Variable, state_word,
 };
 
+use super::error::{not_reached, not_understood};
 use super::line::Line;
 use super::picture::Seen;
-use crate::ProbeError;
 
 /// Ports of devices, in the order of trying.
 const PORTS: [u16; 2] = [2112, 2111];
@@ -37,7 +38,7 @@ struct Device {
 ///
 /// # Errors
 /// The device cannot be reached, is silent, or sends something else.
-pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
+pub(super) fn probe(target: &str) -> anyhow::Result<(Vec<String>, Seen)> {
     let mut device = find(target)?;
     let mut said = vec![format!(
         "{}: answers {}",
@@ -65,7 +66,7 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
 ///
 /// # Errors
 /// See [`probe`].
-pub(super) fn reader_options(target: &str) -> Result<Vec<String>, ProbeError> {
+pub(super) fn reader_options(target: &str) -> anyhow::Result<Vec<String>> {
     let device = find(target)?;
     Ok(reader_options_of(&device.address, device.encoding))
 }
@@ -80,7 +81,7 @@ pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> Vec<String
 }
 
 /// Connects to the device: tries each port in each encoding.
-fn find(target: &str) -> Result<Device, ProbeError> {
+fn find(target: &str) -> anyhow::Result<Device> {
     let addresses = addresses(target);
     let mut failure = None;
     let mut received = 0;
@@ -102,23 +103,19 @@ fn find(target: &str) -> Result<Device, ProbeError> {
                 }
             };
             reached = Some(address);
-            if device.ask_answers()? {
+            if device.ask_answers() {
                 return Ok(device);
             }
             received += device.received;
         }
     }
-    Err(match (reached, failure) {
-        (None, Some((address, source))) => ProbeError::DeviceNotReached {
-            address: address.clone(),
-            source,
-        },
-        (reached, _) => ProbeError::DeviceNotUnderstood {
-            address: reached.map_or(target, String::as_str).to_owned(),
-            received,
-            tried: "CoLa B and CoLa A".to_owned(),
-        },
-    })
+    match (reached, failure) {
+        (None, Some((address, error))) => Err(error).with_context(|| not_reached(address)),
+        (reached, _) => {
+            let address = reached.map_or(target, String::as_str);
+            Err(not_understood(&address, received, "CoLa B and CoLa A"))
+        }
+    }
 }
 
 /// Returns the address with its port, or with each usual port.
@@ -134,15 +131,11 @@ pub(super) fn addresses(target: &str) -> Vec<String> {
 
 impl Device {
     /// Returns true if it answers; a device with the other encoding may close the connection.
-    fn ask_answers(&mut self) -> Result<bool, ProbeError> {
+    fn ask_answers(&mut self) -> bool {
         let outcome = self.ask(Command::Read(Variable::DeviceIdent), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_) | Telegram::ScanData(_)).then_some(())
         });
-        match outcome {
-            Ok(answer) => Ok(answer.is_some()),
-            Err(ProbeError::DeviceNotReached { .. }) => Ok(false),
-            Err(error) => Err(error),
-        }
+        outcome.is_ok_and(|answer| answer.is_some())
     }
 
     /// Sends a command and waits for the first telegram accepted by `pick`.
@@ -151,15 +144,11 @@ impl Device {
         command: Command<'_>,
         patience: Duration,
         mut pick: impl FnMut(&Telegram<'_>) -> Option<R>,
-    ) -> Result<Option<R>, ProbeError> {
-        let failed = |address: &str, source| ProbeError::DeviceNotReached {
-            address: address.to_owned(),
-            source,
-        };
+    ) -> anyhow::Result<Option<R>> {
         let mut bytes = Vec::new();
         self.encoding.frame(&Telegram::Command(command), &mut bytes);
         let said = self.line.say(&bytes);
-        said.map_err(|source| failed(&self.address, source))?;
+        said.with_context(|| not_reached(&self.address))?;
         let deadline = Instant::now() + patience;
         let mut buffer = [0; 1 << 14];
         loop {
@@ -171,7 +160,7 @@ impl Device {
                 }
             }
             let received = self.line.receive(&mut buffer, deadline);
-            match received.map_err(|source| failed(&self.address, source))? {
+            match received.with_context(|| not_reached(&self.address))? {
                 Some(piece) => {
                     self.received += piece.len();
                     self.framer.push(piece);
@@ -182,7 +171,7 @@ impl Device {
     }
 
     /// Describes a variable, or the reason why the device does not return it.
-    fn describe(&mut self, variable: Variable) -> Result<String, ProbeError> {
+    fn describe(&mut self, variable: Variable) -> anyhow::Result<String> {
         let command = Command::Read(variable);
         let mut angles = None;
         let found = self.ask(command, TIMEOUT, |telegram| match telegram {
@@ -204,7 +193,7 @@ impl Device {
     }
 
     /// Gets one scan, described in words and for drawing.
-    fn scan(&mut self) -> Result<(Vec<String>, Seen), ProbeError> {
+    fn scan(&mut self) -> anyhow::Result<(Vec<String>, Seen)> {
         let angles = std::mem::take(&mut self.angles);
         let found = self.ask(Command::SubscribeScans(true), SCAN_TIMEOUT, |telegram| {
             let Telegram::ScanData(scan) = telegram else {

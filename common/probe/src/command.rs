@@ -7,7 +7,6 @@ use command_line::stdout;
 use sick::cola::Encoding;
 
 use super::{cola, lms2xx};
-use crate::ProbeError;
 
 /// Text below the options in the help.
 pub const NOTES: &str = "\
@@ -35,7 +34,7 @@ pub struct Config {
 ///
 /// # Errors
 /// No device answers, or standard output cannot be written.
-pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (said, seen) = match address(&config.device) {
         Some(address) => cola::probe(address)?,
         None => lms2xx::probe(Path::new(&config.device))?,
@@ -50,7 +49,7 @@ pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
 ///
 /// # Errors
 /// No device answers.
-pub fn reader_options(device: &str, is_serial: bool) -> Result<Vec<String>, ProbeError> {
+pub fn reader_options(device: &str, is_serial: bool) -> anyhow::Result<Vec<String>> {
     match is_serial {
         false => cola::reader_options(address(device).unwrap_or(device)),
         true => lms2xx::ask(Path::new(device)).map(|()| default_reader_options(device, true)),

@@ -1,38 +1,19 @@
-//! Errors of this crate's commands, and their exit codes.
+//! Errors of both protocols.
 
-use std::io;
+use std::fmt::Display;
 
-use command_line::{CommandError, OutputError};
+use anyhow::anyhow;
 
-/// Error of probing a laser.
-#[derive(Debug, thiserror::Error)]
-pub enum ProbeError {
-    /// The device cannot be reached, or closed the connection.
-    #[error("{address}: no device can be reached; check its power, cable and address")]
-    DeviceNotReached {
-        /// Address as given, with the last port tried.
-        address: String,
-        source: io::Error,
-    },
-    /// A device is there, but does not answer like a known laser.
-    #[error(
-        "{address}: no laser answers; tried {tried}; {}",
-        match received {
-            0 => "nothing came".to_owned(),
-            n => format!("{n} bytes received that are not an answer: is it another device, or in use?"),
-        }
-    )]
-    DeviceNotUnderstood {
-        /// Address as given, with the last port tried.
-        address: String,
-        /// Number of bytes received.
-        received: usize,
-        /// Protocols that were tried.
-        tried: String,
-    },
-    /// Standard output cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+/// Message of a device that cannot be reached, or that closed the connection.
+pub(crate) fn not_reached(address: &dyn Display) -> String {
+    format!("{address}: no device can be reached; check its power, cable and address")
 }
 
-impl CommandError for ProbeError {}
+/// Error for a device that sent `received` bytes, but does not answer like a known laser.
+pub(crate) fn not_understood(address: &dyn Display, received: usize, tried: &str) -> anyhow::Error {
+    let came = match received {
+        0 => "nothing came".to_owned(),
+        n => format!("{n} bytes received that are not an answer: is it another device, or in use?"),
+    };
+    anyhow!("{address}: no laser answers; tried {tried}; {came}")
+}

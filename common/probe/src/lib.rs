@@ -12,4 +12,3 @@ mod lms2xx;
 mod picture;
 
 pub use command::{Config, NOTES, default_reader_options, reader_options, run};
-pub use error::ProbeError;

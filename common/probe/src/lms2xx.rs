@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use sick::lms2xx::{Answer, Baud, Command, DeviceStatus, Mode, Reply, ReplyFramer, Scan};
 
+use super::error::{not_reached, not_understood};
 use super::line::Line;
 use super::picture::Seen;
-use crate::ProbeError;
 
 /// Baud rates, most likely first.
 const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
@@ -28,7 +29,7 @@ struct Device<'a> {
 ///
 /// # Errors
 /// See [`probe`].
-pub(super) fn ask(path: &Path) -> Result<(), ProbeError> {
+pub(super) fn ask(path: &Path) -> anyhow::Result<()> {
     Device::open(path)?.find_rate().map(drop)
 }
 
@@ -36,7 +37,7 @@ pub(super) fn ask(path: &Path) -> Result<(), ProbeError> {
 ///
 /// # Errors
 /// The line cannot be opened, or no device answers at any rate.
-pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
+pub(super) fn probe(path: &Path) -> anyhow::Result<(Vec<String>, Seen)> {
     let mut device = Device::open(path)?;
     let baud = device.find_rate()?;
     let name = path.display();
@@ -62,11 +63,8 @@ pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
 }
 
 impl<'a> Device<'a> {
-    fn open(path: &'a Path) -> Result<Self, ProbeError> {
-        let line = Line::open(path).map_err(|source| ProbeError::DeviceNotReached {
-            address: path.display().to_string(),
-            source,
-        })?;
+    fn open(path: &'a Path) -> anyhow::Result<Self> {
+        let line = Line::open(path).with_context(|| not_reached(&path.display()))?;
         Ok(Device {
             path,
             line,
@@ -77,10 +75,10 @@ impl<'a> Device<'a> {
 
     /// Finds the baud rate with a command that is answered in every mode and stops continuous
     /// scans.
-    fn find_rate(&mut self) -> Result<Baud, ProbeError> {
+    fn find_rate(&mut self) -> anyhow::Result<Baud> {
         for baud in RATES {
             let switched = self.line.switch(baud);
-            switched.map_err(|source| self.failed(source))?;
+            switched.with_context(|| not_reached(&self.path.display()))?;
             self.framer = ReplyFramer::default();
             for _ in 0..TRIES {
                 let answer = self.ask(&Command::SetMode(Mode::OnRequest), |answer| {
@@ -91,23 +89,20 @@ impl<'a> Device<'a> {
                 }
             }
         }
-        let rates = RATES.map(|baud| baud.rate().to_string());
-        Err(ProbeError::DeviceNotUnderstood {
-            address: self.path.display().to_string(),
-            received: self.received,
-            tried: format!("an LMS2xx at {} baud", rates.join(", ")),
-        })
+        let rates = RATES.map(|baud| baud.rate().to_string()).join(", ");
+        let tried = format!("an LMS2xx at {rates} baud");
+        Err(not_understood(&self.path.display(), self.received, &tried))
     }
 
     fn ask<R>(
         &mut self,
         command: &Command<'_>,
         mut pick: impl FnMut(&Answer<'_>) -> Option<R>,
-    ) -> Result<Option<R>, ProbeError> {
+    ) -> anyhow::Result<Option<R>> {
         let mut bytes = Vec::new();
         command.frame(&mut bytes);
         let said = self.line.say(&bytes);
-        said.map_err(|source| self.failed(source))?;
+        said.with_context(|| not_reached(&self.path.display()))?;
         let deadline = Instant::now() + TIMEOUT;
         let mut buffer = [0; 1 << 12];
         loop {
@@ -120,7 +115,7 @@ impl<'a> Device<'a> {
                 }
             }
             let received = self.line.receive(&mut buffer, deadline);
-            match received.map_err(|source| self.failed(source))? {
+            match received.with_context(|| not_reached(&self.path.display()))? {
                 Some(piece) => {
                     self.received += piece.len();
                     self.framer.push(piece);
@@ -130,18 +125,11 @@ impl<'a> Device<'a> {
         }
     }
 
-    fn scan(&mut self, status: &DeviceStatus) -> Result<Option<Seen>, ProbeError> {
+    fn scan(&mut self, status: &DeviceStatus) -> anyhow::Result<Option<Seen>> {
         self.ask(&Command::RequestScan, |answer| match answer {
             Answer::Scan(scan) => Some(seen(scan, status)),
             _ => None,
         })
-    }
-
-    fn failed(&self, source: std::io::Error) -> ProbeError {
-        ProbeError::DeviceNotReached {
-            address: self.path.display().to_string(),
-            source,
-        }
     }
 }
 

@@ -4,7 +4,7 @@
 use std::io::{self, ErrorKind, Write};
 use std::ops::ControlFlow;
 
-use command_line::OutputError;
+use command_line::{OutputError, stdout};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// The bar; it is removed when this is dropped.
@@ -13,8 +13,13 @@ pub struct Progress(ProgressBar);
 impl Progress {
     /// Creates a bar with the label `name` for `total` scans.
     pub fn new(name: &str, total: u64) -> Self {
-        let template = "{msg} [{bar:40}] {pos}/{len} scans, {eta} left";
-        let style = ProgressStyle::with_template(template)
+        Self::counting(name, "scans", total)
+    }
+
+    /// Creates a bar with the label `name` for `total` of something else.
+    pub fn counting(name: &str, unit: &str, total: u64) -> Self {
+        let template = format!("{{msg}} [{{bar:40}}] {{pos}}/{{len}} {unit}, {{eta}} left");
+        let style = ProgressStyle::with_template(&template)
             .unwrap_or_else(|_| ProgressStyle::default_bar())
             .progress_chars("=> ");
         // The default target is standard error, and hidden if that is not a terminal.
@@ -25,7 +30,12 @@ impl Progress {
         Progress(bar)
     }
 
-    /// Counts another scan.
+    /// Changes the label.
+    pub fn show(&self, name: String) {
+        self.0.set_message(name);
+    }
+
+    /// Counts another one.
     pub fn step(&self) {
         self.0.inc(1);
     }
@@ -46,6 +56,14 @@ impl Progress {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(ControlFlow::Break(())),
             Err(error) => Err(OutputError(error)),
         }
+    }
+
+    /// Writes text to standard output; a closed reader is no error.
+    ///
+    /// # Errors
+    /// Writing failed for another reason.
+    pub fn write(&self, text: &str) -> Result<(), OutputError> {
+        self.0.suspend(|| stdout::print(text))
     }
 
     pub fn say(&self, remark: &str) {

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use command_line::OutputError;
 use progress::say;
-use transport::with_causes;
-
-use crate::RecordingToolsError;
 
 /// Runs `act` on each file. If there are several, an error is printed to standard error and the
 /// next file follows. Returns true if any failed.
@@ -14,17 +12,17 @@ use crate::RecordingToolsError;
 /// If the only file failed, or standard output is closed.
 pub(crate) fn each(
     paths: &[PathBuf],
-    mut act: impl FnMut(&Path) -> Result<(), RecordingToolsError>,
-) -> Result<bool, RecordingToolsError> {
+    mut act: impl FnMut(&Path) -> anyhow::Result<()>,
+) -> anyhow::Result<bool> {
     let mut any_failed = false;
     for path in paths {
         match act(path) {
             Ok(()) => {}
-            Err(error) if paths.len() == 1 || matches!(error, RecordingToolsError::Output(_)) => {
+            Err(error) if paths.len() == 1 || error.is::<OutputError>() => {
                 return Err(error);
             }
             Err(error) => {
-                say(&with_causes(&error));
+                say(&format!("{error:#}"));
                 any_failed = true;
             }
         }

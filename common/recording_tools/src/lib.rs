@@ -4,8 +4,5 @@
 pub mod convert;
 pub mod doctor;
 mod each;
-mod error;
 pub mod info;
 pub mod simulate;
-
-pub use error::RecordingToolsError;

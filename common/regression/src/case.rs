@@ -3,12 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use command_line::names;
-use launcher::LauncherError;
+use anyhow::{Context, bail};
+use command_line::{names, wrong_use};
 use recording::Recording;
 
 use super::answer::Answer;
-use crate::RegressionError;
 
 /// Files of a case.
 const RECORDING: &str = "recording.mcap";
@@ -27,7 +26,7 @@ pub(super) struct Case {
 ///
 /// # Errors
 /// A folder cannot be read or contains no case, or a case has no recording.
-pub(super) fn all_in(folders: &[PathBuf]) -> Result<Vec<Case>, RegressionError> {
+pub(super) fn all_in(folders: &[PathBuf]) -> anyhow::Result<Vec<Case>> {
     let mut found = Vec::new();
     for folder in folders {
         found.extend(cases_in(folder)?);
@@ -37,26 +36,31 @@ pub(super) fn all_in(folders: &[PathBuf]) -> Result<Vec<Case>, RegressionError> 
     Ok(cases.map(|(name, folder)| Case { name, folder }).collect())
 }
 
-fn cases_in(folder: &Path) -> Result<Vec<PathBuf>, RegressionError> {
-    let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
+fn cases_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let folder = std::path::absolute(folder).context("cannot find the current directory")?;
     if recording_in(&folder).is_some() {
         return Ok(vec![folder]);
     }
-    let unreadable = |source| failed("read", &folder, source);
+    let unreadable = || failed("read", &folder);
     let mut cases = Vec::new();
-    for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
-        let inner = entry.map_err(unreadable)?.path();
+    for entry in std::fs::read_dir(&folder).with_context(unreadable)? {
+        let inner = entry.with_context(unreadable)?.path();
         let mut halves = [MAP, EXPECTATION].into_iter();
         if recording_in(&inner).is_some() {
             cases.push(inner);
         } else if let Some(found) = halves.find(|name| inner.join(name).exists()) {
-            let folder = inner;
-            return Err(RegressionError::HalfCase { folder, found });
+            return Err(wrong_use(format!(
+                "{} has {found}, but no recording.mcap, recording.db3 or folder recording",
+                inner.display()
+            )));
         }
     }
     cases.sort();
     match cases.is_empty() {
-        true => Err(RegressionError::NoCases { folder }),
+        true => Err(wrong_use(format!(
+            "{} is not a folder with recording.mcap and contains none",
+            folder.display()
+        ))),
         false => Ok(cases),
     }
 }
@@ -78,16 +82,17 @@ impl Case {
     ///
     /// # Errors
     /// The recording cannot be read or has no map either.
-    pub(super) fn map(&self) -> Result<Option<PathBuf>, RegressionError> {
+    pub(super) fn map(&self) -> anyhow::Result<Option<PathBuf>> {
         let map = self.folder.join(MAP);
         if map.exists() {
             return Ok(Some(map));
         }
         match Recording::open(self.recording())?.maps()?.next() {
             Some(_) => Ok(None),
-            None => Err(RegressionError::NoMap {
-                folder: self.folder.clone(),
-            }),
+            None => bail!(
+                "{} has no map.yaml, and its recording no map",
+                self.folder.display()
+            ),
         }
     }
 
@@ -99,38 +104,32 @@ impl Case {
     ///
     /// # Errors
     /// The file cannot be read, or has another format.
-    pub(super) fn expected(&self) -> Result<Option<Vec<Answer>>, RegressionError> {
+    pub(super) fn expected(&self) -> anyhow::Result<Option<Vec<Answer>>> {
         let file = self.expectation();
         let text = match std::fs::read_to_string(&file) {
-            Ok(text) => text,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(failed("read", &file, source)),
+            read => read.with_context(|| failed("read", &file))?,
         };
-        let answers = serde_json::from_str(&text);
-        answers
-            .map(Some)
-            .map_err(|source| RegressionError::Expectation { file, source })
+        serde_json::from_str(&text).map(Some).with_context(|| {
+            let file = file.display();
+            format!("{file} does not say what is expected: --accept writes it again")
+        })
     }
 
     /// Writes these results as the expected ones.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(super) fn accept(&self, answers: &[Answer]) -> Result<(), RegressionError> {
+    pub(super) fn accept(&self, answers: &[Answer]) -> anyhow::Result<()> {
         let file = self.expectation();
         // Strings and finite numbers always serialize.
         let text = serde_json::to_string_pretty(answers).unwrap_or_default() + "\n";
-        std::fs::write(&file, text).map_err(|source| failed("write", &file, source))
+        std::fs::write(&file, text).with_context(|| failed("write", &file))
     }
 }
 
-pub(super) fn failed(action: &'static str, file: &Path, source: io::Error) -> RegressionError {
-    LauncherError::File {
-        action,
-        file: file.to_owned(),
-        source,
-    }
-    .into()
+pub(super) fn failed(action: &str, file: &Path) -> String {
+    format!("cannot {action} {}", file.display())
 }
 
 #[cfg(test)]

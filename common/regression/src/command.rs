@@ -4,18 +4,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use command_line::{output, stdout};
-use launcher::LauncherError;
+use anyhow::Context;
+use command_line::{output, stdout, wrong_use};
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
 use progress::say;
-use transport::{GraphName, with_causes};
+use transport::GraphName;
 
 use super::case::{self, Case};
 use super::compare::{Tolerance, differences, summary, table};
 use super::junit::{self, Outcome};
 use super::play::{self, Played};
-use crate::RegressionError;
 
 /// Notes below the options in the help text.
 pub const NOTES: &str = "\
@@ -57,10 +56,10 @@ pub struct Config {
 ///
 /// # Errors
 /// There is no recording, the graph cannot be built, or a file cannot be written.
-pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
-    transport::node::start_logging().map_err(LauncherError::Logging)?;
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
+    transport::node::start_logging().map_err(wrong_use)?;
     if let Some(file) = &config.junit {
-        output::prepare(file, true).map_err(|source| case::failed("write", file, source))?;
+        output::prepare(file, true)?;
     }
     let cases = case::all_in(&config.folders)?;
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
@@ -79,7 +78,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
         let report = junit::report(&outcomes).map_err(std::io::Error::other);
         report
             .and_then(|text| std::fs::write(file, text))
-            .map_err(|source| case::failed("write", file, source))?;
+            .with_context(|| case::failed("write", file))?;
     }
     let is_good = |outcome: &Outcome| match config.accept {
         true => outcome.result.is_ok(),
@@ -102,15 +101,15 @@ fn replay(config: &Config, case: &Case) -> Outcome {
     match judge(config, case, &mut outcome) {
         Ok(()) => {}
         Err(error) => {
-            say(&format!("{}: {}", case.name, with_causes(&error)));
-            outcome.result = Err(with_causes(&error));
+            say(&format!("{}: {error:#}", case.name));
+            outcome.result = Err(format!("{error:#}"));
         }
     }
     outcome.took = start.elapsed();
     outcome
 }
 
-fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), RegressionError> {
+fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> anyhow::Result<()> {
     let expected = case.expected();
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     play::direct(&mut descriptor, case)?;

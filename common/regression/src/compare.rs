@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::answer::{Answer, TrackedPose};
+use serde_json::Value;
+
+use super::answer::Answer;
 
 /// Differences to report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -39,6 +41,49 @@ const SHARE: f64 = 0.001;
 
 /// Name of the verdict and the state that stand for one place.
 const UNIQUE: &str = "Unique";
+
+/// How a value of a result is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    /// Always, and exactly: the verdict or the state.
+    State,
+    /// Only with [`Tolerance::Exact`], and exactly.
+    Exact,
+    /// Only with [`Tolerance::Exact`], within [`SHARE`].
+    Share,
+    /// With [`Tolerance::Pose`] if both states are [`UNIQUE`].
+    Position,
+    Heading,
+}
+
+/// Values of the answer to a scan, the verdict first.
+const SINGLE: [(&str, Rule); 14] = [
+    ("verdict", Rule::State),
+    ("x_m", Rule::Position),
+    ("y_m", Rule::Position),
+    ("heading_deg", Rule::Heading),
+    ("best", Rule::Exact),
+    ("floor", Rule::Exact),
+    ("certified_floor", Rule::Exact),
+    ("highest_possible", Rule::Exact),
+    ("votes", Rule::Exact),
+    ("beams_used", Rule::Exact),
+    ("alternatives", Rule::Exact),
+    ("hypotheses", Rule::Exact),
+    ("score", Rule::Share),
+    ("confidence", Rule::Share),
+];
+
+/// Values of the tracker's pose, the state first.
+const TRACKED: [(&str, Rule); 7] = [
+    ("pose.state", Rule::State),
+    ("pose.x_m", Rule::Position),
+    ("pose.y_m", Rule::Position),
+    ("pose.heading_deg", Rule::Heading),
+    ("pose.reason", Rule::Exact),
+    ("pose.places", Rule::Exact),
+    ("pose.probability", Rule::Share),
+];
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Difference {
@@ -91,80 +136,42 @@ struct Scan<'a> {
 
 impl Scan<'_> {
     fn compare(&mut self, expected: &Answer, found: &Answer) {
-        macro_rules! exact {
-            ($($field:ident),+) => {
-                $({
-                    let (expected, found) = (&expected.$field, &found.$field);
-                    self.note(stringify!($field), expected == found, expected, found);
-                })+
-            };
+        // Numbers and texts always serialize.
+        let [expected, found] =
+            [expected, found].map(|answer| serde_json::to_value(answer).unwrap_or_default());
+        self.compare_values(&SINGLE, &expected, &found);
+        let [expected, found] = [&expected["pose"], &found["pose"]];
+        if expected.is_object() && found.is_object() {
+            self.compare_values(&TRACKED, expected, found);
+            return;
         }
-        exact!(verdict);
-        let is_unique = expected.verdict == UNIQUE && found.verdict == UNIQUE;
-        if is_unique || self.is_exact() {
-            let by_m = self.tolerance.position_m();
-            self.near("x_m", expected.x_m, found.x_m, by_m);
-            self.near("y_m", expected.y_m, found.y_m, by_m);
-            let headings = (expected.heading_deg, found.heading_deg);
-            self.near_heading("heading_deg", headings);
-        }
-        if self.is_exact() {
-            exact!(
-                best,
-                floor,
-                certified_floor,
-                highest_possible,
-                votes,
-                beams_used
-            );
-            exact!(alternatives, hypotheses);
-            let share = |share: Option<f32>| share.map(f64::from);
-            self.near("score", share(expected.score), share(found.score), SHARE);
-            let (confidence, now) = (Some(expected.confidence), Some(found.confidence));
-            self.near("confidence", share(confidence), share(now), SHARE);
-        }
-        match (&expected.pose, &found.pose) {
-            (Some(expected), Some(found)) => self.compare_tracked(expected, found),
-            (expected, found) => {
-                let shown = |pose: &Option<TrackedPose>| {
-                    pose.as_ref()
-                        .map_or("none".to_owned(), |pose| pose.state.clone())
-                };
-                let both_lack = expected.is_none() && found.is_none();
-                self.note("pose", both_lack, &shown(expected), &shown(found));
+        let state = |pose: &Value| pose["state"].as_str().unwrap_or("none").to_owned();
+        self.note("pose", expected == found, &state(expected), &state(found));
+    }
+
+    fn compare_values(&mut self, values: &[(&'static str, Rule)], expected: &Value, found: &Value) {
+        let is_exact = self.tolerance == Tolerance::Exact;
+        let mut is_unique = false;
+        for &(what, rule) in values {
+            let key = what.trim_start_matches("pose.");
+            let (expected, found) = (&expected[key], &found[key]);
+            let (number, now) = (expected.as_f64(), found.as_f64());
+            match rule {
+                Rule::State => {
+                    is_unique = expected == UNIQUE && found == UNIQUE;
+                    self.note(what, expected == found, &shown(expected), &shown(found));
+                }
+                Rule::Exact if is_exact => {
+                    self.note(what, expected == found, &shown(expected), &shown(found));
+                }
+                Rule::Share if is_exact => self.near(what, number, now, SHARE),
+                Rule::Position if is_exact || is_unique => {
+                    self.near(what, number, now, self.tolerance.position_m());
+                }
+                Rule::Heading if is_exact || is_unique => self.near_heading(what, (number, now)),
+                _ => {}
             }
         }
-    }
-
-    fn compare_tracked(&mut self, expected: &TrackedPose, found: &TrackedPose) {
-        macro_rules! exact {
-            ($($field:ident),+) => {
-                $(self.note(
-                    concat!("pose.", stringify!($field)),
-                    expected.$field == found.$field,
-                    &expected.$field,
-                    &found.$field,
-                );)+
-            };
-        }
-        exact!(state);
-        let is_unique = expected.state == UNIQUE && found.state == UNIQUE;
-        if is_unique || self.is_exact() {
-            let by_m = self.tolerance.position_m();
-            self.near("pose.x_m", expected.x_m, found.x_m, by_m);
-            self.near("pose.y_m", expected.y_m, found.y_m, by_m);
-            let headings = (expected.heading_deg, found.heading_deg);
-            self.near_heading("pose.heading_deg", headings);
-        }
-        if self.is_exact() {
-            exact!(reason, places);
-            let (probability, now) = (Some(expected.probability), Some(found.probability));
-            self.near("pose.probability", probability, now, SHARE);
-        }
-    }
-
-    fn is_exact(&self) -> bool {
-        self.tolerance == Tolerance::Exact
     }
 
     /// Compares headings on the circle.
@@ -205,6 +212,11 @@ impl Scan<'_> {
             });
         }
     }
+}
+
+/// Formats a value without quotes.
+fn shown(value: &Value) -> String {
+    value.as_str().map_or(value.to_string(), str::to_owned)
 }
 
 pub(super) fn table(differences: &[Difference]) -> String {
@@ -252,6 +264,7 @@ pub(super) fn summary(differences: &[Difference]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::answer::TrackedPose;
     use super::*;
 
     fn answer(stamp_ns: i64) -> Answer {

@@ -8,9 +8,7 @@ mod answer;
 mod case;
 mod command;
 mod compare;
-mod error;
 mod junit;
 mod play;
 
 pub use command::{Config, NOTES, run};
-pub use error::RegressionError;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::anyhow;
 use launcher::descriptor::Descriptor;
 use launcher::run::arguments::{MAP_SERVER, add_to_list, find, leave_out_monitors, set, unset};
 use launcher::run::crew::Crew;
@@ -15,7 +16,6 @@ use transport::{
 
 use super::answer::Answer;
 use super::case::Case;
-use crate::RegressionError;
 
 /// Node name in the graph.
 const NAME: &str = "regress";
@@ -28,7 +28,7 @@ const TIMEOUT: Duration = Duration::from_secs(20);
 ///
 /// # Errors
 /// The graph has no map server, or the case no map.
-pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), RegressionError> {
+pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> anyhow::Result<()> {
     let Descriptor { dataflow, file, .. } = descriptor;
     leave_out_monitors(dataflow);
     let replayer = replay::play(dataflow, &[case.recording()]);
@@ -75,7 +75,7 @@ pub(super) fn play(
     descriptor: Descriptor,
     name: &GraphName,
     recording: &Path,
-) -> Result<Played, RegressionError> {
+) -> anyhow::Result<Played> {
     let (scans, damage) = look_at(recording)?;
     let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     remove_leftovers(name)?;
@@ -89,16 +89,16 @@ pub(super) fn play(
             is_tracked,
             damage,
         }),
-        false => Err(RegressionError::Unanswered {
-            recording: recording.to_owned(),
-            scans,
-            answered: answers.len(),
-        }),
+        false => Err(anyhow!(
+            "{}: {} of {scans} scans were answered; see the graph's log",
+            recording.display(),
+            answers.len()
+        )),
     }
 }
 
 /// Returns the number of scans, and the damage if any.
-fn look_at(path: &Path) -> Result<(usize, Option<String>), RegressionError> {
+fn look_at(path: &Path) -> anyhow::Result<(usize, Option<String>)> {
     let recording = Recording::open(path)?;
     let topic = recording.required_topic(Kind::Scan)?;
     let of_topic = recording
@@ -115,7 +115,7 @@ fn collect(
     descriptor: Descriptor,
     name: &GraphName,
     (scans, is_tracked): (usize, bool),
-) -> Result<Vec<Answer>, RegressionError> {
+) -> anyhow::Result<Vec<Answer>> {
     let graph = Graph::join_named(NAME, name)?;
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
@@ -144,7 +144,7 @@ fn collect(
             crew.received(report.header(), now);
         }
         crew.tick(now, shared_memory_has_room())?;
-        Ok::<_, RegressionError>(Flow::Continue)
+        Ok::<_, anyhow::Error>(Flow::Continue)
     });
     let stopped = crew.stop();
     outcome?;

@@ -1,5 +1,6 @@
 //! A drive: the true pose, the odometry and the readings, scan by scan.
 
+use anyhow::{anyhow, bail};
 use geometry::{Mount, Pose};
 use map::OccupancyGrid;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -12,7 +13,7 @@ use crate::path::Timetable;
 use crate::people::People;
 use crate::scene::Scene;
 use crate::sonar::Ring;
-use crate::{Bearings, DriveConfig, NamedMount, Path, SimulationError, laser};
+use crate::{Bearings, DriveConfig, NamedMount, Path, laser};
 
 /// Maximum number of scans: a day at 10 Hz.
 const MAX_SCANS: u64 = 864_000;
@@ -81,11 +82,7 @@ impl Drive {
     /// # Errors
     /// The path or a sensor on its mount is blocked or leaves the map, the drive is too long, or
     /// there is no free place for people.
-    pub fn new(
-        map: &OccupancyGrid,
-        path: &Path,
-        config: &DriveConfig,
-    ) -> Result<Self, SimulationError> {
+    pub fn new(map: &OccupancyGrid, path: &Path, config: &DriveConfig) -> anyhow::Result<Self> {
         let obstacles = Obstacles::of(map);
         path.check(&obstacles)?;
         let timetable = Timetable::new(path, config.speed, config.turn_rate.to_radians());
@@ -129,10 +126,11 @@ impl Drive {
             before: None,
         };
         if drive.duration_s() * config.rate >= 1.0 {
-            return Err(SimulationError::LongScan {
-                duration_s: config.scan_duration,
-                period_s: 1.0 / config.rate,
-            });
+            bail!(
+                "a scan takes {} s and the next begins after {} s; allowed are scans that end before",
+                config.scan_duration,
+                1.0 / config.rate
+            );
         }
         drive.check_sensors()?;
         Ok(drive)
@@ -158,7 +156,7 @@ impl Drive {
     }
 
     /// Checks that the sensors are free at the first and last beam of every scan.
-    fn check_sensors(&self) -> Result<(), SimulationError> {
+    fn check_sensors(&self) -> anyhow::Result<()> {
         let obstacles = &self.scene.obstacles;
         for scan in 0..self.scans {
             let start_s = scan as f64 / self.rate;
@@ -170,12 +168,13 @@ impl Drive {
                     let Pose { x, y, .. } = map_from_base.then(mount.base_from_laser);
                     let on_map = obstacles.holds(x, y);
                     if !on_map || obstacles.range(x, y, 0.0, 0.0).is_some() {
-                        return Err(SimulationError::SensorBlocked {
-                            x,
-                            y,
-                            time_s,
-                            on_map,
-                        });
+                        let state = match on_map {
+                            true => "into an obstacle",
+                            false => "off the map",
+                        };
+                        bail!(
+                            "the sensor comes {state} at {x:.2},{y:.2}, where its mount puts it {time_s:.2} s after the start"
+                        );
                     }
                 }
             }
@@ -251,12 +250,13 @@ impl Drive {
     }
 }
 
-fn check_names(mounts: &[NamedMount]) -> Result<(), SimulationError> {
+fn check_names(mounts: &[NamedMount]) -> anyhow::Result<()> {
     for (index, laser) in mounts.iter().enumerate() {
         if mounts[..index].iter().any(|other| other.name == laser.name) {
-            return Err(SimulationError::SameLaser {
-                name: laser.name.clone(),
-            });
+            bail!(
+                "two lasers are called {}; allowed are lasers with names of their own",
+                laser.name
+            );
         }
     }
     Ok(())
@@ -278,17 +278,15 @@ impl Iterator for Drive {
 }
 
 /// Number of scans of a drive: one at the start, and then as long as it lasts.
-fn count(timetable: &Timetable, rate: f64) -> Result<u64, SimulationError> {
+fn count(timetable: &Timetable, rate: f64) -> anyhow::Result<u64> {
     let seconds = timetable.seconds();
     // A drive that ends with a scan includes it, up to rounding.
     let scans = (seconds * rate + 1e-9) as u64 + 1;
     match scans <= MAX_SCANS {
         true => Ok(scans),
-        false => Err(SimulationError::TooLong {
-            seconds,
-            scans,
-            most: MAX_SCANS,
-        }),
+        false => Err(anyhow!(
+            "the drive takes {seconds:.0} s, which is {scans} scans; at most {MAX_SCANS} are simulated"
+        )),
     }
 }
 

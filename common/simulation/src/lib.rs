@@ -9,7 +9,6 @@
 mod angles;
 mod config;
 mod drive;
-mod error;
 mod laser;
 mod noise;
 mod numbers;
@@ -25,7 +24,6 @@ mod testing;
 pub use angles::Bearings;
 pub use config::{DriveConfig, NamedMount};
 pub use drive::{Drive, Snapshot, Wheels};
-pub use error::SimulationError;
 pub use laser::LaserConfig;
 pub use noise::Noise;
 pub use obstacles::Obstacles;

@@ -2,9 +2,9 @@
 
 use std::str::FromStr;
 
+use anyhow::bail;
 use geometry::{Pose, wrap_angle};
 
-use crate::SimulationError;
 use crate::numbers::numbers;
 use crate::obstacles::Obstacles;
 
@@ -49,42 +49,42 @@ impl Path {
     /// # Errors
     /// Names the first corner that is off the map or equal to the previous one, or the first
     /// obstacle on the path.
-    pub(crate) fn check(&self, obstacles: &Obstacles) -> Result<(), SimulationError> {
+    pub(crate) fn check(&self, obstacles: &Obstacles) -> anyhow::Result<()> {
         for (corner, &[x, y]) in (1..).zip(&self.0) {
             if !obstacles.holds(x, y) {
-                let [x_m, y_m] = obstacles.extent();
-                return Err(SimulationError::CornerOffMap {
-                    corner,
-                    x,
-                    y,
-                    x_m,
-                    y_m,
-                });
+                let [x_m, y_m] = obstacles.extent().map(|ends| ends.map(to_mm));
+                bail!(
+                    "corner {corner} of the path, {x},{y}, is not on the map, which spans x {} to {} and y {} to {}",
+                    x_m[0],
+                    x_m[1],
+                    y_m[0],
+                    y_m[1]
+                );
             }
         }
         for (corner, leg) in (1..).zip(self.0.windows(2)) {
             let leg = Leg::between(leg[0], leg[1]);
             if leg.length_m == 0.0 {
                 let Pose { x, y, .. } = leg.start;
-                return Err(SimulationError::SameCorner {
-                    corner: corner + 1,
-                    x,
-                    y,
-                });
+                let next = corner + 1;
+                bail!("corners {corner} and {next} of the path are the same, {x},{y}");
             }
             let Pose { x, y, yaw } = leg.start;
             if let Some(after_m) = obstacles.range(x, y, yaw, leg.length_m) {
                 let Pose { x, y, .. } = leg.at(after_m);
-                return Err(SimulationError::Blocked {
-                    corner,
-                    x,
-                    y,
-                    after_m,
-                });
+                let next = corner + 1;
+                bail!(
+                    "the path from corner {corner} to corner {next} meets an obstacle at {x:.2},{y:.2}, {after_m:.2} m after corner {corner}"
+                );
             }
         }
         Ok(())
     }
+}
+
+/// Rounds to millimetres, to hide the rounding of binary fractions.
+fn to_mm(metres: f64) -> f64 {
+    (metres * 1000.0).round() / 1000.0
 }
 
 /// A straight part of the path.
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn a_path_that_cannot_be_driven_is_refused_where() {
         let obstacles = Obstacles::of(&room());
-        assert_eq!(path("1,1 9,1 9,7").check(&obstacles), Ok(()));
+        assert!(path("1,1 9,1 9,7").check(&obstacles).is_ok());
         refused(
             "1,1 2,1 12,1",
             "corner 3 of the path, 12,1, is not on the map, which spans x 0 to 10 and y 0 to 8",

@@ -1,10 +1,11 @@
 //! People who walk: discs that move straight from goal to goal.
 
+use anyhow::Context;
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
 
+use crate::Path;
 use crate::obstacles::Obstacles;
-use crate::{Path, SimulationError};
 
 /// Radius of a person at the height of a knee or hip, metres.
 pub(crate) const RADIUS_M: f64 = 0.2;
@@ -46,7 +47,7 @@ impl People {
         path: &Path,
         obstacles: &Obstacles,
         rng: Xoshiro256PlusPlus,
-    ) -> Result<Self, SimulationError> {
+    ) -> anyhow::Result<Self> {
         let mut people = People {
             people: Vec::new(),
             corners: path.corners().to_vec(),
@@ -58,9 +59,8 @@ impl People {
                 let place = people.point_near(from);
                 obstacles.is_free(from, place).then_some(place)
             });
-            let at = place.ok_or(SimulationError::NoPlaceForPeople {
-                people: count,
-                within_m: WITHIN_M,
+            let at = place.with_context(|| {
+                format!("{count} people find no free place within {WITHIN_M} m of the path")
             })?;
             people.people.push(Person { at, goal: at });
         }

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use command_line::output;
-use command_line::stdout::print;
+use anyhow::{Context, bail};
+use command_line::{output, stdout::print, wrong_use};
 use dataflow::RestartPolicy;
 use geometry::Pose;
-use launcher::LauncherError;
 use launcher::descriptor::{self, Builds, DEFAULT_FILE, Descriptor};
 use launcher::run::Options;
 use launcher::run::arguments::{MAP_SERVER, PLAYERS, value};
@@ -20,7 +19,6 @@ use super::course::{Course, Plan};
 use super::fault::Fault;
 use super::filler;
 use super::maps::Maps;
-use crate::SoakError;
 
 /// Notes below the options in the help text.
 pub const NOTES: &str = "\
@@ -92,16 +90,15 @@ pub struct Config {
 ///
 /// # Errors
 /// The graph cannot be set up, or a fault cannot be injected.
-pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
-    transport::node::start_logging().map_err(LauncherError::Logging)?;
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
+    transport::node::start_logging().map_err(wrong_use)?;
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     let recording = config.recording(&descriptor)?;
     let truths = truths(&recording)?;
     check_room(config)?;
-    let folder = tempfile::tempdir().map_err(|source| LauncherError::File {
-        action: "create a folder in",
-        file: std::env::temp_dir(),
-        source,
+    let folder = tempfile::tempdir().with_context(|| {
+        let folder = std::env::temp_dir();
+        format!("cannot create a folder in {}", folder.display())
     })?;
     let maps = Maps::new(&config.map(&descriptor)?, folder.path())?;
     let graph = match &config.graph {
@@ -153,14 +150,14 @@ impl Config {
         arguments
     }
 
-    fn recording(&self, descriptor: &Descriptor) -> Result<PathBuf, SoakError> {
+    fn recording(&self, descriptor: &Descriptor) -> anyhow::Result<PathBuf> {
         match &self.replay {
             Some(file) => Ok(file.clone()),
             None => named(descriptor, &PLAYERS, "--recording", "--replay"),
         }
     }
 
-    fn map(&self, descriptor: &Descriptor) -> Result<PathBuf, SoakError> {
+    fn map(&self, descriptor: &Descriptor) -> anyhow::Result<PathBuf> {
         match &self.map {
             Some(file) => Ok(file.clone()),
             None => named(descriptor, &[MAP_SERVER], "--map", "--map"),
@@ -174,17 +171,16 @@ fn named(
     executables: &[&str],
     option: &str,
     instead: &str,
-) -> Result<PathBuf, SoakError> {
+) -> anyhow::Result<PathBuf> {
     let mut nodes = descriptor.dataflow.nodes.iter();
     let node = nodes.find(|node| executables.contains(&node.executable()));
     match node.and_then(|node| value(node, option)) {
         Some(file) => Ok(descriptor.folder.join(file)),
-        None => Err(LauncherError::Usage(format!(
+        None => Err(wrong_use(format!(
             "{} has no {} with {option}: say which one with {instead}",
             descriptor.file.display(),
             executables.join(" or "),
-        ))
-        .into()),
+        ))),
     }
 }
 
@@ -195,25 +191,25 @@ fn victims(descriptor: &Descriptor) -> Vec<String> {
     again.map(|node| node.id.clone()).collect()
 }
 
-fn truths(recording: &Path) -> Result<BTreeMap<i64, Pose>, SoakError> {
+fn truths(recording: &Path) -> anyhow::Result<BTreeMap<i64, Pose>> {
     let truths = Recording::open(recording)?.ground_truths()?;
     if truths.is_empty() {
-        let file = recording.to_owned();
-        return Err(SoakError::NoTruths { file });
+        let file = recording.display();
+        bail!("{file} has no true poses on /ground_truth: nothing to compare with");
     }
     let pose = |(stamp_ns, truth): (i64, recording::GroundTruth)| (stamp_ns, truth.pose);
     Ok(truths.into_iter().map(pose).collect())
 }
 
 /// Checks that the file systems to be filled are small enough.
-fn check_room(config: &Config) -> Result<(), SoakError> {
+fn check_room(config: &Config) -> anyhow::Result<()> {
     if config.faults.contains(&Fault::Shm) {
         filler::check(Path::new("/dev/shm"))?;
     }
     if config.faults.contains(&Fault::Disk) {
         let Some(record) = &config.record else {
             let needed = "--faults disk fills the disk of --record, which is not given";
-            return Err(LauncherError::Usage(needed.to_owned()).into());
+            return Err(wrong_use(needed));
         };
         filler::check(output::folder_of(record))?;
     }

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use geometry::Pose;
-use launcher::LauncherError;
 use launcher::run::console::{LAUNCHER, say};
 use launcher::run::control::{Answer, NodeStatus, Question, Status, ask};
 use nix::sys::signal::Signal;
@@ -24,7 +24,6 @@ use super::maps::Maps;
 use super::report::Report;
 use super::tally::{Gap, Tally};
 use super::usage::Usage;
-use crate::SoakError;
 
 /// Timeout for the first Unique pose, and for a pose after a fault, after which the run fails; the
 /// graph needs less for everything that it does by itself.
@@ -90,11 +89,11 @@ impl Course {
         plan: Plan,
         maps: Maps,
         truths: BTreeMap<i64, Pose>,
-    ) -> Result<Self, SoakError> {
+    ) -> anyhow::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
         for number in [SIGINT, SIGTERM, SIGHUP] {
             signal_hook::flag::register(number, Arc::clone(&stop))
-                .map_err(LauncherError::Signal)?;
+                .context("cannot catch signals")?;
         }
         let now = Instant::now();
         Ok(Course {
@@ -119,7 +118,7 @@ impl Course {
     ///
     /// # Errors
     /// A fault cannot be injected.
-    pub(super) fn run(mut self) -> Result<Report, SoakError> {
+    pub(super) fn run(mut self) -> anyhow::Result<Report> {
         // The graph may be built first, which may take any time.
         while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             if self.status().is_some() {
@@ -227,7 +226,7 @@ impl Course {
         }
     }
 
-    fn suffer(&mut self, fault: Fault) -> Result<(), SoakError> {
+    fn suffer(&mut self, fault: Fault) -> anyhow::Result<()> {
         let pids = self.choose(fault.nodes());
         let words: Vec<_> = pids.iter().map(|(id, _)| id.as_str()).collect();
         let seconds = self.begin.elapsed().as_secs();
@@ -297,7 +296,7 @@ impl Course {
     }
 
     /// Fills a folder for a while; returns the time at which it was emptied.
-    fn fill(&mut self, folder: &Path, fault: Fault) -> Result<i64, SoakError> {
+    fn fill(&mut self, folder: &Path, fault: Fault) -> anyhow::Result<i64> {
         let filler = Filler::fill(folder)?;
         self.watch(fault.lasts(), |_| false);
         drop(filler);
@@ -305,7 +304,7 @@ impl Course {
     }
 
     /// Kills the launcher and starts another; returns the time of the start.
-    fn kill_launcher(&mut self) -> Result<i64, SoakError> {
+    fn kill_launcher(&mut self) -> anyhow::Result<i64> {
         if let Some(status) = self.status() {
             self.nodes = status.nodes;
         }
@@ -334,7 +333,7 @@ impl Course {
         Ok(started_ns)
     }
 
-    fn finish(mut self) -> Result<Report, SoakError> {
+    fn finish(mut self) -> anyhow::Result<Report> {
         self.look();
         let seconds = self.begin.elapsed().as_secs_f64();
         let restarts = self.earlier_restarts + restarts(&self.nodes);

@@ -4,10 +4,9 @@ use std::fs::{File, remove_file};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use launcher::LauncherError;
+use anyhow::Context;
+use command_line::wrong_use;
 use nix::sys::statvfs::statvfs;
-
-use crate::SoakError;
 
 /// Largest free space that may be filled, in bytes: a larger file system is shared with others, who
 /// would be harmed, and memory may end before a large /dev/shm does.
@@ -21,8 +20,8 @@ pub(super) struct Filler(PathBuf);
 ///
 /// # Errors
 /// It has too much, or its state cannot be read.
-pub(super) fn check(folder: &Path) -> Result<(), SoakError> {
-    let found = statvfs(folder).map_err(|errno| failed("look at", folder, errno.into()))?;
+pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
+    let found = statvfs(folder).with_context(|| failed("look at", folder))?;
     let free = found
         .blocks_available()
         .saturating_mul(found.fragment_size());
@@ -31,12 +30,11 @@ pub(super) fn check(folder: &Path) -> Result<(), SoakError> {
     }
     let folder = folder.display();
     let (free, allowed) = (free >> 20, MAX_FREE >> 20);
-    Err(LauncherError::Usage(format!(
+    Err(wrong_use(format!(
         "{folder} has {free} MiB free and is not filled: allowed are {allowed} MiB, since others may \
          need the room; give it its own: unshare --mount sh -c \
          'mount -t tmpfs -o size=256m tmpfs {folder} && backcast soak …'"
-    ))
-    .into())
+    )))
 }
 
 impl Filler {
@@ -44,18 +42,17 @@ impl Filler {
     ///
     /// # Errors
     /// A file cannot be created, or writing fails for a reason other than lack of space.
-    pub(super) fn fill(folder: &Path) -> Result<Self, SoakError> {
+    pub(super) fn fill(folder: &Path) -> anyhow::Result<Self> {
         let path = folder.join(format!("backcast-soak-{}", std::process::id()));
-        let mut file = File::create(&path).map_err(|source| failed("create", &path, source))?;
+        let mut file = File::create(&path).with_context(|| failed("create", &path))?;
         let filler = Filler(path);
         // Smaller blocks fill the rest that is too small for a larger one.
         for size in [1 << 20, 1 << 12, 1] {
             let block = vec![0; size];
             loop {
                 match file.write_all(&block) {
-                    Ok(()) => {}
                     Err(error) if error.kind() == ErrorKind::StorageFull => break,
-                    Err(source) => return Err(failed("write", &filler.0, source)),
+                    outcome => outcome.with_context(|| failed("write", &filler.0))?,
                 }
             }
         }
@@ -70,11 +67,6 @@ impl Drop for Filler {
     }
 }
 
-fn failed(action: &'static str, file: &Path, source: std::io::Error) -> SoakError {
-    LauncherError::File {
-        action,
-        file: file.to_owned(),
-        source,
-    }
-    .into()
+fn failed(action: &str, file: &Path) -> String {
+    format!("cannot {action} {}", file.display())
 }

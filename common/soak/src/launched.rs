@@ -12,8 +12,6 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::Deserialize;
 
-use crate::SoakError;
-
 /// A line of the launcher's output.
 #[derive(Debug, Deserialize)]
 pub(super) struct Printed {
@@ -71,12 +69,12 @@ impl Launched {
     ///
     /// # Errors
     /// It cannot be started.
-    pub(super) fn start(arguments: &[String]) -> Result<Self, SoakError> {
+    pub(super) fn start(arguments: &[String]) -> anyhow::Result<Self> {
         let executable = std::env::current_exe().map_err(not_started)?;
         Self::start_program(&executable, arguments)
     }
 
-    fn start_program(executable: &Path, arguments: &[String]) -> Result<Self, SoakError> {
+    fn start_program(executable: &Path, arguments: &[String]) -> anyhow::Result<Self> {
         let mut child = Command::new(executable)
             .arg("run")
             .args(arguments)
@@ -119,7 +117,7 @@ impl Launched {
     ///
     /// # Errors
     /// It cannot be signalled.
-    pub(super) fn ask_to_stop(&self) -> Result<(), SoakError> {
+    pub(super) fn ask_to_stop(&self) -> anyhow::Result<()> {
         signal(self.pid(), Signal::SIGINT)
     }
 
@@ -127,7 +125,7 @@ impl Launched {
     ///
     /// # Errors
     /// Waiting fails.
-    pub(super) fn wait(&mut self) -> Result<ExitStatus, SoakError> {
+    pub(super) fn wait(&mut self) -> anyhow::Result<ExitStatus> {
         self.child.wait().map_err(not_started)
     }
 
@@ -135,7 +133,7 @@ impl Launched {
     ///
     /// # Errors
     /// Killing or waiting fails.
-    pub(super) fn kill(&mut self) -> Result<(), SoakError> {
+    pub(super) fn kill(&mut self) -> anyhow::Result<()> {
         self.child.kill().map_err(not_started)?;
         self.wait().map(drop)
     }
@@ -153,15 +151,16 @@ impl Drop for Launched {
 ///
 /// # Errors
 /// The process belongs to another user.
-pub(super) fn signal(pid: i32, signal: Signal) -> Result<(), SoakError> {
+pub(super) fn signal(pid: i32, signal: Signal) -> anyhow::Result<()> {
     match kill(Pid::from_raw(pid), signal) {
         Ok(()) | Err(nix::errno::Errno::ESRCH) => Ok(()),
         Err(errno) => Err(not_started(errno.into())),
     }
 }
 
-fn not_started(source: io::Error) -> SoakError {
-    SoakError::NotLaunched(source)
+fn not_started(source: io::Error) -> anyhow::Error {
+    let text = "cannot start, signal or wait for the processes of the graph";
+    anyhow::Error::new(source).context(text)
 }
 
 #[cfg(test)]

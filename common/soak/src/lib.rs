@@ -8,7 +8,6 @@
 
 mod command;
 mod course;
-mod error;
 mod fault;
 mod filler;
 mod launched;
@@ -18,4 +17,3 @@ mod tally;
 mod usage;
 
 pub use command::{Config, NOTES, run};
-pub use error::SoakError;

@@ -7,11 +7,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use geometry::Pose;
-use launcher::LauncherError;
 use map::{MapError, OccupancyGrid, UNKNOWN};
-
-use crate::SoakError;
 
 /// Margin of the second map, metres.
 const MARGIN_M: f64 = 2.0;
@@ -29,7 +27,7 @@ impl Maps {
     ///
     /// # Errors
     /// The map cannot be read, or a file cannot be written.
-    pub(super) fn new(yaml: &Path, folder: &Path) -> Result<Self, SoakError> {
+    pub(super) fn new(yaml: &Path, folder: &Path) -> anyhow::Result<Self> {
         let grid = map::load(yaml)?;
         let variants = ["as_given.yaml", "larger.yaml"].map(|name| folder.join(name));
         map::save(&grid, &variants[0])?;
@@ -52,16 +50,12 @@ impl Maps {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub(super) fn swap(&mut self) -> Result<(), SoakError> {
+    pub(super) fn swap(&mut self) -> anyhow::Result<()> {
         self.current = 1 - self.current;
         let next = self.served.with_extension("next");
         let copied = fs::copy(&self.variants[self.current], &next)
             .and_then(|_| fs::rename(&next, &self.served));
-        Ok(copied.map_err(|source| LauncherError::File {
-            action: "write",
-            file: self.served.clone(),
-            source,
-        })?)
+        copied.with_context(|| format!("cannot write {}", self.served.display()))
     }
 }
 

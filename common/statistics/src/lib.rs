@@ -15,8 +15,9 @@ pub const CLOSE_SUCCESS: (f64, f64) = (0.2, 3.0);
 /// Share of the truths that error ellipses should contain.
 const HELD: f64 = 0.95;
 
-/// True if an offset from the mean, x and y in metres, is inside the 95 % ellipse of a covariance.
-pub fn holds(covariance: Covariance, off: (f64, f64)) -> bool {
+/// True if the true position is inside the 95 % ellipse of a pose.
+pub fn holds(covariance: Covariance, pose: Pose, truth: Pose) -> bool {
+    let off = (truth.x - pose.x, truth.y - pose.y);
     // χ² with two degrees of freedom is exponentially distributed.
     covariance.squared_deviations(off) <= -2.0 * (1.0 - HELD).ln()
 }

@@ -7,7 +7,6 @@ use std::time::Instant;
 use command_line::stdout as output;
 
 use super::{lines, screen, source};
-use crate::TopError;
 
 #[derive(Debug, clap::Args)]
 pub struct Config {
@@ -28,7 +27,7 @@ pub struct Config {
 ///
 /// # Errors
 /// No monitor answers at the start, or the terminal fails.
-pub fn run(config: &Config) -> Result<ExitCode, TopError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let robot = source::find(&config.address, config.robot.as_deref())?;
     let known = source::snapshot(&config.address, &robot)?;
     if config.once || !stdout().is_terminal() {

@@ -4,11 +4,9 @@
 //! monitor, `screen` draws.
 
 mod command;
-mod error;
 mod known;
 mod lines;
 mod screen;
 mod source;
 
 pub use command::{Config, run};
-pub use error::TopError;

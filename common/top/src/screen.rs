@@ -3,6 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyModifiers};
 use ratatui::widgets::Paragraph;
@@ -10,10 +11,11 @@ use ratatui::widgets::Paragraph;
 use super::known::Known;
 use super::lines;
 use super::source::Update;
-use crate::TopError;
 
 /// Longest wait for a key between two checks for updates.
 const FRAME: Duration = Duration::from_millis(50);
+
+const UNUSABLE: &str = "cannot use the terminal";
 
 /// Redraw interval for ages without new data.
 const AGES: Duration = Duration::from_millis(500);
@@ -22,10 +24,10 @@ const AGES: Duration = Duration::from_millis(500);
 ///
 /// # Errors
 /// The terminal fails.
-pub(super) fn show(mut known: Known, updates: &Receiver<Update>) -> Result<(), TopError> {
-    let mut terminal = ratatui::try_init().map_err(TopError::Terminal)?;
+pub(super) fn show(mut known: Known, updates: &Receiver<Update>) -> anyhow::Result<()> {
+    let mut terminal = ratatui::try_init().context(UNUSABLE)?;
     let shown = follow(&mut terminal, &mut known, updates);
-    ratatui::try_restore().map_err(TopError::Terminal)?;
+    ratatui::try_restore().context(UNUSABLE)?;
     shown
 }
 
@@ -33,7 +35,7 @@ fn follow(
     terminal: &mut DefaultTerminal,
     known: &mut Known,
     updates: &Receiver<Update>,
-) -> Result<(), TopError> {
+) -> anyhow::Result<()> {
     let mut is_new = true;
     let mut drawn = Instant::now();
     loop {
@@ -50,10 +52,10 @@ fn follow(
             let draw = |frame: &mut ratatui::Frame<'_>| {
                 frame.render_widget(Paragraph::new(lines::text(known, now)), frame.area());
             };
-            terminal.draw(draw).map_err(TopError::Terminal)?;
+            terminal.draw(draw).context(UNUSABLE)?;
         }
-        if event::poll(FRAME).map_err(TopError::Terminal)? {
-            match event::read().map_err(TopError::Terminal)? {
+        if event::poll(FRAME).context(UNUSABLE)? {
+            match event::read().context(UNUSABLE)? {
                 Event::Key(key) if ends(key.code, key.modifiers) => return Ok(()),
                 // The window may have a new size.
                 _ => is_new = true,

@@ -5,11 +5,11 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use anyhow::{Context, anyhow};
 use serde::Deserialize;
 use tungstenite::client;
 
 use super::known::{Known, Message};
-use crate::TopError;
 
 /// Largest number of messages queued for the screen; the monitor queues more.
 const WAITING: usize = 256;
@@ -27,7 +27,7 @@ pub(super) type Update = Result<Message, String>;
 ///
 /// # Errors
 /// No monitor answers, or it does not know the robot.
-pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopError> {
+pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String> {
     #[derive(Deserialize)]
     struct Robots {
         robots: Vec<String>,
@@ -37,10 +37,9 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopErro
         None => robots.first(),
         Some(wanted) => robots.iter().find(|robot| *robot == wanted),
     };
-    found.cloned().ok_or_else(|| TopError::NoRobot {
-        address: address.to_owned(),
-        robot: robot.unwrap_or_default().to_owned(),
-        known: robots.clone(),
+    found.cloned().ok_or_else(|| {
+        let (robot, known) = (robot.unwrap_or_default(), robots.join(", "));
+        anyhow!("the monitor at {address} knows no robot {robot:?}; it knows {known}")
     })
 }
 
@@ -48,20 +47,20 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopErro
 ///
 /// # Errors
 /// No monitor answers.
-pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, TopError> {
+pub(super) fn snapshot(address: &str, robot: &str) -> anyhow::Result<Known> {
     let mut known = Known::default();
     let update = ask(address, &format!("/api/v1/robots/{robot}"))?;
     known.receive(update, Instant::now());
     Ok(known)
 }
 
-fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, TopError> {
-    let no_monitor = |error: ureq::Error| TopError::NoMonitor {
-        address: address.to_owned(),
-        reason: match error {
+fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> anyhow::Result<A> {
+    let no_monitor = |error: ureq::Error| {
+        let reason = match error {
             ureq::Error::Timeout(_) => format!("no answer within {TIMEOUT:?}"),
             error => error.to_string(),
-        },
+        };
+        anyhow!("no monitor answers at {address}: is a graph running? ({reason})")
     };
     let agent: ureq::Agent = ureq::Agent::config_builder()
         .timeout_global(Some(TIMEOUT))
@@ -78,7 +77,7 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, T
 ///
 /// # Errors
 /// The thread cannot be started.
-pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Update>, TopError> {
+pub(super) fn follow(address: &str, robot: &str) -> anyhow::Result<Receiver<Update>> {
     let (updates, received) = sync_channel(WAITING);
     let (address, robot) = (address.to_owned(), robot.to_owned());
     let body = move || {
@@ -92,7 +91,7 @@ pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Update>, Top
     thread::Builder::new()
         .name("monitor".into())
         .spawn(body)
-        .map_err(TopError::Terminal)?;
+        .context("cannot start a thread")?;
     Ok(received)
 }
 

@@ -8,7 +8,7 @@ mod tools;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use command_line::CommandError;
+use command_line::exit_code;
 use launcher::{check, control, run};
 
 #[cfg(feature = "tools")]
@@ -77,10 +77,10 @@ pub fn main() -> ExitCode {
 }
 
 /// Prints the error of a failed command on standard error; returns the exit code.
-fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
+fn end(outcome: anyhow::Result<ExitCode>) -> ExitCode {
     outcome.unwrap_or_else(|error| {
-        eprintln!("backcast: {}", transport::with_causes(&error));
-        ExitCode::from(error.exit_code())
+        eprintln!("backcast: {error:#}");
+        ExitCode::from(exit_code(&error))
     })
 }
 

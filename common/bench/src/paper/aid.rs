@@ -19,13 +19,11 @@ use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::space::Space;
 use engine::taper::TaperShape;
 use geometry::Pose;
-use offline::OfflineError;
-use plots::{Curve, CurvePoint, Curves, PlotError};
+use plots::{Curve, CurvePoint, Curves};
 use statistics::SUCCESS;
 
 use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
-use crate::BenchError;
 
 /// Noise of the readings, per cent of their ranges.
 const NOISE: [u32; 3] = [2, 5, 10];
@@ -87,7 +85,7 @@ pub(super) fn measure(
     extent: Extent,
     seed: u64,
     mut step: impl FnMut(String),
-) -> Result<Vec<Saved>, BenchError> {
+) -> anyhow::Result<Vec<Saved>> {
     let mut all = Vec::new();
     for noise_percent in NOISE {
         let mut trials = Vec::new();
@@ -114,7 +112,7 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(extent: Extent, noise_percent: u32, seed: u64) -> Result<Self, BenchError> {
+    fn new(extent: Extent, noise_percent: u32, seed: u64) -> anyhow::Result<Self> {
         let sides = (extent.size, extent.size);
         let world = World::generate(Kind::Rooms, sides, P_OVER_N, seed)?;
         let space = world.space(HEADINGS)?;
@@ -133,7 +131,7 @@ impl Bench {
         };
         let localizer = Localizer::new(frame, world.grid.clone(), settings, Prior::None);
         Ok(Bench {
-            localizer: localizer.map_err(OfflineError::Setting)?,
+            localizer: localizer?,
             markov: RayCasting::new(&world, &space),
             world,
             space,
@@ -141,12 +139,12 @@ impl Bench {
         })
     }
 
-    fn trials(mut self, count: usize, seed: u64) -> Result<Vec<Trial>, BenchError> {
+    fn trials(mut self, count: usize, seed: u64) -> anyhow::Result<Vec<Trial>> {
         let scans = simulate(&self.world, &self.space, &self.config, count, seed)?;
         scans.iter().map(|scan| self.trial(scan)).collect()
     }
 
-    fn trial(&mut self, scan: &SimulatedScan) -> Result<Trial, BenchError> {
+    fn trial(&mut self, scan: &SimulatedScan) -> anyhow::Result<Trial> {
         let votes = self.config.votes(TaperShape::Trapezoid);
         let readings = Readings::new(&scan.scan(), &self.space, &votes)?;
         let mut workspace = Workspace::default();
@@ -156,7 +154,7 @@ impl Bench {
                 .search_in(&mut workspace, &scan.scan(), &|| false);
             found.map(Option::<&Outcome>::cloned)
         });
-        let outcome = outcome.map_err(OfflineError::Refused)?.unwrap_or_default();
+        let outcome = outcome?.unwrap_or_default();
         let by_votes = self.is_best_near(&outcome, scan);
         let headings: Vec<usize> = (0..self.space.directions.count()).collect();
         let (all, markov_ms) = cpu_ms(|| self.markov.locate(&readings, &headings));
@@ -310,7 +308,7 @@ pub(super) fn csv(all: &[Saved]) -> Csv {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(extent: Extent, all: &[Saved]) -> Result<Scene, PlotError> {
+pub(super) fn draw(extent: Extent, all: &[Saved]) -> anyhow::Result<Scene> {
     let names = [
         "votes alone",
         "Markov, everywhere",

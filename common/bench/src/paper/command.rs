@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use progress::Progress;
+
 use super::super::contest::Effort;
-use super::super::progress::Progress;
 use super::super::scope::Table;
 use super::folder::Folder;
 use super::{aid, corridor, counts, method, sonar, tables};
-use crate::BenchError;
 
 /// A part of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -134,7 +134,7 @@ pub(in super::super) fn run(
     config: &Config,
     is_quick: bool,
     seed: u64,
-) -> Result<ExitCode, BenchError> {
+) -> anyhow::Result<ExitCode> {
     let out = config.out.clone().unwrap_or_else(|| "docs/paper".into());
     let folder = Folder::open(&out)?;
     let parts = match &config.part[..] {
@@ -142,9 +142,9 @@ pub(in super::super) fn run(
         asked => asked,
     };
     let scope = Scope { is_quick, seed };
-    let progress = Progress::new(parts.len());
+    let progress = Progress::counting("measuring", "parts", parts.len() as u64);
     for part in ALL.iter().filter(|part| parts.contains(part)) {
-        let say = |what: String| progress.say(what);
+        let say = |what: String| progress.show(what);
         match part {
             Part::Method => method_part(&folder)?,
             Part::Counts => counts_part(&folder, scope)?,
@@ -156,24 +156,24 @@ pub(in super::super) fn run(
         }
         progress.step();
     }
-    progress.print(&format!("{}: written\n", out.display()))?;
+    progress.write(&format!("{}: written\n", out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn method_part(folder: &Folder) -> Result<(), BenchError> {
+fn method_part(folder: &Folder) -> anyhow::Result<()> {
     folder.picture("figure1.png", &method::draw_figure_1()?)?;
     folder.picture("figure2.png", &method::draw_figure_2()?)?;
     folder.picture("figure3.png", &method::draw_figure_3()?)
 }
 
-fn counts_part(folder: &Folder, scope: Scope) -> Result<(), BenchError> {
+fn counts_part(folder: &Folder, scope: Scope) -> anyhow::Result<()> {
     let (side, scans) = scope.counts();
     let counted = counts::count(side, scans, scope.seed)?;
     folder.table("counts.csv", &counts::csv(&counted))?;
     folder.picture("counts.png", &counts::draw(&counted)?)
 }
 
-fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> Result<(), BenchError> {
+fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> anyhow::Result<()> {
     let mut done = 0;
     let judged = sonar::judge(scope.sonar_poses(), scope.seed, || {
         done += 1;
@@ -195,7 +195,7 @@ fn table_part(
     table: Table,
     extent: tables::Extent,
     say: impl Fn(String),
-) -> Result<(), BenchError> {
+) -> anyhow::Result<()> {
     let measured = tables::measure(table, extent, say)?;
     let name = table.name();
     folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
@@ -203,7 +203,7 @@ fn table_part(
     folder.picture(&format!("{name}.png"), &picture)
 }
 
-fn corridor_part(folder: &Folder, config: &Config) -> Result<(), BenchError> {
+fn corridor_part(folder: &Folder, config: &Config) -> anyhow::Result<()> {
     let file = config.recording.clone();
     let file = file.unwrap_or_else(|| "recordings/malaga_corridor/recording.mcap".into());
     let corridor = corridor::localize(&file)?;
@@ -216,7 +216,7 @@ fn corridor_part(folder: &Folder, config: &Config) -> Result<(), BenchError> {
     Ok(())
 }
 
-fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> Result<(), BenchError> {
+fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> anyhow::Result<()> {
     let extent = scope.aid();
     let saved = aid::measure(extent, scope.seed, say)?;
     folder.table("aid.csv", &aid::csv(&saved))?;

@@ -1,20 +1,20 @@
 //! Section V: a robot with a laser in a corridor localizes at three places: the corridor
 //! of the University of Málaga in place of the paper's, whose recording is not public.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Parser;
+use command_line::wrong_use;
 use drawing::Scene;
 use engine::grid::CellRules;
 use engine::localizer::Prior;
 use engine::peaks::Score;
 use geometry::Pose;
-use offline::{Field, OfflineError, Options, Session, TakenScan, World};
-use plots::{PlotError, Votes};
+use offline::{Field, Options, Session, TakenScan, World, no_truths};
+use plots::Votes;
 use recording::Recording;
 
 use super::folder::{Csv, digits};
-use crate::BenchError;
 
 /// Where in the recording the places lie, as shares of its scans.
 const PLACES: [f64; 3] = [0.1, 0.5, 0.9];
@@ -63,15 +63,14 @@ impl Localized {
 ///
 /// # Errors
 /// It cannot be read, has no truth, or a scan has no place.
-pub(super) fn localize(file: &Path) -> Result<Corridor, BenchError> {
+pub(super) fn localize(file: &Path) -> anyhow::Result<Corridor> {
     let defaults = Defaults::try_parse_from(["paper"]);
-    let options = defaults.map_err(|error| OfflineError::Usage(error.to_string()))?;
+    let options = defaults.map_err(|error| wrong_use(error.to_string()))?;
     let options = options.options;
     let recording = options.open(&[file.to_owned()])?;
     let truths = recording.ground_truths()?;
     if truths.is_empty() {
-        let file = file.to_owned();
-        return Err(OfflineError::NoTruths { file }.into());
+        return Err(no_truths(file));
     }
     let mut taken = Vec::new();
     let session = Session::open(&recording, &options, None)?;
@@ -105,7 +104,7 @@ fn locate(
     (recording, options): (&Recording, &Options),
     (number, scan): (usize, &TakenScan),
     truth: Pose,
-) -> Result<Localized, BenchError> {
+) -> anyhow::Result<Localized> {
     let [by_votes, by_fit] = [Score::Votes, Score::Fit].map(|score| {
         let mut options = options.clone();
         options.engine.peaks.score = score;
@@ -115,9 +114,7 @@ fn locate(
     let mut session = Session::open(recording, options, None)?;
     session.ask(scan)?;
     let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
-    let field = world
-        .and_then(|world| world.field_at(&scan.borrowed(), by_votes.yaw))
-        .map_err(OfflineError::Refused)?;
+    let field = world.and_then(|world| world.field_at(&scan.borrowed(), by_votes.yaw))?;
     Ok(Localized {
         scan: number,
         truth,
@@ -130,16 +127,11 @@ fn locate(
 fn best_place(
     (recording, options): (&Recording, &Options),
     (number, scan): (usize, &TakenScan),
-) -> Result<Pose, BenchError> {
+) -> anyhow::Result<Pose> {
     let mut session = Session::open(recording, options, None)?;
     let places = session.ask(scan)?.answer?.places;
     let best = places.places.first().map(|place| place.map_from_laser);
-    let best = best.ok_or_else(|| PlotError::NoPlace {
-        file: PathBuf::from(recording.path()),
-        number: number as u64,
-        says: places.sentence(),
-    })?;
-    Ok(best)
+    best.ok_or_else(|| plots::no_place(recording.path(), number as u64, places))
 }
 
 /// A row for each place.
@@ -177,7 +169,7 @@ pub(super) fn csv(corridor: &Corridor) -> Csv {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw_places(corridor: &Corridor) -> Result<Scene, PlotError> {
+pub(super) fn draw_places(corridor: &Corridor) -> anyhow::Result<Scene> {
     let places: Vec<(Pose, Pose)> = corridor
         .places
         .iter()
@@ -199,7 +191,7 @@ pub(super) fn draw_field(
     corridor: &Corridor,
     number: usize,
     place: &Localized,
-) -> Result<Scene, PlotError> {
+) -> anyhow::Result<Scene> {
     let text = (
         format!("Place {number}: intensity at the heading that was found"),
         format!(

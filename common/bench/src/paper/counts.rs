@@ -9,11 +9,9 @@ use drawing::Scene;
 use engine::accumulator::Query;
 use engine::program::ScanProgram;
 use engine::taper::TaperShape;
-use offline::OfflineError;
-use plots::{Curve, CurvePoint, Curves, PlotError};
+use plots::{Curve, CurvePoint, Curves};
 
 use super::folder::{Csv, digits};
-use crate::BenchError;
 
 /// Boundary cells over free cells, per cent; in the last two there are more of them.
 const P_OVER_N: [u32; 7] = [5, 10, 25, 50, 100, 120, 150];
@@ -64,14 +62,14 @@ impl Counted {
 ///
 /// # Errors
 /// A world or a scan cannot be made.
-pub(super) fn count(side: usize, scans: usize, seed: u64) -> Result<Vec<Counted>, BenchError> {
+pub(super) fn count(side: usize, scans: usize, seed: u64) -> anyhow::Result<Vec<Counted>> {
     P_OVER_N
         .into_iter()
         .map(|p_over_n| count_in(p_over_n, side, scans, seed))
         .collect()
 }
 
-fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> Result<Counted, BenchError> {
+fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> anyhow::Result<Counted> {
     let ratio = f64::from(p_over_n) / 100.0;
     let world = World::generate(Kind::Rooms, (side, side), ratio, seed)?;
     let space = world.space(360)?;
@@ -86,8 +84,7 @@ fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> Result<Count
         most_votes: 0,
     };
     for scan in simulate(&world, &space, &BEAMS, scans, seed)? {
-        let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes);
-        let program = program.map_err(OfflineError::Refused)?;
+        let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
         let readings = Readings::new(&scan.scan(), &space, &votes)?;
         let query = Query {
             program: &program,
@@ -151,7 +148,7 @@ type Value = fn(&Counted) -> f64;
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(all: &[Counted]) -> Result<Scene, PlotError> {
+pub(super) fn draw(all: &[Counted]) -> anyhow::Result<Scene> {
     let curves: [(&str, usize, bool, Value); 5] = [
         ("operations, counted", 0, false, |c| {
             c.reverse.operations() as f64 / c.markov.operations() as f64

@@ -3,11 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use command_line::output;
 use drawing::Scene;
-use plots::PlotError;
-
-use crate::BenchError;
 
 /// A folder that can be written into.
 #[derive(Debug)]
@@ -27,13 +25,10 @@ impl Folder {
     ///
     /// # Errors
     /// It cannot be made, or no file can be written into it.
-    pub(super) fn open(path: &Path) -> Result<Self, BenchError> {
-        let error = |source| BenchError::OutFolder {
-            folder: path.to_owned(),
-            source,
-        };
+    pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         // An hour of measuring must not end with a file that cannot be written.
-        output::make_folder(path).map_err(error)?;
+        output::make_folder(path)
+            .with_context(|| format!("cannot write into the folder {}", path.display()))?;
         Ok(Folder {
             path: path.to_owned(),
         })
@@ -43,19 +38,18 @@ impl Folder {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(super) fn table(&self, name: &str, csv: &Csv) -> Result<(), BenchError> {
+    pub(super) fn table(&self, name: &str, csv: &Csv) -> anyhow::Result<()> {
         let file = self.path.join(name);
-        fs::write(&file, &csv.text).map_err(|source| BenchError::Table { file, source })
+        fs::write(&file, &csv.text)
+            .with_context(|| format!("cannot write the table {}", file.display()))
     }
 
     /// Writes a picture as PNG.
     ///
     /// # Errors
     /// The picture cannot be encoded, or the file not be written.
-    pub(super) fn picture(&self, name: &str, scene: &Scene) -> Result<(), BenchError> {
-        let file = self.path.join(name);
-        let png = drawing::to_png(scene)?;
-        Ok(fs::write(&file, png).map_err(|source| PlotError::Picture { file, source })?)
+    pub(super) fn picture(&self, name: &str, scene: &Scene) -> anyhow::Result<()> {
+        plots::save_png(scene, &self.path.join(name))
     }
 }
 

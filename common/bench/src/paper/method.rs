@@ -13,8 +13,7 @@ use engine::scatter::Scatter;
 use engine::space::Space;
 use engine::taper::TaperShape;
 use messages::BoundaryCell;
-use offline::OfflineError;
-use plots::{Arrow, Cell, Diagram, Panel, PlotError, Role};
+use plots::{Arrow, Cell, Diagram, Panel, Role};
 
 /// Beams of all figures, over a turn; cells are of one metre.
 const BEAMS: usize = 8;
@@ -219,11 +218,11 @@ const SQUARE: [&str; 14] = [
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw_figure_1() -> Result<Scene, PlotError> {
-    let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6]).map_err(OfflineError::Setting)?;
+pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
+    let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let beams: Vec<usize> = example.looks().collect();
     let field = example.field(&beams, &example.boundary);
-    let (field, highest) = field.map_err(OfflineError::Refused)?;
+    let (field, highest) = field?;
     let empty = || example.cells(&[], 1);
     let own = beams.iter();
     let own = own.map(|&beam| example.forward(example.robot, beam, Some(Role::Reading)));
@@ -273,8 +272,8 @@ pub(super) fn draw_figure_1() -> Result<Scene, PlotError> {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw_figure_2() -> Result<Scene, PlotError> {
-    let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6]).map_err(OfflineError::Setting)?;
+pub(super) fn draw_figure_2() -> anyhow::Result<Scene> {
+    let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let step = |caption: &str, beams: &[usize], from: &[BoundaryCell]| {
         let (field, highest) = example.field(beams, from)?;
         let arrows = example.backward_from(from, beams);
@@ -303,7 +302,7 @@ pub(super) fn draw_figure_2() -> Result<Scene, PlotError> {
     plots::draw_diagram(&Diagram {
         title: "Figure 2: taper and superposition".into(),
         says: "each reading adds the most votes where it falls, and fewer before and behind".into(),
-        panels: panels.map_err(OfflineError::Refused)?,
+        panels: panels?,
     })
 }
 
@@ -328,16 +327,16 @@ const ROOMS: [&str; 14] = [
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw_figure_3() -> Result<Scene, PlotError> {
+pub(super) fn draw_figure_3() -> anyhow::Result<Scene> {
     let looks = [0, 1, 3, 4, 6];
-    let example = Example::new(&ROOMS, (8, 7), &looks).map_err(OfflineError::Setting)?;
+    let example = Example::new(&ROOMS, (8, 7), &looks)?;
     let some = [(19, 6), (19, 7), (11, 6), (0, 7), (5, 9), (8, 0), (4, 0)];
     let some: Vec<BoundaryCell> = some.map(|(x, y)| BoundaryCell { x, y }).to_vec();
     let arrows = example.backward_from(&some, &looks);
     let blocked = arrows.iter().filter(|arrow| arrow.role == Role::Rejected);
     let blocked = blocked.count();
     let field = example.field(&looks, &example.boundary);
-    let (field, highest) = field.map_err(OfflineError::Refused)?;
+    let (field, highest) = field?;
     let says = format!(
         "of {} projections from {} boundary cells {blocked} meet an obstacle first, and count nothing",
         arrows.len(),

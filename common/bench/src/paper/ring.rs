@@ -8,9 +8,6 @@ use engine::program::{ScanProgram, VoteConfig};
 use engine::scan::Scan;
 use engine::scatter::Scatter;
 use engine::space::Space;
-use offline::OfflineError;
-
-use crate::BenchError;
 
 /// Beyond this many deviations the Gaussian over the bearing is left out.
 const DEVIATIONS: f64 = 2.5;
@@ -34,15 +31,14 @@ pub(super) fn intensities(
     scan: &Scan<'_>,
     heading: usize,
     projection: &Projection,
-) -> Result<Vec<f64>, BenchError> {
+) -> anyhow::Result<Vec<f64>> {
     let sigma = projection.bearing_sigma_deg;
     let most = (DEVIATIONS * sigma).floor() as i32;
     let mut sums = vec![0.0; world.grid.cells().len()];
     let mut field = Vec::new();
     for degrees in -most..=most {
         let turn = f64::from(degrees).to_radians();
-        let program = ScanProgram::new(scan, turn, space, &projection.votes);
-        let program = program.map_err(OfflineError::Refused)?;
+        let program = ScanProgram::new(scan, turn, space, &projection.votes)?;
         let query = Query {
             program: &program,
             space,

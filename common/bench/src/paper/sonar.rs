@@ -13,14 +13,13 @@ use engine::space::Space;
 use engine::taper::TaperShape;
 use geometry::Pose;
 use map::OccupancyGrid;
-use offline::{EngineOptions, Field, OfflineError, World as Searched};
-use plots::{Curve, CurvePoint, Curves, PlotError, Votes};
+use offline::{EngineOptions, Field, World as Searched};
+use plots::{Curve, CurvePoint, Curves, Votes};
 use simulation::TRANSDUCERS_DEG;
 
 use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
 use super::ring::{self, Projection};
-use crate::BenchError;
 
 /// A map of the section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,7 +116,7 @@ pub(super) fn judge(
     poses: usize,
     seed: u64,
     mut step: impl FnMut(),
-) -> Result<Vec<Judged>, BenchError> {
+) -> anyhow::Result<Vec<Judged>> {
     let mut all = Vec::new();
     for place in PLACES {
         let (world, space) = place.world(seed)?;
@@ -130,7 +129,7 @@ pub(super) fn judge(
 }
 
 impl Place {
-    fn world(self, seed: u64) -> Result<(World, Space), BenchError> {
+    fn world(self, seed: u64) -> anyhow::Result<(World, Space)> {
         let ratio = f64::from(self.p_over_n_percent) / 100.0;
         let world = World::generate(self.kind, (self.side, self.side), ratio, seed)?;
         let space = world.space(360)?;
@@ -152,7 +151,7 @@ fn judge_one(
     variant: Variant,
     poses: usize,
     seed: u64,
-) -> Result<Judged, BenchError> {
+) -> anyhow::Result<Judged> {
     let ring = ring_of(variant);
     let projection = Projection {
         votes: ring.votes(variant.taper),
@@ -243,7 +242,7 @@ pub(super) fn csv(all: &[Judged]) -> Csv {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw_errors(all: &[Judged]) -> Result<Scene, PlotError> {
+pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
     let mut curves = Vec::new();
     for (color, place) in PLACES.into_iter().enumerate() {
         let plain = || {
@@ -293,7 +292,7 @@ pub(super) fn draw_errors(all: &[Judged]) -> Result<Scene, PlotError> {
 ///
 /// # Errors
 /// The map or the scan cannot be made, or a picture would be too large.
-pub(super) fn draw_field(place: Place, seed: u64) -> Result<[Scene; 2], BenchError> {
+pub(super) fn draw_field(place: Place, seed: u64) -> anyhow::Result<[Scene; 2]> {
     let (world, space) = place.world(seed)?;
     let ring = ring_of(Variant::plain(COMMON_NOISE));
     let mut scans = simulate_ring(&world, &space, &ring, 1, seed)?;
@@ -317,7 +316,7 @@ pub(super) fn draw_field(place: Place, seed: u64) -> Result<[Scene; 2], BenchErr
     Ok([plots::draw_votes(&votes)?, plots::draw_surface(&votes)?])
 }
 
-fn occupancy(world: &World, resolution_m: f64) -> Result<OccupancyGrid, BenchError> {
+fn occupancy(world: &World, resolution_m: f64) -> anyhow::Result<OccupancyGrid> {
     let cells = world.grid.cells().iter();
     let cells = cells.map(|&cell| if cell == Cell::Open { 0 } else { 100 });
     let (width, height) = (world.grid.width() as u32, world.grid.height() as u32);
@@ -335,7 +334,7 @@ fn field_of(
     scan: &SimulatedScan,
     ring: &RingConfig<'_>,
     space: &Space,
-) -> Result<Field, BenchError> {
+) -> anyhow::Result<Field> {
     let votes = ring.votes(TaperShape::Gaussian);
     let options = EngineOptions {
         cells: CellRules::default(),
@@ -348,5 +347,5 @@ fn field_of(
     let heading = scan.heading as f64 * space.directions.spacing();
     let searched = Searched::prepare(map, &options, Prior::Heading);
     let field = searched.and_then(|searched| searched.field_at(&scan.scan(), heading));
-    Ok(field.map_err(OfflineError::Refused)?)
+    Ok(field?)
 }

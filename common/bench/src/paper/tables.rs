@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use benchmarks::worlds::Kind;
 use drawing::Scene;
 use engine::taper::TaperShape;
-use plots::{Curve, CurvePoint, Curves, PlotError};
+use plots::{Curve, CurvePoint, Curves};
 
 use super::super::contest::{Contest, Effort};
 use super::super::method::Method;
@@ -15,7 +15,6 @@ use super::super::scope::{Place, Sight, Table};
 use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
 use super::printed::{self, NOISE, P_OVER_N, Printed};
-use crate::BenchError;
 
 /// As many beams as the robot of the section has sonars.
 const BEAMS: u32 = 8;
@@ -58,7 +57,7 @@ pub(super) fn measure(
     table: Table,
     extent: Extent,
     mut step: impl FnMut(String),
-) -> Result<Vec<Measured>, BenchError> {
+) -> anyhow::Result<Vec<Measured>> {
     let mut rows: BTreeMap<(u32, u32), Vec<Vec<Row>>> = BTreeMap::new();
     for p_over_n in P_OVER_N {
         for world in 0..extent.worlds {
@@ -186,7 +185,7 @@ pub(super) fn csv(all: &[Measured]) -> Csv {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> Result<Scene, PlotError> {
+pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> anyhow::Result<Scene> {
     let ours = match table {
         Table::Table1 => Method::Sweep,
         _ => Method::Search,

@@ -13,7 +13,7 @@ use super::Baseline;
 use super::best::Estimate;
 use super::reading::Readings;
 use crate::particles::{
-    Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
+    Estimate as Gathering, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
 };
 use crate::worlds::World;
 
@@ -129,7 +129,12 @@ impl MonteCarlo {
                 break;
             }
             let scatter = (1.0 / update as f64).max(MIN_SCATTER);
-            filter.predict(Pose::IDENTITY, &self.noise(scatter, heading_is_known));
+            // A known heading has no error.
+            let turn = match heading_is_known {
+                true => 0.0,
+                false => SCATTER_RADIANS * scatter,
+            };
+            filter.scatter(SCATTER_CELLS * scatter * self.space.resolution_m, turn);
         }
         filter.estimate().map(|found| self.on_the_grid(&found))
     }
@@ -142,19 +147,6 @@ impl MonteCarlo {
             y: (y as usize).min(self.sides.1 - 1),
             heading: self.space.directions.nearest(heading).0,
             score: found.share as f32,
-        }
-    }
-
-    /// A known heading has no error.
-    fn noise(&self, scatter: f64, heading_is_known: bool) -> OdometryNoise {
-        let radians = match heading_is_known {
-            true => 0.0,
-            false => SCATTER_RADIANS * scatter,
-        };
-        OdometryNoise {
-            particles_noise_least_m: SCATTER_CELLS * scatter * self.space.resolution_m,
-            particles_noise_least_deg: radians.to_degrees(),
-            ..OdometryNoise::default()
         }
     }
 

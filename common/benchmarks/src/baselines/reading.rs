@@ -4,8 +4,6 @@ use engine::program::VoteConfig;
 use engine::scan::Scan;
 use engine::space::Space;
 
-use crate::BenchmarksError;
-
 /// Error in standard deviations at which a reading's penalty saturates: the flat part of a sensor
 /// model, for objects that are not on the map.
 pub(super) const MAX_DEVIATIONS: f32 = 3.0;
@@ -32,11 +30,7 @@ impl Readings {
     ///
     /// # Errors
     /// The engine rejects the scan.
-    pub fn new(
-        scan: &Scan<'_>,
-        space: &Space,
-        votes: &VoteConfig,
-    ) -> Result<Self, BenchmarksError> {
+    pub fn new(scan: &Scan<'_>, space: &Space, votes: &VoteConfig) -> anyhow::Result<Self> {
         scan.check()?;
         let reading = |i| {
             let range_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;

@@ -1,7 +1,5 @@
 //! Settings of the particle filter.
 
-use super::OdometryNoise;
-
 /// Settings of Monte Carlo localization. Defaults that are AMCL's, the particle filter of ROS, are
 /// those of nav2's `nav2_amcl`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,8 +32,6 @@ pub struct ParticlesConfig {
     pub particles_independent: u32,
     /// Seed of the random numbers.
     pub particles_seed: u64,
-    /// Scatter of the particles as the robot moves.
-    pub noise: OdometryNoise,
 }
 
 impl Default for ParticlesConfig {
@@ -51,7 +47,6 @@ impl Default for ParticlesConfig {
             particles_random: 0.05,
             particles_independent: 16,
             particles_seed: 1,
-            noise: OdometryNoise::default(),
         }
     }
 }

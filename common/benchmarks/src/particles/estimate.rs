@@ -3,8 +3,7 @@
 //!
 //! Particles belong to one cluster if their bins touch, including at corners (as in AMCL).
 
-use geometry::{Covariance, Pose};
-use nalgebra::{Matrix3, Vector3};
+use geometry::Pose;
 
 use super::Particle;
 use super::kld::{Bin, Binning};
@@ -16,8 +15,6 @@ use engine::grid::GridFrame;
 pub struct Estimate {
     /// Mean pose of the heaviest cluster.
     pub map_from_target: Pose,
-    /// Covariance of the cluster, in the map.
-    pub covariance: Covariance,
     /// Share of the cluster in the weight of all particles, 0..=1.
     pub share: f64,
 }
@@ -78,11 +75,9 @@ impl Clusters {
         if weight <= 0.0 {
             return None;
         }
-        let (pose, spread) = self.moments(particles, cluster);
-        let turn = frame.metres_from_cells();
+        let pose = self.mean(particles, cluster);
         Some(Estimate {
             map_from_target: frame.map_from_cells(pose.x, pose.y, pose.heading),
-            covariance: Covariance(turn * spread * turn.transpose()),
             share: weight / all,
         })
     }
@@ -142,9 +137,8 @@ impl Clusters {
         keys.map(|&(_, i)| &particles[i as usize])
     }
 
-    /// Weighted mean and covariance of a cluster, in cells and radians; headings are averaged as
-    /// unit vectors.
-    fn moments(&self, particles: &[Particle], cluster: u32) -> (GridPose, Matrix3<f64>) {
+    /// Weighted mean of a cluster, in cells and radians; headings are averaged as unit vectors.
+    fn mean(&self, particles: &[Particle], cluster: u32) -> GridPose {
         let (mut weight, mut sum, mut sin, mut cos) = (0.0, (0.0, 0.0), 0.0, 0.0);
         for Particle { pose, weight: w } in self.members(particles, cluster) {
             weight += w;
@@ -152,18 +146,11 @@ impl Clusters {
             sin += w * pose.heading.sin();
             cos += w * pose.heading.cos();
         }
-        let mean = GridPose {
+        GridPose {
             x: sum.0 / weight,
             y: sum.1 / weight,
             heading: sin.atan2(cos),
-        };
-        let mut squares = Matrix3::zeros();
-        for Particle { pose, weight: w } in self.members(particles, cluster) {
-            let turn = geometry::wrap_angle(pose.heading - mean.heading);
-            let off = Vector3::new(pose.x - mean.x, pose.y - mean.y, turn);
-            squares += *w * off * off.transpose();
         }
-        (mean, squares / weight)
     }
 }
 
@@ -222,11 +209,6 @@ mod tests {
         // The mean is (1.5, 1) in cells, -5°; the grid is turned by 90°.
         let expected = Pose::new(10.0 - 0.5, 0.75, 85f64.to_radians());
         assert!(found.map_from_target.is_within(expected, 1e-12, 1e-12));
-        // Along the grid's x, which is the map's y: (1 + 0 + 0 + 1) / 4 squared cells.
-        let variance = found.covariance.0[(1, 1)];
-        assert!((variance - 0.25 * 0.5).abs() < 1e-12, "{variance}");
-        let turn = found.covariance.0[(2, 2)];
-        assert!((turn - 0.5 * 10f64.to_radians().powi(2)).abs() < 1e-12);
     }
 
     #[test]

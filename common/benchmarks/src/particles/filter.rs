@@ -1,15 +1,16 @@
 //! The particle filter: start, prediction, weighting and resampling.
 
-use geometry::Pose;
+use geometry::wrap_angle;
 use messages::Reading;
 use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
 
 use super::beams::Beams;
 use super::estimate::Clusters;
 use super::kld::{Binning, Enough};
 use super::sensor::Sensor;
 use super::start::Uniform;
-use super::{Estimate, OdometryNoise, Particle, ParticlesConfig, StartHeadings, motion, resample};
+use super::{Estimate, Particle, ParticlesConfig, StartHeadings, resample};
 use engine::EngineError;
 use engine::fit::{DistanceField, GridPose};
 use engine::grid::GridFrame;
@@ -104,18 +105,20 @@ impl ParticleFilter {
             .sort_by_cached_key(|particle| binning.bin(particle.pose));
     }
 
-    /// Moves the particles by an odometry step, given in the target frame before it:
-    /// `before.inverse().then(after)`. A step that is not finite is ignored.
-    pub fn predict(&mut self, step: Pose, noise: &OdometryNoise) {
-        if step.is_finite() {
-            let resolution_m = self.frame.resolution_m;
-            motion::advance(
-                &mut self.particles,
-                step,
-                noise,
-                resolution_m,
-                &mut self.rng,
-            );
+    /// Moves each particle by a normal error in its own frame: along x and y with a standard
+    /// deviation in metres, and of the heading in radians.
+    pub fn scatter(&mut self, deviation_m: f64, turn: f64) {
+        let way = deviation_m / self.frame.resolution_m;
+        for particle in &mut self.particles {
+            let mut error = || -> f64 { StandardNormal.sample(&mut self.rng) };
+            let (ahead, left, turned) = (way * error(), way * error(), turn * error());
+            let GridPose { x, y, heading } = particle.pose;
+            let (sin, cos) = heading.sin_cos();
+            particle.pose = GridPose {
+                x: x + cos * ahead - sin * left,
+                y: y + sin * ahead + cos * left,
+                heading: wrap_angle(heading + turned),
+            };
         }
     }
 

@@ -1,14 +1,13 @@
-//! Monte Carlo localization: the pose as a set of weighted particles, which move with the robot,
-//! are weighted by its scans and resampled.
+//! Monte Carlo localization of a robot that stands still: the pose as a set of weighted particles,
+//! which are scattered, weighted by a scan and resampled.
 //!
 //! Dellaert, Fox, Burgard and Thrun, "Monte Carlo Localization for Mobile Robots" (ICRA 1999);
 //! Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), chapter 8. A search finds possible
-//! poses of one scan; particles continue from there, scan by scan (the paper: the votes say "those
-//! places where particles need to be initialized"). From a uniform start they are the paper's
-//! baseline.
+//! poses of one scan; particles continue from there (the paper: the votes say "those places where
+//! particles need to be initialized"). From a uniform start they are the paper's baseline.
 //!
 //! ```text
-//! places of the votes ─┐               ┌── predict ◄── step of the odometry
+//! places of the votes ─┐               ┌── scatter
 //!                      ├─ start ─ particles ─ weigh ◄── ends of a scan, distance field
 //! free cells ──────────┘               └── resample (KLD) ── estimate
 //! ```
@@ -29,7 +28,6 @@ mod drawn;
 mod estimate;
 mod filter;
 mod kld;
-mod motion;
 mod resample;
 mod sensor;
 mod start;
@@ -40,7 +38,6 @@ pub use config::ParticlesConfig;
 use engine::fit::GridPose;
 pub use estimate::Estimate;
 pub use filter::ParticleFilter;
-pub use motion::OdometryNoise;
 pub use start::StartHeadings;
 
 #[derive(Debug, Clone, Copy, PartialEq)]

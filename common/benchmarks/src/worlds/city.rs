@@ -165,27 +165,15 @@ impl City {
         (x_major, far): (bool, bool),
         (at, wide, deep): (usize, usize, usize),
     ) -> Rect {
-        let across = if x_major {
-            building.height
-        } else {
-            building.width
+        let lying = building.turned(!x_major);
+        let start = if far { lying.height - deep } else { 0 };
+        let niche = Rect {
+            x: lying.x + at,
+            y: lying.y + start,
+            width: wide,
+            height: deep,
         };
-        let start = if far { across - deep } else { 0 };
-        let Rect { x, y, .. } = building;
-        match x_major {
-            true => Rect {
-                x: x + at,
-                y: y + start,
-                width: wide,
-                height: deep,
-            },
-            false => Rect {
-                x: x + start,
-                y: y + at,
-                width: deep,
-                height: wide,
-            },
-        }
+        niche.turned(!x_major)
     }
 
     /// Divides a floor into rooms with doors, recursively.
@@ -203,53 +191,46 @@ impl City {
         let gap = self
             .random
             .random_range(0..across.saturating_sub(door).max(1));
-        let [wall, opening, first, second] = match upright {
-            true => [
-                Rect {
-                    x: floor.x + at,
-                    width: WALL,
-                    ..floor
-                },
-                Rect {
-                    x: floor.x + at,
-                    y: floor.y + gap,
-                    width: WALL,
-                    height: door,
-                },
-                Rect { width: at, ..floor },
-                Rect {
-                    x: floor.x + at + WALL,
-                    width: length - at - WALL,
-                    ..floor
-                },
-            ],
-            false => [
-                Rect {
-                    y: floor.y + at,
-                    height: WALL,
-                    ..floor
-                },
-                Rect {
-                    x: floor.x + gap,
-                    y: floor.y + at,
-                    width: door,
-                    height: WALL,
-                },
-                Rect {
-                    height: at,
-                    ..floor
-                },
-                Rect {
-                    y: floor.y + at + WALL,
-                    height: length - at - WALL,
-                    ..floor
-                },
-            ],
-        };
+        let lying = floor.turned(!upright);
+        let parts = [
+            Rect {
+                x: lying.x + at,
+                width: WALL,
+                ..lying
+            },
+            Rect {
+                x: lying.x + at,
+                y: lying.y + gap,
+                width: WALL,
+                height: door,
+            },
+            Rect { width: at, ..lying },
+            Rect {
+                x: lying.x + at + WALL,
+                width: length - at - WALL,
+                ..lying
+            },
+        ];
+        let [wall, opening, first, second] = parts.map(|part| part.turned(!upright));
         self.fill(wall, OCCUPIED);
         self.fill(opening, FREE);
         self.divide(first);
         self.divide(second);
+    }
+}
+
+impl Rect {
+    /// Exchanges x and y if `is_turned`.
+    fn turned(self, is_turned: bool) -> Self {
+        match is_turned {
+            true => Rect {
+                x: self.y,
+                y: self.x,
+                width: self.height,
+                height: self.width,
+            },
+            false => self,
+        }
     }
 }
 

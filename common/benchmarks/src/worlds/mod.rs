@@ -11,6 +11,7 @@ mod clutter;
 mod corridors;
 mod rooms;
 
+use anyhow::bail;
 use engine::boundary;
 use engine::grid::{CellRules, Grid};
 use engine::space::Space;
@@ -18,7 +19,7 @@ use messages::BoundaryCell;
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
 
-use crate::{BenchmarksError, RESOLUTION_M};
+use crate::RESOLUTION_M;
 use canvas::Canvas;
 pub use city::city;
 
@@ -72,13 +73,9 @@ impl World {
         (width, height): (usize, usize),
         p_over_n: f64,
         seed: u64,
-    ) -> Result<Self, BenchmarksError> {
+    ) -> anyhow::Result<Self> {
         if width.min(height) < MIN_SIDE {
-            return Err(BenchmarksError::WorldSides {
-                width,
-                height,
-                least: MIN_SIDE,
-            });
+            bail!("a world of {width} x {height} cells: each side must have at least {MIN_SIDE}");
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut canvas = walls(kind, (width, height), p_over_n, &mut rng);
@@ -89,12 +86,11 @@ impl World {
         if (world.p_over_n() / p_over_n - 1.0).abs() <= TOLERANCE {
             return Ok(world);
         }
-        Err(BenchmarksError::Ratio {
-            width,
-            height,
-            wanted_percent: 100.0 * p_over_n,
-            reached_percent: 100.0 * world.p_over_n(),
-        })
+        let (wanted, reached) = (100.0 * p_over_n, 100.0 * world.p_over_n());
+        bail!(
+            "a world of {width} x {height} cells comes to {reached:.1} % of boundary cells for its \
+             free cells: {wanted} % are out of reach"
+        )
     }
 
     /// Ratio of boundary cells to free cells.
@@ -107,7 +103,7 @@ impl World {
     ///
     /// # Errors
     /// The number of headings is not supported.
-    pub fn space(&self, headings: u32) -> Result<Space, BenchmarksError> {
+    pub fn space(&self, headings: u32) -> anyhow::Result<Space> {
         let (width, height) = (self.grid.width(), self.grid.height());
         Ok(Space::new(headings, RESOLUTION_M, width, height)?)
     }

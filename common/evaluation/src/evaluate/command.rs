@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use command_line::{number, stdout};
+use anyhow::Context;
+use command_line::{number, stdout, wrong_use};
 use map::OccupancyGrid;
-use offline::{Accepted, OfflineError, Options, Session, World};
+use offline::{Accepted, Options, Session, World, no_truth_taken, no_truths};
 use progress::{Progress, say};
 use recording::GroundTruth;
 
@@ -14,7 +15,6 @@ use super::judge::{Effort, Evaluation, Judge};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
-use crate::EvaluationError;
 use crate::sequence::{self, SequenceOptions};
 use crate::trust::Trust;
 
@@ -61,7 +61,7 @@ pub struct Config {
 ///
 /// # Errors
 /// The options or the given map cannot be used, or output cannot be written.
-pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (options, bags) = config.options.sorted(&config.bags);
     let config = &Config {
         options,
@@ -72,8 +72,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     let mut bags = config.bags.clone();
     bags.splice(0..0, config.sequence.stressed_file());
     if bags.is_empty() {
-        let usage = "--stress needs a recording".to_owned();
-        return Err(OfflineError::Usage(usage).into());
+        return Err(wrong_use("--stress needs a recording"));
     }
     let map = config.options.load_map(&config.bags)?;
     if config.sequence.sequence {
@@ -96,7 +95,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
         let evaluation = match evaluate(bag, config, map.as_ref(), &mut trust) {
             Ok(evaluation) => evaluation,
             Err(error) => {
-                say(&transport::with_causes(&error));
+                say(&format!("{error:#}"));
                 code = ExitCode::FAILURE;
                 continue;
             }
@@ -125,14 +124,14 @@ fn evaluate(
     config: &Config,
     map: Option<&OccupancyGrid>,
     trust: &mut Trust,
-) -> Result<Evaluation, EvaluationError> {
+) -> anyhow::Result<Evaluation> {
     let recording = config.options.open(&[bag.to_owned()])?;
     if let Some(damage) = recording.damage_error() {
         return Err(damage.into());
     }
     let truths = recording.ground_truths()?;
     if truths.is_empty() {
-        return Err(OfflineError::NoTruths { file: bag.into() }.into());
+        return Err(no_truths(bag));
     }
     let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
@@ -148,17 +147,13 @@ fn evaluate(
         map_cells: session.world().map_or(0, World::cells),
         scans,
         prepare_cpu_ms: session.prepare_cpu_ms,
-        peak_rss_mb: memory::peak_mb().map_err(EvaluationError::Memory)?,
+        peak_rss_mb: memory::peak_mb()
+            .context("cannot read the peak of memory from /proc/self/status")?,
         searchable_cells: session.world().map_or(0, World::searchable_cells),
         index_bytes: session.world().map_or(0, World::index_bytes),
     });
     match evaluation.truths {
-        0 => Err(OfflineError::NoTruthTaken {
-            file: bag.into(),
-            scans,
-            truths: truths.len(),
-        }
-        .into()),
+        0 => Err(no_truth_taken(bag, scans, truths.len())),
         _ => Ok(evaluation),
     }
 }
@@ -170,7 +165,7 @@ fn judge_all(
     truths: &BTreeMap<i64, GroundTruth>,
     erase_place: Option<f64>,
     progress: &Progress,
-) -> Result<(Judge, Accepted, u64), EvaluationError> {
+) -> anyhow::Result<(Judge, Accepted, u64)> {
     let mut judge = Judge::new();
     let mut accepted = Accepted::default();
     let mut scans = 0;
@@ -185,7 +180,7 @@ fn judge_all(
             accepted.count(&reply);
             match reply.answer {
                 Ok(answer) => judge.answer(truth.pose, answer.places, reply.cpu_ms),
-                Err(refusal) => judge.refusal(truth.pose, transport::with_causes(&refusal)),
+                Err(refusal) => judge.refusal(truth.pose, format!("{refusal:#}")),
             }
         }
         for note in session.take_notes() {

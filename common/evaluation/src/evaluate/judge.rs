@@ -1,6 +1,6 @@
 //! Computes the figures of one file from results and true poses. Pure.
 
-use engine::peaks::{Place, Places};
+use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;
 use serde::Serialize;
@@ -117,7 +117,7 @@ impl Judge {
         }
         self.trust.add(place.probability, is_right);
         if found.verdict == Verdict::Unique {
-            self.in_ellipse += u64::from(is_in_ellipse(place, truth));
+            self.in_ellipse += u64::from(statistics::holds(place.covariance, best, truth));
         }
     }
 
@@ -167,13 +167,6 @@ impl Judge {
             probabilities: self.trust.said().to_vec(),
         }
     }
-}
-
-/// True if the position is inside the 95 % ellipse.
-fn is_in_ellipse(place: &Place, truth: Pose) -> bool {
-    let pose = place.map_from_laser;
-    let off = (truth.x - pose.x, truth.y - pose.y);
-    statistics::holds(place.covariance, off)
 }
 
 #[cfg(test)]

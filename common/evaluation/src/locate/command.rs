@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use command_line::{LOST_DATA, stdout};
-use offline::{Accepted, OfflineError, Options, Session};
+use offline::{Accepted, Options, Session};
 use pose_table::Line;
 use progress::Progress;
 use recording::RecordingError;
@@ -12,7 +12,6 @@ use recording::RecordingError;
 use super::object::Object;
 use super::particles::{Particles, ParticlesOptions};
 use super::row;
-use crate::EvaluationError;
 
 /// Options of `backcast locate`.
 #[derive(Debug, Clone, clap::Args)]
@@ -52,7 +51,7 @@ pub struct Config {
 /// # Errors
 /// Map or recording cannot be used, every scan was rejected, or the recording is damaged; damage is
 /// reported after the scans before it.
-pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (options, files) = config.options.sorted(&config.recordings);
     let config = &Config {
         options,
@@ -65,7 +64,7 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
         let (set, map) = (set.display(), map.display());
         let usage =
             format!("{map} is a map, and --maps {set} names others: allowed is one of both");
-        return Err(OfflineError::Usage(usage).into());
+        return Err(wrong_use(usage));
     }
     let maps = config.options.load_set(set, &config.on, &files)?;
     let map = match maps.is_empty() {

@@ -115,7 +115,7 @@ impl Object {
         };
         match &reply.answer {
             Ok(answer) => object.fill(answer, scan.base_from_laser),
-            Err(refusal) => object.refused = Some(transport::with_causes(&refusal)),
+            Err(refusal) => object.refused = Some(format!("{refusal:#}")),
         }
         object
     }

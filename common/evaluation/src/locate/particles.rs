@@ -4,10 +4,8 @@ use std::fmt::Write as _;
 
 use engine::particles::{self, Candidate};
 use geometry::Pose;
-use offline::{OfflineError, Reply, TakenScan};
+use offline::{Reply, TakenScan};
 use serde::Serialize;
-
-use crate::EvaluationError;
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(super) struct ParticlesOptions {
@@ -44,7 +42,7 @@ impl Particles {
         options: &ParticlesOptions,
         scan: &TakenScan,
         reply: &Reply<'_>,
-    ) -> Result<Option<Self>, EvaluationError> {
+    ) -> anyhow::Result<Option<Self>> {
         let Some(count) = options.particles else {
             return Ok(None);
         };
@@ -59,8 +57,7 @@ impl Particles {
         {
             let candidates = answer.places.places.iter().map(Candidate::from);
             let count = count as usize;
-            poses = particles::draw(answer.frame, candidates, count, options.particles_seed)
-                .map_err(OfflineError::Refused)?;
+            poses = particles::draw(answer.frame, candidates, count, options.particles_seed)?;
         }
         for pose in &mut poses {
             *pose = laser_from_base.map_or(*pose, |base| pose.then(base));

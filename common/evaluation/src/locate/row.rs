@@ -21,7 +21,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
     };
     let places = match &reply.answer {
         Ok(answer) => &answer.places,
-        Err(refusal) => return format!("{}  {}", line.text(), transport::with_causes(&refusal)),
+        Err(refusal) => return format!("{}  {refusal:#}", line.text()),
     };
     line.verdict = places.verdict.as_str();
     line.alternatives = places.alternatives;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::Context;
 use command_line::{names, output, stdout};
 use map::OccupancyGrid;
 use offline::{Accepted, Options, Session};
@@ -13,7 +14,6 @@ use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
 use super::{SequenceOptions, course, drive, follow, jumps, outages, starts, stress};
-use crate::EvaluationError;
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
 /// and the next one follows.
@@ -25,13 +25,10 @@ pub(crate) fn evaluate(
     json: bool,
     map: Option<&OccupancyGrid>,
     (options, sequence): (&Options, &SequenceOptions),
-) -> Result<ExitCode, EvaluationError> {
+) -> anyhow::Result<ExitCode> {
     for folder in sequence.trajectories.iter().chain(&sequence.pictures) {
-        output::make_folder(folder).map_err(|source| EvaluationError::File {
-            action: "make the folder",
-            file: folder.clone(),
-            source,
-        })?;
+        output::make_folder(folder)
+            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
     }
     if let Some(stress) = &sequence.stress {
         let how = (options, sequence);
@@ -52,7 +49,7 @@ pub(crate) fn evaluate(
                 }
             }
             Err(error) => {
-                say(&transport::with_causes(&error));
+                say(&format!("{error:#}"));
                 code = ExitCode::FAILURE;
             }
         }
@@ -65,7 +62,7 @@ fn one(
     map: Option<&OccupancyGrid>,
     options: &Options,
     sequence: &SequenceOptions,
-) -> Result<Figures, EvaluationError> {
+) -> anyhow::Result<Figures> {
     let (recording, truths) = drive::open(bag, options)?;
     let mut session = Session::open(&recording, options, map)?;
     let name = bag.display().to_string();
@@ -125,7 +122,7 @@ fn show(
     (moments, said): (&[Moment], &[Said]),
     (options, sequence): (&Options, &SequenceOptions),
     name: &str,
-) -> Result<(), EvaluationError> {
+) -> anyhow::Result<()> {
     if let Some(folder) = &sequence.trajectories {
         course::write(folder, name, (moments, said))?;
     }
@@ -133,7 +130,7 @@ fn show(
         let words = (name.to_owned(), course::doubts(said));
         let stops = course::stops(moments, said);
         let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
-        course::save(&scene, folder.join(format!("{name}.png")))?;
+        plots::save_png(&scene, &folder.join(format!("{name}.png")))?;
     }
     Ok(())
 }

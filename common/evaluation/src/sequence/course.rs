@@ -2,18 +2,17 @@
 //! trajectories and a picture.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use drawing::Scene;
+use anyhow::Context;
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
 use offline::World;
-use plots::{PlotError, Stop};
+use plots::Stop;
 
 use super::drive::Moment;
 use super::errors::Errors;
 use super::run::{Run, Said};
-use crate::EvaluationError;
 
 /// Results of the tracker for each moment.
 ///
@@ -23,7 +22,7 @@ pub(super) fn of(
     world: &World,
     moments: &[Moment],
     config: TrackingConfig,
-) -> Result<Vec<Said>, EvaluationError> {
+) -> anyhow::Result<Vec<Said>> {
     let mut run = Run::new(world, moments, config);
     let indices = 0..moments.len();
     indices.map(|i| run.take(i, moments[i].moved)).collect()
@@ -39,27 +38,17 @@ pub(super) fn write(
     folder: &Path,
     name: &str,
     (moments, said): (&[Moment], &[Said]),
-) -> Result<(), EvaluationError> {
+) -> anyhow::Result<()> {
     let both = || moments.iter().zip(said);
     let tracked = both().filter(|(_, said)| said.report.state.is_believed());
     let tracked = tracked.filter_map(|(moment, said)| Some((moment.stamp_ns, said.pose?)));
     let truths = both().filter_map(|(moment, _)| Some((moment.stamp_ns, moment.truth?)));
     let save = |file: String, lines: String| {
         let file = folder.join(file);
-        std::fs::write(&file, lines).map_err(|source| EvaluationError::File {
-            action: "write",
-            file,
-            source,
-        })
+        std::fs::write(&file, lines).with_context(|| format!("cannot write {}", file.display()))
     };
     save(format!("{name}.tum"), trajectory(tracked))?;
     save(format!("{name}_truth.tum"), trajectory(truths))
-}
-
-/// Writes a drawn scene to a PNG file.
-pub(super) fn save(scene: &Scene, file: PathBuf) -> Result<(), PlotError> {
-    let picture = drawing::to_png(scene)?;
-    std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })
 }
 
 /// Errors of the tracked poses that [`write`] writes.

@@ -9,11 +9,9 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, OfflineError, Options, Session, TakenScan, View};
+use offline::{Accepted, Options, Session, TakenScan, View, no_truths};
 use progress::Progress;
 use recording::{GroundTruth, Recording};
-
-use crate::EvaluationError;
 
 /// One scan of a drive. Copies share the view and the search results.
 #[derive(Clone)]
@@ -61,14 +59,14 @@ pub(super) type Truths = BTreeMap<i64, GroundTruth>;
 ///
 /// # Errors
 /// The recording cannot be read, is damaged, or has no true pose.
-pub(super) fn open(bag: &Path, options: &Options) -> Result<(Recording, Truths), EvaluationError> {
+pub(super) fn open(bag: &Path, options: &Options) -> anyhow::Result<(Recording, Truths)> {
     let recording = options.open(&[bag.to_owned()])?;
     if let Some(damage) = recording.damage_error() {
         return Err(damage.into());
     }
     let truths = recording.ground_truths()?;
     match truths.is_empty() {
-        true => Err(OfflineError::NoTruths { file: bag.into() }.into()),
+        true => Err(no_truths(bag)),
         false => Ok((recording, truths)),
     }
 }
@@ -82,7 +80,7 @@ pub(super) fn read(
     truths: &Truths,
     (ignore_truth, errors): (&[u64], (bool, f64)),
     (progress, accepted): (&Progress, &mut Accepted),
-) -> Result<Vec<Moment>, EvaluationError> {
+) -> anyhow::Result<Vec<Moment>> {
     session.read_odometry()?;
     let ignored: BTreeSet<u64> = ignore_truth.iter().copied().collect();
     let mut moments: Vec<Moment> = Vec::new();
@@ -112,7 +110,7 @@ pub(super) fn search(
     scan: &TakenScan,
     truth: Option<Pose>,
     accepted: &mut Accepted,
-) -> Result<Option<Moment>, EvaluationError> {
+) -> anyhow::Result<Option<Moment>> {
     let reply = session.ask(scan)?;
     accepted.count(&reply);
     let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);

@@ -1,14 +1,14 @@
 //! Figures of one drive.
 
 use serde::Serialize;
-use statistics::Distribution;
+use statistics::{Distribution, Spread};
 
-use super::errors::{Errors, Spread};
+use super::errors::{self, Errors};
 use super::follow::Followed;
 use super::jumps::Jumps;
 use super::limits::Reached;
 use super::outages::Outages;
-use super::starts::Starts;
+use super::starts::{After, Starts};
 use crate::text::{number, percent, share};
 
 /// Figures of one drive. Shares are 0..=1; docs/tracking.md explains each.
@@ -39,50 +39,15 @@ pub(super) struct Figures {
     /// Errors of the drive from its first scan, without an initial pose.
     pub(super) from_first_scan: Errors,
     pub(super) searched_share: Option<f64>,
-    pub(super) cpu_ms_tracking: Times,
-    pub(super) cpu_ms_searching: Times,
+    /// CPU time per scan, in milliseconds of one thread.
+    pub(super) cpu_ms_tracking: Spread,
+    pub(super) cpu_ms_searching: Spread,
 }
 
-/// Shares of the starts, by metres after the start.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct After {
-    #[serde(rename = "1")]
-    pub(super) one: Option<f64>,
-    #[serde(rename = "2")]
-    pub(super) two: Option<f64>,
-    #[serde(rename = "5")]
-    pub(super) five: Option<f64>,
-    #[serde(rename = "10")]
-    pub(super) ten: Option<f64>,
-    #[serde(rename = "20")]
-    pub(super) twenty: Option<f64>,
-}
-
-/// CPU time per scan, in milliseconds of one thread.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct Times {
-    pub(super) median: Option<f64>,
-    pub(super) p90: Option<f64>,
-}
-
-impl Times {
-    fn of(times_ms: impl IntoIterator<Item = f64>) -> Self {
-        let mut all = Distribution::new(usize::MAX);
-        times_ms.into_iter().for_each(|ms| all.add(ms));
-        let [median, p90] = all.percentiles([50.0, 90.0]);
-        Times { median, p90 }
-    }
-}
-
-fn after(parts: [u64; 5], of: [u64; 5]) -> After {
-    let [one, two, five, ten, twenty] = std::array::from_fn(|i| share(parts[i], of[i]));
-    After {
-        one,
-        two,
-        five,
-        ten,
-        twenty,
-    }
+fn spread_of(times_ms: impl IntoIterator<Item = f64>) -> Spread {
+    let mut all = Distribution::new(usize::MAX);
+    times_ms.into_iter().for_each(|ms| all.add(ms));
+    all.spread()
 }
 
 impl Figures {
@@ -96,8 +61,8 @@ impl Figures {
         Figures {
             bag,
             starts: starts.starts,
-            right: after(starts.right, starts.judged),
-            not_yet: after(starts.not_yet, starts.judged),
+            right: After::of(&starts.right, &starts.judged),
+            not_yet: After::of(&starts.not_yet, &starts.judged),
             wrong_starts: starts.wrong.len() as u64,
             wrong_scans: starts.tally.with(&followed.tally).wrong,
             losses: followed.losses.len(),
@@ -116,8 +81,8 @@ impl Figures {
             outages_wrong: outages.wrong.len() as u64,
             from_first_scan,
             searched_share: share(starts.searches, starts.scans),
-            cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),
-            cpu_ms_searching: Times::of(searching_ms),
+            cpu_ms_tracking: spread_of(followed.tracking_ms.iter().copied()),
+            cpu_ms_searching: spread_of(searching_ms),
         }
     }
 
@@ -133,20 +98,11 @@ impl Figures {
     /// Formats the figures as text for the terminal.
     pub(super) fn text(&self) -> String {
         let row = |after: &After| {
-            let After {
-                one,
-                two,
-                five,
-                ten,
-                twenty,
-            } = *after;
-            [one, two, five, ten, twenty]
-                .map(percent)
-                .map(|p| format!("{p:>6}"))
-                .concat()
+            let shares = after.0.iter().map(|&(_, share)| percent(share));
+            shares.map(|p| format!("{p:>6}")).collect::<String>()
         };
-        let spread = |spread: Option<Spread>, digits: usize| {
-            spread.map_or("-".into(), |Spread { rmse, median, max }| {
+        let spread = |spread: Option<errors::Spread>, digits: usize| {
+            spread.map_or("-".into(), |errors::Spread { rmse, median, max }| {
                 format!("{rmse:.digits$} / {median:.digits$} / {max:.digits$}")
             })
         };

@@ -6,7 +6,6 @@ use offline::World;
 
 use super::drive::Moment;
 use super::run::{Run, Said, Tally};
-use crate::EvaluationError;
 
 /// The robot counts as lost, and is put back to the truth, if it is off by more than this (metres,
 /// degrees) for [`LOSS_TRUTHS`] truths in a row.
@@ -40,7 +39,7 @@ pub(super) fn evaluate(
     moments: &[Moment],
     config: TrackingConfig,
     puts_back: bool,
-) -> Result<Followed, EvaluationError> {
+) -> anyhow::Result<Followed> {
     let mut all = Followed::default();
     let first = moments.iter().position(|moment| moment.truth.is_some());
     let Some((first, truth)) = first.and_then(|i| Some((i, moments[i].truth?))) else {
@@ -113,6 +112,5 @@ fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
         return false;
     };
     let covariance = Covariance(said.report.covariance).carried(target, laser);
-    let off = (truth.x - laser.x, truth.y - laser.y);
-    statistics::holds(covariance, off)
+    statistics::holds(covariance, laser, truth)
 }

@@ -6,7 +6,6 @@ use offline::World;
 
 use super::drive::Moment;
 use super::run::{Run, Said};
-use crate::EvaluationError;
 
 /// Distance for which the robot is followed before and after, in metres.
 pub(super) const BEFORE_M: f64 = 5.0;
@@ -38,7 +37,7 @@ impl Interruption {
         world: &World,
         moments: &[Moment],
         config: TrackingConfig,
-    ) -> Result<Option<Aftermath>, EvaluationError> {
+    ) -> anyhow::Result<Option<Aftermath>> {
         let Interruption { from, to, moved } = *self;
         let mut run = Run::new(world, moments, config);
         if !run.follow_to(from, BEFORE_M)? {

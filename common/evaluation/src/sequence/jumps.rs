@@ -7,7 +7,6 @@ use offline::World;
 use super::drive::Moment;
 use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
 use super::run::Said;
-use crate::EvaluationError;
 
 /// Shortest distance of a jump, in metres.
 const MIN_M: f64 = 3.0;
@@ -53,7 +52,7 @@ pub(super) fn evaluate(
     moments: &[Moment],
     chosen: &[(usize, usize)],
     config: TrackingConfig,
-) -> Result<Jumps, EvaluationError> {
+) -> anyhow::Result<Jumps> {
     let mut all = Jumps::default();
     for &(from, to) in chosen {
         let jump = Interruption {

@@ -6,7 +6,6 @@ use offline::World;
 
 use super::drive::Moment;
 use super::interruption::{Aftermath, BEFORE_M, Interruption, RIGHT_AFTER_M};
-use crate::EvaluationError;
 
 /// Durations of the outages in turn, in seconds: a restarted driver, a failing network.
 const SECONDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
@@ -44,7 +43,7 @@ pub(super) fn evaluate(
     moments: &[Moment],
     chosen: &[(usize, usize)],
     config: TrackingConfig,
-) -> Result<Outages, EvaluationError> {
+) -> anyhow::Result<Outages> {
     let mut all = Outages::default();
     for &(from, to) in chosen {
         let outage = Interruption {

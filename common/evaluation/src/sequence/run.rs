@@ -6,7 +6,6 @@ use messages::TrackState;
 use offline::{World, cpu};
 
 use super::drive::Moment;
-use crate::EvaluationError;
 use crate::trust::Trust;
 
 pub(super) struct Run<'a> {
@@ -122,7 +121,7 @@ impl<'a> Run<'a> {
 
     /// Follows the robot to a moment, from a truth at least `metres` before it; true if the tracker
     /// is right there.
-    pub(super) fn follow_to(&mut self, last: usize, metres: f64) -> Result<bool, EvaluationError> {
+    pub(super) fn follow_to(&mut self, last: usize, metres: f64) -> anyhow::Result<bool> {
         let moments = self.moments;
         let begin = moments.partition_point(|m| m.gone_m < moments[last].gone_m - metres);
         let known = (begin..last).find_map(|i| Some((i, moments[i].truth?)));
@@ -139,11 +138,7 @@ impl<'a> Run<'a> {
     }
 
     /// Passes a moment to the tracker, with the motion since the previous one.
-    pub(super) fn take(
-        &mut self,
-        index: usize,
-        moved: Option<Pose>,
-    ) -> Result<Said, EvaluationError> {
+    pub(super) fn take(&mut self, index: usize, moved: Option<Pose>) -> anyhow::Result<Said> {
         let moment = &self.moments[index];
         let seen = self.seen(moment);
         let (tracker, asked, moments) = (&mut self.tracker, &mut self.asked, self.moments);

@@ -2,10 +2,11 @@
 
 use engine::tracking::{MIN_BEAMS, TrackingConfig};
 use offline::World;
+use serde::{Serialize, Serializer};
 
 use super::drive::Moment;
 use super::run::{Run, Said, Tally};
-use crate::EvaluationError;
+use crate::text::share;
 
 /// Distances at which a start is judged, in metres.
 pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
@@ -33,6 +34,24 @@ pub(super) struct Starts {
     pub(super) searches: u64,
 }
 
+/// Shares of the starts, by metres after the start.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct After(pub(super) Vec<(f64, Option<f64>)>);
+
+impl After {
+    /// Shares of the judged starts, for the distances of [`AFTER_M`].
+    pub(super) fn of(parts: &[u64; 5], judged: &[u64; 5]) -> Self {
+        let shares = parts.iter().zip(judged).map(|(&part, &of)| share(part, of));
+        After(AFTER_M.into_iter().zip(shares).collect())
+    }
+}
+
+impl Serialize for After {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(m, share)| (m.to_string(), share)))
+    }
+}
+
 /// Chooses scans with a truth as starts, evenly spaced along the drive.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
@@ -54,7 +73,7 @@ pub(super) fn evaluate(
     moments: &[Moment],
     chosen: &[usize],
     config: TrackingConfig,
-) -> Result<Starts, EvaluationError> {
+) -> anyhow::Result<Starts> {
     let mut all = Starts::default();
     for &start in chosen {
         all.starts += 1;

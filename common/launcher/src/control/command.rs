@@ -7,13 +7,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
-use command_line::stdout::print;
+use command_line::{stdout::print, wrong_use};
 use nix::unistd::{Uid, User};
 use transport::{GraphName, control_socket, graphs_of_others, is_launched, running_graphs};
 
 use super::text;
-use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask, no_node};
 
 /// Longest time that a graph may take to stop, and the polling interval.
@@ -52,7 +52,7 @@ pub struct RestartConfig {
 ///
 /// # Errors
 /// No graph is running, or the requested one does not answer.
-pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
+pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
     let graphs = match &config.graph {
         Some(graph) => vec![graph.clone()],
         None => running_graphs(),
@@ -74,16 +74,16 @@ pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
 ///
 /// # Errors
 /// The graph is not running, does not answer, or does not end.
-pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
+pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let code = done(&graph, &Question::Stop)?;
     let begin = Instant::now();
     while is_launched(&graph) {
         if begin.elapsed() >= STOPPED_WITHIN {
-            return Err(LauncherError::NotStopped {
-                graph: graph.to_string(),
-                seconds: STOPPED_WITHIN.as_secs(),
-            });
+            bail!(
+                "graph {graph} still runs {} s after it was asked to stop: `backcast status` shows what runs",
+                STOPPED_WITHIN.as_secs()
+            );
         }
         thread::sleep(LOOK);
     }
@@ -94,14 +94,14 @@ pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
 ///
 /// # Errors
 /// The graph is not running or has no such node.
-pub fn restart(config: &RestartConfig) -> Result<ExitCode, LauncherError> {
+pub fn restart(config: &RestartConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let node = config.node.clone();
     done(&graph, &Question::Restart { node })
 }
 
 /// Returns the named graph, or the only one that is running.
-pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, LauncherError> {
+pub(super) fn the_graph(named: Option<&GraphName>) -> anyhow::Result<GraphName> {
     if let Some(graph) = named {
         return Ok(graph.clone());
     }
@@ -111,36 +111,35 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
         several => {
             let names: Vec<_> = several.iter().map(ToString::to_string).collect();
             let names = names.join(", ");
-            Err(LauncherError::Usage(format!(
+            Err(wrong_use(format!(
                 "several graphs are running: choose one with --graph; running are {names}"
             )))
         }
     }
 }
 
-fn no_graph() -> LauncherError {
+fn no_graph() -> anyhow::Error {
     let sentence = |(user, graph): (u32, GraphName)| {
         let name = User::from_uid(Uid::from_raw(user)).ok().flatten();
         let name = name.map_or_else(|| format!("#{user}"), |user| user.name);
-        format!("user {name} runs graph {graph}: `sudo -u {name} backcast status`")
+        format!("; user {name} runs graph {graph}: `sudo -u {name} backcast status`")
     };
-    LauncherError::NoGraph {
-        others: graphs_of_others().into_iter().map(sentence).collect(),
-    }
+    let others: String = graphs_of_others().into_iter().map(sentence).collect();
+    anyhow!("no graph of this user is running{others}")
 }
 
-fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {
+fn done(graph: &GraphName, question: &Question) -> anyhow::Result<ExitCode> {
     match asked(graph, question)? {
-        Answer::Refused(why) => Err(LauncherError::Usage(why)),
+        Answer::Refused(why) => Err(wrong_use(why)),
         _ => Ok(ExitCode::SUCCESS),
     }
 }
 
-fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
+fn status_of(graph: &GraphName) -> anyhow::Result<Status> {
     match asked(graph, &Question::Status)? {
         Answer::Status(status) => Ok(status),
-        Answer::Refused(why) => Err(LauncherError::Usage(why)),
-        Answer::Done => Err(LauncherError::Usage("unexpected answer".to_owned())),
+        Answer::Refused(why) => Err(wrong_use(why)),
+        Answer::Done => Err(wrong_use("unexpected answer")),
     }
 }
 
@@ -148,18 +147,17 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
 ///
 /// # Errors
 /// The graph has no such node; the message lists its nodes.
-pub(super) fn known_node(graph: &GraphName, node: &str) -> Result<(), LauncherError> {
+pub(super) fn known_node(graph: &GraphName, node: &str) -> anyhow::Result<()> {
     let nodes = status_of(graph)?.nodes;
     match nodes.iter().any(|known| known.id == node) {
         true => Ok(()),
-        false => Err(LauncherError::Usage(no_node(node, &nodes))),
+        false => Err(wrong_use(no_node(node, &nodes))),
     }
 }
 
-fn asked(graph: &GraphName, question: &Question) -> Result<Answer, LauncherError> {
+fn asked(graph: &GraphName, question: &Question) -> anyhow::Result<Answer> {
     let file: PathBuf = control_socket(graph);
-    ask(&file, question).map_err(|source| LauncherError::NoLauncher {
-        graph: graph.to_string(),
-        source,
+    ask(&file, question).with_context(|| {
+        format!("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")
     })
 }

@@ -12,7 +12,6 @@ use serde::Serialize;
 use transport::{Flow, Graph, GraphName, is_launched};
 
 use super::command::{known_node, the_graph};
-use crate::LauncherError;
 use crate::run::console::{LAUNCHER, say};
 
 /// Time to wait for the lines that nodes keep for late subscribers.
@@ -43,7 +42,7 @@ pub struct LogsConfig {
 ///
 /// # Errors
 /// No graph is running, or it cannot be joined.
-pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
+pub fn logs(config: &LogsConfig) -> anyhow::Result<ExitCode> {
     let name = the_graph(config.graph.as_ref())?;
     let graph = Graph::join_named("logs", &name)?;
     let lines = graph.subscriber::<topic::Log>()?;
@@ -77,7 +76,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
             }
         }
         let goes_on = !all_kept || config.follow && !has_ended;
-        Ok::<_, LauncherError>(if goes_on { Flow::Continue } else { Flow::Stop })
+        Ok::<_, anyhow::Error>(if goes_on { Flow::Continue } else { Flow::Stop })
     })?;
     if has_ended {
         say(LAUNCHER, &format!("graph {name} has ended"));

@@ -1,8 +1,7 @@
 //! Helpers for our nodes that are added to a graph without being in its descriptor.
 
+use command_line::wrong_use;
 use dataflow::{Command, Dataflow, Node, Place, Restart};
-
-use crate::LauncherError;
 
 /// Creates a node of the executable `id` next to those of the graph, without arguments and wires.
 pub(crate) fn node(dataflow: &Dataflow, id: &str, build: Vec<Command>) -> Node {
@@ -24,10 +23,10 @@ pub(crate) fn node(dataflow: &Dataflow, id: &str, build: Vec<Command>) -> Node {
 ///
 /// # Errors
 /// The graph has one already.
-pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> Result<(), LauncherError> {
+pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> anyhow::Result<()> {
     let is_same = |node: &Node| node.id == id || node.executable() == id;
     if dataflow.nodes.iter().any(is_same) {
-        return Err(LauncherError::Usage(format!(
+        return Err(wrong_use(format!(
             "{option} adds a node `{id}`, but the graph has one already"
         )));
     }

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
+use command_line::wrong_use;
 use dataflow::{Dataflow, Node};
-
-use crate::LauncherError;
 
 /// Node that plays recordings.
 pub const REPLAYER: &str = "replayer";
@@ -42,7 +41,7 @@ pub fn find<'d>(
     executables: &[&'static str],
     option: &'static str,
     file: &Path,
-) -> Result<&'d mut Node, LauncherError> {
+) -> anyhow::Result<&'d mut Node> {
     let found: Vec<_> = dataflow
         .nodes
         .iter()
@@ -52,11 +51,13 @@ pub fn find<'d>(
         .nodes
         .iter_mut()
         .find(|n| executables.contains(&n.executable()))
-        .ok_or_else(|| LauncherError::NoNodeForOption {
-            option,
-            executable: executables.join(" or "),
-            file: file.to_owned(),
-            found: found.join(", "),
+        .ok_or_else(|| {
+            let (executable, found) = (executables.join(" or "), found.join(", "));
+            wrong_use(format!(
+                "{option} is for the {executable}, but no node in {} has a path that ends so; \
+                 its executables are {found}",
+                file.display()
+            ))
         })
 }
 

@@ -8,10 +8,10 @@ use std::{
     process::{Command as Process, Stdio},
 };
 
-use dataflow::{Dataflow, Node};
+use anyhow::{Context, bail};
+use dataflow::{Command, Dataflow, Node};
 
 use super::{console::note, process::executable};
-use crate::LauncherError;
 
 /// Builds every node, in the order of the descriptor and in its `folder`. Two nodes with the same
 /// commands and environment are built once. Output of the builds goes to our standard error. If the
@@ -19,7 +19,7 @@ use crate::LauncherError;
 ///
 /// # Errors
 /// A command cannot be started or failed.
-pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError> {
+pub fn build_all(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let with_build = || dataflow.nodes.iter().filter(|n| !n.build.is_empty());
     let ids: Vec<&str> = with_build().map(|n| n.id.as_str()).collect();
     if !ids.is_empty() {
@@ -27,25 +27,21 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
     }
     let mut built = HashSet::new();
     for node in with_build().filter(|n| built.insert((&n.build, &n.env))) {
-        match build(node, folder) {
-            Err(LauncherError::BuildNotStarted {
-                command, source, ..
-            }) if source.kind() == io::ErrorKind::NotFound => {
-                let missing = missing(with_build().filter(|n| n.build == node.build), folder);
-                if !missing.is_empty() {
-                    let program = command.split(' ').next().unwrap_or_default().to_owned();
-                    return Err(LauncherError::NothingToRun {
-                        program,
-                        command,
-                        missing: missing.join(", "),
-                    });
-                }
-                note(&format!(
-                    "`{command}` cannot be started: the nodes are run as they are"
-                ));
-            }
-            outcome => outcome?,
+        let Some(command) = build(node, folder)? else {
+            continue;
+        };
+        let missing = missing(with_build().filter(|n| n.build == node.build), folder).join(", ");
+        if !missing.is_empty() {
+            let program = &command.program;
+            bail!(
+                "{program} is not installed, and there are no executables of {missing}: install what \
+                 `{command}` needs (Rust: https://rustup.rs), or get the nodes built, as a package or by \
+                 packaging/install elsewhere (docs/install.md), and name them in the descriptor without a folder"
+            );
         }
+        note(&format!(
+            "`{command}` cannot be started: the nodes are run as they are"
+        ));
     }
     Ok(())
 }
@@ -56,30 +52,33 @@ fn missing<'a>(nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> Vec<&'a 
     without.map(|node| node.id.as_str()).collect()
 }
 
-fn build(node: &Node, folder: &Path) -> Result<(), LauncherError> {
+/// Runs the build commands of a node, up to the first one whose program is not installed; returns
+/// that command.
+fn build<'n>(node: &'n Node, folder: &Path) -> anyhow::Result<Option<&'n Command>> {
+    let id = &node.id;
     for command in &node.build {
-        let not_started = |source| LauncherError::BuildNotStarted {
-            node: node.id.clone(),
-            command: command.to_string(),
-            source,
+        let not_started = || {
+            format!(
+                "node {id}: the build `{command}` cannot be started; where all executables are \
+                 there, --no-build runs them as they are"
+            )
         };
         let status = Process::new(&command.program)
             .args(&command.args)
             .envs(node.env.iter().map(|(name, value)| (name, value)))
             .current_dir(folder)
             .stdin(Stdio::null())
-            .stdout(stderr().map_err(not_started)?)
-            .status()
-            .map_err(not_started)?;
+            .stdout(stderr().with_context(not_started)?)
+            .status();
+        let status = match status {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Some(command)),
+            status => status.with_context(not_started)?,
+        };
         if !status.success() {
-            return Err(LauncherError::BuildFailed {
-                node: node.id.clone(),
-                command: command.to_string(),
-                status,
-            });
+            bail!("node {id}: the build `{command}` failed with {status}");
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 fn stderr() -> io::Result<Stdio> {
@@ -90,7 +89,7 @@ fn stderr() -> io::Result<Stdio> {
 mod tests {
     use super::*;
 
-    fn build_nodes(nodes: &str, folder: &Path) -> Result<(), LauncherError> {
+    fn build_nodes(nodes: &str, folder: &Path) -> anyhow::Result<()> {
         let text = format!("nodes:\n{nodes}");
         let dataflow = dataflow::parse(&text, &dataflow::Topics::default()).unwrap();
         build_all(&dataflow, folder)

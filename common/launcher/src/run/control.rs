@@ -13,10 +13,9 @@ use std::{
     time::Duration,
 };
 
+use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use transport::Waker;
-
-use crate::LauncherError;
 
 /// Longest request, in bytes.
 const MAX_QUESTION: u64 = 4096;
@@ -94,15 +93,11 @@ pub struct Asked {
 ///
 /// # Errors
 /// The socket cannot be created.
-pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherError> {
+pub fn listen(path: &Path, waker: Waker) -> anyhow::Result<Receiver<Asked>> {
     // Removes the socket of a killed launcher; a living one would hold the graph's name.
     let _ = remove_file(path);
-    let failed = |source| LauncherError::File {
-        action: "listen on",
-        file: path.to_owned(),
-        source,
-    };
-    let listener = UnixListener::bind(path).map_err(failed)?;
+    let failed = || format!("cannot listen on {}", path.display());
+    let listener = UnixListener::bind(path).with_context(failed)?;
     let (asked, questions) = channel();
     let body = move || {
         for stream in listener.incoming().flatten() {
@@ -111,7 +106,7 @@ pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherErro
         }
     };
     let thread = thread::Builder::new().name("control".into());
-    thread.spawn(body).map_err(failed)?;
+    thread.spawn(body).with_context(failed)?;
     Ok(questions)
 }
 

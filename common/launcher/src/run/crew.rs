@@ -13,10 +13,11 @@ use std::{
     time::{Duration, Instant},
 };
 
+use anyhow::Context;
 use dataflow::Node;
 use messages::{HealthHeader, NodeState};
 use nix::sys::signal::Signal;
-use transport::{GraphName, with_causes};
+use transport::GraphName;
 
 use self::member::{Member, State, lost_data, not_supervised};
 use super::{
@@ -25,7 +26,6 @@ use super::{
     process::Process,
     supervision::{is_over, is_source},
 };
-use crate::LauncherError;
 
 /// Time for processes to end in order once they are asked to. It applies twice: first to nodes
 /// without outputs, then to all others. Each of the two stays below a second.
@@ -52,12 +52,12 @@ impl Crew {
     ///
     /// # Errors
     /// A node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
-    pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> Result<Self, LauncherError> {
+    pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> anyhow::Result<Self> {
         let now = Instant::now();
         let (output_open, output_closed) = channel();
         let members = nodes.into_iter().map(|node| Member::new(node, now));
         Ok(Crew {
-            members: members.collect::<Result<_, LauncherError>>()?,
+            members: members.collect::<anyhow::Result<_>>()?,
             folder: folder.to_owned(),
             graph: graph.clone(),
             output_open: Some(output_open),
@@ -72,7 +72,7 @@ impl Crew {
     ///
     /// # Errors
     /// An essential node cannot be started for the first time, or failed for good.
-    pub fn tick(&mut self, now: Instant, has_room: bool) -> Result<bool, LauncherError> {
+    pub fn tick(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(open) = &self.output_open else {
             return Ok(false);
         };
@@ -88,7 +88,7 @@ impl Crew {
                 Err(error) if !member.essential => {
                     any_ended = true;
                     let goes_on = format!("the graph continues without {}", member.node.id);
-                    let sentence = format!("{}; {goes_on}", with_causes(&error));
+                    let sentence = format!("{error:#}; {goes_on}");
                     warn(&sentence);
                     self.given_up.push(sentence);
                 }
@@ -124,7 +124,7 @@ impl Crew {
     ///
     /// # Errors
     /// The process cannot be signalled.
-    pub fn restart(&mut self, id: &str, now: Instant) -> Result<bool, LauncherError> {
+    pub fn restart(&mut self, id: &str, now: Instant) -> anyhow::Result<bool> {
         let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
             return Ok(false);
         };
@@ -132,7 +132,7 @@ impl Crew {
             State::Running(process) => {
                 member.wanted_anew = true;
                 let asked = process.signal(Signal::SIGTERM);
-                asked.map_err(|error| not_supervised(&member.node, process.pid(), error))?;
+                asked.with_context(|| not_supervised(&member.node, process.pid()))?;
             }
             State::Due(_) | State::Done => member.state = State::Due(now),
         }
@@ -166,7 +166,7 @@ impl Crew {
     ///
     /// # Errors
     /// A process cannot be signalled or waited for.
-    pub fn stop(&mut self) -> Result<(), LauncherError> {
+    pub fn stop(&mut self) -> anyhow::Result<()> {
         self.stop_those(|node| node.outputs.is_empty())?;
         self.stop_those(|_| true)?;
         self.output_open = None;
@@ -187,7 +187,7 @@ impl Crew {
     ///
     /// # Errors
     /// A process cannot be signalled.
-    pub fn signal(&mut self, executable: &str, signal: Signal) -> Result<usize, LauncherError> {
+    pub fn signal(&mut self, executable: &str, signal: Signal) -> anyhow::Result<usize> {
         let mut signalled = 0;
         let meant = |node: &Node| node.executable() == executable;
         self.for_each_running(meant, |process| {
@@ -197,7 +197,7 @@ impl Crew {
         Ok(signalled)
     }
 
-    fn stop_those(&mut self, meant: impl Fn(&Node) -> bool) -> Result<(), LauncherError> {
+    fn stop_those(&mut self, meant: impl Fn(&Node) -> bool) -> anyhow::Result<()> {
         self.for_each_running(&meant, |process| process.signal(Signal::SIGTERM))?;
         let deadline = Instant::now() + GRACE;
         while self.collect_ended(&meant)? > 0 && Instant::now() < deadline {
@@ -211,7 +211,7 @@ impl Crew {
     }
 
     /// Returns the number of processes that have not ended.
-    fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> Result<usize, LauncherError> {
+    fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> anyhow::Result<usize> {
         let mut running = 0;
         for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
             match member.poll()? {
@@ -229,10 +229,10 @@ impl Crew {
         &mut self,
         meant: impl Fn(&Node) -> bool,
         mut act: impl FnMut(&mut Process) -> io::Result<()>,
-    ) -> Result<(), LauncherError> {
+    ) -> anyhow::Result<()> {
         for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
             if let State::Running(process) = &mut member.state {
-                act(process).map_err(|e| not_supervised(&member.node, process.pid(), e))?;
+                act(process).with_context(|| not_supervised(&member.node, process.pid()))?;
             }
         }
         Ok(())

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
+use command_line::wrong_use;
 use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
@@ -13,7 +15,7 @@ use super::arguments::{
 };
 use super::options::{Options, Rate};
 use super::{lasers, replay};
-use crate::LauncherError;
+use crate::descriptor::NO_FOLDER;
 
 /// Option of `map_server`: recording whose own map is preferred.
 const RECORDED_MAP: &str = "--recorded";
@@ -28,16 +30,12 @@ const MAX_AGE: &str = "--heading-max-age-s";
 ///
 /// # Errors
 /// An option needs a node or an input that the graph does not have.
-pub(crate) fn apply(
-    options: &Options,
-    dataflow: &mut Dataflow,
-    file: &Path,
-) -> Result<(), LauncherError> {
+pub(crate) fn apply(options: &Options, dataflow: &mut Dataflow, file: &Path) -> anyhow::Result<()> {
     if !options.replay.is_empty() {
         forward_replay(options, dataflow)?;
     }
     if let Some(map) = &options.map {
-        let map = std::path::absolute(map).map_err(LauncherError::Folder)?;
+        let map = std::path::absolute(map).context(NO_FOLDER)?;
         let node = find(dataflow, &[MAP_SERVER], "--map", file)?;
         for option in [MAPS, ON] {
             unset(node, option, true);
@@ -49,7 +47,7 @@ pub(crate) fn apply(
         }
     }
     if let Some(maps) = &options.maps {
-        let maps = std::path::absolute(maps).map_err(LauncherError::Folder)?;
+        let maps = std::path::absolute(maps).context(NO_FOLDER)?;
         let node = find(dataflow, &[MAP_SERVER], MAPS, file)?;
         // `--on` names maps and floors of the old set.
         for option in ["--map", RECORDED_MAP, PLAYED, ON] {
@@ -75,9 +73,9 @@ pub(crate) fn apply(
 }
 
 /// Applies `--replay` and the topic options that go with it.
-fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), LauncherError> {
+fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> anyhow::Result<()> {
     if let Some(topic) = &options.map_topic {
-        return Err(LauncherError::Usage(format!(
+        return Err(wrong_use(format!(
             "--map-topic {topic}: a graph takes its map from the map_server, as the descriptor or --map says; \
              `locate`, `evaluate` and `plot` take the one in the recording"
         )));
@@ -87,15 +85,13 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
         **path == Path::new("-") || (path.exists() && !path.is_file() && !path.is_dir())
     };
     if let Some(stream) = options.replay.iter().find(is_stream) {
-        return Err(LauncherError::Usage(format!(
+        return Err(wrong_use(format!(
             "--replay {} is no file: save the recording to one first",
             stream.display()
         )));
     }
     let absolute = options.replay.iter().map(std::path::absolute);
-    let recordings: Vec<PathBuf> = absolute
-        .collect::<Result<_, _>>()
-        .map_err(LauncherError::Folder)?;
+    let recordings: Vec<PathBuf> = absolute.collect::<Result<_, _>>().context(NO_FOLDER)?;
     let is_map_server = |node: &&mut Node| node.executable() == MAP_SERVER;
     if let (Some(node), [recording]) = (dataflow.nodes.iter_mut().find(is_map_server), &*recordings)
         // A set stays: the recording has only one map.
@@ -127,8 +123,8 @@ fn forward_heading(
     heading: &HeadingConfig,
     dataflow: &mut Dataflow,
     file: &Path,
-) -> Result<(), LauncherError> {
-    heading.check().map_err(LauncherError::Usage)?;
+) -> anyhow::Result<()> {
+    heading.check().map_err(wrong_use)?;
     let option = match heading.source() {
         HeadingSource::Searched => return Ok(()),
         HeadingSource::Fixed(_) => "--heading",
@@ -175,7 +171,7 @@ pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
     nodes.any(|n| PLAYERS.contains(&n.executable()) && value(n, "--rate") == Some(&max))
 }
 
-fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), LauncherError> {
+fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> anyhow::Result<()> {
     let topic = match source {
         HeadingFrom::Odometry => topic::OdometryTopic::NAME,
         HeadingFrom::Truth => topic::GroundTruthTopic::NAME,
@@ -183,12 +179,10 @@ fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), Laun
     if node.inputs.iter().any(|input| input.topic == topic) {
         return Ok(());
     }
-    Err(LauncherError::NotWired {
-        option: "--heading-from",
-        topic,
-        node: node.id.clone(),
-        file: file.to_owned(),
-    })
+    let (id, file) = (&node.id, file.display());
+    Err(wrong_use(format!(
+        "--heading-from needs the input `{topic}` at node {id}, but {file} wires none"
+    )))
 }
 
 #[cfg(test)]

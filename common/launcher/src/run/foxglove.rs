@@ -6,7 +6,6 @@
 use dataflow::Dataflow;
 
 use super::added;
-use crate::LauncherError;
 
 const SERVER: &str = "foxglove_server";
 
@@ -14,7 +13,7 @@ const SERVER: &str = "foxglove_server";
 ///
 /// # Errors
 /// The graph has such a server already.
-pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), LauncherError> {
+pub(crate) fn add(dataflow: &mut Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--foxglove", SERVER)?;
     // It may be restarted, as viewers reconnect by themselves.
     let build = added::build_alone(dataflow, SERVER);
@@ -29,7 +28,7 @@ mod tests {
     use super::*;
     use crate::run::testing::parsed;
 
-    fn added_to(nodes: &str) -> Result<Node, LauncherError> {
+    fn added_to(nodes: &str) -> anyhow::Result<Node> {
         let mut dataflow = parsed(&format!("nodes: [{nodes}]"));
         add(&mut dataflow)?;
         Ok(dataflow.nodes.pop().unwrap())

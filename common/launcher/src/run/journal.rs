@@ -13,7 +13,7 @@ use super::{
     report::Report,
     summary::Summary,
 };
-use crate::{LauncherError, control::LogLine};
+use crate::control::LogLine;
 
 pub(crate) struct Journal {
     pub report: Report,
@@ -105,7 +105,7 @@ impl Journal {
         mut self,
         wanted: bool,
         patience: Option<Duration>,
-    ) -> Result<Summary, LauncherError> {
+    ) -> anyhow::Result<Summary> {
         #[derive(Serialize)]
         struct Last<'a> {
             summary: &'a Summary,

@@ -14,14 +14,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use command_line::LOST_DATA;
+use anyhow::Context;
+use command_line::{LOST_DATA, wrong_use};
 use messages::{LogLevel, NodeState};
 use nix::sys::signal::Signal;
 use sd_notify::NotifyState;
 use signal_hook::consts::SIGUSR1;
 use transport::{
     Claim, Flow, Graph, GraphName, Health, TransportError, control_socket, log_in_graph,
-    remove_dead_graphs, remove_leftovers, shared_memory_has_room, with_causes,
+    remove_dead_graphs, remove_leftovers, shared_memory_has_room,
 };
 
 use super::{
@@ -39,10 +40,7 @@ use super::{
     replay, tracker,
     watch::Watch,
 };
-use crate::{
-    LauncherError,
-    descriptor::{self, Builds, Descriptor},
-};
+use crate::descriptor::{self, Builds, Descriptor};
 
 /// Interval between two looks at the processes.
 const TICK: Duration = Duration::from_millis(20);
@@ -80,8 +78,8 @@ enum End {
 ///
 /// # Errors
 /// Any error that keeps the graph from running as described. All processes have ended then.
-pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
-    transport::node::start_logging().map_err(LauncherError::Logging)?;
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
+    transport::node::start_logging().map_err(wrong_use)?;
     let graph = config.options.graph_name()?;
     let builds = match config.options.no_build {
         true => Builds::LeaveOut,
@@ -122,9 +120,10 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     let mut journal = Journal::new(output, config.options.json, is_tracked).with_logs(logs);
     let outcome = loop {
         let outcome = launch(&descriptor, &graph, &mut journal);
-        let Err(LauncherError::Transport(TransportError::Vanished { .. })) = &outcome else {
+        let error = outcome.as_ref().err().and_then(|e| e.downcast_ref());
+        if !matches!(error, Some(TransportError::Vanished { .. })) {
             break outcome;
-        };
+        }
         // No process of the graph is running any more, so it can start from the beginning.
         if let Err(error) = clear(&graph) {
             break Err(error.into());
@@ -161,7 +160,7 @@ fn launch(
     descriptor: &Descriptor,
     name: &GraphName,
     journal: &mut Journal,
-) -> Result<Course, LauncherError> {
+) -> anyhow::Result<Course> {
     let graph = Graph::join_named(LAUNCHER, name)?;
     let first_laser = lasers::first(&descriptor.dataflow);
     let watch = Watch::new(&graph, first_laser, journal.has_logs())?;
@@ -172,7 +171,7 @@ fn launch(
     let mut health = graph.health()?;
     health.state(NodeState::Ready)?;
     let save = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(LauncherError::Signal)?;
+    signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).context("cannot catch signals")?;
     let control_port = ControlPort {
         questions: control::listen(&control_socket(name), graph.waker()?)?,
         graph: name.clone(),
@@ -188,7 +187,7 @@ fn launch(
     );
     if let Err(error) = &end {
         // The console prints the error after all nodes have ended; a recorder needs it before.
-        log_in_graph(LogLevel::Error, &with_causes(error));
+        log_in_graph(LogLevel::Error, &format!("{error:#}"));
         graph.send_log();
     }
     // A failed notification is ignored: the service manager sees the process end.
@@ -214,7 +213,7 @@ fn stay(
     crew: &mut Crew,
     health: &mut Health,
     journal: &mut Journal,
-) -> Result<End, LauncherError> {
+) -> anyhow::Result<End> {
     let mut end = End::Interrupted;
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
@@ -249,7 +248,9 @@ fn stay(
             last_cleanup = now;
             // Tells the service manager, if there is one, that we run.
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
-            sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
+            sd_notify::notify(&at_work).context(
+                "cannot notify the service manager: NOTIFY_SOCKET is not one of its sockets",
+            )?;
         }
         let problems = crew.problems(now);
         if problems != reported {
@@ -267,7 +268,7 @@ fn stay(
             reported = problems;
         }
         health.tick()?;
-        Ok::<_, LauncherError>(Flow::Continue)
+        Ok::<_, anyhow::Error>(Flow::Continue)
     })?;
     Ok(end)
 }
@@ -282,7 +283,7 @@ struct ControlPort {
 
 impl ControlPort {
     /// Answers pending requests; returns `Flow::Stop` if one asked to stop.
-    fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, LauncherError> {
+    fn answer(&self, crew: &mut Crew, now: Instant) -> anyhow::Result<Flow> {
         let mut flow = Flow::Continue;
         while let Ok(asked) = self.questions.try_recv() {
             let answer = match asked.question {

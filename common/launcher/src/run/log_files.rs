@@ -6,8 +6,9 @@ use std::fs::{File, OpenOptions, create_dir_all, rename};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
+
 use super::console::{LAUNCHER, say};
-use crate::LauncherError;
 use crate::control::LogLine;
 
 /// Size at which a file is rotated, in bytes.
@@ -36,12 +37,9 @@ impl LogFiles {
     ///
     /// # Errors
     /// The folder cannot be created.
-    pub(crate) fn create(folder: &Path) -> Result<Self, LauncherError> {
-        create_dir_all(folder).map_err(|source| LauncherError::File {
-            action: "create the folder",
-            file: folder.to_owned(),
-            source,
-        })?;
+    pub(crate) fn create(folder: &Path) -> anyhow::Result<Self> {
+        create_dir_all(folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         Ok(LogFiles {
             folder: folder.to_owned(),
             max_bytes: MAX_BYTES,

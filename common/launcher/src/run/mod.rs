@@ -34,4 +34,4 @@ mod watch;
 
 pub use launch::run;
 pub use options::{Config, Options};
-pub(crate) use process::executable;
+pub(crate) use process::{executable, not_started};

@@ -10,8 +10,6 @@ use std::{
 
 use command_line::OutputError;
 
-use crate::LauncherError;
-
 /// Number of lines queued for a slow reader; further lines are dropped and counted.
 const CAPACITY: usize = 4096;
 
@@ -33,7 +31,7 @@ impl Output {
     ///
     /// # Errors
     /// The thread cannot be started.
-    pub(crate) fn start(mut writer: impl Write + Send + 'static) -> Result<Self, LauncherError> {
+    pub(crate) fn start(mut writer: impl Write + Send + 'static) -> anyhow::Result<Self> {
         let (lines, waiting) = sync_channel::<String>(CAPACITY);
         let (end, ended) = channel();
         let body = move || {
@@ -73,7 +71,7 @@ impl Output {
     ///
     /// # Errors
     /// Writing failed for another reason than a reader that went away.
-    pub(crate) fn finish(self, patience: Option<Duration>) -> Result<u64, LauncherError> {
+    pub(crate) fn finish(self, patience: Option<Duration>) -> anyhow::Result<u64> {
         drop(self.lines);
         let ended = match patience {
             None => self.ended.recv().map_err(RecvTimeoutError::from),
@@ -143,6 +141,6 @@ mod tests {
         let mut output = Output::start(full).unwrap();
         output.line("x".into());
         let error = output.finish(None).unwrap_err();
-        assert!(matches!(error, LauncherError::Output(_)), "{error}");
+        assert!(error.is::<OutputError>(), "{error}");
     }
 }

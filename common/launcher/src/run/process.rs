@@ -38,6 +38,13 @@ pub(crate) fn executable(node: &Node, folder: &Path) -> PathBuf {
     folder.join(&node.path)
 }
 
+/// Message of a node that cannot be started.
+pub(crate) fn not_started(node: &Node, folder: &Path) -> String {
+    let (id, path) = (&node.id, executable(node, folder));
+    let (path, folder) = (path.display(), folder.display());
+    format!("node {id}: {path} cannot be started in {folder}")
+}
+
 impl Process {
     /// Starts `node` in `folder` as a member of `graph`. Its output goes to our standard error, and
     /// the last line of its standard error also to `last_line`. `open` is dropped when both streams

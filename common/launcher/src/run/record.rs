@@ -5,13 +5,14 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use command_line::output;
 use dataflow::Dataflow;
 
 use super::added;
 use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
 use super::options::RecordOptions;
-use crate::LauncherError;
+use crate::descriptor::NO_FOLDER;
 
 pub(super) const RECORDER: &str = "recorder";
 
@@ -24,11 +25,11 @@ pub(crate) fn add(
     dataflow: &mut Dataflow,
     file: &Path,
     folder: &Path,
-) -> Result<(), LauncherError> {
+) -> anyhow::Result<()> {
     let Some(output) = &options.record else {
         return Ok(());
     };
-    let output = std::path::absolute(output).map_err(LauncherError::Folder)?;
+    let output = std::path::absolute(output).context(NO_FOLDER)?;
     check(&output, options, dataflow)?;
     let mut args = vec![argument("--output", &output.to_string_lossy())];
     let passed_on = [
@@ -62,18 +63,17 @@ pub(crate) fn add(
     Ok(())
 }
 
-fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<(), LauncherError> {
+fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--record", RECORDER)?;
     let is_whole =
         options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
-    let prepared = output::prepare(output, options.force || !is_whole);
+    output::prepare(output, options.force || !is_whole)?;
     // The recorder overwrites nothing, and would add a number to the name.
-    let prepared = prepared.and_then(|()| match is_whole && output.exists() {
-        true => std::fs::remove_file(output),
-        false => Ok(()),
-    });
-    prepared
-        .map_err(|error| LauncherError::Usage(format!("--record {}: {error}", output.display())))
+    if is_whole && output.exists() {
+        std::fs::remove_file(output)
+            .with_context(|| format!("cannot remove {}", output.display()))?;
+    }
+    Ok(())
 }
 
 /// Returns the files to attach to the recording: the descriptor, the served map and its image.
@@ -158,7 +158,7 @@ mod tests {
             outcome.unwrap_err().to_string()
         };
         let exists = refused(&options(&existing), GRAPH);
-        assert!(exists.contains("r.mcap: it is there already"), "{exists}");
+        assert!(exists.contains("r.mcap is there already"), "{exists}");
         let below = refused(&options(&existing.join("s.mcap")), GRAPH);
         assert!(below.contains("r.mcap/s.mcap: not a directory"), "{below}");
         let forced = RecordOptions {

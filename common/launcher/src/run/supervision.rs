@@ -5,10 +5,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use command_line::wrong_use;
 use dataflow::{Node, Restart, RestartPolicy};
 use messages::{NodeState, Topic, topic};
-
-use crate::LauncherError;
 
 /// Variable in a node's `env` that says if the graph ends when the node fails.
 const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
@@ -20,13 +19,13 @@ const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 ///
 /// # Errors
 /// The variable is neither `true` nor `false`.
-pub fn is_essential(node: &Node) -> Result<bool, LauncherError> {
+pub fn is_essential(node: &Node) -> anyhow::Result<bool> {
     match node.env.iter().find(|(name, _)| name == ESSENTIAL) {
         None => Ok(!ONLY_SHOW.contains(&node.executable())),
         Some((_, value)) => value.parse().map_err(|_| {
             let id = &node.id;
             let allowed = "allowed are true (the graph ends with it) and false";
-            LauncherError::Usage(format!("node {id}: {ESSENTIAL} is `{value}`; {allowed}"))
+            wrong_use(format!("node {id}: {ESSENTIAL} is `{value}`; {allowed}"))
         }),
     }
 }

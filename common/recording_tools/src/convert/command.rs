@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread;
 
-use command_line::{LOST_DATA, output};
+use anyhow::bail;
+use command_line::{LOST_DATA, output, wrong_use};
 use progress::say;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag};
@@ -17,7 +18,6 @@ use signal_hook::low_level::emulate_default_handler;
 use super::file::{self, ending};
 use super::report::Report;
 use super::to_recording::{self, Rules};
-use crate::RecordingToolsError;
 
 /// Text below the options in the help.
 pub const NOTES: &str = "\
@@ -64,7 +64,7 @@ fn range(text: &str) -> Result<f32, String> {
 /// # Errors
 /// If the formats of the two files are no valid pair, a file cannot be read or written, the output
 /// exists, or nothing could be converted.
-pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let none = || no_conversion(&ending(&config.from), &config.to);
     if ending(&config.to) != "mcap" || ends_packed(&config.to) {
         return Err(none());
@@ -72,7 +72,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let from = &config.from;
     if from == Path::new("-") || (from.exists() && !from.is_file() && !from.is_dir()) {
         let from = from.display();
-        return Err(RecordingToolsError::Usage(format!(
+        return Err(wrong_use(format!(
             "{from} is no file, and is read twice: save it to one first"
         )));
     }
@@ -89,18 +89,16 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     let (file, unfinished) = create(&config.to, config.force)?;
     let report = convert(config, file)?;
     if report.scans == 0 && report.messages == 0 {
-        return Err(RecordingToolsError::NothingConverted {
-            file: config.from.clone(),
-            reason: report.why_nothing(),
-        });
+        let (from, reason) = (config.from.display(), report.why_nothing());
+        bail!("nothing in {from} could be converted, and no file was written: {reason}");
     }
     unfinished.keep();
     Ok(print_report(&report, &config.to))
 }
 
-fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
+fn no_conversion(from: &str, to: &Path) -> anyhow::Error {
     let to = to.extension().unwrap_or_default().to_string_lossy();
-    RecordingToolsError::Usage(format!(
+    wrong_use(format!(
         "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap"
     ))
 }
@@ -146,7 +144,7 @@ fn print_report(report: &Report, to: &Path) -> ExitCode {
     }
 }
 
-fn log_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, RecordingToolsError> {
+fn log_to_recording(config: &Config, to: BufWriter<File>) -> anyhow::Result<Report> {
     let rules = Rules {
         truth: config.truth,
         range_max_m: config.range_max,
@@ -158,7 +156,7 @@ fn log_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     Ok(report)
 }
 
-fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, RecordingToolsError> {
+fn bag_to_recording(config: &Config, to: BufWriter<File>) -> anyhow::Result<Report> {
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let messages = recording::write_bag(&config.from, &mut writer)?;
     finish(writer, config)?;
@@ -176,10 +174,7 @@ fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     })
 }
 
-fn finish(
-    writer: RecordingWriter<BufWriter<File>>,
-    config: &Config,
-) -> Result<(), RecordingToolsError> {
+fn finish(writer: RecordingWriter<BufWriter<File>>, config: &Config) -> anyhow::Result<()> {
     let flushed = writer.finish()?.flush();
     flushed.map_err(failed("write", &config.to))
 }
@@ -202,13 +197,9 @@ impl Drop for Unfinished {
     }
 }
 
-fn create(
-    path: &Path,
-    overwrites: bool,
-) -> Result<(BufWriter<File>, Unfinished), RecordingToolsError> {
-    let prepared = output::prepare(path, overwrites);
-    let signals = prepared.and_then(|()| Signals::new([SIGINT, SIGTERM]));
-    let mut signals = signals.map_err(failed("create", path))?;
+fn create(path: &Path, overwrites: bool) -> anyhow::Result<(BufWriter<File>, Unfinished)> {
+    output::prepare(path, overwrites)?;
+    let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(failed("create", path))?;
     let unfinished = path.to_owned();
     thread::spawn(move || {
         for signal in signals.forever() {
@@ -224,10 +215,7 @@ fn create(
 fn failed<'p>(
     action: &'static str,
     path: &'p Path,
-) -> impl FnOnce(std::io::Error) -> RecordingToolsError + 'p {
-    move |source| RecordingToolsError::File {
-        action,
-        file: path.to_owned(),
-        source,
-    }
+) -> impl FnOnce(std::io::Error) -> anyhow::Error + 'p {
+    let text = format!("cannot {action} {}", path.display());
+    move |source| anyhow::Error::new(source).context(text)
 }

@@ -18,7 +18,6 @@ use super::read;
 use super::report::Report;
 use super::source::Source;
 use super::survey::Survey;
-use crate::RecordingToolsError;
 
 /// Largest difference of two equal mounts, in metres and radians: logs have six digits.
 const SAME_MOUNT: f64 = 1e-3;
@@ -37,10 +36,10 @@ pub(super) struct Rules {
 /// # Errors
 /// If the log cannot be opened, or the recording cannot be written.
 pub(super) fn convert<W: Write + Seek, L: BufRead>(
-    open: impl Fn() -> Result<L, RecordingToolsError>,
+    open: impl Fn() -> anyhow::Result<L>,
     rules: &Rules,
     writer: &mut RecordingWriter<W>,
-) -> Result<Report, RecordingToolsError> {
+) -> anyhow::Result<Report> {
     let survey = Survey::of(open()?);
     let mut conversion = Conversion {
         rules,
@@ -70,7 +69,7 @@ struct Conversion<'a, W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Conversion<'_, W> {
-    fn line(&mut self, number: u64, line: &str) -> Result<(), RecordingToolsError> {
+    fn line(&mut self, number: u64, line: &str) -> anyhow::Result<()> {
         match read::parse(line) {
             Ok(Line::Laser(laser)) => self.laser(&laser, number)?,
             Ok(Line::Odometry(odometry)) => self.odometry(&odometry, number)?,
@@ -81,7 +80,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         Ok(())
     }
 
-    fn laser(&mut self, laser: &Laser, number: u64) -> Result<(), RecordingToolsError> {
+    fn laser(&mut self, laser: &Laser, number: u64) -> anyhow::Result<()> {
         let is_source = |source: &&mut Source| source.is_of(laser);
         let Some(source) = self.sources.iter_mut().find(is_source) else {
             self.report.tally.repeated(laser.name());
@@ -124,7 +123,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         (ns, stamp): (i64, Time),
         topic: &str,
         frame: &str,
-    ) -> Result<(), RecordingToolsError> {
+    ) -> anyhow::Result<()> {
         let mount = match laser.poses {
             Some(poses) if self.rules.truth && topic == SCAN => {
                 return self.truth(ns, stamp, poses.laser);
@@ -142,12 +141,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         }
     }
 
-    fn truth(
-        &mut self,
-        ns: i64,
-        stamp: Time,
-        laser: geometry::Pose,
-    ) -> Result<(), RecordingToolsError> {
+    fn truth(&mut self, ns: i64, stamp: Time, laser: geometry::Pose) -> anyhow::Result<()> {
         let truth = PoseStamped {
             header: Header::new(stamp, "map"),
             pose: ros::Pose::from_planar(laser),
@@ -157,7 +151,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
             .write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))?)
     }
 
-    fn odometry(&mut self, odometry: &Odometry, number: u64) -> Result<(), RecordingToolsError> {
+    fn odometry(&mut self, odometry: &Odometry, number: u64) -> anyhow::Result<()> {
         match moment(odometry.time_ns) {
             Some((ns, stamp)) => self.odometry_at(ns, stamp, odometry.robot, odometry.velocities),
             None => {
@@ -174,7 +168,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         stamp: Time,
         robot: geometry::Pose,
         (forward, turn): (f64, f64),
-    ) -> Result<(), RecordingToolsError> {
+    ) -> anyhow::Result<()> {
         if !self.odometry_ns.insert(ns) {
             return Ok(());
         }
@@ -201,7 +195,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         frame: &str,
         base_from_laser: geometry::Pose,
         stamp: Time,
-    ) -> Result<(), RecordingToolsError> {
+    ) -> anyhow::Result<()> {
         let known = self.mounts.iter().find(|(other, _)| other == frame);
         if let Some((_, known)) = known {
             if !known.is_within(base_from_laser, SAME_MOUNT, SAME_MOUNT) {

@@ -13,7 +13,6 @@ use super::checks;
 use super::finding::{Finding, Severity};
 use super::located;
 use super::survey::Survey;
-use crate::RecordingToolsError;
 use crate::each::each;
 
 /// Text below the options in the help.
@@ -77,7 +76,7 @@ impl Config {
 ///
 /// # Errors
 /// If the only file cannot be read, or is no recording.
-pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     examine(config, &config.recordings, &[])
 }
 
@@ -90,16 +89,12 @@ pub fn run_on<'a>(
     config: &Config,
     recording: &Path,
     warnings: impl IntoIterator<Item = &'a String>,
-) -> Result<ExitCode, RecordingToolsError> {
+) -> anyhow::Result<ExitCode> {
     let warnings: Vec<Finding> = warnings.into_iter().map(Finding::problem).collect();
     examine(config, &[recording.to_owned()], &warnings)
 }
 
-fn examine(
-    config: &Config,
-    recordings: &[PathBuf],
-    known: &[Finding],
-) -> Result<ExitCode, RecordingToolsError> {
+fn examine(config: &Config, recordings: &[PathBuf], known: &[Finding]) -> anyhow::Result<ExitCode> {
     let map = config.map.as_ref().map(|file| {
         let options = located::options().with_map(file);
         options.load_map(recordings)

@@ -9,7 +9,6 @@ use recording::{Kind, Recording};
 use super::finding::Finding;
 use super::located::{Located, LocatedScan};
 use super::survey::{Seen, Survey};
-use crate::RecordingToolsError;
 
 /// Smallest delay that is worth a note, in seconds: a robot that turns by a radian per second is
 /// then off by a degree.
@@ -51,7 +50,7 @@ fn estimate(
     recording: &Recording,
     located: &Located,
     usual_period_s: f64,
-) -> Result<Option<f64>, RecordingToolsError> {
+) -> anyhow::Result<Option<f64>> {
     let Some(topic) = recording.topic(Kind::Odometry)? else {
         return Ok(None);
     };

@@ -4,10 +4,8 @@ use clap::Parser;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
-use offline::{OfflineError, Options, Session, TakenScan};
+use offline::{Options, Session, TakenScan};
 use recording::Recording;
-
-use crate::RecordingToolsError;
 
 /// Largest number of scans that are located: a minute of a laser of 8 Hz, seconds of computing.
 const MAX_SCANS: usize = 500;
@@ -55,10 +53,7 @@ pub(super) struct LocatedScan {
 impl Located {
     /// # Errors
     /// If the recording has no map, or cannot be read; other checks report that.
-    pub(super) fn of(
-        recording: &Recording,
-        map: Option<&OccupancyGrid>,
-    ) -> Result<Self, RecordingToolsError> {
+    pub(super) fn of(recording: &Recording, map: Option<&OccupancyGrid>) -> anyhow::Result<Self> {
         let mut session = Session::open(recording, &options(), map)?;
         let total = MAX_SCANS.min(session.scans.total() as usize);
         let every = total.div_ceil(SCALED_SCANS).max(1);
@@ -86,7 +81,7 @@ impl Located {
     }
 }
 
-fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedScan>, OfflineError> {
+fn locate(session: &mut Session<'_>, scan: TakenScan) -> anyhow::Result<Option<LocatedScan>> {
     let Ok(answer) = session.ask(&scan)?.answer else {
         return Ok(None);
     };
@@ -100,10 +95,7 @@ fn locate(session: &mut Session<'_>, scan: TakenScan) -> Result<Option<LocatedSc
 }
 
 /// Score of a scan at each scale.
-fn scores(
-    session: &mut Session<'_>,
-    found: &LocatedScan,
-) -> Result<[f64; SCALES.len()], OfflineError> {
+fn scores(session: &mut Session<'_>, found: &LocatedScan) -> anyhow::Result<[f64; SCALES.len()]> {
     let mut scores = [found.score; SCALES.len()];
     let changed = scores.iter_mut().zip(SCALES);
     for (score, scale) in changed.filter(|(_, scale)| *scale != 1.0) {

@@ -9,7 +9,6 @@ use recording::Recording;
 
 use super::contents::Contents;
 use super::text;
-use crate::RecordingToolsError;
 use crate::each::each;
 
 /// Options of `backcast info`.
@@ -31,7 +30,7 @@ pub struct Config {
 ///
 /// # Errors
 /// If the only file cannot be read, or is no recording.
-pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     let any_failed = each(&config.recordings, |path| {
         let mut recording = Recording::open(path)?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::stdout;
+use command_line::{stdout, wrong_use};
 use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
@@ -11,7 +11,6 @@ use ros::Time;
 use simulation::{Drive, DriveConfig, Path, Wheels};
 
 use super::messages::Messages;
-use crate::RecordingToolsError;
 
 const SECOND_NS: i64 = 1_000_000_000;
 
@@ -47,11 +46,11 @@ pub struct Config {
 /// # Errors
 /// If the map cannot be used, the path cannot be driven, or the file cannot be written. An
 /// impossible drive is rejected before the file is touched.
-pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     if config.out.exists() && !config.force {
         let file = config.out.display();
         let reason = format!("{file} is there already; --force overwrites it");
-        return Err(RecordingToolsError::Usage(reason));
+        return Err(wrong_use(reason));
     }
     let map = map::load_within(map::MemoryLimit::NONE, &config.map, |key| {
         say(&key.to_string());

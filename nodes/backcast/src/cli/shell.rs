@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
-use command_line::{CommandError, OutputError, stdout};
+use command_line::stdout;
 
 use super::Cli;
 
@@ -21,25 +22,11 @@ pub(crate) struct ManConfig {
     folder: PathBuf,
 }
 
-/// Error while writing completions or pages.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ShellError {
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    #[error("cannot write manual pages to {}", folder.display())]
-    Man {
-        folder: PathBuf,
-        source: std::io::Error,
-    },
-}
-
-impl CommandError for ShellError {}
-
 /// Prints the completions for a shell.
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub(crate) fn completions(config: &CompletionsConfig) -> Result<ExitCode, ShellError> {
+pub(crate) fn completions(config: &CompletionsConfig) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(config.shell, &mut Cli::command(), "backcast", &mut script);
     stdout::print(&String::from_utf8_lossy(&script))?;
@@ -50,12 +37,9 @@ pub(crate) fn completions(config: &CompletionsConfig) -> Result<ExitCode, ShellE
 ///
 /// # Errors
 /// If the folder cannot be written to.
-pub(crate) fn man(config: &ManConfig) -> Result<ExitCode, ShellError> {
-    let failed = |source| ShellError::Man {
-        folder: config.folder.clone(),
-        source,
-    };
-    clap_mangen::generate_to(Cli::command(), &config.folder).map_err(failed)?;
+pub(crate) fn man(config: &ManConfig) -> anyhow::Result<ExitCode> {
+    clap_mangen::generate_to(Cli::command(), &config.folder)
+        .with_context(|| format!("cannot write manual pages to {}", config.folder.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use ::map::OccupancyGrid;
-use command_line::{names, stdout};
+use command_line::{OutputError, names, stdout};
 use offline::{Accepted, Options, Session, map_in};
 use plots::draw_drive;
 use progress::{Progress, say};
@@ -15,7 +15,6 @@ use super::figures::Figures;
 use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};
 use super::variants::{Stress, Variant};
-use crate::EvaluationError;
 use crate::trust::Trust;
 
 /// Evaluates the variants of one file after another. A file that cannot be evaluated is reported on
@@ -29,7 +28,7 @@ pub(in super::super) fn evaluate(
     map: Option<&OccupancyGrid>,
     (options, sequence): (&Options, &SequenceOptions),
     stress: &Stress,
-) -> Result<ExitCode, EvaluationError> {
+) -> anyhow::Result<ExitCode> {
     let variants = stress.variants();
     let mut code = ExitCode::SUCCESS;
     let mut trust = Trust::default();
@@ -50,9 +49,9 @@ pub(in super::super) fn evaluate(
         ) {
             Ok(true) => {}
             Ok(false) => code = ExitCode::FAILURE,
-            Err(error @ EvaluationError::Output(_)) => return Err(error),
+            Err(error) if error.is::<OutputError>() => return Err(error),
             Err(error) => {
-                say(&transport::with_causes(&error));
+                say(&format!("{error:#}"));
                 code = ExitCode::FAILURE;
             }
         }
@@ -71,7 +70,7 @@ fn one(
     (options, sequence): (&Options, &SequenceOptions),
     variants: &[&'static Variant],
     trust: &mut Trust,
-) -> Result<bool, EvaluationError> {
+) -> anyhow::Result<bool> {
     let (recording, truths) = drive::open(bag, options)?;
     let map = map.cloned().map_or_else(|| map_in(&recording), Ok)?;
     let ignored = sequence.ignore_truth.iter().copied().collect();
@@ -156,7 +155,7 @@ fn picture(
     (name, variant): (&str, &str),
     (trial, wrong): (&Trial, &Wrong),
     options: &Options,
-) -> Result<(), EvaluationError> {
+) -> anyhow::Result<()> {
     let stops = course::stops(&wrong.moments, &wrong.said);
     let title = format!("{name}, {variant}");
     let scene = draw_drive(
@@ -165,8 +164,5 @@ fn picture(
         &stops,
         (title, words(wrong)),
     )?;
-    Ok(course::save(
-        &scene,
-        folder.join(format!("{name}_{variant}.png")),
-    )?)
+    plots::save_png(&scene, &folder.join(format!("{name}_{variant}.png")))
 }

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::super::follow::Followed;
 use super::super::run::Tally;
-use super::super::starts::Starts;
-use crate::text::{number, percent, share};
+use super::super::starts::{After, Starts};
+use crate::text::{number, percent};
 use crate::trust::Said;
 
 /// Figures of one variant. Shares are 0..=1; docs/tracking.md explains each.
@@ -26,15 +26,6 @@ pub(super) struct Figures {
     pub(super) probabilities: Vec<Said>,
 }
 
-/// Shares of the starts, by metres after the start.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct After {
-    #[serde(rename = "5")]
-    pub(super) five: Option<f64>,
-    #[serde(rename = "10")]
-    pub(super) ten: Option<f64>,
-}
-
 impl Figures {
     pub(super) fn new(
         (bag, variant): (String, &'static str),
@@ -47,7 +38,8 @@ impl Figures {
             wrong,
             trust,
         } = tally;
-        let after = |i: usize| share(starts.right[i], starts.judged[i]);
+        let mut right = After::of(&starts.right, &starts.judged);
+        right.0.retain(|(metres, _)| [5.0, 10.0].contains(metres));
         Figures {
             bag,
             variant,
@@ -57,10 +49,7 @@ impl Figures {
             unique_scans: unique,
             wrong_scans: wrong,
             losses: followed.losses.len() as u64,
-            right: After {
-                five: after(2),
-                ten: after(3),
-            },
+            right,
             rms_m: followed.rms_m,
             probabilities: trust.said().to_vec(),
         }
@@ -92,8 +81,8 @@ impl Figures {
             self.unique_scans,
             self.wrong_scans,
             self.losses,
-            percent(self.right.five),
-            percent(self.right.ten),
+            percent(self.right.0[0].1),
+            percent(self.right.0[1].1),
             number(self.rms_m, 3),
         )
     }

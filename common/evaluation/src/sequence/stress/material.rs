@@ -11,7 +11,6 @@ use rand::rngs::Xoshiro256PlusPlus;
 use recording::{GroundTruth, Kind, Recording};
 
 use super::super::drive::{self, Moment};
-use crate::EvaluationError;
 
 /// Random numbers and another map for a change.
 pub(super) struct Means<'a> {
@@ -56,7 +55,7 @@ impl Material {
         session: &mut Session<'_>,
         map: OccupancyGrid,
         (truths, ignored): (&BTreeMap<i64, GroundTruth>, &BTreeSet<u64>),
-    ) -> Result<Self, EvaluationError> {
+    ) -> anyhow::Result<Self> {
         let mut odometry = Vec::new();
         // Like a session, uses no odometry if several channels could be it.
         if let Ok(Some(topic)) = recording.topic(Kind::Odometry) {
@@ -90,7 +89,7 @@ impl Material {
         &self,
         session: &mut Session<'_>,
         (progress, accepted): (&Progress, &mut Accepted),
-    ) -> Result<Vec<Moment>, EvaluationError> {
+    ) -> anyhow::Result<Vec<Moment>> {
         session.begin_again(&self.odometry);
         let mut moments = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
@@ -117,7 +116,7 @@ impl Material {
         &self,
         session: &mut Session<'_>,
         moments: &[Moment],
-    ) -> Result<Vec<Moment>, EvaluationError> {
+    ) -> anyhow::Result<Vec<Moment>> {
         session.begin_again(&self.odometry);
         let mut moments = moments.to_vec();
         let mut left = moments.iter_mut().peekable();

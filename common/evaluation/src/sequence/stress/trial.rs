@@ -12,7 +12,6 @@ use super::super::starts::{self, Starts};
 use super::material::Material;
 use super::material::{Change, Means};
 use super::variants::{Variant, Way};
-use crate::EvaluationError;
 
 /// A drive that has been read and searched as recorded.
 pub(super) struct Recorded<'a> {
@@ -55,7 +54,7 @@ impl Recorded<'_> {
         variant: &Variant,
         mut means: Means<'_>,
         (count, config): (u32, TrackingConfig),
-    ) -> Result<Change<Trial>, EvaluationError> {
+    ) -> anyhow::Result<Change<Trial>> {
         let mut material = self.material.clone();
         let mut moments = self.moments.to_vec();
         let changed = match variant.way {
@@ -95,7 +94,7 @@ fn judge(
     variant: &Variant,
     (material, moments): (&Material, &[Moment]),
     (count, config): (u32, TrackingConfig),
-) -> Result<Trial, EvaluationError> {
+) -> anyhow::Result<Trial> {
     let within = moments.partition_point(|moment| moment.gone_m <= material.starts_until_m);
     let chosen = starts::choose(&moments[..within], count);
     let starts = starts::evaluate(world, moments, &chosen, config)?;

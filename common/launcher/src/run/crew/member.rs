@@ -8,6 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use anyhow::{Context, bail};
 use command_line::{LOST_DATA, WRONG_USE};
 use dataflow::Node;
 use messages::LogLevel;
@@ -17,10 +18,10 @@ use transport::{GraphName, log_in_graph};
 use super::super::{
     console::warn,
     control::NodeStatus,
-    process::{Process, executable},
+    process::{Process, not_started},
     supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential},
 };
-use crate::{LauncherError, installed::is_ours};
+use crate::installed::is_ours;
 
 /// Number of failures in a row from which a node is reported as failing.
 const FAILURES_SHOWN: u32 = 3;
@@ -59,7 +60,7 @@ impl Member {
     ///
     /// # Errors
     /// The node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
-    pub(super) fn new(node: Node, now: Instant) -> Result<Self, LauncherError> {
+    pub(super) fn new(node: Node, now: Instant) -> anyhow::Result<Self> {
         Ok(Member {
             essential: is_essential(&node)?,
             restarts: Restarts::new(node.restart),
@@ -81,7 +82,7 @@ impl Member {
         folder: &Path,
         graph: &GraphName,
         open: &Sender<()>,
-    ) -> Result<(), LauncherError> {
+    ) -> anyhow::Result<()> {
         if !matches!(self.state, State::Due(at) if at <= now) {
             return Ok(());
         }
@@ -105,7 +106,7 @@ impl Member {
         source: io::Error,
         folder: &Path,
         now: Instant,
-    ) -> Result<(), LauncherError> {
+    ) -> anyhow::Result<()> {
         let after = match self.started {
             Some(_) => self.restarts.after_end(Ended::Badly, Duration::ZERO, now),
             None => AfterEnd::Failed,
@@ -119,21 +120,12 @@ impl Member {
             return Ok(());
         }
         self.state = State::Done;
-        Err(LauncherError::NotStarted {
-            node: self.node.id.clone(),
-            path: executable(&self.node, folder),
-            folder: folder.to_owned(),
-            source,
-        })
+        Err(source).with_context(|| not_started(&self.node, folder))
     }
 
     /// Returns true if the process has ended, after deciding what follows. `has_room` says that
     /// shared memory is not full.
-    pub(super) fn look_after(
-        &mut self,
-        now: Instant,
-        has_room: bool,
-    ) -> Result<bool, LauncherError> {
+    pub(super) fn look_after(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(status) = self.poll()? else {
             self.end_if_hung(now)?;
             return Ok(false);
@@ -157,11 +149,13 @@ impl Member {
             }
             AfterEnd::Failed => {
                 self.state = State::Done;
-                return Err(LauncherError::NodeFailed {
-                    node: self.node.id.clone(),
-                    status,
-                    restarts: self.restarts.used(),
-                });
+                let after = match self.restarts.used() {
+                    0 => String::new(),
+                    1 => " after 1 restart in short time".to_owned(),
+                    n => format!(" after {n} restarts in short time"),
+                };
+                let id = &self.node.id;
+                bail!("node {id} ended with {status}{after}; see its last log lines");
             }
         };
         // Warns once per row of failures; `Starved` is not counted in the row.
@@ -226,7 +220,7 @@ impl Member {
     }
 
     /// Kills the process if its health messages are overdue: it hangs or is stopped.
-    fn end_if_hung(&mut self, now: Instant) -> Result<(), LauncherError> {
+    fn end_if_hung(&mut self, now: Instant) -> anyhow::Result<()> {
         let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
         else {
             return Ok(());
@@ -238,17 +232,17 @@ impl Member {
         // Its end is handled later; until then it is not killed again.
         self.pulse.restart_timeout(now);
         let killed = process.signal(Signal::SIGKILL);
-        killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
+        killed.with_context(|| not_supervised(&self.node, process.pid()))
     }
 
-    pub(super) fn poll(&mut self) -> Result<Option<ExitStatus>, LauncherError> {
+    pub(super) fn poll(&mut self) -> anyhow::Result<Option<ExitStatus>> {
         let State::Running(process) = &mut self.state else {
             return Ok(None);
         };
         let pid = process.pid();
         process
             .poll()
-            .map_err(|e| not_supervised(&self.node, pid, e))
+            .with_context(|| not_supervised(&self.node, pid))
     }
 }
 
@@ -268,10 +262,6 @@ pub(super) fn lost_data(status: ExitStatus) -> bool {
     status.code() == Some(LOST_DATA.into())
 }
 
-pub(super) fn not_supervised(node: &Node, pid: i32, source: io::Error) -> LauncherError {
-    LauncherError::NotSupervised {
-        node: node.id.clone(),
-        pid,
-        source,
-    }
+pub(super) fn not_supervised(node: &Node, pid: i32) -> String {
+    format!("node {}: process {pid} cannot be supervised", node.id)
 }
