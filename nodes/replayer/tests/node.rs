@@ -367,12 +367,14 @@ fn a_recording_that_is_cut_while_it_is_open_is_played_as_far_as_it_goes() {
     let mut world = World::new("cut-open");
     let mut health = world.graph.health().unwrap();
     world.start(&three_scans(), &["--wait-for", "accumulator"]);
-    // By then it has read the recording once.
+    // It waits once it has read the recording.
+    world.wait_for_state(NodeState::Busy);
     world.wait_for_state(NodeState::Waiting);
     let path = world.folder.path().join("world.mcap");
     let file = std::fs::File::options().write(true).open(path);
     file.unwrap().set_len(0).unwrap();
     health.state(NodeState::Ready).unwrap();
+    world.wait_for_state(NodeState::Ready);
     let (status, log) = world.finish();
     assert_eq!(status.code(), Some(3), "{status} {log}");
     assert!(
