@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{LOST_DATA, stdout};
+use command_line::{LOST_DATA, stdout, wrong_use};
 use offline::{Accepted, Options, Session};
 use pose_table::Line;
 use progress::Progress;
