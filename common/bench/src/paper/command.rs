@@ -39,8 +39,10 @@ const ALL: [Part; 7] = [
     Part::Aid,
 ];
 
-/// What `backcast bench paper` takes beside the options of every table.
+/// Options of `backcast bench paper`, in addition to those of every table.
+// Its group would have the same name as that of the other options.
 #[derive(Debug, Clone, Default, clap::Args)]
+#[group(skip)]
 #[command(next_help_heading = "Table paper")]
 pub(in super::super) struct Config {
     /// Folder for tables and pictures [default: docs/paper]
