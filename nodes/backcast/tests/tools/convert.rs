@@ -29,8 +29,8 @@ fn a_destination_that_exists_or_is_no_recording_is_refused() {
         "{said}"
     );
     let (code, _, said) = convert("a.log a.mcap");
-    assert_eq!(code, 1, "what exists is kept");
-    assert!(said.contains("cannot create a.mcap"), "{said}");
+    assert_eq!(code, 2, "what exists is kept");
+    assert!(said.contains("a.mcap is there already"), "{said}");
     assert_eq!(convert("a.log new/folder/a.mcap").0, 0);
     assert_eq!(convert("a.log a.mcap --force").0, 0);
     assert_eq!(convert("- b.mcap").0, 2, "a pipe cannot be read twice");
@@ -50,6 +50,7 @@ fn what_is_interrupted_leaves_no_file() {
         .unwrap();
     let file = corridor.folder.path().join("a.mcap");
     while !file.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
         std::thread::yield_now();
     }
     kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGINT).unwrap();
