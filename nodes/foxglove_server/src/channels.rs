@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use foxglove::websocket::{ChannelView, Client, ServerListener};
-use foxglove::{Context, PartialMetadata, RawChannel, Schema, SinkId};
+use foxglove::{Context, PartialMetadata, RawChannel, Schema};
 use recording::write::Encoded;
 use ros::{OccupancyGridMsg, RosMessage};
 use ros_export::topics;
@@ -16,13 +16,6 @@ use crate::serving::Serving;
 /// Encodings of messages and of their definitions.
 const ENCODING: &str = "cdr";
 const DEFINITIONS: &str = "ros2msg";
-
-/// Largest number of copies of a latched message for one viewer: each waits in the viewer's queue,
-/// which is limited by messages, and one that does not read may subscribe again and again.
-const COPIES: usize = 16;
-
-/// Number of viewers whose copies are counted at the same time.
-const VIEWERS: usize = 1024;
 
 /// All channels. A topic is advertised from its first message on; the intensity image always,
 /// because it is computed only while it is viewed.
@@ -38,33 +31,6 @@ struct Open {
     channel: Arc<RawChannel>,
     /// Newest message of a latched topic, for late joiners.
     newest: Option<Encoded>,
-    /// Copies of it that were sent to late joiners.
-    copies: BTreeMap<SinkId, usize>,
-}
-
-impl Open {
-    fn new(channel: Arc<RawChannel>) -> Self {
-        Open {
-            channel,
-            newest: None,
-            copies: BTreeMap::new(),
-        }
-    }
-
-    fn copy_to(&mut self, viewer: SinkId) {
-        let Some(newest) = &self.newest else {
-            return;
-        };
-        if self.copies.len() > VIEWERS {
-            self.copies.clear();
-        }
-        let copies = self.copies.entry(viewer).or_default();
-        *copies += 1;
-        if *copies <= COPIES {
-            let channel = &self.channel;
-            channel.log_with_meta_to_sink(&newest.body, at(newest), Some(viewer));
-        }
-    }
 }
 
 impl Channels {
@@ -73,7 +39,10 @@ impl Channels {
         let image = (OccupancyGridMsg::SCHEMA, OccupancyGridMsg::DEFINITION);
         // There are no viewers yet.
         let field = offer(context, topics::FIELD, image)?;
-        let open = Open::new(Arc::clone(&field));
+        let open = Open {
+            channel: Arc::clone(&field),
+            newest: None,
+        };
         Ok(Channels {
             context: Arc::clone(context),
             field,
@@ -90,14 +59,14 @@ impl Channels {
     pub(crate) fn show(&self, serving: &Serving, message: Encoded) -> Result<(), ServerError> {
         if !self.open().contains_key(&message.topic) {
             let channel = self.offer(serving, &message)?;
-            self.open()
-                .insert(message.topic.clone(), Open::new(channel));
+            let newest = None;
+            let opened = Open { channel, newest };
+            self.open().insert(message.topic.clone(), opened);
         }
-        if let Some(open) = self.open().get_mut(&message.topic) {
-            open.channel.log_with_meta(&message.body, at(&message));
+        if let Some(Open { channel, newest }) = self.open().get_mut(&message.topic) {
+            channel.log_with_meta(&message.body, at(&message));
             if message.latched {
-                open.newest = Some(message);
-                open.copies.clear();
+                *newest = Some(message);
             }
         }
         Ok(())
@@ -119,10 +88,12 @@ impl Channels {
 
 impl ServerListener for Channels {
     fn on_subscribe(&self, client: Client, channel: ChannelView) {
-        if let Some(open) = self.open().get_mut(channel.topic())
-            && let Some(viewer) = client.sink_id()
-        {
-            open.copy_to(viewer);
+        let open = self.open();
+        let Some(Open { channel, newest }) = open.get(channel.topic()) else {
+            return;
+        };
+        if let Some(newest) = newest {
+            channel.log_with_meta_to_sink(&newest.body, at(newest), client.sink_id());
         }
     }
 }

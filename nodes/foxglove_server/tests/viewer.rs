@@ -355,7 +355,6 @@ fn silent_connections_lock_nobody_out_and_delay_no_end() {
     let world = World::new("fox-silent");
     let health = world.graph.subscriber::<topic::Health>().unwrap();
     DrawnMap::small().send(&world.maps);
-    world.send_scan(0);
     // More than the node has file descriptors; those that cannot be accepted wait in the system.
     let silent: Vec<_> = (0..600)
         .map_while(|_| TcpStream::connect(world.site.0).ok())
@@ -369,31 +368,5 @@ fn silent_connections_lock_nobody_out_and_delay_no_end() {
     viewer.next("/map");
     // It is still there when the node is stopped.
     let _silent = TcpStream::connect(world.site.0).unwrap();
-    drop((health, world));
-}
-
-#[test]
-fn a_viewer_that_subscribes_again_and_again_does_not_fill_the_memory() {
-    let world = World::new("fox-again");
-    DrawnMap::small().send(&world.maps);
-    world.send_scan(0);
-    let mut viewer = Viewer::connect(world.site);
-    for _ in 0..40 {
-        viewer.subscribe("/map");
-        let last = viewer.subscribed.len();
-        let request = json!({"op": "unsubscribe", "subscriptionIds": [last]});
-        let request = Message::text(request.to_string());
-        viewer.socket.send(request).unwrap();
-    }
-    // Requests are processed in order, and a latched message is sent at once.
-    viewer.subscribe("/tf_static");
-    let mut maps = 0;
-    loop {
-        match viewer.receive() {
-            Some(shown) if shown.topic == "/map" => maps += 1,
-            Some(_) => break,
-            None => {}
-        }
-    }
-    assert_eq!(maps, 16);
+    drop(world);
 }
