@@ -155,7 +155,7 @@ mod tests {
         let refused = |options: &RecordOptions, text: &str| {
             let mut dataflow = parsed(text);
             let outcome = add(options, &mut dataflow, Path::new("g.yaml"), folder.path());
-            outcome.unwrap_err().to_string()
+            format!("{:#}", outcome.unwrap_err())
         };
         let exists = refused(&options(&existing), GRAPH);
         assert!(exists.contains("r.mcap is there already"), "{exists}");
