@@ -55,7 +55,7 @@ impl QueueLimits {
         QueueLimits {
             messages,
             message_bytes,
-            bytes: messages.saturating_mul(message_bytes),
+            bytes: messages.saturating_mul(message_bytes.saturating_add(ENVELOPE_BYTES)),
         }
     }
 }

@@ -35,7 +35,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
     );
     refuse(
         "scan",
-        &format!("00010000{}", "00".repeat(1 << 20)),
+        &format!("00010000{}", "00".repeat(1 << 21)),
         None,
         "at most",
     );
