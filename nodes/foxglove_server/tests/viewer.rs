@@ -355,6 +355,7 @@ fn silent_connections_lock_nobody_out_and_delay_no_end() {
     let world = World::new("fox-silent");
     let health = world.graph.subscriber::<topic::Health>().unwrap();
     DrawnMap::small().send(&world.maps);
+    world.send_scan(0);
     // More than the node has file descriptors; those that cannot be accepted wait in the system.
     let silent: Vec<_> = (0..600)
         .map_while(|_| TcpStream::connect(world.site.0).ok())
@@ -368,5 +369,5 @@ fn silent_connections_lock_nobody_out_and_delay_no_end() {
     viewer.next("/map");
     // It is still there when the node is stopped.
     let _silent = TcpStream::connect(world.site.0).unwrap();
-    drop(world);
+    drop((health, world));
 }
