@@ -6,7 +6,7 @@ use std::path::Path;
 
 use mcap::MAGIC;
 
-use crate::{RecordingError, unpack};
+use crate::RecordingError;
 
 /// Magic of an SQLite 3 database.
 const SQLITE: &[u8] = b"SQLite format 3\0";
@@ -83,7 +83,7 @@ impl Content {
     pub(crate) fn of(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = RecordingError::open(path);
         let mut start = Vec::new();
-        if unpack::is_stream(path) {
+        if is_stream(path) {
             return Ok(Content::Unknown);
         }
         let file = File::open(path).map_err(unreadable)?;
@@ -104,6 +104,14 @@ impl Content {
             Some(&(_, what, advice)) => Content::Foreign(what, advice),
             None => Content::Unknown,
         }
+    }
+}
+
+/// True for a pipe or a device, which can be read only once; `-` is standard input.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    match path.metadata() {
+        Ok(found) => !found.is_file() && !found.is_dir(),
+        Err(_) => path == Path::new("-"),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
 
-use crate::content::{Content, foreign};
+use crate::content::{Content, foreign, is_stream};
 use crate::folder::Listed;
 use crate::survey::Survey;
 use crate::{Damage, RecordingError, unpack};
@@ -32,7 +32,7 @@ impl RecordedFile {
     /// It cannot be read, or does not even start as a recording.
     pub(crate) fn open(listed: &Listed) -> Result<Self, RecordingError> {
         let path = &listed.path;
-        if unpack::is_stream(path) {
+        if is_stream(path) {
             let saved = unpack::saved(path)?;
             return RecordedFile::at(listed, saved.path());
         }

@@ -10,8 +10,8 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::content::{Content, foreign};
-use crate::{RecordingError, unpack};
+use crate::RecordingError;
+use crate::content::{Content, foreign, is_stream};
 
 /// Name of a bag's description.
 const METADATA: &str = "metadata.yaml";
@@ -35,7 +35,7 @@ pub(crate) struct Listed {
 /// If there is no such file, or a folder does not clearly define its files.
 pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
     let unreadable = RecordingError::open(path);
-    if unpack::is_stream(path) {
+    if is_stream(path) {
         let (path, messages) = (path.to_owned(), None);
         return Ok(vec![Listed { path, messages }]);
     }

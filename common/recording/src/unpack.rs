@@ -45,14 +45,6 @@ fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
     }
 }
 
-/// True for a pipe or a device, which can be read only once; `-` is standard input.
-pub(crate) fn is_stream(path: &Path) -> bool {
-    match path.metadata() {
-        Ok(found) => !found.is_file() && !found.is_dir(),
-        Err(_) => path == Path::new("-"),
-    }
-}
-
 /// Saves what comes through a pipe to a temporary file that is deleted when it is dropped.
 ///
 /// # Errors
