@@ -108,7 +108,8 @@ impl Content {
 }
 
 /// True for a pipe or a device, which can be read only once; `-` is standard input.
-pub(crate) fn is_stream(path: &Path) -> bool {
+#[must_use]
+pub fn is_stream(path: &Path) -> bool {
     match path.metadata() {
         Ok(found) => !found.is_file() && !found.is_dir(),
         Err(_) => path == Path::new("-"),

@@ -38,6 +38,7 @@ mod unpack;
 pub mod write;
 
 pub use block::Part;
+pub use content::is_stream;
 pub use contents::Mounted;
 pub use copy::{is_bag, is_recording, write_bag};
 pub use damage::{Damage, MAX_CHUNK_BYTES};

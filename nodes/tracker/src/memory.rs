@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use command_line::output::folder_of;
 use geometry::{Covariance, Pose};
 use serde::{Deserialize, Serialize};
 use transport::with_causes;
@@ -64,12 +65,8 @@ impl Memory {
     /// If the file cannot be written.
     pub(crate) fn save(&self, pose: &Remembered) -> Result<(), TrackerError> {
         let text = serde_json::to_string(pose).map_err(|error| self.refuse(&error))?;
-        let folder = match self.file.parent() {
-            Some(folder) if folder != Path::new("") => folder,
-            _ => Path::new("."),
-        };
         let write = || -> std::io::Result<()> {
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            let mut file = tempfile::NamedTempFile::new_in(folder_of(&self.file))?;
             file.write_all(text.as_bytes())?;
             file.as_file().sync_data()?;
             file.persist(&self.file)?;

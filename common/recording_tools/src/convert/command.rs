@@ -10,7 +10,7 @@ use anyhow::bail;
 use command_line::{LOST_DATA, output, wrong_use};
 use progress::say;
 use recording::write::{Packing, RecordingWriter};
-use recording::{Kind, Recording, is_bag};
+use recording::{Kind, Recording, is_bag, is_stream};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
@@ -70,7 +70,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         return Err(none());
     }
     let from = &config.from;
-    if from == Path::new("-") || (from.exists() && !from.is_file() && !from.is_dir()) {
+    if is_stream(from) {
         let from = from.display();
         return Err(wrong_use(format!(
             "{from} is no file, and is read twice: save it to one first"

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use command_line::output::folder_of;
+
 use crate::RecorderError;
 
 /// Largest number tried.
@@ -47,10 +49,7 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
 
 /// Returns the existing files with names of [`create`], in any order.
 pub(super) fn created(path: &Path) -> Vec<PathBuf> {
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let is_one = |found: &Path| {
         let number = found.file_stem().unwrap_or_default().to_string_lossy();

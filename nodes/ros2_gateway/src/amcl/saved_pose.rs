@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use command_line::output::folder_of;
 use geometry::Pose;
 use messages::PoseHeader;
 use ros::Time;
@@ -87,12 +88,8 @@ pub(super) fn save(
         "timestamp: {sec}.{nanosec:09}\nframe_id: {frame}\nx: {x:?}\ny: {y:?}\nz: 0.0\n\
          yaw: {yaw:?}\n"
     );
-    let folder = match file.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
     let write = || -> std::io::Result<()> {
-        let mut written = tempfile::NamedTempFile::new_in(folder)?;
+        let mut written = tempfile::NamedTempFile::new_in(folder_of(file))?;
         written.write_all(text.as_bytes())?;
         written.persist(file)?;
         Ok(())

@@ -82,7 +82,7 @@ fn names_are_listed_by_prefix_and_depth() {
 #[test]
 fn no_text_that_counts_changes_while_the_node_runs() {
     let mut parameters = Parameters::default();
-    let other: ParameterValue = (&Value::Text("/home/robot/private".into())).into();
+    let other: ParameterValue = (&Value::Text("/elsewhere/pose.yaml".into())).into();
     let texts = ALL
         .iter()
         .filter(|declared| matches!(declared.default, declared::Plain::Text(_)));
