@@ -91,14 +91,15 @@ pub struct Config {
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     // A laser or a robot takes seconds to answer, so it is asked last.
     let recording = config.replay.as_ref().map(Recording::open).transpose()?;
-    let map = match (&config.map, &config.maps, &recording) {
+    let played = config.replay.as_deref().zip(recording.as_ref());
+    let map = match (&config.map, &config.maps, played) {
         (Some(file), ..) => Some(Served::Map(used_map(file)?)),
         (None, Some(set), _) => Some(Served::Set(used_set(set)?)),
-        (None, None, Some(recording)) => Some(Served::Recorded(used_recording(recording)?)),
+        (None, None, Some(played)) => Some(Served::Recorded(used_recording(played)?)),
         (None, None, None) => None,
     };
     output::prepare(&config.out, config.force)?;
-    let source = source(config, recording.as_ref())?;
+    let source = source(config, played)?;
     let text = descriptor_of(&source, map.as_ref());
     write(&config.out, &text).with_context(|| not_written(&config.out))?;
     descriptor::load(&config.out, Builds::Run)?;
@@ -121,11 +122,11 @@ fn write(file: &Path, text: &str) -> io::Result<()> {
     Ok(())
 }
 
-fn source(config: &Config, recording: Option<&Recording>) -> anyhow::Result<Source> {
+fn source(config: &Config, played: Option<(&Path, &Recording)>) -> anyhow::Result<Source> {
     let mount = config.mount.as_deref().map(mount).transpose()?;
     let is_robot = config.ros2.is_some();
     let has_map = config.map.is_some() || config.maps.is_some();
-    if !has_map && !is_robot && recording.is_none() {
+    if !has_map && !is_robot && played.is_none() {
         return Err(wrong_use(NEEDED));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
@@ -165,13 +166,13 @@ fn source(config: &Config, recording: Option<&Recording>) -> anyhow::Result<Sour
         let reason = "--mount is not for a recording, whose /tf_static says where its laser sits";
         return Err(wrong_use(reason));
     }
-    let recording = recording.context("a laser, a robot or a recording is required")?;
+    let (file, recording) = played.context("a laser, a robot or a recording is required")?;
     recording.topic(Kind::Scan)?;
     let has_odometry = recording
         .topic(Kind::Odometry)
         .is_ok_and(|topic| topic.is_some());
     Ok(Source::Recording {
-        file: absolute(recording.path())?,
+        file: absolute(file)?,
         has_odometry,
     })
 }
@@ -204,15 +205,15 @@ fn mount(text: &str) -> anyhow::Result<String> {
 }
 
 /// Checks that a recording holds a map to serve, and returns its absolute path.
-fn used_recording(recording: &Recording) -> anyhow::Result<String> {
+fn used_recording((file, recording): (&Path, &Recording)) -> anyhow::Result<String> {
     match recording.maps()?.last() {
         Some(map) => {
             map?;
-            absolute(recording.path())
+            absolute(file)
         }
         None => Err(wrong_use(format!(
             "{NEEDED}: {} holds none",
-            recording.path().display()
+            file.display()
         ))),
     }
 }
