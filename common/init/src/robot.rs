@@ -1,6 +1,6 @@
 //! Lists the topics of a ROS 2 robot with `ros2_gateway --look`, and chooses those for the gateway.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::{Command, Stdio};
 
 use anyhow::anyhow;
@@ -82,7 +82,10 @@ pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one"
 
 /// Chooses the options for the published topics.
 fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
-    let mut robot = Robot::default();
+    let mut robot = Robot {
+        said: list(published),
+        ..Robot::default()
+    };
     // With several robots, the first one with scans is used.
     let Some(first) = published.iter().find(|one| one.kind == "scan") else {
         robot.said.push(
@@ -108,10 +111,6 @@ fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
             .options
             .extend(["--domain".to_owned(), domain.to_string()]);
     }
-    robot.said.push(format!(
-        "on {rmw}, domain {domain}, {} publishes {}",
-        first.node, first.topic
-    ));
     let scans = of_kind("scan");
     let maps: BTreeSet<String> = of_kind("map")
         .into_iter()
@@ -149,6 +148,20 @@ fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
         }
     }
     robot
+}
+
+/// Lists the topics of each node, one sentence a node.
+fn list(published: &[Published]) -> Vec<String> {
+    let mut nodes: BTreeMap<_, Vec<&str>> = BTreeMap::new();
+    for one in published {
+        let topics = nodes.entry((&one.rmw, one.domain, &one.node)).or_default();
+        topics.push(&one.topic);
+    }
+    let sentence = |((rmw, domain, node), topics): ((&String, u32, &String), Vec<&str>)| {
+        let topics = topics.join(", ");
+        format!("on {rmw}, domain {domain}, {node} publishes {topics}")
+    };
+    nodes.into_iter().map(sentence).collect()
 }
 
 /// The topics of several lasers of one robot, with names that tell these apart; none where one
@@ -197,7 +210,8 @@ mod tests {
         assert_eq!(
             robot.said,
             [
-                "on zenoh, domain 0, /lidar publishes /scan",
+                "on zenoh, domain 0, /lidar publishes /scan, /scan_filtered, /odom, \
+                 /global_costmap/costmap, /map, /tf",
                 "--scan /scan is taken of /scan, /scan_filtered",
             ]
         );

@@ -139,5 +139,7 @@ crate::codes! {
         AnotherPlace = 7,
         /// No place on the map fits.
         NoPlace = 8,
+        /// No search has been answered yet.
+        NoSearch = 9,
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct TrackedPose {
     /// evidence against it; "Lost", the robot is not there any more.
     state: &'static str,
     /// Reason for the state: "NoScan", "OnePlace", "SeveralPlaces", "TooEarly", "PoorFit",
-    /// "OdometryJump", "AnotherPlace" or "NoPlace".
+    /// "OdometryJump", "AnotherPlace", "NoPlace" or "NoSearch".
     reason: String,
     /// Explanation of the reason, with what to do.
     why: String,

@@ -26,6 +26,8 @@ pub(super) struct Belief {
     is_sure: bool,
     /// True if the last needed search had no answer.
     unchecked: bool,
+    /// True if a search had an answer.
+    is_searched: bool,
     /// Probability of the best place, 0..=1.
     probability: f64,
     lost_by: TrackReason,
@@ -44,6 +46,7 @@ impl Belief {
             was_unique: false,
             is_sure: false,
             unchecked: false,
+            is_searched: false,
             probability: 0.0,
             lost_by: TrackReason::PoorFit,
             state: TrackState::Searching,
@@ -102,6 +105,7 @@ impl Belief {
     /// Notes if a search had an answer, and if it was needed.
     pub(super) fn search_ended(&mut self, was_needed: bool, has_answer: bool) {
         self.unchecked = !has_answer && (self.unchecked || was_needed);
+        self.is_searched |= has_answer;
     }
 
     /// Handles a scan without usable beams after a path without such scans: the pose is carried by
@@ -190,7 +194,10 @@ impl Belief {
             TrackState::Unique => TrackReason::OnePlace,
             TrackState::Doubtful if self.unchecked => TrackReason::PoorFit,
             TrackState::Lost => self.lost_by,
-            TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
+            TrackState::Searching if places.is_empty() => match self.is_searched {
+                true => TrackReason::NoPlace,
+                false => TrackReason::NoSearch,
+            },
             _ if several => TrackReason::SeveralPlaces,
             _ => TrackReason::TooEarly,
         }

@@ -92,6 +92,7 @@ impl Report {
             (TrackReason::NoScan, TrackState::Doubtful) => "no scan for some metres".into(),
             (TrackReason::NoScan, _) => "waiting for the first scan".into(),
             (TrackReason::NoMap, _) => "waiting for a map".into(),
+            (TrackReason::NoSearch, _) => "waiting for the first search of the map".into(),
             (TrackReason::OnePlace, _) => format!("one place, {fit}, {since}"),
             (TrackReason::SeveralPlaces, _) => {
                 format!("{} places fit, {}, {since}", self.rivals, self.apart())
@@ -132,7 +133,10 @@ impl Report {
             TrackReason::NoScan if self.state == TrackState::Doubtful => {
                 "is the laser running and connected?"
             }
-            TrackReason::NoScan | TrackReason::NoMap | TrackReason::OnePlace => "",
+            TrackReason::NoScan
+            | TrackReason::NoMap
+            | TrackReason::NoSearch
+            | TrackReason::OnePlace => "",
         }
     }
 }

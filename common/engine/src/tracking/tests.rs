@@ -91,6 +91,19 @@ fn a_doubt_stays_until_a_search_has_an_answer() {
 }
 
 #[test]
+fn the_map_is_only_blamed_after_a_search() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    unanswered(&building, &mut tracker, START, None);
+    assert_eq!(tracker.report().reason, TrackReason::NoSearch);
+    let (ends, fit) = (building.ends(START), FitConfig::default());
+    let seen = building.seen(&ends, &fit);
+    assert_eq!(tracker.begin(&[seen], 2, None), Need::ThisScan);
+    tracker.finish(&[seen], Some(&[]));
+    assert_eq!(tracker.report().reason, TrackReason::NoPlace);
+}
+
+#[test]
 fn nothing_becomes_the_only_place_without_a_search() {
     let building = building(&UNLIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());

@@ -6,8 +6,9 @@
 use geometry::Pose;
 use messages::Stamp;
 
-/// Time from one sending to the next, nanoseconds: the period of the slowest lasers.
-const AGAIN_NS: i64 = 50_000_000;
+/// Shortest time from one sending to the next, nanoseconds: half of the gateway's tick, so that
+/// every tick without a scan sends.
+const AGAIN_NS: i64 = 25_000_000;
 
 /// Number of scan periods for which the last scan counts.
 const SCANS: i64 = 4;
@@ -111,7 +112,7 @@ mod tests {
         assert_eq!(at(&mut standing, 10), Some(0));
         assert_eq!(at(&mut standing, 20), None);
         assert_eq!(at(&mut standing, 60), Some(60));
-        assert_eq!(at(&mut standing, 100), None);
+        assert_eq!(at(&mut standing, 80), None, "half of a tick has not passed");
         standing.on_scan(stamp(100), found());
         assert_eq!(at(&mut standing, 101), Some(100));
     }

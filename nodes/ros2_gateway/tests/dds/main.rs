@@ -381,7 +381,7 @@ fn a_robot_is_found_and_checked_while_it_drives() {
     let output = backcast(&["init", "--ros2", "--out", "graph.yaml"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    let seen = format!("on dds, domain {domain}, /r2/robot publishes /r2/scan");
+    let seen = format!("on dds, domain {domain}, /r2/robot publishes /r2/odom, /r2/scan");
     assert!(said.contains(&seen), "{said}");
     let written = std::fs::read_to_string(folder.path().join("graph.yaml")).unwrap();
     let options = format!("--rmw dds --domain {domain} --scan /r2/scan --odom /r2/odom");
@@ -397,25 +397,32 @@ fn a_robot_is_found_and_checked_while_it_drives() {
 }
 
 #[test]
-fn nothing_crosses_from_one_domain_to_another() {
+fn nothing_crosses_to_another_domain_or_namespace() {
     let Some(mut joined) = Joined::new("dds-own", "/", &MOUNT) else {
         return;
     };
-    let isolated = Isolated::new("dds-other");
-    let other = isolated.join("test");
-    let next = domain();
-    let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-    let options = ["--rmw", "dds", "--domain", &next, "--mount", "0.78,0,0"];
-    let gateway = NodeProcess::start(executable, &other, options);
-    let scans = other.subscriber::<topic::Scan>().unwrap();
+    let (own, next) = (joined.domain.clone(), domain());
+    let others = [("dds-other", &next, "/"), ("dds-second", &own, "/r2")];
+    let others = others.map(|(tag, domain, namespace)| {
+        let isolated = Isolated::new(tag);
+        let graph = isolated.join("test");
+        let options = ["--rmw", "dds", "--domain", domain, "--namespace", namespace];
+        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
+        let gateway = NodeProcess::start(executable, &graph, options.iter().chain(&MOUNT));
+        let scans = graph.subscriber::<topic::Scan>().unwrap();
+        (gateway, scans, graph, namespace, isolated)
+    });
     // Repeated while that robot's own gateway is restarted.
     for _ in 0..3 {
         drive(&mut joined, START_NS);
         joined.stop();
         joined.start();
     }
-    wait_until_waiting(&other, "/scan: no publisher");
-    assert!(scans.receive().unwrap().is_none());
-    gateway.stop();
+    for (gateway, scans, graph, namespace, _isolated) in others {
+        let topic = format!("{}/scan", namespace.trim_end_matches('/'));
+        wait_until_waiting(&graph, &format!("{topic}: no publisher"));
+        assert!(scans.receive().unwrap().is_none(), "{namespace}");
+        gateway.stop();
+    }
     joined.stop();
 }

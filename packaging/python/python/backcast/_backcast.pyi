@@ -272,9 +272,10 @@ class TrackedPose:
         "OdometryJump",
         "AnotherPlace",
         "NoPlace",
+        "NoSearch",
     ]:
         """Reason for the state: "NoScan", "OnePlace", "SeveralPlaces", "TooEarly", "PoorFit",
-        "OdometryJump", "AnotherPlace" or "NoPlace".
+        "OdometryJump", "AnotherPlace", "NoPlace" or "NoSearch".
         """
     @property
     def why(self) -> str:
