@@ -84,13 +84,16 @@ impl Driven {
         self.joined.robot.order("replay", how);
     }
 
-    /// The next pose: when it came, and how many metres it is from the true one.
+    /// The next pose: when it came, and how many metres it is from the true one. A pose that is off
+    /// has a covariance that says so: after a gap in odometry it is that of metres.
     fn pose(&mut self) -> (i64, f64) {
         let pose = self.joined.robot.wait_for("pose");
-        (
-            pose["at"].as_i64().unwrap(),
-            pose["metres"].as_f64().unwrap(),
-        )
+        let number = |name: &str| pose[name].as_f64().unwrap();
+        let (metres, deviation) = (number("metres"), number("deviation"));
+        // Of 3000 normally distributed errors in the plane, one is beyond four deviations. The
+        // recorded truth is known to half a metre.
+        assert!(metres < f64::max(0.5, 4.0 * deviation), "{pose}");
+        (pose["at"].as_i64().unwrap(), metres)
     }
 
     /// When the first pose after `begin` came that is as near as most answers on this recording

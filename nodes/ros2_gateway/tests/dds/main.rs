@@ -410,7 +410,7 @@ fn nothing_crosses_to_another_domain_or_namespace() {
         let executable = env!("CARGO_BIN_EXE_ros2_gateway");
         let gateway = NodeProcess::start(executable, &graph, options.iter().chain(&MOUNT));
         let scans = graph.subscriber::<topic::Scan>().unwrap();
-        (gateway, scans, graph, namespace, isolated)
+        (isolated, graph, scans, gateway, namespace)
     });
     // Repeated while that robot's own gateway is restarted.
     for _ in 0..3 {
@@ -418,7 +418,7 @@ fn nothing_crosses_to_another_domain_or_namespace() {
         joined.stop();
         joined.start();
     }
-    for (gateway, scans, graph, namespace, _isolated) in others {
+    for (_isolated, graph, scans, gateway, namespace) in others {
         let topic = format!("{}/scan", namespace.trim_end_matches('/'));
         wait_until_waiting(&graph, &format!("{topic}: no publisher"));
         assert!(scans.receive().unwrap().is_none(), "{namespace}");

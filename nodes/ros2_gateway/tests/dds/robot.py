@@ -164,11 +164,13 @@ class Robot(Node):
             stamp = stamp_of(message)
             if truth := self.truths.get(stamp):
                 x, y, turned = truth
+                covariance = message.pose.covariance
                 at, yaw = message.pose.pose.position, yaw_of(message.pose.pose.orientation)
                 say(
                     event="pose",
                     at=time.monotonic_ns(),
                     stamp=stamp,
+                    deviation=math.sqrt(covariance[0] + covariance[7]),
                     metres=math.hypot(at.x - x, at.y - y),
                     radians=abs(math.remainder(yaw - turned, math.tau)),
                 )
