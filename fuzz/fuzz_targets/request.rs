@@ -31,6 +31,7 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
     robot.on_abilities(Abilities {
         region: true,
         save: true,
+        hint: true,
     });
     let options = Options {
         webhook: None,

@@ -3,7 +3,7 @@
 import { ask, savePicture, takeToken } from "./actions.js";
 import { Connection } from "./connection.js";
 import { listen } from "./gestures.js";
-import { MapView } from "./map_view.js";
+import { headingOf, MapView } from "./map_view.js";
 import { $, write } from "./dom.js";
 import * as inspector from "./inspect.js";
 import { keys } from "./keys.js";
@@ -21,7 +21,6 @@ const timeline = new Timeline(store, showMoment);
 let connection = null;
 let robot = "";
 let paused = false;
-let choosing = false;
 let link = "connecting";
 let wasLive = false;
 let delay = null;
@@ -45,9 +44,9 @@ const switchTheme = () => {
 const handlers = {
   state(word) {
     if (word === link) return;
-    if (word === "lost") {
+    if (word === "lost" || word === "stopped") {
       delay = null;
-      if (wasLive) store.event("the connection was lost", "bad");
+      if (wasLive) store.event(word === "stopped" ? "the graph was stopped" : "the connection was lost", "bad");
     } else if (word === "live") {
       store.event(wasLive ? "connected again" : `connected to ${robot}`);
     }
@@ -94,10 +93,11 @@ function showLink() {
   const is = situation(store, link, paused);
   const silent = link === "live" && is.stale;
   document.body.toggleAttribute("data-silent", silent);
+  document.body.toggleAttribute("data-well", link === "live" && is.well);
   const age = delay === null ? null : Math.round(delay + ((store.pose ?? store.answer)?.age_ms ?? 0));
   const live = age === null ? "live" : `live · ${age} ms`;
   const nothing = is.silence === null ? "no data yet" : `no data for ${duration(is.silence)}`;
-  const words = { live: silent ? nothing : live, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
+  const words = { live: silent ? nothing : live, lost: "disconnected", stopped: "stopped", connecting: "connecting", alone: "no robot yet" };
   write("link-text", paused && link === "live" ? "Paused" : words[link]);
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
@@ -127,6 +127,7 @@ function show(now) {
   showNodes(store);
   showEvents(store, moment, momentEnds);
   showLegend(store, view.beamsShown(), theme());
+  $("hint-button").disabled = !store.abilities.hint;
   $("region").disabled = !store.abilities.region;
   $("everywhere").disabled = !store.abilities.region || store.region.length === 0;
   $("save").disabled = !store.abilities.save;
@@ -258,17 +259,41 @@ function setPaused(on) {
   }
 }
 
-function setChoosing(on) {
-  choosing = on;
-  $("map").classList.toggle("choosing", on);
-  $("hint").hidden = !on;
-  $("hint").textContent = "Drag a box to search in, or press Enter for what is in view. Esc leaves.";
-  if (!on) view.selection = null;
+const HOW = {
+  region: "Drag a box to search in, or press Enter for what is in view. Esc leaves.",
+  hint: "Drag from where the robot is to where it looks, or press Enter for each. Esc leaves.",
+};
+
+/** Begins to choose a region or the pose of a hint; with an empty word, ends it. */
+function setChoosing(what) {
+  view.choosing = what;
+  view.selection = null;
+  $("map").classList.toggle("choosing", Boolean(what));
+  $("hint").hidden = !what;
+  $("hint").textContent = HOW[what] ?? "";
+  if (what) setFollow(false);
   view.draw();
 }
 
+const AIMED_PX = 12; // a shorter drag has no direction
+
+/** Takes where a drag began and ended. */
+function chosen(corners) {
+  const what = view.choosing;
+  setChoosing("");
+  return what === "hint" ? hintAt(corners) : searchIn(corners);
+}
+
+async function hintAt(corners) {
+  const [[x, y], [x1, y1]] = corners;
+  if (view.camera.scale * Math.hypot(x1 - x, y1 - y) < AIMED_PX) {
+    $("actions-note").textContent = "Drag from where the robot is to where it looks.";
+    return;
+  }
+  await ask(robot, "POST", "hint", { x, y, yaw: headingOf(corners) }, "The tracker looks there first, and takes the pose if scans confirm it.");
+}
+
 async function searchIn(corners) {
-  setChoosing(false);
   const [[x0, y0], [x1, y1]] = corners;
   if (Math.abs(x1 - x0) < 0.1 || Math.abs(y1 - y0) < 0.1) return;
   const rounded = corners.map((corner) => corner.map((metres) => Math.round(metres * 1000) / 1000));
@@ -285,7 +310,7 @@ function picture() {
 }
 
 listen(view, {
-  choosing: () => choosing, chosen: searchIn, moved: () => setFollow(false),
+  choosing: () => Boolean(view.choosing), chosen, moved: () => setFollow(false),
   clicked: (px, py) => look(view.pick(px, py)), pointed: showCursor,
 });
 view.ondrawn = () => {
@@ -295,7 +320,7 @@ view.ondrawn = () => {
 const zoom = (factor) => { view.camera.zoom(factor); view.draw(); };
 const fit = () => { setFollow(false); view.fit(); };
 const leave = () => {
-  if (choosing) setChoosing(false);
+  if (view.choosing) setChoosing("");
   else if (inspector.isOpen()) inspector.close(view);
   else timeline.select(null);
 };
@@ -318,7 +343,9 @@ $("robot").onchange = () => {
   asked = null;
   watch($("robot").value);
 };
-$("region").onclick = () => { setChoosing(!choosing); $("map").focus(); };
+const choose = (what) => { setChoosing(view.choosing === what ? "" : what); $("map").focus(); };
+$("region").onclick = () => choose("region");
+$("hint-button").onclick = () => choose("hint");
 $("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are searched everywhere again.");
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");
 
@@ -326,11 +353,15 @@ keys({
   move(dx, dy) {
     setFollow(false);
     view.camera.pan(dx, dy);
+    if (view.selection) view.selection[1] = [view.camera.x, view.camera.y];
     showCursor("middle");
   },
   enter() {
     const { width, height } = view.camera;
-    if (choosing) searchIn([view.camera.toMap(0, height), view.camera.toMap(width, 0)]);
+    const middle = view.camera.toMap(width / 2, height / 2);
+    if (view.choosing === "hint" && !view.selection) view.selection = [middle, middle];
+    else if (view.choosing === "hint") chosen([view.selection[0], middle]);
+    else if (view.choosing) chosen([view.camera.toMap(0, height), view.camera.toMap(width, 0)]);
     else look(view.pick(width / 2, height / 2));
   },
   zoom, fit, picture, leave,

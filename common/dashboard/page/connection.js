@@ -4,6 +4,7 @@ const PING_MS = 1000;
 const SILENT_MS = 3500; // a live stream answers each ping
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 4000;
+const GOING_AWAY = 1001; // RFC 6455, section 7.4.1: the server ends
 
 /** Calls `handlers`: state(word), message(object), image(buffer), delay(ms). */
 export class Connection {
@@ -12,6 +13,7 @@ export class Connection {
   #lastMessageAt = 0;
   #timer = 0;
   #wantsField = false;
+  #stopped = false; // whether the monitor said that it ends
 
   constructor(robot, handlers) {
     this.robot = robot;
@@ -30,7 +32,7 @@ export class Connection {
     this.#lastMessageAt = performance.now();
     socket.onopen = () => this.#wantsField && this.#send({ type: "field", on: true });
     socket.onmessage = ({ data }) => socket === this.#socket && this.#receive(data);
-    socket.onclose = () => socket === this.#socket && this.#lose();
+    socket.onclose = ({ code }) => socket === this.#socket && this.#lose(code === GOING_AWAY);
   }
 
   #receive(data) {
@@ -40,15 +42,17 @@ export class Connection {
     if (message.type === "pong") return this.handlers.delay((performance.now() - message.t) / 2);
     if (message.type === "snapshot") {
       this.#wait = FIRST_WAIT_MS;
+      this.#stopped = false;
       this.handlers.state("live");
       this.#ping();
     }
     this.handlers.message(message);
   }
 
-  #lose() {
+  #lose(stopped = false) {
     this.#socket = null;
-    this.handlers.state("lost");
+    this.#stopped ||= stopped;
+    this.handlers.state(this.#stopped ? "stopped" : "lost");
     this.#timer = setTimeout(() => this.#open(), this.#wait);
     this.#wait = Math.min(LONGEST_WAIT_MS, this.#wait * 2);
   }

@@ -2,7 +2,7 @@
 
 const STILL = 5; // pixels that a click may move
 
-/** Moves the view; while `choosing()` says so, chooses a box and hands it over. A click
+/** Moves the view; while `choosing()` says so, takes where a drag begins and ends. A click
  * and the place of the pointer, in the map, are passed on. */
 export function listen(view, { choosing, chosen, moved, clicked, pointed }) {
   const { canvas, camera } = view;

@@ -9,6 +9,7 @@ import { candidates, contenders, inFrame, situation } from "./situation.js";
 const NEAR_M = 34; // what a view that begins shows at least
 const BEAMS_MS = 500; // so long the beams of a scan are shown beside the tracker's pose
 const LEASH = 0.3; // how far off the middle a followed robot may go, of the view
+const NARROW_PX = 480; // buttons cover the sides of such a view
 const AROUND_M = 4; // what is shown around places that are compared
 const REACH = { place: 22, beam: 14 }; // pixels, from a click to what is meant
 
@@ -20,7 +21,8 @@ export class MapView {
   inspected = null; // x and y in the map
   flags = []; // where something was: x, y and text
   cross = false; // whether the middle is marked
-  selection = null; // two corners of a region that is being chosen
+  selection = null; // where a drag that chooses something begins and ends
+  choosing = ""; // what it chooses: a region, or the pose of a hint
   #levels = [];
   #fieldImage = null;
   #due = false;
@@ -138,6 +140,7 @@ export class MapView {
     if (layers.grid) drawGrid(c, camera, camera.step(), colors);
     this.#drawRegion(c);
     if (layers.track) this.#drawTrack(c);
+    if (layers.beams && known) this.#drawScan(c);
     if (this.beamsShown()) this.#drawBeams(c, known ? 1 : 0.5);
     if (layers.hypotheses) this.#drawOthers(c, known);
     if (best) this.#drawBest(c, best);
@@ -205,7 +208,8 @@ export class MapView {
   /** The view stays where it is as long as the robot is well within. */
   #keepInView({ x, y }) {
     const { camera } = this;
-    const [right, up] = [camera.width, camera.height].map((side) => (LEASH * side) / camera.scale);
+    const leash = camera.width < NARROW_PX ? LEASH / 2 : LEASH;
+    const [right, up] = [camera.width, camera.height].map((side) => (leash * side) / camera.scale);
     camera.x = Math.min(x + right, Math.max(x - right, camera.x));
     camera.y = Math.min(y + up, Math.max(y - up, camera.y));
   }
@@ -239,6 +243,7 @@ export class MapView {
   }
 
   #drawRegion(c) {
+    if (this.choosing === "hint" && this.selection) return this.#drawHint(c, ...this.selection);
     const corners = this.selection ?? this.store.region;
     if (corners.length < 2) return;
     const outline = corners.length === 2 ? rectangle(corners) : corners;
@@ -252,6 +257,34 @@ export class MapView {
     c.strokeStyle = this.colors.region;
     c.stroke();
     c.setLineDash([]);
+  }
+
+  /** The robot as it is pointed at: where the drag began, looking to where it is. */
+  #drawHint(c, from, to) {
+    const [at, end] = [from, to].map(([x, y]) => this.camera.toScreen(x, y));
+    c.beginPath();
+    c.moveTo(...at);
+    c.lineTo(...end);
+    c.lineWidth = 2;
+    c.strokeStyle = this.colors.region;
+    c.stroke();
+    drawArrow(c, at, headingOf([from, to]), 18, this.colors.region, this.colors.halo);
+  }
+
+  /** The newest scan of each laser, at the pose of the newest scan. */
+  #drawScan(c) {
+    const { scans, scanPose } = this.store;
+    c.fillStyle = this.colors.accent;
+    for (const { mount, x, y } of scans.values()) {
+      const { base, laser } = scanPose ?? {};
+      const from = base && mount ? composed(base, mount) : laser;
+      if (!from) continue;
+      const [cos, sin] = [Math.cos(from.yaw), Math.sin(from.yaw)];
+      x.forEach((ahead, i) => {
+        const [px, py] = this.camera.toScreen(from.x + ahead * cos - y[i] * sin, from.y + ahead * sin + y[i] * cos);
+        c.fillRect(px - 1, py - 1, 2, 2);
+      });
+    }
   }
 
   /** Older parts are fainter; a leap is no way. */
@@ -363,6 +396,15 @@ export class MapView {
     drawArrow(c, at, best.yaw, Math.min(26, Math.max(13, 0.35 * camera.scale)), color, colors.halo);
   }
 }
+
+/** A pose that is given in the frame of another one. */
+const composed = ({ x, y, yaw }, inner) => ({
+  x: x + inner.x * Math.cos(yaw) - inner.y * Math.sin(yaw),
+  y: y + inner.x * Math.sin(yaw) + inner.y * Math.cos(yaw),
+  yaw: yaw + inner.yaw });
+
+/** The heading from where a drag begins to where it ends. */
+export const headingOf = ([[x0, y0], [x1, y1]]) => Math.atan2(y1 - y0, x1 - x0);
 
 const rectangle = ([[x0, y0], [x1, y1]]) => [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
 

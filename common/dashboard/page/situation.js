@@ -1,10 +1,12 @@
 // What is said of the robot, from all that is known. No page, no network.
 
 import { capital, duration, sentence, STATES } from "./words.js";
-import { whatToCheck } from "./what_to_check.js";
+import { troubles, whatToCheck } from "./what_to_check.js";
 
 export const STALE_S = 2; // without a scan: nothing is live any more
 const LIKELY = 0.01; // places that are less likely are left out where one is the only one
+const LAGS_MS = 1000; // so late an answer is of a robot that has gone on
+const FAR_M = 15; // driven without a pose: nothing in the map is like what the laser sees
 const KNOWN = ["Unique", "Doubtful"];
 
 /** The state in words. `kind` is empty where what is shown is past: then nothing is coloured. */
@@ -15,9 +17,12 @@ export function situation(store, link = "live", paused = false) {
   const stale = silence === null || silence > STALE_S;
   const is = STATES[state] ?? { word: state ?? "Waiting", means: "Waiting for the first scan.", todo: "" };
   const why = pose ? pose.why : answer ? answer.says : "";
-  const advice = pose?.advice || is.todo;
+  const scanning = store.heardAt !== null && performance.now() - store.heardAt < 1000 * STALE_S;
   const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique", title: "What to check" };
   const past = state ? `Before: ${is.word}. ${capital(sentence(why))}` : "";
+  if (link === "stopped") {
+    return { ...said, stale: true, kind: "", word: "Stopped", means: "The graph was stopped.", why: past, todo: ["Start it again: backcast run. The page connects by itself."], title: "What to do" };
+  }
   if (link === "lost") {
     return { ...said, stale: true, kind: "", word: "Disconnected", means: "The monitor does not answer.", why: past, todo: ["Is the robot on, and in reach of the network? The page connects again by itself."] };
   }
@@ -25,12 +30,34 @@ export function situation(store, link = "live", paused = false) {
     return { ...said, stale: true, kind: "", word: "Paused", means: "The page is paused, the robot is not.", why: past, todo: ["Press space, or the button above, to continue."], title: "What to do" };
   }
   if (state && stale) {
-    return { ...said, kind: "", word: "No data", means: `No scan for ${duration(silence ?? 0)}: what is shown is past.`, why: past, todo: whatToCheck(store) };
+    return { ...said, kind: "", word: "No data", means: `${scanning ? "Scans come, but no pose" : "No scan"} for ${duration(silence ?? 0)}: what is shown is past.`, why: past, todo: whatToCheck(store) };
   }
   if (!state) {
-    return { ...said, kind: "", word: is.word, means: is.means, why: "", todo: store.robot ? whatToCheck(store) : [] };
+    return { ...said, kind: "", word: is.word, means: scanning ? "Scans come, and no answer yet." : is.means, why: "", todo: store.robot ? whatToCheck(store) : [] };
   }
-  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [capital(sentence(advice))] : [], title: "What to do" };
+  const failing = troubles(store);
+  const todo = [...advice(store, is), ...failing, ...remarks(store, said)];
+  const well = said.best && !failing.length;
+  return { ...said, well, kind: state, word: is.word, means: is.means, why: sentence(why), todo: [...new Set(todo)], title: "What to do" };
+}
+
+/** What to do in this state, by the tracker or by the state alone. */
+function advice(store, is) {
+  const { pose } = store;
+  if (pose?.why.startsWith("waiting for")) return whatToCheck(store);
+  const text = pose?.advice || is.todo;
+  return text ? [capital(sentence(text))] : [];
+}
+
+/** What neither the tracker nor a node can know. */
+function remarks({ pose, answer, region }, { known }) {
+  const late = (pose?.from_scan === false ? 0 : pose?.age_ms) ?? answer?.age_ms ?? 0;
+  const seeks = pose && !known;
+  return [
+    late > LAGS_MS && `Answers come ${duration(late / 1000)} after their scans: is the machine overloaded?`,
+    seeks && pose.since_m > FAR_M && `Nothing has fitted for ${Math.round(pose.since_m)} m: is it this map? See backcast doctor.`,
+    seeks && region.length && "Only a region is searched: if the robot is elsewhere, search everywhere.",
+  ].filter(Boolean);
 }
 
 /** The places of the last search that are worth a look, best first. */

@@ -56,7 +56,7 @@ function showTrust(store, is, frame) {
   const places = pose?.places ?? (answer?.alternatives ?? 0) + 1;
   const of = is.known || places < 2 ? "" : `, the best of ${places} places`;
   const pairs = [
-    ["How sure", best ? `${percent(best.probability)} probable${of}` : ""],
+    ["How sure", is.state === "Doubtful" ? "in doubt" : best ? `${percent(best.probability)} probable${of}` : ""],
     ["Map", best ? map?.name : ""],
     ["How exact", exact ? `within ${exact.along} and ${exact.turn} (95 %)` : best ? "not known" : ""],
   ];

@@ -22,9 +22,9 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", graph: null, states: [], map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, field: null,
+      robot: "", graph: null, states: [], heardAt: null, map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, scans: new Map(), scanPose: null, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
-      abilities: { region: false, save: false },
+      abilities: { region: false, save: false, hint: false },
     });
   }
 
@@ -37,6 +37,7 @@ export class Store {
       case "pose": return this.#pose(message);
       case "state": return this.#state(message);
       case "beams": this.beams = message; this.beamsAt = performance.now(); return "beams";
+      case "scan": return this.#scan(message);
       case "node": return this.#node(message);
       case "log": return this.#log(message);
       case "region": this.region = message.corners; return "region";
@@ -83,11 +84,19 @@ export class Store {
     if (pose.from_scan) {
       this.#scanned(pose.age_ms);
       this.#went(this.pose, pose, pose.laser, pose.state);
+      this.scanPose = pose;
     }
     this.#stands(pose.state, pose.base ?? pose.laser);
     this.pose = pose;
     this.posedAt = performance.now() - pose.sent_age_ms;
     return "pose";
+  }
+
+  /** Takes the end points of a laser's newest scan. */
+  #scan(scan) {
+    this.scans.set(scan.laser, scan);
+    this.heardAt = performance.now();
+    return "scan";
   }
 
   /** Another state begins; what is older than an hour is let go of. */

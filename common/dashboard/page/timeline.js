@@ -5,16 +5,17 @@ import { palette } from "./colors.js";
 import { clock, degrees, duration, fixed, gravity, sentence, STATES } from "./words.js";
 
 const HOUR_S = 3600;
+const RECENT_S = 300;
 const LISTED = 4;
 const NEAR_PX = 12; // so near a click means a moment when it was lost
 const HEIGHTS = [0.4, 0.7, 1, 0.2]; // by gravity: colours alone do not say it
 
-/** Periods with their ends, seconds ago, oldest first. */
-function periods({ states }, now) {
+/** Periods of the last `span` seconds with their ends, seconds ago, oldest first. */
+function periods({ states }, now, span) {
   const ago = (at) => Math.max(0, (now - at) / 1000);
   return states.map((period, i) => ({
     ...period, i, from: ago(period.at), to: i + 1 < states.length ? ago(states[i + 1].at) : 0,
-  })).filter(({ to }) => to < HOUR_S);
+  })).filter(({ to }) => to < span);
 }
 
 const wordOf = (state) => STATES[state]?.word ?? state;
@@ -23,6 +24,7 @@ const timeOf = (secondsAgo) => clock(new Date(Date.now() - 1000 * secondsAgo));
 /** Which period is shown: the one that began then, or none. */
 export class Timeline {
   #selected = null; // when it began
+  #span = HOUR_S; // what the canvas covers
 
   /** `shown(period, before, after)` is called with what is selected; without, at the end. */
   constructor(store, shown) {
@@ -32,6 +34,7 @@ export class Timeline {
     this.canvas.addEventListener("click", ({ offsetX }) => this.#click(offsetX));
     this.canvas.addEventListener("keydown", (event) => this.#key(event));
     $("now").onclick = () => this.select(null);
+    $("recent").onclick = () => this.#cover(this.#span === HOUR_S ? RECENT_S : HOUR_S);
   }
 
   get isOpen() {
@@ -46,17 +49,26 @@ export class Timeline {
     this.shown(states[at], states[at - 1], states[at + 1]);
   }
 
+  #cover(span) {
+    this.#span = span;
+    $("recent").setAttribute("aria-pressed", span === RECENT_S);
+    write("hour-title", span === RECENT_S ? "Last 5 minutes" : "Last hour");
+    write("span-begin", span === RECENT_S ? "5 minutes ago" : "an hour ago");
+    this.canvas.setAttribute("aria-valuemin", -span);
+    this.show();
+  }
+
   #click(x) {
-    const all = periods(this.store, performance.now());
-    const seconds = (1 - x / this.canvas.clientWidth) * HOUR_S;
-    const near = (NEAR_PX / this.canvas.clientWidth) * HOUR_S;
+    const all = periods(this.store, performance.now(), this.#span);
+    const seconds = (1 - x / this.canvas.clientWidth) * this.#span;
+    const near = (NEAR_PX / this.canvas.clientWidth) * this.#span;
     const meant = (p) => p.to <= seconds && seconds < p.from;
     const lost = all.filter(({ state, from, to }) => state === "Lost" && to - near <= seconds && seconds <= from + near);
     this.select(lost.at(-1) ?? all.find(meant) ?? null);
   }
 
   #key(event) {
-    const all = periods(this.store, performance.now());
+    const all = periods(this.store, performance.now(), this.#span);
     if (!all.length) return;
     const at = all.findIndex(({ at }) => at === this.#selected);
     const from = at < 0 ? all.length : at;
@@ -70,8 +82,8 @@ export class Timeline {
 
   show(theme = document.documentElement.dataset.theme) {
     const now = performance.now();
-    const all = periods(this.store, now);
-    draw(this.canvas, all, this.#selected, palette(theme));
+    const all = periods(this.store, now, this.#span);
+    draw(this.canvas, all, this.#selected, palette(theme), this.#span);
     const selected = all.find(({ at }) => at === this.#selected);
     if (this.isOpen && !selected) this.select(null);
     const text = selected ? spoken(selected) : all.length ? `Now: ${wordOf(all.at(-1).state)}` : "Nothing yet";
@@ -115,14 +127,14 @@ export function flagsOf(period, before, after) {
   return [...(known(before) ? flag(before.last, "last known") : []), ...(known(after) ? flag(after.first, "found again") : [])];
 }
 
-function draw(canvas, all, selected, colors) {
+function draw(canvas, all, selected, colors, span) {
   const ratio = Math.min(3, window.devicePixelRatio || 1);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   canvas.width = width * ratio;
   canvas.height = height * ratio;
   const c = canvas.getContext("2d");
   c.scale(ratio, ratio);
-  const x = (ago) => width * (1 - Math.min(HOUR_S, ago) / HOUR_S);
+  const x = (ago) => width * (1 - Math.min(span, ago) / span);
   const fills = [colors.accent, colors.beams.s, colors.beams.t, colors.soft];
   const bottom = height - 4;
   // What is graver lies on top, and is never too narrow to see.

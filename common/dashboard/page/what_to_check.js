@@ -12,9 +12,15 @@ const PLAYERS = ["replayer", "emulator"];
 
 const place = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);
 
+const inOrder = (nodes) => [...nodes.values()].sort((a, b) => place(a.name) - place(b.name));
+
+/** Nodes that do not work while others do; a sentence each. */
+export const troubles = ({ nodes }) => inOrder(nodes)
+  .filter(({ state }) => state === "silent" || state === "degraded").map(problem).slice(0, MOST);
+
 /** Sentences, the first cause first. */
 export function whatToCheck({ nodes, map }) {
-  const all = [...nodes.values()].sort((a, b) => place(a.name) - place(b.name));
+  const all = inOrder(nodes);
   if (!all.length) return ["No node has reported: is the graph started? See backcast status."];
   const found = all.map(problem).filter(Boolean);
   if (!map && !found.length) found.push("No map has come: check map_server, and the map file that --map names.");

@@ -24,7 +24,7 @@ mod webhook;
 
 pub use error::DashboardError;
 pub use options::Options;
-pub use robot::{Request, Robot};
+pub use robot::{Request, Robot, hint};
 pub use robots::Robots;
 pub use server::Server;
 pub use view::Abilities;

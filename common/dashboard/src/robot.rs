@@ -3,27 +3,32 @@
 //! Shared by the thread of a source, which passes in messages, and the server, which reads. Both
 //! hold the lock only while they copy.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
+use geometry::Covariance;
 use messages::{
-    Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, LogHeader,
-    MapHeader, PoseHeader,
+    Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, InitialPose,
+    InitialPoseKind, LogHeader, MapHeader, Pose2, PoseHeader, ScanHeader, Stamp,
 };
 use tokio::sync::{broadcast, watch};
 use transport::wall_ns;
 
 use crate::view::{
-    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot,
+    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Scan, Snapshot,
     StateChange, Times, Track, Tracked, field_frame,
 };
 use crate::webhook::Webhook;
 
 /// Queue of messages per viewer; a slow viewer loses the oldest.
 const QUEUE: usize = 64;
+
+/// Minimum time between two scans of a laser that are sent.
+const SCAN_NS: i64 = 95_000_000;
 
 /// Limit of requests that wait for the graph.
 const MAX_REQUESTS: usize = 8;
@@ -35,6 +40,23 @@ pub enum Request {
     Region(Vec<[f64; 2]>),
     /// Save the last minutes (black box).
     Save,
+    /// The robot is probably at this pose in the map.
+    Hint(Pose2),
+}
+
+/// Standard deviations of a hint: a user points at a map that is some pixels per metre.
+const HINT_M: f64 = 0.5;
+const HINT_YAW: f64 = 0.26;
+
+/// Returns the message for a hint.
+#[must_use]
+pub fn hint(map_from_base: Pose2, stamp: Stamp) -> InitialPose {
+    InitialPose {
+        stamp,
+        kind: InitialPoseKind::Hint as u64,
+        map_from_base,
+        covariance: Covariance::from_deviations(HINT_M, HINT_M, HINT_YAW).to_rows(),
+    }
 }
 
 /// A robot that can be watched.
@@ -57,6 +79,8 @@ struct Known {
     /// `None` without a tracker.
     pose: Option<Tracked>,
     times: Times,
+    /// When a scan was last sent, for each laser.
+    scans_sent: BTreeMap<String, i64>,
     history: History,
     beams: Option<Beams>,
     roster: Roster,
@@ -147,6 +171,22 @@ impl Robot {
         let mut known = self.known();
         self.broadcast(&Message::Beams(&beams));
         known.beams = Some(beams);
+    }
+
+    /// Sends the end points of a scan to the viewers, if there are any, at a limited rate.
+    pub fn on_scan(&self, header: &ScanHeader, ranges: &[f32], now_ns: i64) {
+        if self.news.receiver_count() == 0 {
+            return;
+        }
+        let mut known = self.known();
+        let sent_ns = known.scans_sent.get(header.laser.as_str());
+        if sent_ns.is_some_and(|sent_ns| now_ns.saturating_sub(*sent_ns) < SCAN_NS) {
+            return;
+        }
+        known
+            .scans_sent
+            .insert(header.laser.as_str().to_owned(), now_ns);
+        self.broadcast(&Message::Scan(&Scan::new(header, ranges)));
     }
 
     /// Stores and sends a node's health report; false if there are too many nodes.

@@ -23,11 +23,12 @@ mod stream;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post, put};
-use tokio::sync::{Semaphore, oneshot};
+use tokio::sync::{Semaphore, oneshot, watch};
 use transport::{CONSOLE_ONLY, node};
 
 use crate::token::Token;
@@ -41,6 +42,9 @@ const MAX_BODY: usize = 64 * 1024;
 /// Maximum number of streams at the same time.
 const MAX_WATCHERS: usize = 64;
 
+/// Longest time in which viewers are told that the server ends.
+const FAREWELL: Duration = Duration::from_millis(500);
+
 /// Shared state of all request handlers.
 pub(crate) struct Site {
     robots: Robots,
@@ -48,6 +52,8 @@ pub(crate) struct Site {
     /// Host names under which browsers may reach the page, in addition to addresses.
     hosts: Vec<String>,
     watchers: Arc<Semaphore>,
+    /// Changes when the server ends.
+    ended: watch::Sender<()>,
 }
 
 impl Site {
@@ -57,7 +63,16 @@ impl Site {
             token,
             hosts,
             watchers: Arc::new(Semaphore::new(MAX_WATCHERS)),
+            ended: watch::Sender::new(()),
         }
+    }
+
+    /// Ends all streams, and waits until their viewers know or are too slow.
+    async fn end(&self) {
+        self.ended.send_replace(());
+        let all = self.watchers.acquire_many(MAX_WATCHERS as u32);
+        // A viewer that does not read finds out by itself.
+        let _ = tokio::time::timeout(FAREWELL, all).await;
     }
 
     fn robot(&self, name: &str) -> Result<Arc<Robot>, Refusal> {
@@ -80,6 +95,7 @@ fn router(site: Arc<Site>) -> Router {
             put(actions::search_in).delete(actions::search_everywhere),
         )
         .route(&format!("{robot}/save"), post(actions::save))
+        .route(&format!("{robot}/hint"), post(actions::hint))
         .fallback(refusal::nothing_here)
         .layer(DefaultBodyLimit::max(MAX_BODY))
         .layer(axum::middleware::from_fn_with_state(
@@ -129,7 +145,8 @@ impl Server {
             .enable_all()
             .build()
             .map_err(DashboardError::Server)?;
-        let app = router(Arc::new(Site::new(robots, token, options.host.clone())));
+        let site = Arc::new(Site::new(robots, token, options.host.clone()));
+        let app = router(Arc::clone(&site));
         let (stop, stopped) = oneshot::channel();
         let listener = {
             let _inside = runtime.enter();
@@ -139,7 +156,7 @@ impl Server {
             runtime.block_on(async {
                 tokio::select! {
                     () = listening::serve(listener, app) => {}
-                    _ = stopped => {}
+                    _ = stopped => site.end().await,
                 }
             });
             runtime.shutdown_background();

@@ -12,6 +12,7 @@ mod history;
 mod log;
 mod map;
 mod roster;
+mod scan;
 mod state_change;
 mod track;
 mod tracked;
@@ -24,6 +25,7 @@ pub(crate) use history::{History, Period};
 pub(crate) use log::{Log, LogLine};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
+pub(crate) use scan::Scan;
 pub(crate) use state_change::StateChange;
 pub(crate) use track::{Track, TrackPoint};
 pub(crate) use tracked::Tracked;
@@ -45,6 +47,8 @@ pub(crate) enum Message<'a> {
     Pose(&'a Tracked),
     State(Period<'a>),
     Beams(&'a Beams),
+    /// End points of a laser's newest scan, ten times a second at most.
+    Scan(&'a Scan),
     Node(&'a NodeReport),
     Log(&'a LogLine),
     /// Search region.
@@ -68,6 +72,8 @@ pub struct Abilities {
     pub region: bool,
     /// A recorder can save the last minutes.
     pub save: bool,
+    /// A tracker accepts hints.
+    pub hint: bool,
 }
 
 /// Search region in the map.

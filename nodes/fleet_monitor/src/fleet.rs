@@ -226,6 +226,16 @@ impl Member {
                 tracing::info!(robot, "asking the recorder to save the last minutes");
                 self.requests.save()
             }
+            Request::Hint(pose) => {
+                tracing::info!(
+                    robot,
+                    x = pose.x,
+                    y = pose.y,
+                    yaw = pose.yaw,
+                    "hint for the tracker"
+                );
+                self.requests.hint(pose)
+            }
         }
     }
 }
@@ -233,7 +243,7 @@ impl Member {
 impl Requests {
     /// Returns which requests have a subscriber.
     fn abilities(&self) -> Abilities {
-        let (region, save) = self.subscribed();
-        Abilities { region, save }
+        let [region, save, hint] = self.subscribed();
+        Abilities { region, save, hint }
     }
 }

@@ -1,7 +1,7 @@
-//! Requests of users with the token, sent to a robot. Its bridge accepts them if `region` and
-//! `save` are among its outputs.
+//! Requests of users with the token, sent to a robot. Its bridge accepts them if `region`,
+//! `save` and `initial_pose` are among its outputs.
 
-use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
+use messages::{Corner, Pose2, RegionHeader, SaveHeader, Stamp, topic};
 use network_payload::{Preamble, Wire};
 use transport::monotonic_ns;
 use zenoh::bytes::Encoding;
@@ -16,6 +16,7 @@ use crate::FleetError;
 pub(crate) struct Requests {
     regions: AdvancedPublisher<'static>,
     saves: AdvancedPublisher<'static>,
+    hints: AdvancedPublisher<'static>,
     next: Preamble,
 }
 
@@ -25,6 +26,7 @@ impl Requests {
         Ok(Requests {
             regions: declare::<topic::Region>(session, robot)?,
             saves: declare::<topic::Save>(session, robot)?,
+            hints: declare::<topic::InitialPoseTopic>(session, robot)?,
             next: Preamble {
                 sender,
                 sequence: 0,
@@ -33,13 +35,13 @@ impl Requests {
         })
     }
 
-    /// Returns, for regions and for saving, true if there is a subscriber.
-    pub(crate) fn subscribed(&self) -> (bool, bool) {
+    /// Returns, for regions, for saving and for hints, true if there is a subscriber.
+    pub(crate) fn subscribed(&self) -> [bool; 3] {
         let has_subscribers = |publisher: &AdvancedPublisher<'_>| {
             let status = publisher.matching_status().wait();
             status.is_ok_and(|status| status.matching())
         };
-        (has_subscribers(&self.regions), has_subscribers(&self.saves))
+        [&self.regions, &self.saves, &self.hints].map(has_subscribers)
     }
 
     /// Requests a search region with these corners, metres in the map; none for everywhere.
@@ -56,6 +58,14 @@ impl Requests {
         let payload =
             network_payload::encode::<topic::Save>(&preamble, &SaveHeader { stamp }, &[])?;
         put(&self.saves, payload)
+    }
+
+    /// Tells the tracker where the robot's base probably is.
+    pub(crate) fn hint(&mut self, map_from_base: Pose2) -> Result<(), FleetError> {
+        let (preamble, stamp) = self.stamp();
+        let header = dashboard::hint(map_from_base, stamp);
+        let payload = network_payload::encode::<topic::InitialPoseTopic>(&preamble, &header, &[])?;
+        put(&self.hints, payload)
     }
 
     /// Returns a stamp of the current time, without a time of measurement.

@@ -89,6 +89,15 @@ impl Node {
                     self.outputs.region(&corners)?;
                     self.robot.on_region(corners);
                 }
+                Request::Hint(pose) => {
+                    tracing::info!(
+                        x = pose.x,
+                        y = pose.y,
+                        yaw = pose.yaw,
+                        "hint for the tracker"
+                    );
+                    self.outputs.hint(pose)?;
+                }
                 Request::Save => {
                     tracing::info!("asking the recorder to save the last minutes");
                     self.outputs.save()?;

@@ -131,6 +131,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`state`", &[("common/dashboard/src/view/history.rs", "Period")]),
     ("A webhook's object", &[("common/dashboard/src/view/state_change.rs", "StateChange")]),
     ("`beams`", &[("common/dashboard/src/view/beams.rs", "Beams")]),
+    ("`scan`", &[("common/dashboard/src/view/scan.rs", "Scan")]),
     ("`node`", &[("common/dashboard/src/view/roster.rs", "NodeReport")]),
     ("`log`", &[("common/dashboard/src/view/log.rs", "LogLine")]),
     ("`region`", &[("common/dashboard/src/view.rs", "Region")]),

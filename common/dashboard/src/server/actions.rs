@@ -1,5 +1,6 @@
 //! Write actions; all need the token.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use axum::Json;
@@ -7,12 +8,16 @@ use axum::extract::rejection::JsonRejection;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode};
 use engine::limits::Region;
+use messages::Pose2;
 use serde::Deserialize;
 
 use super::gate::authorize;
 use super::{Refusal, Site};
 use crate::robot::Request;
 use crate::view::Abilities;
+
+/// Largest coordinate of a hint, metres: no map reaches further from its origin.
+const MAX_M: f64 = 1e6;
 
 /// Body of a request that sets the search region.
 #[derive(Debug, Deserialize)]
@@ -47,6 +52,34 @@ pub(super) async fn search_everywhere(
     request(&site, &name, Request::Region(Vec::new()))
 }
 
+/// Body of a request that says where the robot's base is.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Here {
+    /// In metres in the map.
+    x: f64,
+    y: f64,
+    /// Radians counter-clockwise from the map's x axis.
+    yaw: f64,
+}
+
+/// Tells the tracker where the robot probably is.
+pub(super) async fn hint(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+    here: Result<Json<Here>, JsonRejection>,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    let Json(Here { x, y, yaw }) =
+        here.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+    if [x, y].iter().any(|metres| metres.abs() > MAX_M) || yaw.abs() > TAU {
+        let problem = format!("x and y are within ±{MAX_M} m, yaw within ±2π radians");
+        return Err(Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, problem));
+    }
+    request(&site, &name, Request::Hint(Pose2 { x, y, yaw }))
+}
+
 /// Makes the recorder save the last minutes.
 pub(super) async fn save(
     State(site): State<Arc<Site>>,
@@ -59,13 +92,14 @@ pub(super) async fn save(
 
 fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refusal> {
     let robot = site.robot(name)?;
-    let Abilities { region, save } = robot.abilities();
+    let Abilities { region, save, hint } = robot.abilities();
     let (able, who) = match request {
         Request::Region(_) => (region, "no accumulator accepts a region"),
         Request::Save => (
             save,
             "no recorder keeps the last minutes: backcast run --record FILE --keep 10m",
         ),
+        Request::Hint(_) => (hint, "no tracker accepts a hint"),
     };
     if !able {
         return Err(Refusal::new(StatusCode::CONFLICT, who));

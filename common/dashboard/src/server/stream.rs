@@ -13,8 +13,8 @@ use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::Deserialize;
-use tokio::sync::OwnedSemaphorePermit;
 use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::{OwnedSemaphorePermit, watch};
 
 use super::{Refusal, Site};
 use crate::robot::{FieldView, Robot, Watching, text};
@@ -28,6 +28,9 @@ const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Close code for a message that is not understood (RFC 6455, section 7.4.1).
 const POLICY_VIOLATION: u16 = 1008;
+
+/// Close code of a server that ends (RFC 6455, section 7.4.1).
+const GOING_AWAY: u16 = 1001;
 
 /// Message from a reader.
 #[derive(Debug, Deserialize)]
@@ -54,15 +57,21 @@ pub(super) async fn open(
     Ok(upgrade
         .max_message_size(MAX_MESSAGE)
         .max_frame_size(MAX_MESSAGE)
-        .on_upgrade(|socket| serve(socket, robot, permit)))
+        .on_upgrade(move |socket| serve(socket, robot, site.ended.subscribe(), permit)))
 }
 
-async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePermit) {
+async fn serve(
+    socket: WebSocket,
+    robot: Arc<Robot>,
+    ended: watch::Receiver<()>,
+    _permit: OwnedSemaphorePermit,
+) {
     let Watching { snapshot, news } = robot.watch(transport::monotonic_ns());
     let mut reader = Reader {
         socket,
         robot,
         field: None,
+        ended,
     };
     // On failure the reader is gone.
     if reader.send(Frame::Text(snapshot)).await.is_some() {
@@ -74,6 +83,8 @@ struct Reader {
     socket: WebSocket,
     robot: Arc<Robot>,
     field: Option<FieldView>,
+    /// Changes when the server ends.
+    ended: watch::Receiver<()>,
 }
 
 impl Reader {
@@ -97,6 +108,7 @@ impl Reader {
                 image = next_image(&mut self.field) => {
                     self.send(Frame::Binary(image?)).await?;
                 }
+                _ = self.ended.changed() => return self.close(GOING_AWAY, "the graph was stopped").await,
                 said = self.socket.recv() => self.receive(said?.ok()?).await?,
             }
         }
@@ -117,14 +129,17 @@ impl Reader {
                 let mut reason = error.to_string();
                 // The reason of a close frame holds 123 bytes at most.
                 reason.truncate(reason.floor_char_boundary(120));
-                let close = CloseFrame {
-                    code: POLICY_VIOLATION,
-                    reason: reason.into(),
-                };
-                self.send(Frame::Close(Some(close))).await?;
-                None
+                self.close(POLICY_VIOLATION, &reason).await
             }
         }
+    }
+
+    /// Closes the stream, and returns `None`.
+    async fn close(&mut self, code: u16, reason: &str) -> Option<()> {
+        let reason = reason.into();
+        self.send(Frame::Close(Some(CloseFrame { code, reason })))
+            .await?;
+        None
     }
 
     async fn send(&mut self, frame: Frame) -> Option<()> {

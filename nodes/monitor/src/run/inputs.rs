@@ -10,6 +10,7 @@ pub(super) struct Inputs {
     hypotheses: Subscriber<topic::Hypotheses>,
     poses: Subscriber<topic::Tracked>,
     beams: Subscriber<topic::Beams>,
+    scans: Subscriber<topic::Scan>,
     health: Subscriber<topic::Health>,
     log: Subscriber<topic::Log>,
 }
@@ -21,6 +22,7 @@ impl Inputs {
             hypotheses: graph.subscriber()?,
             poses: graph.subscriber()?,
             beams: graph.subscriber()?,
+            scans: graph.subscriber()?,
             health: graph.subscriber()?,
             log: graph.subscriber()?,
         })
@@ -34,6 +36,8 @@ impl Inputs {
             beams,
             health,
             log,
+            // A scan alone is no reason to wake up: its pose follows.
+            scans: _,
         } = self;
         [maps, hypotheses, poses, beams, health, log]
     }
@@ -45,6 +49,11 @@ impl Inputs {
             if !to.on_map(map.header(), map.items()) {
                 refuse(health, "the map contradicts its header")?;
             }
+        }
+        // Before its pose, so that the page draws both together.
+        while let Some(scan) = self.scans.receive()? {
+            health.count_received(1);
+            to.on_scan(scan.header(), scan.items(), monotonic_ns());
         }
         while let Some(answer) = self.hypotheses.receive()? {
             // Gaps are not counted as dropped: they may be scans that were never answered, and

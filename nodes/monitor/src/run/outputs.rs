@@ -1,12 +1,13 @@
 //! Publishers for the requests of users with the token.
 
 use dashboard::Abilities;
-use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
+use messages::{Corner, Pose2, RegionHeader, SaveHeader, Stamp, topic};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
 pub(super) struct Outputs {
     regions: Publisher<topic::Region>,
     saves: Publisher<topic::Save>,
+    hints: Publisher<topic::InitialPoseTopic>,
     sent: u64,
 }
 
@@ -15,6 +16,7 @@ impl Outputs {
         Ok(Outputs {
             regions: graph.publisher()?,
             saves: graph.publisher()?,
+            hints: graph.publisher()?,
             sent: 0,
         })
     }
@@ -24,6 +26,7 @@ impl Outputs {
         Abilities {
             region: self.regions.has_subscribers(),
             save: self.saves.has_subscribers(),
+            hint: self.hints.has_subscribers(),
         }
     }
 
@@ -42,6 +45,14 @@ impl Outputs {
         let stamp = self.stamp();
         let mut loan = self.saves.loan(0)?;
         *loan.header_mut() = SaveHeader { stamp };
+        loan.send()
+    }
+
+    /// Publishes a pose of the robot's base at which the tracker looks first.
+    pub(super) fn hint(&mut self, map_from_base: Pose2) -> Result<(), TransportError> {
+        let stamp = self.stamp();
+        let mut loan = self.hints.loan(0)?;
+        *loan.header_mut() = dashboard::hint(map_from_base, stamp);
         loan.send()
     }
 

@@ -1,6 +1,6 @@
 //! Requests that change the graph.
 
-use messages::{Corner, topic};
+use messages::{Corner, InitialPoseKind, Pose2, topic};
 use serde_json::json;
 use transport::testing::wait_for;
 
@@ -34,7 +34,9 @@ fn writing_needs_the_token_and_somebody_who_listens() {
 
     let regions = world.graph.subscriber::<topic::Region>().unwrap();
     let saves = world.graph.subscriber::<topic::Save>().unwrap();
-    world.wait_for_state(|known| known["abilities"] == json!({"region": true, "save": true}));
+    world.wait_for_state(|known| {
+        known["abilities"] == json!({"region": true, "save": true, "hint": false})
+    });
     assert_eq!(put(&[json, &token], body), 202);
     let corners = wait_for(&world.graph, &regions, |_, corners| {
         (!corners.is_empty()).then(|| corners.to_vec())
@@ -93,4 +95,32 @@ fn nonsense_is_refused_with_a_reason() {
     assert!(body.contains("there is no robot"), "{body}");
     assert_eq!(world.site.ask("GET", "/../etc/passwd", &[], "").0, 404);
     assert_eq!(world.site.ask("POST", "/", &[], "").0, 405);
+}
+
+#[test]
+fn a_pose_that_somebody_points_at_is_a_hint_for_the_tracker() {
+    let world = World::new("hint");
+    let token = format!("Authorization: Bearer {TOKEN}");
+    let json = "Content-Type: application/json";
+    let post = |headers: &[&str], body: &str| {
+        let path = "/api/v1/robots/r/hint";
+        world.site.ask("POST", path, headers, body).0
+    };
+    let body = r#"{"x":1.5,"y":-2,"yaw":0.5}"#;
+    assert_eq!(post(&[json], body), 401);
+    assert_eq!(post(&[json, &token], body), 409, "no tracker");
+    let hints = world.graph.subscriber::<topic::InitialPoseTopic>().unwrap();
+    world.wait_for_state(|known| known["abilities"]["hint"] == true);
+    for wrong in [
+        r#"{"x":1.5,"y":-2}"#,
+        r#"{"x":1e300,"y":0,"yaw":0}"#,
+        r#"{"x":0,"y":0,"yaw":90}"#,
+    ] {
+        assert_eq!(post(&[json, &token], wrong), 422, "{wrong}");
+    }
+    assert_eq!(post(&[json, &token], body), 202);
+    let hint = wait_for(&world.graph, &hints, |hint, _| Some(*hint));
+    let (x, y, yaw) = (1.5, -2.0, 0.5);
+    assert_eq!(hint.map_from_base, Pose2 { x, y, yaw });
+    assert_eq!(hint.kind, InitialPoseKind::Hint as u64);
 }

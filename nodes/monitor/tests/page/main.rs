@@ -310,7 +310,7 @@ fn everybody_can_read_and_reach_it() {
         Ok(script) => script,
         Err(why) => return Need::Npm.is_missing(test, &why),
     };
-    for width in [1440, 375] {
+    for width in [1440, 320] {
         let Some(browser) = browser(test, width, 900) else {
             return;
         };

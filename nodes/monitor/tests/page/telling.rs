@@ -57,6 +57,69 @@ fn the_first_cause_is_named_first() {
 }
 
 #[test]
+fn the_card_knows_the_graph_and_not_the_tracker_alone() {
+    let test = "the_card_knows_the_graph_and_not_the_tracker_alone";
+    let Some(browser) = browser(test, 1280, 800) else {
+        return;
+    };
+    let stage = Stage::new("situation");
+    browser.visit(&stage.url());
+    let card = |store: Value| {
+        let found = browser.finish(&format!(
+            "Promise.all([import('/store.js'), import('/situation.js')]).then(([a, b]) => {{
+                 const {{ nodes, heard, ...known }} = {store};
+                 const store = Object.assign(new a.Store(), known);
+                 store.nodes = new Map((nodes ?? []).map((node) => [node.name, node]));
+                 if (heard) store.heardAt = performance.now();
+                 if (known.fresh) store.scanAt = store.posedAt = performance.now();
+                 const is = b.situation(store);
+                 done([is.word, is.means, is.todo.join(' '), String(Boolean(is.well))]);
+             }}, (error) => done([String(error)]))"
+        ));
+        let words = found.as_array().expect("words").iter();
+        let words: Vec<String> = words.map(|word| word.as_str().unwrap().into()).collect();
+        words.join(" | ")
+    };
+    let pose = |state: &str, why: &str, since_m: f64, age_ms: f64| json!({ "state": state, "why": why, "advice": "", "since_m": since_m, "age_ms": age_ms, "from_scan": true });
+    let node = |state: &str| json!([{ "name": "recorder", "state": state, "last_error": "no space", "sent_hz": 1.0 }]);
+    let unique = || pose("Unique", "one place", 3.0, 20.0);
+    let says = |store: Value, parts: &[&str]| {
+        let words = card(store.clone());
+        assert!(
+            parts.iter().all(|part| words.contains(part)),
+            "{store}: {words}"
+        );
+    };
+    says(
+        json!({ "fresh": true, "pose": unique(), "nodes": node("ready") }),
+        &["Unique | ", " | true"],
+    );
+    says(
+        json!({ "fresh": true, "pose": unique(), "nodes": node("degraded") }),
+        &["recorder is degraded: no space", " | false"],
+    );
+    let late = pose("Unique", "one place", 3.0, 2500.0);
+    says(
+        json!({ "fresh": true, "pose": late }),
+        &["2 s after their scans"],
+    );
+    let lost = |why: &str, since_m: f64| pose("Searching", why, since_m, 20.0);
+    says(
+        json!({ "fresh": true, "pose": lost("3 places fit", 27.0), "region": [[0, 0], [1, 1]] }),
+        &["Nothing has fitted for 27 m", "Only a region is searched"],
+    );
+    says(
+        json!({ "fresh": true, "pose": lost("waiting for a map", 0.0), "nodes": node("ready") }),
+        &["No map has come"],
+    );
+    says(json!({ "heard": true }), &["Scans come, and no answer yet"]);
+    says(
+        json!({ "heard": true, "pose": unique() }),
+        &["No data | Scans come, but no pose"],
+    );
+}
+
+#[test]
 fn who_wishes_is_notified_when_it_is_lost_and_once() {
     let test = "who_wishes_is_notified_when_it_is_lost_and_once";
     let Some(browser) = browser(test, 1280, 800) else {
