@@ -99,7 +99,7 @@ topics! {
     /// Scans that the tracker requests to be searched; no items.
     Attention = "attention", AttentionHeader, [u8] { depth: 16 };
     /// Initial pose of the robot from outside; no items.
-    InitialPoseTopic = "initial_pose", InitialPose, [u8];
+    InitialPoseTopic = "initial_pose", InitialPose, [u8] { publishers: 4 };
     /// Comparison of each beam with the map at the best pose.
     Beams = "beams", BeamsHeader, [Beam];
     /// True pose of a scan, from a recording; no items.
