@@ -98,10 +98,9 @@ impl Report {
                 format!("{} places fit, {}, {since}", self.rivals, self.apart())
             }
             (TrackReason::TooEarly, _) => format!("one place leads, {fit}, {since}"),
-            (TrackReason::PoorFit, TrackState::Lost) => format!("lost: {fit}"),
             (TrackReason::PoorFit, _) => format!("only {fit}, {since}"),
             (TrackReason::OdometryJump, _) => format!("laser and odometry disagree, {fit}"),
-            (TrackReason::AnotherPlace, _) => format!("lost: scans fit better elsewhere, {since}"),
+            (TrackReason::AnotherPlace, _) => format!("scans fit better elsewhere, {since}"),
             (TrackReason::NoPlace, _) => "no place on the map fits".into(),
         }
     }
@@ -172,7 +171,7 @@ mod tests {
         );
         assert_eq!(
             say(TrackState::Lost, TrackReason::PoorFit),
-            "lost: fit 0.14: drive a few metres or turn on the spot, or mark a region"
+            "only fit 0.14, since 3 m: drive a few metres or turn on the spot, or mark a region"
         );
         assert_eq!(
             say(TrackState::Doubtful, TrackReason::OdometryJump),

@@ -227,7 +227,7 @@ fn the_moments_when_it_was_lost_can_be_looked_at() {
     browser.visit(&stage.url());
     wait_for(&browser, "Lost");
     assert!(!is_shown(&browser, "pose"), "no coordinates are bold");
-    browser.wait_until("document.getElementById('why').textContent === 'lost: fit 0.14.'");
+    browser.wait_until("document.getElementById('why').textContent === 'only fit 0.14.'");
     assert_eq!(
         text(&browser, "todo"),
         "Drive a few metres, or mark a region."

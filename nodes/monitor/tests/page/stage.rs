@@ -199,7 +199,7 @@ impl Source {
     fn track(&self, stamp: Stamp, state: TrackState) -> Result<(), TransportError> {
         let words: &[u8] = match state {
             TrackState::Unique => b"one place, fit 0.90, since 3 m",
-            _ => b"lost: fit 0.14: drive a few metres, or mark a region",
+            _ => b"only fit 0.14: drive a few metres, or mark a region",
         };
         let mut loan = self.poses.loan(words.len())?;
         *loan.header_mut() = PoseHeader {

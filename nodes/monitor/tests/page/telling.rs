@@ -153,7 +153,7 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     browser.wait_until("window.notified.length === 1");
     assert_eq!(
         browser.run("return window.notified[0]"),
-        "r7: lost: lost: fit 0.14."
+        "r7: lost: only fit 0.14."
     );
     stage.show(Scene::Silent);
     browser.wait_until("window.notified.length === 2");
