@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(*said.borrow(), lines);
         let text = std::fs::read_to_string(&file).unwrap();
         for part in [
-            "tests=\"4\" failures=\"1\" errors=\"1\"",
+            "tests=\"4\" skipped=\"0\" failures=\"1\" errors=\"1\"",
             "<testsuite name=\"b.mcap\" tests=\"2\"",
             "<testcase name=\"frozen\" classname=\"b.mcap\"",
             "message=\"losses are 2; the RMS is &lt;9&gt;\"",
