@@ -211,6 +211,19 @@ fn what_is_missing_or_broken_is_named() {
 }
 
 #[test]
+fn a_picture_that_is_there_is_kept() {
+    let drive = drive();
+    fs::write(drive.path().join("p.png"), "kept").unwrap();
+    let (code, _, stderr) = run(drive.path(), "plot --bag r.mcap --out p.png");
+    assert_eq!(code, 2, "{stderr}");
+    assert!(
+        stderr.contains("p.png is there already; --force"),
+        "{stderr}"
+    );
+    assert_eq!(fs::read(drive.path().join("p.png")).unwrap(), b"kept");
+}
+
+#[test]
 fn wrong_use_is_reported_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
