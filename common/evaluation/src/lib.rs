@@ -3,6 +3,8 @@
 
 pub mod evaluate;
 pub mod locate;
+mod outcomes;
 mod sequence;
 mod text;
 mod trust;
+mod truths;

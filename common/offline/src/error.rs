@@ -23,6 +23,6 @@ pub fn no_truths(file: &Path) -> anyhow::Error {
 pub fn no_truth_taken(file: &Path, scans: u64, truths: usize) -> anyhow::Error {
     let file = file.display();
     anyhow!(
-        "{file}: none of the {scans} scans taken has a true pose; the file holds {truths}, of other scans"
+        "{file}: none of the {scans} scans taken has a true pose; the file holds {truths}, of other scans; `evaluate --truth-gap-s` interpolates between them"
     )
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -35,7 +34,7 @@ use super::{animation, errors, field, outline, scan, surface};
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let format = config.check()?;
     // Before anything is read, so that a failure costs no work.
-    unwritable(&config.out, fs::metadata(output::folder_of(&config.out)))?;
+    output::prepare(&config.out, config.force)?;
     let given = config.options.load_map(&config.bag)?;
     if config.kind == Kind::Drive {
         return run_drive(config, given.as_ref());
@@ -83,11 +82,7 @@ pub fn save_png(scene: &Scene, file: &Path) -> anyhow::Result<()> {
 }
 
 fn write(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    unwritable(file, fs::write(file, bytes))
-}
-
-fn unwritable<T>(file: &Path, outcome: io::Result<T>) -> anyhow::Result<T> {
-    outcome.with_context(|| format!("cannot write the picture {}", file.display()))
+    fs::write(file, bytes).with_context(|| format!("cannot write {}", file.display()))
 }
 
 /// The map that is given, else the one in the recording.

@@ -53,6 +53,10 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,
 
+    /// Overwrite the file
+    #[arg(long)]
+    pub(super) force: bool,
+
     /// The scan: the N-th of those taken, as `locate` prints it in its N-th
     /// line [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]

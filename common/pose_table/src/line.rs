@@ -2,22 +2,33 @@
 
 use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis, Verdict};
+use messages::{HypothesesHeader, Hypothesis, Pose2, Verdict};
 use serde::Serialize;
+
+use super::frame::{Frame, with_words};
 
 pub(super) const NS_PER_MS: f64 = 1e6;
 
 /// One scan and its answer. Fields of the pose are `None` without a pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Line {
-    /// Time of the measurement, in nanoseconds since 1970.
+    /// Time of the measurement, in nanoseconds since 1970; in JSON it is that of the [`Row`].
+    ///
+    /// [`Row`]: crate::Row
+    #[serde(skip)]
     pub stamp_ns: i64,
-    /// Position of the laser in the map along x, in metres.
+    /// Frame whose pose this is.
+    pub of: Frame,
+    /// Name of the map of the pose, if several maps are searched.
+    pub map: Option<String>,
+    /// Position in the map along x, in metres.
     pub x: Option<f64>,
-    /// Position of the laser in the map along y, in metres.
+    /// Position in the map along y, in metres.
     pub y: Option<f64>,
-    /// Heading of the laser in the map, in degrees counter-clockwise.
+    /// Heading in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
+    /// Pose of the laser in the map, in metres and radians.
+    pub map_from_laser: Option<Pose2>,
     /// Fit of the scan to the map at the pose, at most 1.
     pub score: Option<f32>,
     /// Verdict, or `?` if this version does not know it.
@@ -39,14 +50,18 @@ impl Line {
         let best = hypotheses
             .first()
             .filter(|_| verdict != Some(Verdict::NoScan));
-        let pose = best.map(|h| h.map_from_laser);
+        let of = Frame::of(header.mount_known == 1);
+        let pose = best.map(|h| of.pose(h.map_from_base, h.map_from_laser));
         let engine_ns = header.search_ns.saturating_add(header.extract_ns);
         let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
         Line {
             stamp_ns: header.stamp.measured_ns,
+            of,
+            map: None,
             x: pose.map(|p| p.x),
             y: pose.map(|p| p.y),
             heading_deg: pose.map(|p| p.yaw.to_degrees()),
+            map_from_laser: best.map(|h| h.map_from_laser),
             score: best.map(|h| h.score),
             verdict: verdict.map_or("?", Verdict::as_str),
             alternatives: header.alternatives,
@@ -58,12 +73,13 @@ impl Line {
         }
     }
 
-    /// Returns the column names.
-    pub fn header() -> String {
+    /// Returns the column names, for poses of this frame.
+    pub fn header(frame: Frame) -> String {
+        let [x, y] = frame.columns();
         row([
             "stamp s",
-            "x m",
-            "y m",
+            x,
+            y,
             "heading deg",
             "score",
             "verdict",
@@ -85,10 +101,9 @@ impl Line {
             &format!("{:.2}", self.latency_ms),
         ]);
         // The normal verdict needs no words.
-        if self.verdict == Verdict::Unique.as_str() || self.says.is_empty() {
-            return row;
-        }
-        format!("{row}  {}", self.says)
+        let is_normal = self.verdict == Verdict::Unique.as_str();
+        let words = if is_normal { "" } else { &self.says };
+        with_words(&row, words, self.map.as_deref())
     }
 }
 
@@ -136,7 +151,7 @@ mod tests {
     fn columns_stand_under_their_names() {
         let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
         let expected = "
-       stamp s        x m        y m  heading deg  score  verdict    alternatives        ms
+       stamp s  laser x m  laser y m  heading deg  score  verdict    alternatives        ms
 1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
              -          -          -            -      -  NoScan                2     25.00  no usable beams: is the laser covered?
 ";
@@ -151,11 +166,30 @@ mod tests {
         none.stamp_ns = -1_500_000_000;
         let text = format!(
             "\n{}\n{}\n{}\n",
-            Line::header(),
+            Line::header(Frame::Laser),
             Line::new(&header, &found).text(),
             none.text().replace("        -1.500", "             -"),
         );
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn the_pose_is_that_of_the_base_where_the_mount_is_known() {
+        let (mut header, mut found) = message(1, 0, Verdict::Unique as u32);
+        header.mount_known = 1;
+        found[0].map_from_base.x = 1.5;
+        let mut line = Line::new(&header, &found);
+        line.map = Some("ground".to_owned());
+        assert!(Line::header(line.of).contains("   base x m   base y m  "));
+        assert!(
+            line.text().contains("  1.500      0.000  "),
+            "{}",
+            line.text()
+        );
+        assert!(line.text().ends_with("  on ground"), "{}", line.text());
+        let json = serde_json::to_value(&line).unwrap();
+        assert_eq!((&json["of"], &json["x"]), (&"base".into(), &1.5.into()));
+        assert_eq!(json["map_from_laser"]["y"], -2.0);
     }
 
     #[test]

@@ -2,9 +2,10 @@
 //! alone. Pure.
 
 use geometry::{Covariance, ELLIPSE_95};
-use messages::{PoseHeader, TrackState};
+use messages::{Pose2, PoseHeader, TrackState};
 use serde::Serialize;
 
+use super::frame::{Frame, with_words};
 use super::line::{Line, NS_PER_MS, number, seconds};
 
 /// The tracker's pose at one scan. Fields of the pose are `None` without a pose.
@@ -14,12 +15,18 @@ pub struct PoseLine {
     pub stamp_ns: i64,
     /// State of the tracker, or `?` if this version does not know it.
     pub state: &'static str,
-    /// Position of the laser in the map along x, in metres.
+    /// Frame whose pose this is.
+    pub of: Frame,
+    /// Name of the map of the pose, if there are several maps.
+    pub map: Option<String>,
+    /// Position in the map along x, in metres.
     pub x: Option<f64>,
-    /// Position of the laser in the map along y, in metres.
+    /// Position in the map along y, in metres.
     pub y: Option<f64>,
-    /// Heading of the laser in the map, in degrees counter-clockwise.
+    /// Heading in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
+    /// Pose of the laser in the map, in metres and radians.
+    pub map_from_laser: Option<Pose2>,
     /// Standard deviation of the position along the long axis of its ellipse, in metres.
     pub deviation_m: Option<f64>,
     /// Standard deviation of the heading in degrees.
@@ -39,6 +46,8 @@ pub struct PoseLine {
 /// The pose of a scan, and the answer to the scan alone; either may be missing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
+    /// Time of the measurement, in nanoseconds since 1970.
+    pub stamp_ns: i64,
     /// Answer to the scan alone; `None` if it was not searched.
     #[serde(flatten)]
     pub single: Option<Line>,
@@ -50,20 +59,25 @@ impl PoseLine {
     /// Converts a message of topic `pose`.
     pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
         let state = TrackState::from_code(header.state);
-        let pose = header.laser();
-        let covariance = pose.and_then(|_| covariance(header));
+        let of = Frame::of(header.mount_known == 1);
+        let (pose, rows) = match of {
+            Frame::Base => (header.base(), header.base_covariance),
+            Frame::Laser => (header.laser(), header.laser_covariance),
+        };
+        let is_finite = rows.iter().all(|c| c.is_finite());
+        let rows = pose.map(|_| rows).filter(|_| is_finite);
         let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
         PoseLine {
             stamp_ns: header.stamp.measured_ns,
             state: state.map_or("?", TrackState::as_str),
+            of,
+            map: None,
             x: pose.map(|pose| pose.x),
             y: pose.map(|pose| pose.y),
             heading_deg: pose.map(|pose| pose.yaw.to_degrees()),
-            deviation_m: covariance.map(|covariance| covariance.ellipse().major_m),
-            deviation_deg: covariance.map(|_| {
-                let [.., yaw_variance] = header.laser_covariance;
-                yaw_variance.max(0.0).sqrt().to_degrees()
-            }),
+            map_from_laser: header.laser(),
+            deviation_m: rows.map(|rows| Covariance::from_rows(rows).ellipse().major_m),
+            deviation_deg: rows.map(|[.., yaw_variance]| yaw_variance.max(0.0).sqrt().to_degrees()),
             probability: pose.map(|_| header.probability),
             places: header.places,
             says: String::from_utf8_lossy(words).into_owned(),
@@ -74,12 +88,19 @@ impl PoseLine {
 }
 
 impl Row {
-    /// Returns the column names.
-    pub fn header() -> String {
+    /// Returns the frame of its pose; `None` if it has no pose.
+    pub fn frame(&self) -> Option<Frame> {
+        let pose = self.pose.as_ref();
+        pose.filter(|pose| pose.x.is_some()).map(|pose| pose.of)
+    }
+
+    /// Returns the column names, for poses of this frame.
+    pub fn header(frame: Frame) -> String {
+        let [x, y] = frame.columns();
         row([
             "stamp s",
-            "x m",
-            "y m",
+            x,
+            y,
             "heading deg",
             "95 % m",
             "state",
@@ -112,10 +133,9 @@ impl Row {
             &format!("{:.2}", pose.latency_ms),
         ]);
         // The normal state needs no words.
-        if pose.state == TrackState::Unique.as_str() || pose.says.is_empty() {
-            return row.trim_end().to_owned();
-        }
-        format!("{row}  {}", pose.says)
+        let is_normal = pose.state == TrackState::Unique.as_str();
+        let words = if is_normal { "" } else { &pose.says };
+        with_words(&row, words, pose.map.as_deref())
     }
 
     /// Returns the row of a scan without an answer of the tracker. No pose is shown, as that of the
@@ -140,11 +160,6 @@ impl Row {
     }
 }
 
-fn covariance(header: &PoseHeader) -> Option<Covariance> {
-    let is_finite = header.laser_covariance.iter().all(|c| c.is_finite());
-    is_finite.then(|| Covariance::from_rows(header.laser_covariance))
-}
-
 fn row([stamp, x, y, heading, within, state, probability, single, ms]: [&str; 9]) -> String {
     format!(
         "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {within:>6}  {state:<9}  {probability:>6}  {single:<12}  {ms:>8}"
@@ -162,6 +177,7 @@ mod tests {
         let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
         let pose = pose(1_117_803_432_123_999_999, 0, state);
         Row {
+            stamp_ns: header.stamp.measured_ns,
             single: with_single.then(|| Line::new(&header, &found)),
             pose: Some(PoseLine::new(&pose, words.as_bytes())),
         }
@@ -170,7 +186,7 @@ mod tests {
     #[test]
     fn columns_stand_under_their_names() {
         let expected = "
-       stamp s        x m        y m  heading deg  95 % m  state      prob %  single scan         ms
+       stamp s  laser x m  laser y m  heading deg  95 % m  state      prob %  single scan         ms
 1117803432.123      1.000     -2.000       180.00   0.049  Unique       97.5  Ambiguous +2     26.00
 1117803432.123      1.000     -2.000       180.00   0.049  Doubtful     97.5  -                26.00  the scans do not fit
 1117803432.123          -          -            -       -  Searching       -  Ambiguous +2     26.00  2 places fit, 25 m apart
@@ -180,7 +196,7 @@ mod tests {
         without.pose = None;
         let text = format!(
             "\n{}\n{}\n{}\n{}\n{}\n",
-            Row::header(),
+            Row::header(Frame::Laser),
             shown(TrackState::Unique, "one place is left", true).text(),
             shown(TrackState::Doubtful, "the scans do not fit", false).text(),
             shown(TrackState::Searching, "2 places fit, 25 m apart", true).text(),
@@ -199,7 +215,21 @@ mod tests {
         assert!((json["pose"]["deviation_m"].as_f64().unwrap() - 0.02).abs() < 1e-12);
         let alone = serde_json::to_value(shown(TrackState::Doubtful, "", false)).unwrap();
         assert_eq!(alone["pose"]["stamp_ns"], 1_117_803_432_123_999_999_i64);
+        assert_eq!(alone["stamp_ns"], 1_117_803_432_123_999_999_i64);
         assert!(alone.get("verdict").is_none());
+    }
+
+    #[test]
+    fn the_pose_is_that_of_the_base_where_the_mount_is_known() {
+        let mut header = pose(1, 0, TrackState::Unique);
+        header.mount_known = 1;
+        header.map_from_base.x = 1.5;
+        header.base_covariance[0] = 0.09;
+        let line = PoseLine::new(&header, b"");
+        assert_eq!((line.of, line.x), (Frame::Base, Some(1.5)));
+        assert_eq!(line.map_from_laser.map(|laser| laser.x), Some(1.0));
+        // The tolerance covers the rounding of the root.
+        assert!((line.deviation_m.unwrap() - 0.3).abs() < 1e-12);
     }
 
     #[test]

@@ -31,12 +31,11 @@ impl Rows {
             }
             return self.release(at + 1);
         }
-        // Its row was returned when the pose of a later scan came.
-        let is_printed = |printed: Stamp| printed.is_of(scan) || is_before(scan, printed);
-        if self.printed.is_some_and(is_printed) {
+        if self.is_printed(scan) {
             return Vec::new();
         }
         let row = Row {
+            stamp_ns: scan.measured_ns,
             single: Some(single),
             pose: None,
         };
@@ -52,10 +51,14 @@ impl Rows {
             }
             return self.release(at + 1);
         }
+        if self.is_printed(scan) {
+            return Vec::new();
+        }
         let earlier = |(waiting, _): &(Stamp, Row)| is_before(*waiting, scan);
         let due = self.waiting.iter().take_while(|entry| earlier(entry));
         let released = self.release(due.count());
         let row = Row {
+            stamp_ns: scan.measured_ns,
             single: None,
             pose: Some(pose),
         };
@@ -66,6 +69,12 @@ impl Rows {
     /// Returns all waiting rows.
     pub fn finish(&mut self) -> Vec<Row> {
         self.release(self.waiting.len())
+    }
+
+    /// True if the row of a scan was returned, before its other half or that of a later scan came.
+    fn is_printed(&self, scan: Stamp) -> bool {
+        let is_printed = |printed: Stamp| printed.is_of(scan) || is_before(scan, printed);
+        self.printed.is_some_and(is_printed)
     }
 
     fn find(&self, scan: Stamp) -> Option<usize> {
@@ -148,6 +157,7 @@ mod tests {
             assert_eq!(answer(&mut rows, counter), []);
         }
         assert_eq!(answer(&mut rows, 99), [(Some(0), None)]);
+        assert_eq!(track(&mut rows, 0), [], "a scan has one row");
         assert_eq!(rows.finish().len(), CAPACITY);
     }
 

@@ -3,23 +3,38 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use command_line::{names, wrong_use};
 use recording::Recording;
+use serde::Deserialize;
 
-use super::answer::Answer;
+use super::answer::{Answer, Expected};
 
 /// Files of a case.
 const RECORDING: &str = "recording.mcap";
 const MAP: &str = "map.yaml";
 const EXPECTATION: &str = "expected.json";
 
+/// Version of the expectation's format: increased when a value changes its meaning.
+const VERSION: u32 = 1;
+
+/// Content of an expectation: with its version, or the bare list of release 0.1.0.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Expectation {
+    Versioned {
+        version: u32,
+        answers: Vec<Expected>,
+    },
+    Bare(Vec<Expected>),
+}
+
 /// A folder with a recording, the expected results, and its map unless the recording holds it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Case {
     pub(super) name: String,
     /// Absolute path.
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
 }
 
 /// Returns the cases of these folders: each folder itself if it is one, else all in it, sorted.
@@ -103,17 +118,23 @@ impl Case {
     /// Reads the expected results; `None` if the file does not exist.
     ///
     /// # Errors
-    /// The file cannot be read, or has another format.
-    pub(super) fn expected(&self) -> anyhow::Result<Option<Vec<Answer>>> {
+    /// The file cannot be read, or has another format or a later version.
+    pub(super) fn expected(&self) -> anyhow::Result<Option<Vec<Expected>>> {
         let file = self.expectation();
         let text = match std::fs::read_to_string(&file) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             read => read.with_context(|| failed("read", &file))?,
         };
-        serde_json::from_str(&text).map(Some).with_context(|| {
-            let file = file.display();
-            format!("{file} does not say what is expected: --accept writes it again")
-        })
+        let file = file.display();
+        match serde_json::from_str(&text) {
+            Ok(Expectation::Versioned { version, .. }) if version > VERSION => Err(anyhow!(
+                "{file} has version {version}, and this release knows {VERSION}"
+            )),
+            Ok(Expectation::Versioned { answers, .. } | Expectation::Bare(answers)) => {
+                Ok(Some(answers))
+            }
+            Err(_) => Err(anyhow!("{file} does not say what is expected")),
+        }
     }
 
     /// Writes these results as the expected ones.
@@ -123,7 +144,8 @@ impl Case {
     pub(super) fn accept(&self, answers: &[Answer]) -> anyhow::Result<()> {
         let file = self.expectation();
         // Strings and finite numbers always serialize.
-        let text = serde_json::to_string_pretty(answers).unwrap_or_default() + "\n";
+        let answers = serde_json::to_string_pretty(answers).unwrap_or_default();
+        let text = format!("{{\"version\": {VERSION}, \"answers\": {answers}}}\n");
         std::fs::write(&file, text).with_context(|| failed("write", &file))
     }
 }
@@ -200,18 +222,32 @@ mod tests {
     }
 
     #[test]
-    fn expectations_are_written_and_read_back() {
+    fn expectations_are_read_back_of_each_version_that_is_known() {
         let folder = TempDir::new().unwrap();
         std::fs::write(folder.path().join(RECORDING), "").unwrap();
         let case = all_in(&[folder.path().to_owned()]).unwrap().remove(0);
         assert_eq!(case.expected().unwrap(), None);
-        case.accept(&[Answer::default()]).unwrap();
-        assert_eq!(case.expected().unwrap(), Some(vec![Answer::default()]));
-        std::fs::write(folder.path().join("expected.json"), "[{}]").unwrap();
-        let wrong = case.expected().unwrap_err();
+        let answer = Answer {
+            votes: 7,
+            ..Answer::default()
+        };
+        case.accept(&[answer]).unwrap();
+        let found = case.expected().unwrap().unwrap().remove(0);
+        assert_eq!((found.stamp_ns, &found.values["votes"]), (0, &7.into()));
+        let read = |text: &str| {
+            std::fs::write(folder.path().join("expected.json"), text).unwrap();
+            let expected = case.expected().map_err(|error| error.to_string());
+            expected.map(|expected| expected.unwrap().remove(0).stamp_ns)
+        };
+        assert_eq!(read(r#"[{"stamp_ns": 5, "verdict": "Unique"}]"#), Ok(5));
+        let later = r#"{"version": 1, "answers": [{"stamp_ns": 6, "new": {}}], "more": 0}"#;
+        assert_eq!(read(later), Ok(6));
+        let wrong = read(r#"{"version": 2, "answers": []}"#).unwrap_err();
         assert!(
-            wrong.to_string().contains("--accept writes it again"),
+            wrong.ends_with("has version 2, and this release knows 1"),
             "{wrong}"
         );
+        let wrong = read("[{}]").unwrap_err();
+        assert!(wrong.ends_with("does not say what is expected"), "{wrong}");
     }
 }

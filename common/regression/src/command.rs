@@ -1,10 +1,10 @@
 //! The command `backcast regress`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use command_line::{output, stdout, wrong_use};
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
@@ -14,6 +14,7 @@ use transport::GraphName;
 use super::case::{self, Case};
 use super::compare::{Tolerance, differences, summary, table};
 use super::junit::{self, Outcome};
+use super::object::Object;
 use super::play::{self, Played};
 
 /// Notes below the options in the help text.
@@ -22,7 +23,8 @@ A case is a folder with recording.mcap (or the folder recording, of a bag), expe
 map.yaml unless the recording holds the map. With --tolerance exact, votes, verdicts, the tracker's states and counts must
 come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 With --tolerance pose, verdicts and states must, and where both are Unique the pose within
-5 cm and 1 degree: what a robot would notice of another version of the engine.
+5 cm and 1 degree: what a robot would notice of another version of the engine. One that has become
+Unique is as good where /ground_truth of its scan is within 0.5 m and 10 degrees.
 
 Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
 damaged, 2 wrong use";
@@ -49,6 +51,26 @@ pub struct Config {
     /// Write a JUnit report for a build server: a suite per recording, a test case per scan
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+
+    /// Overwrite the file of --junit
+    #[arg(long, requires = "junit")]
+    force: bool,
+
+    /// Print JSON, one object per recording
+    #[arg(long)]
+    json: bool,
+}
+
+impl Config {
+    /// Names the command that writes the expectation of a case.
+    fn hint(&self, case: &Case) -> String {
+        let graph = match self.dataflow == Path::new(DEFAULT_FILE) {
+            true => String::new(),
+            false => format!(" --dataflow {}", self.dataflow.display()),
+        };
+        let folder = case.folder.display();
+        format!("`backcast regress {folder}{graph} --accept` writes it")
+    }
 }
 
 /// Replays one recording after another. One whose graph fails is reported, and the next one
@@ -59,7 +81,7 @@ pub struct Config {
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     transport::node::start_logging().map_err(wrong_use)?;
     if let Some(file) = &config.junit {
-        output::prepare(file, true)?;
+        output::prepare(file, config.force)?;
     }
     let cases = case::all_in(&config.folders)?;
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
@@ -71,7 +93,10 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let mut outcomes = Vec::new();
     for case in &cases {
         let outcome = replay(config, case);
-        stdout::print(&text(&outcome, config.accept))?;
+        stdout::print(&match config.json {
+            true => json::object(&Object::of(&outcome, config.accept)) + "\n",
+            false => text(&outcome, config.accept),
+        })?;
         outcomes.push(outcome);
     }
     if let Some(file) = &config.junit {
@@ -117,23 +142,26 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> anyhow::Result<
     let Played {
         answers: found,
         is_tracked,
+        truths,
         damage,
     } = play::play(descriptor, &name, &case.recording())?;
     outcome.scans = found.iter().map(|answer| answer.stamp_ns).collect();
     // With `--accept` an unreadable expectation is overwritten.
     let expected = match config.accept {
         true => Some(expected.ok().flatten().unwrap_or_default()),
-        false => expected?,
+        false => expected.map_err(|error| anyhow!("{error:#}; {}", config.hint(case)))?,
     };
     let Some(mut expected) = expected else {
-        outcome.result = Err("there is no expected.json: --accept writes it".to_owned());
+        outcome.result = Err(format!("there is no expected.json; {}", config.hint(case)));
         return Ok(());
     };
     if !is_tracked {
         // A graph without a tracker has no poses to compare.
-        expected.iter_mut().for_each(|answer| answer.pose = None);
+        for answer in &mut expected {
+            answer.values.remove("pose");
+        }
     }
-    let all = differences(&expected, &found, config.tolerance);
+    let all = differences(&expected, &found, config.tolerance, &truths);
     if let Some(damage) = damage {
         // Accepting a truncated replay would drop the expectations of the missing scans.
         outcome.result = Err(format!(

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
+use geometry::Pose;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use statistics::SUCCESS;
 
-use super::answer::Answer;
+use super::answer::{Answer, Expected};
 
 /// Differences to report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -85,7 +88,7 @@ const TRACKED: [(&str, Rule); 7] = [
     ("pose.probability", Rule::Share),
 ];
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Difference {
     pub(super) stamp_ns: i64,
     /// Name of the value, or "scan" if results are missing or added.
@@ -94,13 +97,15 @@ pub(super) struct Difference {
     pub(super) found: String,
 }
 
-/// Returns all differences, sorted by the stamps of the scans.
+/// Returns all differences, sorted by the stamps of the scans. With [`Tolerance::Pose`], a result
+/// that has become [`UNIQUE`] and is right by `truths` is none.
 pub(super) fn differences(
-    expected: &[Answer],
+    expected: &[Expected],
     found: &[Answer],
     tolerance: Tolerance,
+    truths: &BTreeMap<i64, Pose>,
 ) -> Vec<Difference> {
-    let mut pairs: BTreeMap<i64, (Vec<&Answer>, Vec<&Answer>)> = BTreeMap::new();
+    let mut pairs: BTreeMap<i64, (Vec<&Expected>, Vec<&Answer>)> = BTreeMap::new();
     for answer in expected {
         pairs.entry(answer.stamp_ns).or_default().0.push(answer);
     }
@@ -112,6 +117,7 @@ pub(super) fn differences(
         let mut scan = Scan {
             stamp_ns,
             tolerance,
+            truth: truths.get(&stamp_ns).copied(),
             all: &mut all,
         };
         scan.note(
@@ -121,7 +127,7 @@ pub(super) fn differences(
             &found.len(),
         );
         for (expected, found) in expected.iter().zip(&found) {
-            scan.compare(expected, found);
+            scan.compare(&expected.values, found);
         }
     }
     all
@@ -131,35 +137,50 @@ pub(super) fn differences(
 struct Scan<'a> {
     stamp_ns: i64,
     tolerance: Tolerance,
+    /// True pose of the laser in the map, if known.
+    truth: Option<Pose>,
     all: &'a mut Vec<Difference>,
 }
 
 impl Scan<'_> {
-    fn compare(&mut self, expected: &Answer, found: &Answer) {
+    fn compare(&mut self, expected: &Map<String, Value>, found: &Answer) {
         // Numbers and texts always serialize.
-        let [expected, found] =
-            [expected, found].map(|answer| serde_json::to_value(answer).unwrap_or_default());
-        self.compare_values(&SINGLE, &expected, &found);
-        let [expected, found] = [&expected["pose"], &found["pose"]];
-        if expected.is_object() && found.is_object() {
-            self.compare_values(&TRACKED, expected, found);
-            return;
+        let found = serde_json::to_value(found).unwrap_or_default();
+        self.compare_values(&SINGLE, expected, &found);
+        let found = &found["pose"];
+        match expected.get("pose") {
+            Some(Value::Object(expected)) if found.is_object() => {
+                self.compare_values(&TRACKED, expected, found);
+            }
+            Some(expected) => {
+                let state = |pose: &Value| pose["state"].as_str().unwrap_or("none").to_owned();
+                self.note("pose", expected == found, &state(expected), &state(found));
+            }
+            None => {}
         }
-        let state = |pose: &Value| pose["state"].as_str().unwrap_or("none").to_owned();
-        self.note("pose", expected == found, &state(expected), &state(found));
     }
 
-    fn compare_values(&mut self, values: &[(&'static str, Rule)], expected: &Value, found: &Value) {
+    fn compare_values(
+        &mut self,
+        values: &[(&'static str, Rule)],
+        all_expected: &Map<String, Value>,
+        all_found: &Value,
+    ) {
         let is_exact = self.tolerance == Tolerance::Exact;
         let mut is_unique = false;
         for &(what, rule) in values {
             let key = what.trim_start_matches("pose.");
-            let (expected, found) = (&expected[key], &found[key]);
+            let Some(expected) = all_expected.get(key) else {
+                continue;
+            };
+            let found = &all_found[key];
             let (number, now) = (expected.as_f64(), found.as_f64());
             match rule {
                 Rule::State => {
                     is_unique = expected == UNIQUE && found == UNIQUE;
-                    self.note(what, expected == found, &shown(expected), &shown(found));
+                    let is_better = !is_exact && found == UNIQUE && self.is_right(all_found);
+                    let is_as_expected = expected == found || is_better;
+                    self.note(what, is_as_expected, &shown(expected), &shown(found));
                 }
                 Rule::Exact if is_exact => {
                     self.note(what, expected == found, &shown(expected), &shown(found));
@@ -172,6 +193,16 @@ impl Scan<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// True if the pose found is near the true one.
+    fn is_right(&self, found: &Value) -> bool {
+        let [x, y, heading] = ["x_m", "y_m", "heading_deg"].map(|key| found[key].as_f64());
+        let pose = x.zip(y).zip(heading);
+        let pose = pose.map(|((x, y), heading)| Pose::new(x, y, heading.to_radians()));
+        let (metres, degrees) = SUCCESS;
+        let both = pose.zip(self.truth);
+        both.is_some_and(|(pose, truth)| pose.is_within(truth, metres, degrees.to_radians()))
     }
 
     /// Compares headings on the circle.
@@ -286,6 +317,15 @@ mod tests {
         }
     }
 
+    fn expected(answers: &[Answer]) -> Vec<Expected> {
+        serde_json::from_value(serde_json::to_value(answers).unwrap()).unwrap()
+    }
+
+    /// Returns the differences of results whose true poses are not known.
+    fn differences(all: &[Answer], found: &[Answer], tolerance: Tolerance) -> Vec<Difference> {
+        super::differences(&expected(all), found, tolerance, &BTreeMap::new())
+    }
+
     /// Names of the values that differ after `spoil` has changed a result.
     fn spoilt(spoil: fn(&mut Answer)) -> Vec<&'static str> {
         let mut found = answer(1);
@@ -373,6 +413,41 @@ mod tests {
         let of = |tolerance| names(&differences(&[unsure(1.0)], &[unsure(9.0)], tolerance));
         assert!(of(Tolerance::Pose).is_empty());
         assert_eq!(of(Tolerance::Exact), ["x_m"]);
+    }
+
+    #[test]
+    fn what_the_expectation_does_not_know_is_no_difference() {
+        let mut older = expected(&[answer(1)]);
+        let values = &mut older[0].values;
+        values.insert("later".to_owned(), Value::from(1));
+        values.remove("score");
+        values["pose"].as_object_mut().unwrap().remove("reason");
+        let mut found = answer(1);
+        found.pose.as_mut().unwrap().reason = "SeveralPlaces".to_owned();
+        let of = |older| super::differences(older, &[found], Tolerance::Exact, &BTreeMap::new());
+        assert_eq!(names(&of(&older)), [""; 0]);
+    }
+
+    #[test]
+    fn an_answer_that_has_become_unique_and_right_is_better() {
+        let mut before = answer(1);
+        before.verdict = "Ambiguous".to_owned();
+        before.pose.as_mut().unwrap().state = "Searching".to_owned();
+        let of = |tolerance, truth| {
+            let mut found = answer(1);
+            found.pose.as_mut().unwrap().y_m = Some(2.0);
+            let truths = BTreeMap::from([(1, truth)]);
+            let before = expected(std::slice::from_ref(&before));
+            let all = super::differences(&before, &[found], tolerance, &truths);
+            all.iter()
+                .map(|difference| difference.what)
+                .collect::<Vec<_>>()
+        };
+        let right = Pose::new(1.1, 2.1, std::f64::consts::PI);
+        assert_eq!(of(Tolerance::Pose, right), [""; 0]);
+        let wrong = of(Tolerance::Pose, Pose::new(5.0, 2.1, std::f64::consts::PI));
+        assert_eq!(wrong, ["verdict", "pose.state"]);
+        assert!(of(Tolerance::Exact, right).contains(&"verdict"));
     }
 
     #[test]

@@ -2,13 +2,14 @@
 //! expected one.
 //!
 //! `case` finds the recordings, `play` runs the graph, `answer` is the result of a scan, `compare`
-//! compares (pure), `junit` writes a report for a build server.
+//! compares (pure), `object` is printed for programs, `junit` written for a build server.
 
 mod answer;
 mod case;
 mod command;
 mod compare;
 mod junit;
+mod object;
 mod play;
 
 pub use command::{Config, NOTES, run};

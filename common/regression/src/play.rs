@@ -1,9 +1,11 @@
 //! Plays a recording through a separate graph and collects the results.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
+use geometry::Pose;
 use launcher::descriptor::Descriptor;
 use launcher::run::arguments::{MAP_SERVER, add_to_list, find, leave_out_monitors, set, unset};
 use launcher::run::crew::Crew;
@@ -63,6 +65,8 @@ pub(super) struct Played {
     pub(super) answers: Vec<Answer>,
     /// True if the graph has a tracker.
     pub(super) is_tracked: bool,
+    /// True poses of the laser, by the stamps of their scans.
+    pub(super) truths: BTreeMap<i64, Pose>,
     /// Damage that ended the replay early.
     pub(super) damage: Option<String>,
 }
@@ -76,7 +80,7 @@ pub(super) fn play(
     name: &GraphName,
     recording: &Path,
 ) -> anyhow::Result<Played> {
-    let (scans, damage) = look_at(recording)?;
+    let (scans, truths, damage) = look_at(recording)?;
     let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     remove_leftovers(name)?;
     let outcome = collect(descriptor, name, (scans, is_tracked));
@@ -87,6 +91,7 @@ pub(super) fn play(
         true => Ok(Played {
             answers,
             is_tracked,
+            truths,
             damage,
         }),
         false => Err(anyhow!(
@@ -97,16 +102,20 @@ pub(super) fn play(
     }
 }
 
-/// Returns the number of scans, and the damage if any.
-fn look_at(path: &Path) -> anyhow::Result<(usize, Option<String>)> {
+/// Returns the number of scans, the true poses, and the damage if any.
+fn look_at(path: &Path) -> anyhow::Result<(usize, BTreeMap<i64, Pose>, Option<String>)> {
     let recording = Recording::open(path)?;
     let topic = recording.required_topic(Kind::Scan)?;
     let of_topic = recording
         .channels()
         .filter(|channel| channel.topic == topic);
     let scans = of_topic.map(|channel| channel.messages as usize).sum();
+    let truths = recording.ground_truths()?.into_iter();
     Ok((
         scans,
+        truths
+            .map(|(stamp_ns, truth)| (stamp_ns, truth.pose))
+            .collect(),
         recording.damage_error().map(|error| error.to_string()),
     ))
 }

@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
 use geometry::Pose;
+use messages::Pose2;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::Deserialize;
@@ -29,9 +30,7 @@ pub(super) struct SentPose {
     /// Stamp of the scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
     pub(super) state: String,
-    pub(super) x: Option<f64>,
-    pub(super) y: Option<f64>,
-    pub(super) heading_deg: Option<f64>,
+    pub(super) map_from_laser: Option<Pose2>,
     pub(super) latency_ms: f64,
     /// By the machine's monotonic clock.
     pub(super) sent_ns: i64,
@@ -49,7 +48,7 @@ pub(super) struct Losses {
 impl SentPose {
     /// Pose of the laser in the map, if known.
     pub(super) fn pose(&self) -> Option<Pose> {
-        Some(Pose::new(self.x?, self.y?, self.heading_deg?.to_radians()))
+        self.map_from_laser.map(Pose::from)
     }
 
     /// Time at which the scan entered the graph, by the machine's monotonic clock.
@@ -169,15 +168,12 @@ mod tests {
 
     #[test]
     fn poses_and_the_summary_are_read_from_what_run_prints() {
-        let row = r#"{"verdict":"Unique","pose":{"stamp_ns":5,"state":"Unique","x":1.5,"y":-2.0,
-            "heading_deg":180.0,"deviation_m":0.1,"latency_ms":2.5,"sent_ns":7000000}}"#;
+        let row = r#"{"verdict":"Unique","pose":{"stamp_ns":5,"state":"Unique",
+            "map_from_laser":{"x":1.5,"y":-2.0,"yaw":3.0},"latency_ms":2.5,"sent_ns":7000000}}"#;
         let printed: Printed = serde_json::from_str(row).unwrap();
         let pose = printed.pose.unwrap();
         assert_eq!(pose.entered_ns(), 4_500_000);
-        assert_eq!(
-            pose.pose(),
-            Some(Pose::new(1.5, -2.0, std::f64::consts::PI))
-        );
+        assert_eq!(pose.pose(), Some(Pose::new(1.5, -2.0, 3.0)));
         let row = r#"{"stamp_ns":5,"pose":null}"#;
         assert!(serde_json::from_str::<Printed>(row).unwrap().pose.is_none());
         let row = r#"{"summary":{"scans":9,"answered":8,"searched":3,"dropped":1,"refused":0}}"#;

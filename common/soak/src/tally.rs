@@ -260,9 +260,7 @@ mod tests {
         SentPose {
             stamp_ns,
             state: state.as_str().to_owned(),
-            x: Some(x),
-            y: Some(0.0),
-            heading_deg: Some(0.0),
+            map_from_laser: Some(Pose::new(x, 0.0, 0.0).into()),
             latency_ms: 500.0,
             sent_ns: entered_s * SECOND + SECOND / 2,
         }

@@ -51,6 +51,11 @@ impl Distribution {
         self.values.push_back(value);
     }
 
+    /// Adds the values of another one.
+    pub fn merge(&mut self, other: &Self) {
+        other.values.iter().for_each(|&value| self.add(value));
+    }
+
     /// Nearest-rank percentiles, in per cent 0..=100: the smallest value with at least that share
     /// of values at or below it. `None` without values.
     pub fn percentiles<const N: usize>(&self, percents: [f64; N]) -> [Option<f64>; N] {
@@ -147,6 +152,18 @@ impl Accuracy {
         }
         self.error_m.add(truth.distance_to(*best));
         self.error_deg.add(truth.angle_to(*best).to_degrees());
+    }
+
+    /// Adds the results that another one has judged.
+    pub fn merge(&mut self, other: &Self) {
+        self.truths += other.truths;
+        self.successes += other.successes;
+        self.close_successes += other.close_successes;
+        self.recalled += other.recalled;
+        self.unique += other.unique;
+        self.unique_wrong += other.unique_wrong;
+        self.error_m.merge(&other.error_m);
+        self.error_deg.merge(&other.error_deg);
     }
 
     pub fn figures(&self) -> Figures {

@@ -17,11 +17,13 @@ const LATENCIES: usize = 120;
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Message {
     /// Complete state.
-    Snapshot(Snapshot),
+    Snapshot(Box<Snapshot>),
     /// Answer to one scan.
     Answer(Answer),
     /// Pose from the tracker.
     Pose(Tracked),
+    /// The map that is shown.
+    Map(Map),
     /// State of a node.
     Node(Node),
     /// Message that is not shown here.
@@ -34,6 +36,7 @@ pub(super) enum Message {
 #[serde(default)]
 pub(super) struct Snapshot {
     robot: String,
+    map: Option<Map>,
     answer: Option<Answer>,
     pose: Option<Tracked>,
     ages: Ages,
@@ -48,9 +51,18 @@ struct Ages {
     pose_s: Option<f64>,
 }
 
+/// The map that is shown; its name is empty if it is the only one.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Map {
+    id: String,
+    name: String,
+}
+
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Answer {
+    map_id: String,
     pub(super) counter: u64,
     pub(super) verdict: String,
     pub(super) says: String,
@@ -65,12 +77,15 @@ pub(super) struct Answer {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Tracked {
+    map_id: String,
     pub(super) counter: u64,
     pub(super) from_scan: bool,
     pub(super) state: String,
     pub(super) says: String,
     pub(super) laser: Option<Pose>,
+    pub(super) base: Option<Pose>,
     pub(super) ellipse: Option<Ellipse>,
+    pub(super) base_ellipse: Option<Ellipse>,
     pub(super) probability: f64,
     pub(super) score: f64,
     pub(super) latency_ms: f64,
@@ -91,6 +106,8 @@ pub(super) struct Ellipse {
 #[serde(default)]
 pub(super) struct Place {
     pub(super) laser: Pose,
+    /// `None` if the laser's mount is not known.
+    pub(super) base: Option<Pose>,
     pub(super) score: f64,
     pub(super) probability: f64,
 }
@@ -143,6 +160,7 @@ impl Age {
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub(super) robot: String,
+    map: Option<Map>,
     pub(super) answer: Option<Answer>,
     /// `None` if the graph has no tracker.
     pub(super) pose: Option<Tracked>,
@@ -164,6 +182,7 @@ impl Known {
         match message {
             Message::Snapshot(all) => {
                 self.robot = all.robot;
+                self.map = all.map;
                 self.answer = all.answer;
                 self.pose = all.pose;
                 self.scan_age = all.ages.scan_s.map(age);
@@ -186,6 +205,7 @@ impl Known {
                 self.pose_age = Some(age(pose.sent_age_ms / 1e3));
                 self.pose = Some(pose);
             }
+            Message::Map(map) => self.map = Some(map),
             Message::Node(node) => {
                 self.nodes.insert(node.name.clone(), node);
             }
@@ -201,6 +221,14 @@ impl Known {
             (age > SILENT_AFTER).then(|| format!("no {what} for {seconds} s"))
         };
         quiet(self.scan_age, "data").or_else(|| quiet(self.pose_age, "pose"))
+    }
+
+    /// Returns the name of the map of the pose, if there are several and it is the one shown.
+    pub(super) fn map_name(&self) -> Option<&str> {
+        let tracked = self.pose.as_ref().map(|pose| &pose.map_id);
+        let map_id = tracked.or(self.answer.as_ref().map(|answer| &answer.map_id))?;
+        let map = self.map.as_ref().filter(|map| map.id == *map_id)?;
+        Some(&*map.name).filter(|name| !name.is_empty())
     }
 
     /// True if the state shown belongs to a scan: between scans the tracker's counter is that of

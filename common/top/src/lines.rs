@@ -29,9 +29,11 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
             };
             lines.push(Line::from(format!("{verdict}{}.", answer.says)));
             lines.push(Line::default());
-            lines.push(head(
-                "   place        x m       y m  heading deg  score  probability",
-            ));
+            let is_base = answer.hypotheses.iter().any(|place| place.base.is_some());
+            let [x, y] = ["x", "y"].map(|axis| format!("{} {axis} m", frame(is_base)));
+            lines.push(head(format!(
+                "   place  {x:>9} {y:>9}  heading deg  score  probability"
+            )));
             let places = answer.hypotheses.iter().take(PLACES).enumerate();
             lines.extend(places.map(|(at, place)| place_line(at, place)));
             lines.push(Line::default());
@@ -77,6 +79,9 @@ fn title(known: &Known, now: Instant) -> Line<'static> {
     if let Some(counter) = counter.filter(|_| known.is_of_scan()) {
         spans.push(Span::from(format!("  scan {counter}")).dim());
     }
+    if let Some(name) = known.map_name() {
+        spans.push(Span::from(format!("  on {name}")));
+    }
     if let Some(silence) = silence {
         let text = format!("  {}", silence.to_uppercase());
         spans.push(Span::from(text).fg(Color::Red).bold());
@@ -99,17 +104,24 @@ fn color_of(state: &str) -> Color {
 /// Formats the tracker's pose and its reason.
 fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     let mut lines = vec![Line::from(format!("{}.", pose.says))];
-    if let Some(laser) = pose.laser {
-        let spread = pose.ellipse.map_or(String::new(), |ellipse| {
+    if let Some(shown) = pose.base.or(pose.laser) {
+        let is_base = pose.base.is_some();
+        let ellipse = if is_base {
+            pose.base_ellipse
+        } else {
+            pose.ellipse
+        };
+        let spread = ellipse.map_or(String::new(), |ellipse| {
             let m = ELLIPSE_95 * ellipse.major_m;
             let deg = ANGLE_95 * ellipse.yaw.to_degrees();
             format!(" +- {m:.3} m, {deg:.2} deg (95 %)")
         });
         let text = format!(
-            "x {:.3} m, y {:.3} m, heading {:.2} deg{spread}",
-            laser.x,
-            laser.y,
-            laser.yaw.to_degrees()
+            "{}: x {:.3} m, y {:.3} m, heading {:.2} deg{spread}",
+            frame(is_base),
+            shown.x,
+            shown.y,
+            shown.yaw.to_degrees()
         );
         lines.push(Line::from(text.bold()));
         let share = 100.0 * pose.probability;
@@ -120,22 +132,29 @@ fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     lines
 }
 
-fn head(text: &'static str) -> Line<'static> {
-    Line::from(text.dim())
+/// Returns the frame whose poses are shown: that of the base, where the laser's mount is known.
+fn frame(is_base: bool) -> &'static str {
+    if is_base { "base" } else { "laser" }
+}
+
+fn head(text: impl Into<String>) -> Line<'static> {
+    Line::from(text.into().dim())
 }
 
 fn place_line(at: usize, place: &Place) -> Line<'static> {
     let Place {
         laser,
+        base,
         score,
         probability,
     } = place;
+    let shown = base.unwrap_or(*laser);
     let text = format!(
         "{:>8}  {:>9.3} {:>9.3}  {:>11.2}  {score:>5.2}  {:>9.1} %",
         at + 1,
-        laser.x,
-        laser.y,
-        laser.yaw.to_degrees(),
+        shown.x,
+        shown.y,
+        shown.yaw.to_degrees(),
         100.0 * probability,
     );
     let style = match at {
@@ -255,7 +274,7 @@ mod tests {
         for expected in [
             "  Doubtful  scan 7\n",
             "the scans do not fit where the robot should be.\n",
-            "x 1.500 m, y -2.000 m, heading 28.65 deg +- 0.612 m, 1.12 deg (95 %)\n",
+            "laser: x 1.500 m, y -2.000 m, heading 28.65 deg +- 0.612 m, 1.12 deg (95 %)\n",
             "probability 87.5 %, score 0.50\n",
             "This scan alone, Ambiguous: 2 places fit.\n",
             "scan to pose 21.5 ms",
@@ -266,6 +285,27 @@ mod tests {
             text.lines().all(|line| line.chars().count() <= 80),
             "{text}"
         );
+    }
+
+    #[test]
+    fn poses_are_those_of_the_base_where_it_is_known_and_the_map_is_named() {
+        let known = known(&[
+            r#"{"type":"snapshot","robot":"r7","map":{"id":"0a","name":"ground"}}"#,
+            r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place","hypotheses":[
+                {"laser":{"x":1.0},"base":{"x":2.0}}]}"#,
+            r#"{"type":"pose","map_id":"0a","state":"Unique","says":"one place is left",
+                "laser":{"x":1.0},"base":{"x":2.5},"ellipse":{"major_m":9.0},
+                "base_ellipse":{"major_m":0.25}}"#,
+        ]);
+        let text = plain(&known, Instant::now());
+        for expected in [
+            "r7  Unique  on ground\n",
+            "base: x 2.500 m, y 0.000 m, heading 0.00 deg +- 0.612 m",
+            "   place   base x m  base y m  heading deg",
+            "       1      2.000     0.000",
+        ] {
+            assert!(text.contains(expected), "{expected:?} in\n{text}");
+        }
     }
 
     #[test]

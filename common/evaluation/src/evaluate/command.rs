@@ -1,22 +1,22 @@
 //! The command `backcast evaluate`.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
 use command_line::{number, stdout, wrong_use};
 use map::OccupancyGrid;
-use offline::{Accepted, Options, Session, World, no_truth_taken, no_truths};
+use offline::{Accepted, Options, Session, World, no_truth_taken};
 use progress::{Progress, say};
-use recording::GroundTruth;
+use serde::Serialize;
 
-use super::judge::{Effort, Evaluation, Judge};
+use super::judge::{Effort, Evaluation, Judge, Total};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
-use crate::sequence::{self, SequenceOptions};
-use crate::trust::Trust;
+use crate::outcomes::{Outcomes, ReportOptions};
+use crate::sequence::{self, SequenceOptions, Task};
+use crate::truths::{TruthOptions, Truths};
 
 /// Notes below the options in the help text.
 pub const NOTES: &str = "\
@@ -24,6 +24,7 @@ Shares are of the truths: the scans taken that have a true pose. Only those are 
 cpu is of one thread from the scan to the verdict, decoding excluded; prepare is of the map.
 Errors are of the answers within 0.5 m and 10 degrees, which are the right ones.
 ellipse is of the unique ones: the true position lies in the ellipse of 95 %.
+Of several files, a last line has the total: of all scans, the largest map and peak of memory.
 Below, the probabilities of the best places of all files, and how many of those were right.
 
 Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wrong use";
@@ -36,9 +37,11 @@ pub struct Config {
     #[arg(required_unless_present = "stress", value_name = "FILE")]
     bags: Vec<PathBuf>,
 
-    /// Print JSON, one object per file
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportOptions,
+
+    #[command(flatten)]
+    truths: TruthOptions,
 
     /// Erase the map around each true pose: cells within this distance become unknown, metres,
     /// 0..=1000. unique_wrong then shows how often a place that is missing on the map is mistaken
@@ -75,64 +78,110 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         return Err(wrong_use("--stress needs a recording"));
     }
     let map = config.options.load_map(&config.bags)?;
+    let mut outcomes = Outcomes::new(&config.report)?;
     if config.sequence.sequence {
-        let how = (&config.options, &config.sequence);
-        return sequence::evaluate(&bags, config.json, map.as_ref(), how);
+        let task = Task {
+            bags: &bags,
+            map: map.as_ref(),
+            options: &config.options,
+            sequence: &config.sequence,
+            truths: &config.truths,
+            report: &config.report,
+        };
+        sequence::evaluate(&task, &mut outcomes)?;
+        return outcomes.finish();
     }
-    let table = Table::of(&config.bags);
-    let mut code = ExitCode::SUCCESS;
-    let mut trust = Trust::default();
-    let mut header = (!config.json).then(|| table.header());
+    let mut printer = Printer::new(config.report.json, &config.bags);
+    let mut total = Total::new();
+    let missed = |evaluation: &Evaluation| {
+        let truths = config.truths.missed(evaluation.truths).into_iter();
+        truths
+            .chain(config.limits.missed(evaluation))
+            .collect::<Vec<_>>()
+    };
     for (index, bag) in config.bags.iter().enumerate() {
+        let name = bag.display().to_string();
         if let Err(error) = memory::forget_peak()
             && index > 0
         {
-            let bag = bag.display();
             say(&format!(
-                "{bag}: peak_rss_mb is that of all files so far: {error}"
+                "{name}: peak_rss_mb is that of all files so far: {error}"
             ));
         }
-        let evaluation = match evaluate(bag, config, map.as_ref(), &mut trust) {
-            Ok(evaluation) => evaluation,
+        let (judge, effort) = match evaluate(bag, config, map.as_ref()) {
+            Ok(judged) => judged,
             Err(error) => {
-                say(&format!("{error:#}"));
-                code = ExitCode::FAILURE;
+                outcomes.failed(&name, &error, say);
                 continue;
             }
         };
-        for missed in config.limits.missed(&evaluation) {
-            say(&format!("{}: {missed}", bag.display()));
-            code = ExitCode::FAILURE;
+        total.add(&judge, &effort);
+        let evaluation = judge.conclude(&effort);
+        if !config.report.total {
+            outcomes.judged(&name, None, &missed(&evaluation), say);
         }
-        let line = match config.json {
-            true => json::object(&evaluation),
-            false => table.row(&evaluation),
-        };
-        for line in header.take().into_iter().chain([line]) {
-            stdout::print(&format!("{line}\n"))?;
-        }
+        printer.file(&evaluation)?;
     }
-    if !config.json && header.is_none() {
-        stdout::print(&format!("\n{trust}"))?;
+    let all = total.conclude();
+    if config.report.total {
+        outcomes.judged("total", None, &missed(&all), say);
     }
-    Ok(code)
+    if total.files > 1 {
+        printer.total(&all)?;
+    }
+    if !config.report.json && total.files > 0 {
+        stdout::print(&format!("\n{}", total.trust()))?;
+    }
+    outcomes.finish()
 }
 
-/// Evaluates one file, unless it is damaged, and adds its results to `trust`.
+/// Prints figures as a table or as JSON.
+struct Printer {
+    /// `None` for JSON.
+    table: Option<Table>,
+    begun: bool,
+}
+
+impl Printer {
+    fn new(json: bool, bags: &[PathBuf]) -> Self {
+        Printer {
+            table: (!json).then(|| Table::of(bags)),
+            begun: false,
+        }
+    }
+
+    fn file(&mut self, evaluation: &Evaluation) -> anyhow::Result<()> {
+        let line = match &self.table {
+            Some(table) if self.begun => table.row(evaluation),
+            Some(table) => format!("{}\n{}", table.header(), table.row(evaluation)),
+            None => json::object(evaluation),
+        };
+        self.begun = true;
+        Ok(stdout::print(&format!("{line}\n"))?)
+    }
+
+    fn total(&mut self, total: &Evaluation) -> anyhow::Result<()> {
+        #[derive(Serialize)]
+        struct Last<'a> {
+            total: &'a Evaluation,
+        }
+        match self.table {
+            Some(_) => self.file(total),
+            None => Ok(stdout::print(&format!(
+                "{}\n",
+                json::object(&Last { total })
+            ))?),
+        }
+    }
+}
+
+/// Evaluates one file, unless it is damaged.
 fn evaluate(
     bag: &Path,
     config: &Config,
     map: Option<&OccupancyGrid>,
-    trust: &mut Trust,
-) -> anyhow::Result<Evaluation> {
-    let recording = config.options.open(&[bag.to_owned()])?;
-    if let Some(damage) = recording.damage_error() {
-        return Err(damage.into());
-    }
-    let truths = recording.ground_truths()?;
-    if truths.is_empty() {
-        return Err(no_truths(bag));
-    }
+) -> anyhow::Result<(Judge, Effort)> {
+    let (recording, truths) = config.truths.open(bag, &config.options)?;
     let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
@@ -141,8 +190,10 @@ fn evaluate(
     if let Some(complaint) = judge.complaint() {
         progress.say(&format!("{name}: {complaint}"));
     }
-    trust.merge(judge.trust());
-    let evaluation = judge.conclude(Effort {
+    if judge.truths() == 0 {
+        return Err(no_truth_taken(bag, scans, truths.recorded()));
+    }
+    let effort = Effort {
         bag: name,
         map_cells: session.world().map_or(0, World::cells),
         scans,
@@ -151,18 +202,15 @@ fn evaluate(
             .context("cannot read the peak of memory from /proc/self/status")?,
         searchable_cells: session.world().map_or(0, World::searchable_cells),
         index_bytes: session.world().map_or(0, World::index_bytes),
-    });
-    match evaluation.truths {
-        0 => Err(no_truth_taken(bag, scans, truths.len())),
-        _ => Ok(evaluation),
-    }
+    };
+    Ok((judge, effort))
 }
 
 /// Searches and judges the scans with a true pose. Also returns the counts of accepted and rejected
 /// scans, and the number of scans read.
 fn judge_all(
     session: &mut Session<'_>,
-    truths: &BTreeMap<i64, GroundTruth>,
+    truths: &Truths,
     erase_place: Option<f64>,
     progress: &Progress,
 ) -> anyhow::Result<(Judge, Accepted, u64)> {
@@ -172,15 +220,15 @@ fn judge_all(
     while let Some(scan) = session.scans.next() {
         let scan = scan?;
         scans += 1;
-        if let Some(truth) = truths.get(&scan.stamp_ns) {
+        if let Some(truth) = truths.at(scan.stamp_ns) {
             if let Some(radius_m) = erase_place {
-                session.erase(&scan, truth.pose, radius_m)?;
+                session.erase(&scan, truth, radius_m)?;
             }
             let reply = session.ask(&scan)?;
             accepted.count(&reply);
             match reply.answer {
-                Ok(answer) => judge.answer(truth.pose, answer.places, reply.cpu_ms),
-                Err(refusal) => judge.refusal(truth.pose, format!("{refusal:#}")),
+                Ok(answer) => judge.answer(truth, answer.places, reply.cpu_ms),
+                Err(refusal) => judge.refusal(truth, format!("{refusal:#}")),
             }
         }
         for note in session.take_notes() {

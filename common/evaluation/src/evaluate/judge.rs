@@ -8,7 +8,7 @@ use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
 use crate::trust::{Said, Trust};
 
-/// Collects results of one file.
+/// Collects results of one file, or of several.
 pub(super) struct Judge {
     accuracy: Accuracy,
     cpu_ms: Distribution,
@@ -21,8 +21,8 @@ pub(super) struct Judge {
     first_refusal: Option<String>,
 }
 
-/// Properties and costs of an evaluation.
-#[derive(Debug, Clone, PartialEq)]
+/// Properties and costs of an evaluation; of several files, the largest map and peak.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Effort {
     pub(super) bag: String,
     pub(super) map_cells: u64,
@@ -33,7 +33,53 @@ pub(super) struct Effort {
     pub(super) index_bytes: u64,
 }
 
-/// Figures of one file; shares are 0..=1 of `truths`.
+impl Effort {
+    fn merge(&mut self, other: &Self) {
+        self.map_cells = self.map_cells.max(other.map_cells);
+        self.scans += other.scans;
+        self.prepare_cpu_ms += other.prepare_cpu_ms;
+        self.peak_rss_mb = self.peak_rss_mb.max(other.peak_rss_mb);
+        self.searchable_cells = self.searchable_cells.max(other.searchable_cells);
+        self.index_bytes = self.index_bytes.max(other.index_bytes);
+    }
+}
+
+/// Results of all files together.
+pub(super) struct Total {
+    judge: Judge,
+    effort: Effort,
+    pub(super) files: u64,
+}
+
+impl Total {
+    /// Creates the total of no file.
+    pub(super) fn new() -> Self {
+        Total {
+            judge: Judge::new(),
+            effort: Effort {
+                bag: "total".to_owned(),
+                ..Effort::default()
+            },
+            files: 0,
+        }
+    }
+
+    pub(super) fn add(&mut self, judge: &Judge, effort: &Effort) {
+        self.judge.merge(judge);
+        self.effort.merge(effort);
+        self.files += 1;
+    }
+
+    pub(super) fn trust(&self) -> &Trust {
+        &self.judge.trust
+    }
+
+    pub(super) fn conclude(&self) -> Evaluation {
+        self.judge.conclude(&self.effort)
+    }
+}
+
+/// Figures of one file or of all; shares are 0..=1 of `truths`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Evaluation {
     /// The file, as given by the user.
@@ -132,8 +178,18 @@ impl Judge {
         self.accuracy.add(truth, &nothing);
     }
 
-    pub(super) fn trust(&self) -> &Trust {
-        &self.trust
+    fn merge(&mut self, other: &Self) {
+        self.accuracy.merge(&other.accuracy);
+        self.cpu_ms.merge(&other.cpu_ms);
+        self.error_m.merge(&other.error_m);
+        self.error_deg.merge(&other.error_deg);
+        self.trust.merge(&other.trust);
+        self.in_ellipse += other.in_ellipse;
+    }
+
+    /// Number of scans judged so far.
+    pub(super) fn truths(&self) -> u64 {
+        self.accuracy.figures().truths
     }
 
     /// Message about rejected scans, if there were any.
@@ -143,11 +199,11 @@ impl Judge {
         Some(format!("scans rejected: {refused}; the first: {reason}"))
     }
 
-    pub(super) fn conclude(&self, effort: Effort) -> Evaluation {
+    pub(super) fn conclude(&self, effort: &Effort) -> Evaluation {
         let figures = self.accuracy.figures();
         let [median, p90, max] = self.cpu_ms.percentiles([50.0, 90.0, 100.0]);
         Evaluation {
-            bag: effort.bag,
+            bag: effort.bag.clone(),
             map_cells: effort.map_cells,
             scans: effort.scans,
             truths: figures.truths,
@@ -200,7 +256,7 @@ pub(super) mod tests {
     }
 
     /// Five scans: one off by 0.1 m, one by 0.3 m, two at a wrong place, one rejected.
-    pub(crate) fn evaluation() -> Evaluation {
+    fn judged() -> (Judge, Effort) {
         let truth = Pose::new(1.0, 2.0, 0.0);
         let beside = |x: f64| Pose::new(1.0 + x, 2.0, x.to_radians());
         let mut judge = Judge::new();
@@ -210,7 +266,7 @@ pub(super) mod tests {
         let second = found(Verdict::Ambiguous, &[beside(5.0), beside(0.0)]);
         judge.answer(truth, &second, 3.0);
         judge.refusal(truth, "empty".to_owned());
-        judge.conclude(Effort {
+        let effort = Effort {
             bag: "r.mcap".to_owned(),
             map_cells: 720,
             scans: 9,
@@ -218,7 +274,31 @@ pub(super) mod tests {
             peak_rss_mb: 34.5,
             searchable_cells: 300,
             index_bytes: 9000,
-        })
+        };
+        (judge, effort)
+    }
+
+    pub(crate) fn evaluation() -> Evaluation {
+        let (judge, effort) = judged();
+        judge.conclude(&effort)
+    }
+
+    #[test]
+    fn a_total_is_of_the_scans_of_all_files() {
+        let (judge, mut effort) = judged();
+        let mut total = Total::new();
+        total.add(&judge, &effort);
+        effort.map_cells = 700;
+        let mut other = Judge::new();
+        let truth = Pose::new(1.0, 2.0, 0.0);
+        other.answer(truth, &found(Verdict::Unique, &[truth]), 9.0);
+        total.add(&other, &effort);
+        let all = total.conclude();
+        assert_eq!((&*all.bag, total.files), ("total", 2));
+        assert_eq!((all.map_cells, all.scans, all.truths), (720, 18, 6));
+        assert_eq!(all.success_50cm_10deg, Some(0.5));
+        assert_eq!((all.unique, all.unique_in_ellipse), (4, 2));
+        assert_eq!((all.cpu_ms.max, all.prepare_cpu_ms), (Some(9.0), 25.0));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use command_line::number;
 
 use super::judge::Evaluation;
 use crate::sequence::above_zero;
+use crate::text::share;
 
 /// Requirements on each file; none by default, and not for sequences.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -12,6 +13,10 @@ pub(super) struct Limits {
     /// Lowest share of the truths that are found within 0.5 m and 10 degrees, per cent
     #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = number(0.0..=100.0, "per cent"))]
     min_success: Option<f64>,
+
+    /// Lowest share of the truths with a result that is Unique, per cent
+    #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = number(0.0..=100.0, "per cent"))]
+    min_unique: Option<f64>,
 
     /// Highest number of results that are Unique and wrong
     #[arg(long, value_name = "COUNT", conflicts_with = "sequence")]
@@ -43,6 +48,13 @@ impl Limits {
         {
             let found = text(success, "%");
             missed.push(format!("success is {found}, --min-success {least}"));
+        }
+        let unique = share(found.unique, found.truths).map(|share| 100.0 * share);
+        if let Some(least) = self.min_unique
+            && unique.is_none_or(|found| found < least)
+        {
+            let found = text(unique, "%");
+            missed.push(format!("Unique are {found}, --min-unique {least}"));
         }
         if let Some(most) = self.max_wrong
             && found.unique_wrong > most

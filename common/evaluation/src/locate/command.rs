@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{LOST_DATA, stdout, wrong_use};
+use command_line::{LOST_DATA, wrong_use};
 use offline::{Accepted, Options, Session};
 use pose_table::Line;
 use progress::Progress;
@@ -76,12 +76,10 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         true => Session::open(&recording, &config.options, map.as_ref())?,
         false => Session::open_on(&recording, &config.options, &maps)?,
     };
-    if !config.json {
-        stdout::print(&format!("{}\n", Line::header()))?;
-    }
     let progress = Progress::new("locating", session.scans.total());
     let mut code = ExitCode::SUCCESS;
     let mut accepted = Accepted::default();
+    let mut frame = None;
     while let Some(scan) = session.scans.next() {
         match scan {
             Ok(scan) => {
@@ -91,9 +89,14 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
                 let line = match config.json {
                     true => json::object(&Object::new(&scan, &reply).with(particles)),
                     false => match particles {
-                        Some(particles) => row::text(scan.stamp_ns, &reply) + &particles.text(),
-                        None => row::text(scan.stamp_ns, &reply),
+                        Some(particles) => row::text(&scan, &reply) + &particles.text(),
+                        None => row::text(&scan, &reply),
                     },
+                };
+                let of = row::frame(&scan);
+                let line = match frame.replace(of) != Some(of) && !config.json {
+                    true => format!("{}\n{line}", Line::header(of)),
+                    false => line,
                 };
                 for note in session.take_notes() {
                     progress.say(&note);

@@ -1,16 +1,20 @@
 //! Formats a scan and its place as a row of the table that `backcast run` prints. Pure.
 
+use geometry::Pose;
 use messages::Verdict;
-use offline::Reply;
-use pose_table::Line;
+use offline::{Reply, TakenScan};
+use pose_table::{Frame, Line};
 
 /// The row without a line break; for a rejected scan the reason is appended.
-pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
+pub(super) fn text(scan: &TakenScan, reply: &Reply<'_>) -> String {
     let mut line = Line {
-        stamp_ns,
+        stamp_ns: scan.stamp_ns,
+        of: frame(scan),
+        map: None,
         x: None,
         y: None,
         heading_deg: None,
+        map_from_laser: None,
         score: None,
         verdict: Verdict::NoScan.as_str(),
         alternatives: 0,
@@ -19,24 +23,27 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
         latency_ms: reply.cpu_ms,
         engine_ms: reply.cpu_ms,
     };
-    let places = match &reply.answer {
-        Ok(answer) => &answer.places,
+    let answer = match &reply.answer {
+        Ok(answer) => answer,
         Err(refusal) => return format!("{}  {refusal:#}", line.text()),
     };
+    let places = answer.places;
     line.verdict = places.verdict.as_str();
     line.alternatives = places.alternatives;
     line.says = places.sentence();
     if let Some(best) = places.places.first() {
-        line.x = Some(best.map_from_laser.x);
-        line.y = Some(best.map_from_laser.y);
-        line.heading_deg = Some(best.map_from_laser.yaw.to_degrees());
+        let laser_from_base = scan.base_from_laser.map_or(Pose::IDENTITY, Pose::inverse);
+        let pose = best.map_from_laser.then(laser_from_base);
+        line.x = Some(pose.x);
+        line.y = Some(pose.y);
+        line.heading_deg = Some(pose.yaw.to_degrees());
         line.score = Some(best.score as f32);
+        line.map = Some(answer.map.name.clone()).filter(|name| !name.is_empty());
     }
-    match &reply.answer {
-        // The verdict is the end of the line's text; the name of the map follows.
-        Ok(answer) if !answer.map.name.is_empty() && !places.places.is_empty() => {
-            format!("{}  on {}", line.text(), answer.map.name)
-        }
-        _ => line.text(),
-    }
+    line.text()
+}
+
+/// Frame whose pose the row has.
+pub(super) fn frame(scan: &TakenScan) -> Frame {
+    Frame::of(scan.base_from_laser.is_some())
 }

@@ -1,70 +1,82 @@
 //! Reads drives, evaluates them one by one, and prints the figures.
 
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::Path;
 
-use anyhow::Context;
-use command_line::{names, output, stdout};
-use map::OccupancyGrid;
-use offline::{Accepted, Options, Session};
+use command_line::{names, stdout};
+use offline::{Accepted, Options, Session, no_truth_taken};
 use plots::draw_drive;
 use progress::{Progress, say};
+use serde::Serialize;
 
 use super::drive::Moment;
-use super::figures::Figures;
+use super::errors::Samples;
+use super::figures::{Figures, Judged};
 use super::run::Said;
-use super::{SequenceOptions, course, drive, follow, jumps, outages, starts, stress};
+use super::{SequenceOptions, Task, course, drive, follow, jumps, outages, starts, stress};
+use crate::outcomes::Outcomes;
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
 /// and the next one follows.
 ///
 /// # Errors
-/// A folder cannot be created, or output cannot be written.
-pub(crate) fn evaluate(
-    bags: &[PathBuf],
-    json: bool,
-    map: Option<&OccupancyGrid>,
-    (options, sequence): (&Options, &SequenceOptions),
-) -> anyhow::Result<ExitCode> {
-    for folder in sequence.trajectories.iter().chain(&sequence.pictures) {
-        output::make_folder(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+/// A file of an option cannot be written or is not to be overwritten, or output cannot be written.
+pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Result<()> {
+    let names = names::of(task.bags);
+    task.sequence.prepare(&names, task.report.force)?;
+    if let Some(stress) = &task.sequence.stress {
+        return stress::evaluate(task, (&names, stress), outcomes);
     }
-    if let Some(stress) = &sequence.stress {
-        let how = (options, sequence);
-        return stress::evaluate(bags, json, map, how, stress);
-    }
-    let mut code = ExitCode::SUCCESS;
-    for (bag, name) in bags.iter().zip(names::of(bags)) {
-        match one((bag, &name), map, options, sequence) {
-            Ok(figures) => {
-                let line = match json {
-                    true => format!("{}\n", json::object(&figures)),
-                    false => figures.text(),
-                };
-                stdout::print(&line)?;
-                for missed in sequence.limits.missed(&figures.reached(), true) {
-                    say(&format!("{}: {missed}", bag.display()));
-                    code = ExitCode::FAILURE;
-                }
-            }
+    let (mut total, mut drives) = (Judged::default(), 0);
+    let missed = |figures: &Figures| {
+        let truths = task.truths.missed(figures.truths).into_iter();
+        let limits = &task.sequence.limits;
+        truths
+            .chain(limits.missed(&figures.reached(), true))
+            .collect::<Vec<_>>()
+    };
+    for (bag, file_name) in task.bags.iter().zip(&names) {
+        let name = bag.display().to_string();
+        let judged = match one((bag, file_name), task) {
+            Ok(judged) => judged,
             Err(error) => {
-                say(&format!("{error:#}"));
-                code = ExitCode::FAILURE;
+                outcomes.failed(&name, &error, say);
+                continue;
             }
+        };
+        total.merge(&judged);
+        drives += 1;
+        let figures = Figures::of(name.clone(), &judged);
+        stdout::print(&match task.report.json {
+            true => format!("{}\n", json::object(&figures)),
+            false => figures.text(),
+        })?;
+        if !task.report.total {
+            outcomes.judged(&name, None, &missed(&figures), say);
         }
     }
-    Ok(code)
+    let total = Figures::of("total".to_owned(), &total);
+    if drives > 1 {
+        #[derive(Serialize)]
+        struct Last<'a> {
+            total: &'a Figures,
+        }
+        stdout::print(&match task.report.json {
+            true => format!("{}\n", json::object(&Last { total: &total })),
+            false => total.text(),
+        })?;
+    }
+    if task.report.total {
+        outcomes.judged("total", None, &missed(&total), say);
+    }
+    Ok(())
 }
 
-fn one(
-    (bag, file_name): (&Path, &str),
-    map: Option<&OccupancyGrid>,
-    options: &Options,
-    sequence: &SequenceOptions,
-) -> anyhow::Result<Figures> {
-    let (recording, truths) = drive::open(bag, options)?;
-    let mut session = Session::open(&recording, options, map)?;
+fn one((bag, file_name): (&Path, &str), task: &Task<'_>) -> anyhow::Result<Judged> {
+    let Task {
+        options, sequence, ..
+    } = task;
+    let (recording, truths) = task.truths.open(bag, options)?;
+    let mut session = Session::open(&recording, options, task.map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
     let mut accepted = Accepted::default();
@@ -78,6 +90,11 @@ fn one(
         (&progress, &mut accepted),
     )?;
     accepted.check(bag)?;
+    let with_truth = moments.iter().filter(|moment| moment.truth.is_some());
+    let with_truth = with_truth.count() as u64;
+    if with_truth == 0 {
+        return Err(no_truth_taken(bag, moments.len() as u64, truths.recorded()));
+    }
     let (world, config) = (session.world()?, sequence.tracking);
     let said = course::of(world, &moments, config)?;
     show(&session, (&moments, &said), (options, sequence), file_name)?;
@@ -107,13 +124,15 @@ fn one(
             "{name}: no data between scans {from} and {to}, Unique and {off_m:.1} m off after that"
         ));
     }
-    let searching_ms = moments.iter().map(|moment| moment.search_ms);
-    Ok(Figures::new(
-        name,
-        (&starts, &followed, (&jumps, &outages)),
-        course::errors(&moments, &said),
-        searching_ms,
-    ))
+    Ok(Judged {
+        truths: with_truth,
+        starts,
+        followed,
+        jumps,
+        outages,
+        from_first_scan: Samples::of(&course::pairs(&moments, &said)),
+        searching_ms: moments.iter().map(|moment| moment.search_ms).collect(),
+    })
 }
 
 /// Writes the requested trajectories and picture of the drive from its first scan.

@@ -1,7 +1,6 @@
 //! Runs the tracker over the whole drive from its first scan, without an initial pose, and writes
 //! trajectories and a picture.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::Context;
@@ -11,8 +10,8 @@ use offline::World;
 use plots::Stop;
 
 use super::drive::Moment;
-use super::errors::Errors;
 use super::run::{Run, Said};
+use super::trajectory;
 
 /// Results of the tracker for each moment.
 ///
@@ -28,9 +27,8 @@ pub(super) fn of(
     indices.map(|i| run.take(i, moments[i].moved)).collect()
 }
 
-/// Writes two trajectories of the first laser: the tracker's, for scans where it was Unique or
-/// Doubtful, and the true one. One line per scan: seconds, x, y, z and a quaternion, in the TUM
-/// RGB-D format that evo reads.
+/// Writes trajectories of the first laser: the tracker's, for scans where it was Unique or Doubtful,
+/// and the true one.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -43,36 +41,23 @@ pub(super) fn write(
     let tracked = both().filter(|(_, said)| said.report.state.is_believed());
     let tracked = tracked.filter_map(|(moment, said)| Some((moment.stamp_ns, said.pose?)));
     let truths = both().filter_map(|(moment, _)| Some((moment.stamp_ns, moment.truth?)));
-    let save = |file: String, lines: String| {
-        let file = folder.join(file);
-        std::fs::write(&file, lines).with_context(|| format!("cannot write {}", file.display()))
-    };
-    save(format!("{name}.tum"), trajectory(tracked))?;
-    save(format!("{name}_truth.tum"), trajectory(truths))
+    let [tracked, truths] = [tracked.collect::<Vec<_>>(), truths.collect()];
+    let texts = trajectory::files(&tracked, &truths, &pairs(moments, said));
+    for (ending, text) in trajectory::ENDINGS.iter().zip(texts) {
+        let file = folder.join(format!("{name}{ending}"));
+        std::fs::write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    Ok(())
 }
 
-/// Errors of the tracked poses that [`write`] writes.
-pub(super) fn errors(moments: &[Moment], said: &[Said]) -> Errors {
+/// Believed and true poses of the scans of which both are known.
+pub(super) fn pairs(moments: &[Moment], said: &[Said]) -> Vec<(Pose, Pose)> {
     let both = moments.iter().zip(said);
-    let pairs = both.filter_map(|(moment, said)| {
+    both.filter_map(|(moment, said)| {
         let pose = said.pose.filter(|_| said.report.state.is_believed());
         pose.zip(moment.truth)
-    });
-    Errors::of(&pairs.collect::<Vec<_>>())
-}
-
-fn trajectory(poses: impl Iterator<Item = (i64, Pose)>) -> String {
-    let mut lines = String::new();
-    for (stamp_ns, Pose { x, y, yaw }) in poses {
-        let (seconds, rest) = (
-            stamp_ns.div_euclid(1_000_000_000),
-            stamp_ns.rem_euclid(1_000_000_000),
-        );
-        let (sin, cos) = (0.5 * yaw).sin_cos();
-        // Writing to a string cannot fail.
-        let _ = writeln!(lines, "{seconds}.{rest:09} {x} {y} 0 0 0 {sin} {cos}");
-    }
-    lines
+    })
+    .collect()
 }
 
 pub(super) fn stops(moments: &[Moment], said: &[Said]) -> Vec<Stop> {
@@ -103,22 +88,5 @@ pub(super) fn doubts(said: &[Said]) -> String {
     match words.is_empty() {
         true => "Unique at every scan".into(),
         false => format!("scans that were not Unique: {}", words.join(", ")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_trajectory_has_a_line_a_scan() {
-        let quarter = Pose::new(1.5, -2.0, std::f64::consts::PI);
-        let lines = trajectory([(1_500_000_000, quarter)].into_iter());
-        let words: Vec<f64> = lines
-            .split_whitespace()
-            .map(|w| w.parse().unwrap())
-            .collect();
-        assert_eq!(words[..7], [1.5, 1.5, -2.0, 0.0, 0.0, 0.0, 1.0]);
-        assert!(words[7].abs() < 1e-15 && lines.ends_with('\n'));
     }
 }

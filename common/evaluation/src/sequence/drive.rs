@@ -1,7 +1,6 @@
 //! A drive: all inputs of the tracker, read and searched once.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use engine::fit::Ends;
@@ -9,9 +8,10 @@ use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
-use offline::{Accepted, Options, Session, TakenScan, View, no_truths};
+use offline::{Accepted, Session, TakenScan, View};
 use progress::Progress;
-use recording::{GroundTruth, Recording};
+
+use crate::truths::Truths;
 
 /// One scan of a drive. Copies share the view and the search results.
 #[derive(Clone)]
@@ -52,25 +52,6 @@ impl Moment {
     }
 }
 
-/// True poses by stamp, in nanoseconds.
-pub(super) type Truths = BTreeMap<i64, GroundTruth>;
-
-/// Opens an undamaged recording that has true poses.
-///
-/// # Errors
-/// The recording cannot be read, is damaged, or has no true pose.
-pub(super) fn open(bag: &Path, options: &Options) -> anyhow::Result<(Recording, Truths)> {
-    let recording = options.open(&[bag.to_owned()])?;
-    if let Some(damage) = recording.damage_error() {
-        return Err(damage.into());
-    }
-    let truths = recording.ground_truths()?;
-    match truths.is_empty() {
-        true => Err(no_truths(bag)),
-        false => Ok((recording, truths)),
-    }
-}
-
 /// Searches all scans of a recording.
 ///
 /// # Errors
@@ -87,7 +68,7 @@ pub(super) fn read(
     let mut number = 0;
     while let Some(scan) = session.scans.next() {
         let scan = scan?;
-        let truth = truths.get(&scan.stamp_ns).map(|truth| truth.pose);
+        let truth = truths.at(scan.stamp_ns);
         let truth = truth.filter(|_| !ignored.contains(&number));
         number += 1;
         moments.extend(search(session, &scan, truth, accepted)?);

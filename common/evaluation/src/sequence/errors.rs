@@ -4,7 +4,15 @@
 use geometry::Pose;
 use serde::Serialize;
 
-/// Errors of the poses with a known truth; `None` for an error without samples.
+/// Errors of each pose with a known truth, of one drive or of several.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Samples {
+    absolute_m: Vec<f64>,
+    relative_m: Vec<f64>,
+    relative_deg: Vec<f64>,
+}
+
+/// Figures of these errors; `None` for an error without samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Errors {
     /// Number of poses compared.
@@ -27,13 +35,10 @@ pub(super) struct Spread {
     pub(super) max: f64,
 }
 
-impl Errors {
+impl Samples {
     /// Errors of pairs of found and true pose, in the order of their stamps.
     pub(super) fn of(pairs: &[(Pose, Pose)]) -> Self {
-        let absolute = pairs
-            .iter()
-            .map(|(found, truth)| found.distance_to(*truth))
-            .collect();
+        let absolute = pairs.iter().map(|(found, truth)| found.distance_to(*truth));
         let step = |from: Pose, to: Pose| from.inverse().then(to);
         let relative: Vec<Pose> = pairs
             .windows(2)
@@ -42,13 +47,28 @@ impl Errors {
                 step(step(truth, next_truth), step(found, next_found))
             })
             .collect();
-        let metres = relative.iter().map(|off| off.x.hypot(off.y)).collect();
+        let metres = relative.iter().map(|off| off.x.hypot(off.y));
         let degrees = relative.iter().map(|off| off.yaw.abs().to_degrees());
+        Samples {
+            absolute_m: absolute.collect(),
+            relative_m: metres.collect(),
+            relative_deg: degrees.collect(),
+        }
+    }
+
+    /// Adds the errors of another drive.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.absolute_m.extend(&other.absolute_m);
+        self.relative_m.extend(&other.relative_m);
+        self.relative_deg.extend(&other.relative_deg);
+    }
+
+    pub(super) fn figures(&self) -> Errors {
         Errors {
-            poses: pairs.len(),
-            ape_m: Spread::of(absolute),
-            rpe_m: Spread::of(metres),
-            rpe_deg: Spread::of(degrees.collect()),
+            poses: self.absolute_m.len(),
+            ape_m: Spread::of(self.absolute_m.clone()),
+            rpe_m: Spread::of(self.relative_m.clone()),
+            rpe_deg: Spread::of(self.relative_deg.clone()),
         }
     }
 }
@@ -77,7 +97,7 @@ mod tests {
 
     #[test]
     fn what_stays_off_counts_once_and_what_jumps_counts_in_each_step() {
-        assert_eq!(Errors::of(&[]).ape_m, None);
+        assert_eq!(Samples::of(&[]).figures().ape_m, None);
         let at = |x: f64, y: f64| Pose::new(x, y, 0.0);
         // Off by 0.1 m to the left from the start, and by 0.4 m at the last pose.
         let pairs = [
@@ -90,7 +110,7 @@ mod tests {
             ape_m,
             rpe_m,
             rpe_deg,
-        } = Errors::of(&pairs);
+        } = Samples::of(&pairs).figures();
         let near = |found: Option<Spread>, expected: [f64; 3]| {
             let found = found.unwrap();
             let found = [found.rmse, found.median, found.max];

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use statistics::{Distribution, Spread};
 
-use super::errors::{self, Errors};
+use super::errors::{self, Errors, Samples};
 use super::follow::Followed;
 use super::jumps::Jumps;
 use super::limits::Reached;
@@ -11,10 +11,38 @@ use super::outages::Outages;
 use super::starts::{After, Starts};
 use crate::text::{number, percent, share};
 
-/// Figures of one drive. Shares are 0..=1; docs/tracking.md explains each.
+/// Results of one drive, or of several.
+#[derive(Debug, Default)]
+pub(super) struct Judged {
+    /// Number of scans with a true pose.
+    pub(super) truths: u64,
+    pub(super) starts: Starts,
+    pub(super) followed: Followed,
+    pub(super) jumps: Jumps,
+    pub(super) outages: Outages,
+    pub(super) from_first_scan: Samples,
+    pub(super) searching_ms: Vec<f64>,
+}
+
+impl Judged {
+    /// Adds another drive.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.truths += other.truths;
+        self.starts.merge(&other.starts);
+        self.followed.merge(&other.followed);
+        self.jumps.merge(&other.jumps);
+        self.outages.merge(&other.outages);
+        self.from_first_scan.merge(&other.from_first_scan);
+        self.searching_ms.extend(&other.searching_ms);
+    }
+}
+
+/// Figures of one drive, or of several. Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Figures {
     pub(super) bag: String,
+    /// Number of scans with a true pose.
+    pub(super) truths: u64,
     pub(super) starts: u64,
     pub(super) right: After,
     pub(super) not_yet: After,
@@ -51,26 +79,29 @@ fn spread_of(times_ms: impl IntoIterator<Item = f64>) -> Spread {
 }
 
 impl Figures {
-    pub(super) fn new(
-        bag: String,
-        (starts, followed, (jumps, outages)): (&Starts, &Followed, (&Jumps, &Outages)),
-        from_first_scan: Errors,
-        searching_ms: impl IntoIterator<Item = f64>,
-    ) -> Self {
+    pub(super) fn of(bag: String, judged: &Judged) -> Self {
+        let Judged {
+            starts,
+            followed,
+            jumps,
+            outages,
+            ..
+        } = judged;
         let hourly = |count: u64| count as f64 / followed.hours;
         Figures {
             bag,
+            truths: judged.truths,
             starts: starts.starts,
             right: After::of(&starts.right, &starts.judged),
             not_yet: After::of(&starts.not_yet, &starts.judged),
             wrong_starts: starts.wrong.len() as u64,
             wrong_scans: starts.tally.with(&followed.tally).wrong,
             losses: followed.losses.len(),
-            rms_m: followed.rms_m,
-            rms_deg: followed.rms_deg,
-            max_m: followed.max_m,
-            in_ellipse: followed.in_ellipse,
-            unique_share: followed.unique_share,
+            rms_m: followed.rms_m(),
+            rms_deg: followed.rms_deg(),
+            max_m: followed.max_m(),
+            in_ellipse: followed.in_ellipse(),
+            unique_share: followed.unique_share(),
             false_alarms_per_hour: (followed.hours > 0.0).then(|| hourly(followed.false_alarms)),
             kidnaps: jumps.jumps,
             kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
@@ -79,10 +110,10 @@ impl Figures {
             outages: outages.outages,
             outages_right_after_5_m: share(outages.right, outages.outages),
             outages_wrong: outages.wrong.len() as u64,
-            from_first_scan,
+            from_first_scan: judged.from_first_scan.figures(),
             searched_share: share(starts.searches, starts.scans),
             cpu_ms_tracking: spread_of(followed.tracking_ms.iter().copied()),
-            cpu_ms_searching: spread_of(searching_ms),
+            cpu_ms_searching: spread_of(judged.searching_ms.iter().copied()),
         }
     }
 
@@ -92,6 +123,7 @@ impl Figures {
             wrong_scans: self.wrong_scans,
             losses: self.losses as u64,
             rms_m: self.rms_m,
+            right: self.right.clone(),
         }
     }
 

@@ -6,6 +6,7 @@ use offline::World;
 
 use super::drive::Moment;
 use super::run::{Run, Said, Tally};
+use crate::text::share;
 
 /// The robot counts as lost, and is put back to the truth, if it is off by more than this (metres,
 /// degrees) for [`LOSS_TRUTHS`] truths in a row.
@@ -20,16 +21,72 @@ pub(super) struct Followed {
     pub(super) tally: Tally,
     /// Indices of the moments at which it was lost.
     pub(super) losses: Vec<usize>,
-    pub(super) rms_m: Option<f64>,
-    pub(super) rms_deg: Option<f64>,
-    pub(super) max_m: Option<f64>,
-    /// Share of the Unique moments near the truth whose 95 % ellipse contains it.
-    pub(super) in_ellipse: Option<f64>,
-    pub(super) unique_share: Option<f64>,
+    sums: Sums,
     /// Number of times that Unique was given up although the pose was right.
     pub(super) false_alarms: u64,
     pub(super) hours: f64,
     pub(super) tracking_ms: Vec<f64>,
+}
+
+/// Sums over the moments of a drive.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    moments: u32,
+    unique: u32,
+    /// Moments with a truth at which it was not lost, and sums of their errors.
+    truths: u32,
+    squares_m: f64,
+    squares_deg: f64,
+    max_m: f64,
+    /// Unique moments near the truth, and those of them whose 95 % ellipse contains it.
+    unique_truths: u32,
+    held: u32,
+}
+
+impl Followed {
+    pub(super) fn rms_m(&self) -> Option<f64> {
+        self.root_mean(self.sums.squares_m)
+    }
+
+    pub(super) fn rms_deg(&self) -> Option<f64> {
+        self.root_mean(self.sums.squares_deg)
+    }
+
+    pub(super) fn max_m(&self) -> Option<f64> {
+        (self.sums.truths > 0).then_some(self.sums.max_m)
+    }
+
+    /// Share of the Unique moments near the truth whose 95 % ellipse contains it.
+    pub(super) fn in_ellipse(&self) -> Option<f64> {
+        share(self.sums.held.into(), self.sums.unique_truths.into())
+    }
+
+    pub(super) fn unique_share(&self) -> Option<f64> {
+        share(self.sums.unique.into(), self.sums.moments.into())
+    }
+
+    fn root_mean(&self, squares: f64) -> Option<f64> {
+        let truths = self.sums.truths;
+        (truths > 0).then(|| (squares / f64::from(truths)).sqrt())
+    }
+
+    /// Adds another drive, without its moments.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.tally = self.tally.with(&other.tally);
+        self.losses.extend(&other.losses);
+        self.false_alarms += other.false_alarms;
+        self.hours += other.hours;
+        self.tracking_ms.extend(&other.tracking_ms);
+        let (all, more) = (&mut self.sums, &other.sums);
+        all.moments += more.moments;
+        all.unique += more.unique;
+        all.truths += more.truths;
+        all.squares_m += more.squares_m;
+        all.squares_deg += more.squares_deg;
+        all.max_m = all.max_m.max(more.max_m);
+        all.unique_truths += more.unique_truths;
+        all.held += more.held;
+    }
 }
 
 /// Follows the drive. With `puts_back` a lost robot is put back to the truth; otherwise it must
@@ -76,34 +133,27 @@ pub(super) fn evaluate(
 }
 
 fn sum_up(all: &mut Followed, moments: &[Moment]) {
-    let (mut truths, mut squares, mut turns, mut max_m) = (0u32, 0.0, 0.0, 0.0f64);
-    let (mut unique, mut unique_truths, mut held, mut was_right) = (0u32, 0u32, 0u32, false);
+    let (mut sums, mut was_right) = (Sums::default(), false);
     for &(index, said) in &all.said {
-        unique += u32::from(said.is_unique());
+        sums.moments += 1;
+        sums.unique += u32::from(said.is_unique());
         let Some((m, deg)) = said.off else { continue };
         if was_right && !said.is_unique() && m <= super::run::RIGHT.0 {
             all.false_alarms += 1;
         }
         was_right = said.is_right();
         if m <= LOSS.0 && deg <= LOSS.1 {
-            truths += 1;
-            squares += m * m;
-            turns += deg * deg;
-            max_m = max_m.max(m);
+            sums.truths += 1;
+            sums.squares_m += m * m;
+            sums.squares_deg += deg * deg;
+            sums.max_m = sums.max_m.max(m);
         }
         if said.is_unique() && !said.is_off() {
-            unique_truths += 1;
-            held += u32::from(is_in_ellipse(&moments[index], &said));
+            sums.unique_truths += 1;
+            sums.held += u32::from(is_in_ellipse(&moments[index], &said));
         }
     }
-    if truths > 0 {
-        all.rms_m = Some((squares / f64::from(truths)).sqrt());
-        all.rms_deg = Some((turns / f64::from(truths)).sqrt());
-        all.max_m = Some(max_m);
-    }
-    let share = |part: u32, of: u32| (of > 0).then(|| f64::from(part) / f64::from(of));
-    all.in_ellipse = share(held, unique_truths);
-    all.unique_share = share(unique, all.said.len() as u32);
+    all.sums = sums;
 }
 
 /// True if the true position is inside the 95 % ellipse.

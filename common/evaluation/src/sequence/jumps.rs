@@ -23,6 +23,16 @@ pub(super) struct Jumps {
     pub(super) wrong: Vec<(usize, usize)>,
 }
 
+impl Jumps {
+    /// Adds the jumps of another drive.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.jumps += other.jumps;
+        self.noticed += other.noticed;
+        self.right += other.right;
+        self.wrong.extend(&other.wrong);
+    }
+}
+
 /// Chooses pairs of moments, from and to, spread over the drive so that all jumps differ.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
     let truths: Vec<usize> = (0..moments.len())

@@ -16,7 +16,10 @@ mod outages;
 mod run;
 mod starts;
 mod stress;
+mod task;
+mod trajectory;
 
 pub(crate) use command::evaluate;
 pub(crate) use limits::above_zero;
 pub(crate) use options::SequenceOptions;
+pub(crate) use task::Task;

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
-use command_line::number;
+use anyhow::Context;
+use command_line::{number, output};
 use engine::tracking::TrackingConfig;
 
 use super::limits::SequenceLimits;
 use super::stress::Stress;
+use super::trajectory;
 
 /// Options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
@@ -42,7 +44,7 @@ pub(crate) struct SequenceOptions {
     pub ignore_truth: Vec<u64>,
 
     /// Write the tracked and the true trajectory of each drive, from its first scan without an
-    /// initial pose, to this folder (TUM format, which evo reads)
+    /// initial pose, to this folder: in the formats TUM and KITTI, which evo reads, and as CSV
     #[arg(long, value_name = "FOLDER", requires = "sequence")]
     pub trajectories: Option<PathBuf>,
 
@@ -73,6 +75,43 @@ pub(crate) struct SequenceOptions {
 }
 
 impl SequenceOptions {
+    /// Makes the folders of trajectories and pictures, and checks that the files of the drives with
+    /// these names can be written there.
+    ///
+    /// # Errors
+    /// One cannot, or it exists and is not to be overwritten.
+    pub(super) fn prepare(&self, names: &[String], force: bool) -> anyhow::Result<()> {
+        for folder in self.trajectories.iter().chain(&self.pictures) {
+            output::make_folder(folder)
+                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        }
+        let (lines, drawn) = match &self.stress {
+            None => (
+                trajectory::ENDINGS.map(str::to_owned).to_vec(),
+                vec![".png".to_owned()],
+            ),
+            Some(stress) => {
+                let variants = stress.names().into_iter();
+                (
+                    Vec::new(),
+                    variants.map(|name| format!("_{name}.png")).collect(),
+                )
+            }
+        };
+        for (folder, endings) in [(&self.trajectories, lines), (&self.pictures, drawn)] {
+            let files = names
+                .iter()
+                .flat_map(|name| endings.iter().map(move |e| format!("{name}{e}")));
+            for file in folder
+                .iter()
+                .flat_map(|folder| files.clone().map(|file| folder.join(file)))
+            {
+                output::prepare(&file, force)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The recording, if `--stress` took one as its list.
     pub(crate) fn stressed_file(&self) -> Option<PathBuf> {
         match &self.stress {

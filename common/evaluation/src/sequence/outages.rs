@@ -21,6 +21,15 @@ pub(super) struct Outages {
     pub(super) wrong: Vec<(usize, usize, f64)>,
 }
 
+impl Outages {
+    /// Adds the outages of another drive.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.outages += other.outages;
+        self.right += other.right;
+        self.wrong.extend(&other.wrong);
+    }
+}
+
 /// Chooses the last scan before and the first after each outage, spread over the drive.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);

@@ -34,6 +34,22 @@ pub(super) struct Starts {
     pub(super) searches: u64,
 }
 
+impl Starts {
+    /// Adds the starts of another drive.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.starts += other.starts;
+        for i in 0..AFTER_M.len() {
+            self.judged[i] += other.judged[i];
+            self.right[i] += other.right[i];
+            self.not_yet[i] += other.not_yet[i];
+        }
+        self.wrong.extend(&other.wrong);
+        self.tally = self.tally.with(&other.tally);
+        self.scans += other.scans;
+        self.searches += other.searches;
+    }
+}
+
 /// Shares of the starts, by metres after the start.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct After(pub(super) Vec<(f64, Option<f64>)>);

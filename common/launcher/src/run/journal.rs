@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
-use pose_table::{Line, Row, Rows};
+use pose_table::{Frame, Line, Row, Rows};
 use serde::Serialize;
 
 use super::{
@@ -21,7 +21,8 @@ pub(crate) struct Journal {
     rows: Option<Rows>,
     output: Output,
     json: bool,
-    begun: bool,
+    /// Frame of the poses in the table so far.
+    frame: Option<Frame>,
     /// Log files of the nodes, with `--log-folder`.
     logs: Option<LogFiles>,
 }
@@ -34,7 +35,7 @@ impl Journal {
             rows: is_tracked.then(Rows::default),
             output,
             json,
-            begun: false,
+            frame: None,
             logs: None,
         }
     }
@@ -57,22 +58,20 @@ impl Journal {
         }
     }
 
-    /// Prints the table header, once; none for JSON.
-    pub(crate) fn begin(&mut self) {
-        if !std::mem::replace(&mut self.begun, true) && !self.json {
-            let header = match self.rows {
-                Some(_) => Row::header(),
-                None => Line::header(),
-            };
-            self.output.line(header);
-        }
-    }
-
     /// Records an answer and prints it; with a tracker, it is printed together with the pose.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let line = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
-            return self.output.line(shown(self.json, &line, Line::text));
+            if line.x.is_some() || self.frame.is_none() {
+                self.show_header(line.of, Line::header);
+            }
+            let row = Row {
+                stamp_ns: line.stamp_ns,
+                single: Some(line),
+                pose: None,
+            };
+            let text = |row: &Row| row.single.as_ref().map_or_else(String::new, Line::text);
+            return self.output.line(shown(self.json, &row, text));
         };
         let due = rows.answer(header.stamp, line);
         self.print(&due)
@@ -91,9 +90,21 @@ impl Journal {
     fn print(&mut self, rows: &[Row]) -> Reader {
         let mut reader = Reader::Reads;
         for row in rows {
+            let of = || row.pose.as_ref().map_or(Frame::Laser, |pose| pose.of);
+            if let Some(frame) = row.frame().or_else(|| self.frame.is_none().then(of)) {
+                self.show_header(frame, Row::header);
+            }
             reader = self.output.line(shown(self.json, row, Row::text));
         }
         reader
+    }
+
+    /// Prints the header of the table before the first pose, and before one of another frame; none
+    /// for JSON.
+    fn show_header(&mut self, frame: Frame, header: fn(Frame) -> String) {
+        if self.frame.replace(frame) != Some(frame) && !self.json {
+            self.output.line(header(frame));
+        }
     }
 
     /// Prints the summary if `wanted`, and waits until all is printed, at most for `patience` if it

@@ -165,7 +165,6 @@ fn launch(
     let first_laser = lasers::first(&descriptor.dataflow);
     let watch = Watch::new(&graph, first_laser, journal.has_logs())?;
     note(&format!("graph {name} is starting; Ctrl-C stops it"));
-    journal.begin();
     let nodes = descriptor.dataflow.nodes.clone();
     let mut crew = Crew::new(nodes, &descriptor.folder, name)?;
     let mut health = graph.health()?;

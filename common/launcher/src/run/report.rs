@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use geometry::Pose;
 use messages::{
-    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, Verdict,
+    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapSet, PoseHeader, Stamp, Verdict,
 };
 use pose_table::{Line, PoseLine};
 use statistics::{Accuracy, Answer, Distribution};
@@ -17,6 +17,8 @@ use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 const WINDOW: usize = 200_000;
 
 pub(crate) struct Report {
+    /// Names of the maps of a set, by their ids; empty for a single map.
+    maps: HashMap<u64, String>,
     /// Scans of publishers that were restarted since.
     earlier_scans: u64,
     newest_scan: Option<Stamp>,
@@ -39,6 +41,7 @@ impl Report {
     /// Creates an empty report, for a graph with or without a tracker.
     pub(crate) fn new(is_tracked: bool) -> Self {
         Report {
+            maps: HashMap::new(),
             earlier_scans: 0,
             newest_scan: None,
             newest_answer: None,
@@ -53,6 +56,18 @@ impl Report {
             graph_ms: Distribution::new(WINDOW),
             losses: HashMap::new(),
         }
+    }
+
+    /// Records the maps of a set, whose names are printed.
+    pub(crate) fn maps(&mut self, set: &MapSet<'_>) {
+        let maps = set.maps.iter();
+        self.maps = maps
+            .map(|(map, _)| (map.map_id, map.name.to_string()))
+            .collect();
+    }
+
+    fn map(&self, map_id: u64) -> Option<String> {
+        self.maps.get(&map_id).cloned()
     }
 
     /// Records a scan. Scans before it may be missing here, as its counter includes them.
@@ -70,7 +85,8 @@ impl Report {
 
     /// Records the answer to a scan.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Line {
-        let line = Line::new(header, found);
+        let mut line = Line::new(header, found);
+        line.map = line.x.and_then(|_| self.map(header.map_id));
         self.newest_answer = Some(header.stamp);
         self.answered += 1;
         self.latency_ms.add(line.latency_ms);
@@ -93,7 +109,8 @@ impl Report {
 
     /// Records the tracker's pose of a scan.
     pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> PoseLine {
-        let line = PoseLine::new(header, words);
+        let mut line = PoseLine::new(header, words);
+        line.map = line.x.and_then(|_| self.map(header.map_id));
         self.newest_pose = Some(header.stamp);
         self.tracking.pose(header, line.latency_ms);
         line

@@ -1,12 +1,13 @@
 //! Receives messages of the graph and enters them in the journal.
 
-use messages::{HealthHeader, topic};
+use messages::{HealthHeader, MapSet, topic};
 use transport::{Graph, Input, Subscriber, TransportError};
 
 use super::{journal::Journal, output::Reader};
 
 pub(crate) struct Watch {
     first_laser: Option<String>,
+    maps: Subscriber<topic::Maps>,
     scans: Subscriber<topic::Scan>,
     truths: Subscriber<topic::GroundTruthTopic>,
     hypotheses: Subscriber<topic::Hypotheses>,
@@ -40,6 +41,7 @@ impl Watch {
     ) -> Result<Self, TransportError> {
         Ok(Watch {
             first_laser,
+            maps: graph.subscriber()?,
             scans: graph.subscriber()?,
             truths: graph.subscriber()?,
             hypotheses: graph.subscriber()?,
@@ -63,6 +65,12 @@ impl Watch {
         journal: &mut Journal,
         mut on_health: impl FnMut(&HealthHeader),
     ) -> Result<Received, TransportError> {
+        while let Some(maps) = self.maps.receive()? {
+            // The nodes that search them report a set that is invalid.
+            if let Ok(set) = MapSet::split(maps.header(), maps.items()) {
+                journal.report.maps(&set);
+            }
+        }
         let mut newest = None;
         while let Some(scan) = self.scans.receive()? {
             let laser = scan.header().laser;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{stdout, wrong_use};
+use command_line::{output, stdout};
 use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
@@ -47,11 +47,7 @@ pub struct Config {
 /// If the map cannot be used, the path cannot be driven, or the file cannot be written. An
 /// impossible drive is rejected before the file is touched.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
-    if config.out.exists() && !config.force {
-        let file = config.out.display();
-        let reason = format!("{file} is there already; --force overwrites it");
-        return Err(wrong_use(reason));
-    }
+    output::prepare(&config.out, config.force)?;
     let map = map::load_within(map::MemoryLimit::NONE, &config.map, |key| {
         say(&key.to_string());
     })?;

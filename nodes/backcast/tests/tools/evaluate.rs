@@ -175,6 +175,64 @@ fn a_file_that_misses_a_requirement_fails_with_the_figure() {
 }
 
 #[test]
+fn requirements_of_several_files_are_reported_with_their_total() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    record(
+        &path("s.mcap"),
+        &[map_message(), scan_at(1, HERE), truth_at(1, HERE)],
+    );
+    let evaluate = |options: &str| run(folder.path(), &format!("evaluate {options}"));
+    let required = "--min-truths 2 --min-unique 80";
+    let (code, stdout, stderr) = evaluate(&format!(
+        "--json {required} --junit out/e.xml r.mcap s.mcap none.mcap"
+    ));
+    assert_eq!(code, 1, "{stderr}");
+    let objects = objects(&stdout);
+    assert_eq!(objects.len(), 3, "{stdout}");
+    let total = &objects[2]["total"];
+    assert_eq!((&total["truths"], &total["unique"]), (&5.into(), &4.into()));
+    assert_eq!(total["success_50cm_10deg"], 0.6);
+    for said in [
+        "r.mcap: Unique are 75.0 %, --min-unique 80",
+        "s.mcap: true poses are 1, --min-truths 2",
+    ] {
+        assert!(stderr.contains(said), "{said}: {stderr}");
+    }
+    let report = fs::read_to_string(path("out/e.xml")).unwrap();
+    assert!(report.contains("failures=\"2\" errors=\"1\""), "{report}");
+    let (code, _, stderr) = evaluate("--junit out/e.xml s.mcap");
+    assert_eq!(code, 2, "{stderr}");
+    assert!(stderr.contains("out/e.xml is there already"), "{stderr}");
+    let (code, _, stderr) = evaluate(&format!(
+        "{required} --total --junit out/e.xml --force r.mcap s.mcap"
+    ));
+    assert_eq!(code, 0, "{stderr}");
+}
+
+#[test]
+fn truths_at_a_rate_of_their_own_are_interpolated() {
+    let folder = tempfile::tempdir().unwrap();
+    let messages = [
+        map_message(),
+        truth_at(1, HERE),
+        scan_at(2, HERE),
+        truth_at(3, HERE),
+    ];
+    record(&folder.path().join("r.mcap"), &messages);
+    let (code, _, stderr) = run(folder.path(), "evaluate r.mcap");
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("`evaluate --truth-gap-s`"), "{stderr}");
+    let (code, stdout, stderr) = run(folder.path(), "evaluate --json --truth-gap-s 2 r.mcap");
+    assert_eq!(code, 0, "{stderr}");
+    let object = &objects(&stdout)[0];
+    assert_eq!(
+        (&object["truths"], &object["unique"]),
+        (&1.into(), &1.into())
+    );
+}
+
+#[test]
 fn wrong_use_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [

@@ -35,7 +35,7 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
     let lines = lines(folder.path(), "");
     assert_eq!(
         lines[0],
-        "       stamp s        x m        y m  heading deg  score  verdict    alternatives        ms"
+        "       stamp s  laser x m  laser y m  heading deg  score  verdict    alternatives        ms"
     );
     assert_eq!(lines.len(), 3);
     for (row, (stamp, place)) in lines[1..].iter().zip([("7.000", HERE), ("8.000", THERE)]) {

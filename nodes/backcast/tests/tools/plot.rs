@@ -32,7 +32,7 @@ fn drive() -> TempDir {
 
 /// Draws with these options, asserts success, and returns the file.
 fn plot(folder: &Path, options: &str, file: &str) -> Vec<u8> {
-    let (code, stdout, stderr) = run(folder, &format!("plot {options} --out {file}"));
+    let (code, stdout, stderr) = run(folder, &format!("plot {options} --force --out {file}"));
     assert_eq!((code, stderr.as_str()), (0, ""), "{options}: {stdout}");
     assert!(stdout.starts_with(&format!("{file}: ")), "{stdout}");
     fs::read(folder.join(file)).unwrap()
@@ -142,7 +142,7 @@ fn a_scan_in_which_nothing_returned_is_drawn_without_a_robot() {
     let folder = folder(&[map_message(), ("/scan", Message::Scan(silent))]);
     let picture = decoded(&plot(folder.path(), "--bag r.mcap --width 600", "p.png"));
     assert!(picture.pixels().all(|pixel| *pixel != BEST));
-    let (code, stdout, stderr) = run(folder.path(), "plot field --bag r.mcap --out p.png");
+    let (code, stdout, stderr) = run(folder.path(), "plot field --bag r.mcap --force --out p.png");
     assert_eq!((code, stdout.as_str()), (1, ""));
     let expected = "r.mcap: scan 1 has no place on this map: no usable beams";
     assert!(stderr.contains(expected), "{stderr}");
@@ -186,8 +186,8 @@ fn what_is_missing_or_broken_is_named() {
     );
     fails(
         &drive,
-        "--bag r.mcap --out nowhere/p.png",
-        "cannot write the picture nowhere/p.png: No such file",
+        "--bag r.mcap --out r.mcap/p.png",
+        "cannot write r.mcap/p.png: not a directory",
     );
     fails(
         &drive,
@@ -208,6 +208,19 @@ fn what_is_missing_or_broken_is_named() {
         "errors --bag r.mcap --out p.png",
         "r.mcap has no true poses on /ground_truth",
     );
+}
+
+#[test]
+fn a_picture_that_is_there_is_kept() {
+    let drive = drive();
+    fs::write(drive.path().join("p.png"), "kept").unwrap();
+    let (code, _, stderr) = run(drive.path(), "plot --bag r.mcap --out p.png");
+    assert_eq!(code, 2, "{stderr}");
+    assert!(
+        stderr.contains("p.png is there already; --force"),
+        "{stderr}"
+    );
+    assert_eq!(fs::read(drive.path().join("p.png")).unwrap(), b"kept");
 }
 
 #[test]

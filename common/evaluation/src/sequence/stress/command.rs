@@ -1,20 +1,21 @@
 //! Evaluates the variants of each drive, and prints the figures.
 
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::Path;
 
 use ::map::OccupancyGrid;
-use command_line::{OutputError, names, stdout};
+use command_line::{OutputError, stdout};
 use offline::{Accepted, Options, Session, map_in};
 use plots::draw_drive;
 use progress::{Progress, say};
 
 use super::super::limits::Reached;
-use super::super::{SequenceOptions, course, drive};
+use super::super::starts::After;
+use super::super::{Task, course, drive};
 use super::figures::Figures;
 use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};
 use super::variants::{Stress, Variant};
+use crate::outcomes::Outcomes;
 use crate::trust::Trust;
 
 /// Evaluates the variants of one file after another. A file that cannot be evaluated is reported on
@@ -23,56 +24,48 @@ use crate::trust::Trust;
 /// # Errors
 /// The other map cannot be read, or output cannot be written.
 pub(in super::super) fn evaluate(
-    bags: &[PathBuf],
-    json: bool,
-    map: Option<&OccupancyGrid>,
-    (options, sequence): (&Options, &SequenceOptions),
-    stress: &Stress,
-) -> anyhow::Result<ExitCode> {
-    let variants = stress.variants();
-    let mut code = ExitCode::SUCCESS;
+    task: &Task<'_>,
+    (names, stress): (&[String], &Stress),
+    outcomes: &mut Outcomes,
+) -> anyhow::Result<()> {
+    let (bags, variants) = (task.bags, stress.variants());
     let mut trust = Trust::default();
-    for (i, (bag, name)) in bags.iter().zip(names::of(bags)).enumerate() {
+    for (i, (bag, name)) in bags.iter().zip(names).enumerate() {
         let next = (bags.len() > 1).then(|| &bags[(i + 1) % bags.len()]);
-        let other = sequence.other_map.as_ref().or(next);
+        let other = task.sequence.other_map.as_ref().or(next);
         let other = other
-            .map(|file| options.with_map(file).load_map(&[]))
+            .map(|file| task.options.with_map(file).load_map(&[]))
             .transpose()?;
-        let maps = (map, other.flatten());
+        let so_far = (&mut trust, &mut *outcomes);
         match one(
-            (bag, &name),
-            json,
-            (maps.0, maps.1.as_ref()),
-            (options, sequence),
+            (bag, name),
+            task,
+            other.flatten().as_ref(),
             &variants,
-            &mut trust,
+            so_far,
         ) {
-            Ok(true) => {}
-            Ok(false) => code = ExitCode::FAILURE,
+            Ok(()) => {}
             Err(error) if error.is::<OutputError>() => return Err(error),
-            Err(error) => {
-                say(&format!("{error:#}"));
-                code = ExitCode::FAILURE;
-            }
+            Err(error) => outcomes.failed(&bag.display().to_string(), &error, say),
         }
     }
-    if !json {
+    if !task.report.json {
         stdout::print(&format!("\n{trust}"))?;
     }
-    Ok(code)
+    Ok(())
 }
 
-/// Returns true if the file misses no requirement.
 fn one(
     (bag, file_name): (&Path, &str),
-    json: bool,
-    (map, other_map): (Option<&OccupancyGrid>, Option<&OccupancyGrid>),
-    (options, sequence): (&Options, &SequenceOptions),
+    task: &Task<'_>,
+    other_map: Option<&OccupancyGrid>,
     variants: &[&'static Variant],
-    trust: &mut Trust,
-) -> anyhow::Result<bool> {
-    let (recording, truths) = drive::open(bag, options)?;
-    let map = map.cloned().map_or_else(|| map_in(&recording), Ok)?;
+    (trust, outcomes): (&mut Trust, &mut Outcomes),
+) -> anyhow::Result<()> {
+    let (options, sequence) = (task.options, task.sequence);
+    let json = task.report.json;
+    let (recording, truths) = task.truths.open(bag, options)?;
+    let map = task.map.cloned().map_or_else(|| map_in(&recording), Ok)?;
     let ignored = sequence.ignore_truth.iter().copied().collect();
     let mut session = Session::open(&recording, options, Some(&map))?;
     let known = (&truths, &ignored);
@@ -91,7 +84,6 @@ fn one(
         moments: &moments,
         progress: &progress,
     };
-    let mut is_reached = true;
     if !json {
         stdout::print(&format!("{name}\n{}", Figures::header()))?;
     }
@@ -125,15 +117,15 @@ fn one(
             wrong_scans: figures.wrong_scans,
             losses: figures.losses,
             rms_m: figures.rms_m,
+            right: After::of(&trial.starts.right, &trial.starts.judged),
         };
         // On a map where no pose is right there is nothing to follow.
-        let needs_rms = !trial.followed.said.is_empty();
-        for missed in sequence.limits.missed(&reached, needs_rms) {
-            progress.say(&format!("{name}: {}: {missed}", variant.name));
-            is_reached = false;
-        }
+        let has_truth = !trial.followed.said.is_empty();
+        let missed = sequence.limits.missed(&reached, has_truth);
+        let say = |line: &str| progress.say(line);
+        outcomes.judged(&name, Some(variant.name), &missed, say);
     }
-    Ok(is_reached)
+    Ok(())
 }
 
 fn words(wrong: &Wrong) -> String {

@@ -50,7 +50,7 @@ impl Figures {
             wrong_scans: wrong,
             losses: followed.losses.len() as u64,
             right,
-            rms_m: followed.rms_m,
+            rms_m: followed.rms_m(),
             probabilities: trust.said().to_vec(),
         }
     }

@@ -1,6 +1,6 @@
 //! A drive in memory, before the search. Variants change a copy of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use ::map::OccupancyGrid;
 use geometry::Pose;
@@ -8,9 +8,10 @@ use messages::Odometry;
 use offline::{Accepted, Session, TakenScan, each_odometry};
 use progress::Progress;
 use rand::rngs::Xoshiro256PlusPlus;
-use recording::{GroundTruth, Kind, Recording};
+use recording::{Kind, Recording};
 
 use super::super::drive::{self, Moment};
+use crate::truths::Truths;
 
 /// Random numbers and another map for a change.
 pub(super) struct Means<'a> {
@@ -54,7 +55,7 @@ impl Material {
         recording: &Recording,
         session: &mut Session<'_>,
         map: OccupancyGrid,
-        (truths, ignored): (&BTreeMap<i64, GroundTruth>, &BTreeSet<u64>),
+        (truths, ignored): (&Truths, &BTreeSet<u64>),
     ) -> anyhow::Result<Self> {
         let mut odometry = Vec::new();
         // Like a session, uses no odometry if several channels could be it.
@@ -64,10 +65,10 @@ impl Material {
         let mut steps = Vec::new();
         for (number, scan) in (0..).zip(session.scans.by_ref()) {
             let scan = scan?;
-            let truth = truths.get(&scan.stamp_ns).map(|truth| truth.pose);
+            let truth = truths.at(scan.stamp_ns);
             steps.push(Step {
                 truth: truth.filter(|_| !ignored.contains(&number)),
-                map_from_laser: between(truths, scan.stamp_ns),
+                map_from_laser: truths.guess(scan.stamp_ns),
                 gone_m: 0.0,
                 scan,
             });
@@ -143,19 +144,5 @@ impl Material {
     /// Distance travelled from the first scan to the last, in metres.
     pub(super) fn length_m(&self) -> f64 {
         self.steps.last().map_or(0.0, |last| last.gone_m)
-    }
-}
-
-/// True pose at a time, interpolated between known ones.
-fn between(truths: &BTreeMap<i64, GroundTruth>, stamp_ns: i64) -> Pose {
-    let before = truths.range(..=stamp_ns).next_back();
-    let after = truths.range(stamp_ns..).next();
-    match (before, after) {
-        (Some((from_ns, from)), Some((to_ns, to))) if to_ns > from_ns => {
-            let share = (stamp_ns - from_ns) as f64 / (to_ns - from_ns) as f64;
-            from.pose.towards(to.pose, share)
-        }
-        (Some((_, truth)), _) | (None, Some((_, truth))) => truth.pose,
-        (None, None) => Pose::IDENTITY,
     }
 }

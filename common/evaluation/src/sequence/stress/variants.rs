@@ -156,6 +156,12 @@ pub(crate) enum Stress {
 }
 
 impl Stress {
+    /// Names of the selected variants.
+    pub(in super::super) fn names(&self) -> Vec<&'static str> {
+        let variants = self.variants().into_iter();
+        variants.map(|variant| variant.name).collect()
+    }
+
     pub(super) fn variants(&self) -> Vec<&'static Variant> {
         let is_meant = |group: &str, name: &str| match self {
             Stress::AllOf(_) => true,

@@ -1,0 +1,51 @@
+//! Frame whose pose is printed. Pure.
+
+use messages::Pose2;
+use serde::Serialize;
+
+/// The base, or the laser where its mount is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Frame {
+    Base,
+    Laser,
+}
+
+impl Frame {
+    #[must_use]
+    pub fn of(mount_is_known: bool) -> Self {
+        match mount_is_known {
+            true => Frame::Base,
+            false => Frame::Laser,
+        }
+    }
+
+    /// Returns the pose of this frame.
+    #[must_use]
+    pub fn pose(self, map_from_base: Pose2, map_from_laser: Pose2) -> Pose2 {
+        match self {
+            Frame::Base => map_from_base,
+            Frame::Laser => map_from_laser,
+        }
+    }
+
+    /// Returns the names of the columns of its position.
+    pub(super) fn columns(self) -> [&'static str; 2] {
+        match self {
+            Frame::Base => ["base x m", "base y m"],
+            Frame::Laser => ["laser x m", "laser y m"],
+        }
+    }
+}
+
+/// Appends words and the name of the map to a row.
+pub(super) fn with_words(row: &str, words: &str, map: Option<&str>) -> String {
+    let mut row = row.to_owned();
+    if !words.is_empty() {
+        row += &format!("  {words}");
+    }
+    if let Some(map) = map {
+        row += &format!("  on {map}");
+    }
+    row
+}
