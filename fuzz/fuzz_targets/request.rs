@@ -32,6 +32,7 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
         region: true,
         save: true,
         hint: true,
+        restart: true,
     });
     let options = Options {
         webhook: None,

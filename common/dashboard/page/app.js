@@ -124,7 +124,7 @@ function show(now) {
   showPlaces(store, view.frame, (i) => look({ kind: "place", i }, true));
   timeline.show(theme());
   showTiming(store, theme());
-  showNodes(store);
+  showNodes(store, restart);
   showEvents(store, moment, momentEnds);
   showLegend(store, view.beamsShown(), theme());
   $("hint-button").disabled = !store.abilities.hint;
@@ -276,6 +276,12 @@ function setChoosing(what) {
 }
 
 const AIMED_PX = 12; // a shorter drag has no direction
+
+/** Restarts a node, once somebody has said so twice. */
+async function restart(node) {
+  if (!confirm(`Restart ${node}?`)) return;
+  await ask(robot, "POST", `nodes/${encodeURIComponent(node)}/restart`, null, `${node} is restarted.`);
+}
 
 /** Takes where a drag began and ended. */
 function chosen(corners) {

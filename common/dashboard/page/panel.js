@@ -59,13 +59,14 @@ function drawSpark(canvas, values, colors) {
 }
 
 /** The last report of each; whoever never reported is not known here. */
-export function showNodes({ robot, nodes, answer }) {
+export function showNodes({ robot, nodes, answer, abilities }, restart) {
   const all = [...nodes.values()].sort((a, b) => a.name.localeCompare(b.name));
   const well = all.filter(({ state }) => state === "ready").length;
   write("node-count", all.length ? `${well} of ${all.length} ready` : robot ? "none has reported: not started" : "not known");
   const took = { accumulator: answer?.search_ms, peak_extractor: answer?.extract_ms };
   const rows = all.map((node) => nodeWords(node, took[node.name]));
-  replace($("nodes"), JSON.stringify(rows), () => rows.map(nodeRow));
+  const button = abilities.restart ? restart : null;
+  replace($("nodes"), JSON.stringify([rows, abilities.restart]), () => rows.map((row) => nodeRow(row, button)));
 }
 
 function nodeWords(node, took) {
@@ -84,11 +85,13 @@ function nodeWords(node, took) {
   return { name: node.name, state: node.state, quiet, done: done.join(" · "), troubles: troubles.join(", "), error };
 }
 
-function nodeRow({ name, state, quiet, done, troubles, error }) {
+function nodeRow({ name, state, quiet, done, troubles, error }, restart) {
   const more = element("div", { className: "more num" }, done);
   if (troubles) more.append(done ? " · " : "", element("b", {}, troubles));
   const row = element("li", { "data-state": state, "data-node": name },
     element("div", { className: "name" }, element("i"), element("span", {}, name), element("em", {}, state + quiet)));
+  // The launcher itself has no launcher.
+  if (restart && state !== "ready" && name !== "backcast") row.firstChild.append(element("button", { "data-focus": `restart ${name}`, "aria-label": `Restart ${name}`, onclick: () => restart(name) }, "restart"));
   if (more.textContent) row.append(more);
   if (error) row.append(element("div", { className: "more error" }, error));
   return row;

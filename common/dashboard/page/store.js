@@ -24,7 +24,7 @@ export class Store {
     Object.assign(this, {
       robot: "", graph: null, states: [], heardAt: null, map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, scans: new Map(), scanPose: null, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
-      abilities: { region: false, save: false, hint: false },
+      abilities: { region: false, save: false, hint: false, restart: false },
     });
   }
 

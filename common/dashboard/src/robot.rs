@@ -42,6 +42,8 @@ pub enum Request {
     Save,
     /// The robot is probably at this pose in the map.
     Hint(Pose2),
+    /// Restart the node with this name.
+    Restart(String),
 }
 
 /// Standard deviations of a hint: a user points at a map that is some pixels per metre.
@@ -306,6 +308,12 @@ impl Robot {
 
     pub(crate) fn map(&self) -> Option<Arc<Map>> {
         self.known().map.clone()
+    }
+
+    /// True if a node of this name has reported.
+    pub(crate) fn has_node(&self, name: &str) -> bool {
+        let known = self.known();
+        known.roster.reports().any(|report| report.name == name)
     }
 
     pub(crate) fn abilities(&self) -> Abilities {

@@ -96,6 +96,10 @@ fn router(site: Arc<Site>) -> Router {
         )
         .route(&format!("{robot}/save"), post(actions::save))
         .route(&format!("{robot}/hint"), post(actions::hint))
+        .route(
+            &format!("{robot}/nodes/{{node}}/restart"),
+            post(actions::restart),
+        )
         .fallback(refusal::nothing_here)
         .layer(DefaultBodyLimit::max(MAX_BODY))
         .layer(axum::middleware::from_fn_with_state(

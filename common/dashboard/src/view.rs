@@ -74,6 +74,8 @@ pub struct Abilities {
     pub save: bool,
     /// A tracker accepts hints.
     pub hint: bool,
+    /// A launcher restarts nodes.
+    pub restart: bool,
 }
 
 /// Search region in the map.

@@ -226,6 +226,8 @@ impl Member {
                 tracing::info!(robot, "asking the recorder to save the last minutes");
                 self.requests.save()
             }
+            // It is refused before, as the launcher takes no request from other machines.
+            Request::Restart(_) => Ok(()),
             Request::Hint(pose) => {
                 tracing::info!(
                     robot,
@@ -244,6 +246,11 @@ impl Requests {
     /// Returns which requests have a subscriber.
     fn abilities(&self) -> Abilities {
         let [region, save, hint] = self.subscribed();
-        Abilities { region, save, hint }
+        Abilities {
+            region,
+            save,
+            hint,
+            restart: false,
+        }
     }
 }

@@ -2,18 +2,20 @@
 
 mod inputs;
 mod outputs;
+mod restarts;
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use dashboard::{Request, Robot, Robots, Server};
+use dashboard::{Abilities, Request, Robot, Robots, Server};
 use messages::{NodeState, topic};
 use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
 use crate::{Config, MonitorError};
 use inputs::Inputs;
 use outputs::Outputs;
+use restarts::Restarts;
 
 /// Longest delay for a request, an image and the detection of a silent node.
 const TICK: Duration = Duration::from_millis(50);
@@ -30,6 +32,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         requests,
         field: None,
         outputs: Outputs::open(graph)?,
+        restarts: Restarts::of(graph),
         health: graph.health()?,
     };
     let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
@@ -50,6 +53,7 @@ struct Node {
     /// Subscription to the image, which is computed only while it is viewed.
     field: Option<Subscriber<topic::Field>>,
     outputs: Outputs,
+    restarts: Restarts,
     health: Health,
 }
 
@@ -59,7 +63,10 @@ impl Node {
         if tick {
             self.follow_field(graph)?;
             self.handle_requests()?;
-            self.robot.on_abilities(self.outputs.abilities());
+            self.robot.on_abilities(Abilities {
+                restart: self.restarts.are_possible(),
+                ..self.outputs.abilities()
+            });
             self.robot.look_for_silence(monotonic_ns());
         }
         self.health.tick()
@@ -97,6 +104,10 @@ impl Node {
                         "hint for the tracker"
                     );
                     self.outputs.hint(pose)?;
+                }
+                Request::Restart(node) => {
+                    tracing::info!("asking the launcher to restart {node}");
+                    self.restarts.ask(node);
                 }
                 Request::Save => {
                     tracing::info!("asking the recorder to save the last minutes");

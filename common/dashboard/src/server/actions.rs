@@ -80,6 +80,20 @@ pub(super) async fn hint(
     request(&site, &name, Request::Hint(Pose2 { x, y, yaw }))
 }
 
+/// Has the launcher restart a node.
+pub(super) async fn restart(
+    State(site): State<Arc<Site>>,
+    Path((name, node)): Path<(String, String)>,
+    headers: HeaderMap,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    if !site.robot(&name)?.has_node(&node) {
+        let problem = format!("no node {node:?} has reported");
+        return Err(Refusal::new(StatusCode::NOT_FOUND, problem));
+    }
+    request(&site, &name, Request::Restart(node))
+}
+
 /// Makes the recorder save the last minutes.
 pub(super) async fn save(
     State(site): State<Arc<Site>>,
@@ -92,7 +106,12 @@ pub(super) async fn save(
 
 fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refusal> {
     let robot = site.robot(name)?;
-    let Abilities { region, save, hint } = robot.abilities();
+    let Abilities {
+        region,
+        save,
+        hint,
+        restart,
+    } = robot.abilities();
     let (able, who) = match request {
         Request::Region(_) => (region, "no accumulator accepts a region"),
         Request::Save => (
@@ -100,6 +119,7 @@ fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refu
             "no recorder keeps the last minutes: backcast run --record FILE --keep 10m",
         ),
         Request::Hint(_) => (hint, "no tracker accepts a hint"),
+        Request::Restart(_) => (restart, "no launcher is there: backcast restart NODE"),
     };
     if !able {
         return Err(Refusal::new(StatusCode::CONFLICT, who));

@@ -21,12 +21,13 @@ impl Outputs {
         })
     }
 
-    /// Returns which requests have a subscriber.
+    /// Returns which requests have a subscriber; restarts have none.
     pub(super) fn abilities(&self) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),
             save: self.saves.has_subscribers(),
             hint: self.hints.has_subscribers(),
+            restart: false,
         }
     }
 

@@ -35,7 +35,7 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     let regions = world.graph.subscriber::<topic::Region>().unwrap();
     let saves = world.graph.subscriber::<topic::Save>().unwrap();
     world.wait_for_state(|known| {
-        known["abilities"] == json!({"region": true, "save": true, "hint": false})
+        known["abilities"] == json!({"region": true, "save": true, "hint": false, "restart": false})
     });
     assert_eq!(put(&[json, &token], body), 202);
     let corners = wait_for(&world.graph, &regions, |_, corners| {
