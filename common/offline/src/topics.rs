@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use recording::{Kind, Recording, RecordingError};
+use ros::CloudOptions;
 
 /// Topics of the channels to use.
-#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Topics")]
 pub struct TopicOptions {
     /// The topic of the scans; several lasers are named one by one [default: the
     /// only one, or /scan]
-    #[arg(long, value_name = "TOPIC")]
+    #[arg(long, value_name = "TOPIC", conflicts_with = "cloud_topic")]
     pub scan_topic: Vec<String>,
 
     /// The topic of the odometry [default: the only one, or /odom]
@@ -20,14 +21,18 @@ pub struct TopicOptions {
     /// The topic of the map [default: the only one, or /map]
     #[arg(long, value_name = "TOPIC")]
     pub map_topic: Option<String>,
+
+    #[command(flatten)]
+    pub cloud: CloudOptions,
 }
 
 impl TopicOptions {
     /// Selects these topics in the recording.
     ///
     /// # Errors
-    /// The recording does not contain one of them.
+    /// The recording does not contain one of them, or not the mount of the point cloud.
     pub fn apply(&self, recording: &mut Recording) -> Result<(), RecordingError> {
+        recording.take_cloud(&self.cloud)?;
         // Last, the first one, which is used where only one topic can be.
         for topic in self.scan_topic.iter().rev() {
             recording.prefer(Kind::Scan, topic)?;

@@ -88,6 +88,29 @@ impl Recording {
     /// If the laser's mount depends on an invalid transform, or the laser is neither level nor
     /// upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
+        if let Some(cloud) = self.cloud().filter(|cloud| cloud.frame == laser) {
+            return Ok(cloud.mounted());
+        }
+        let (tree, notes) = self.transforms_of(laser)?;
+        let mount = tree.base_from(laser);
+        match mount {
+            Some(mount) if mount.tilt_degrees > MAX_TILT_DEGREES => {
+                Err(RecordingError::TiltedLaser {
+                    path: self.path().to_owned(),
+                    laser: laser.to_owned(),
+                    base: mount.base_frame,
+                    tilt_degrees: mount.tilt_degrees,
+                })
+            }
+            mount => Ok(Mounted { mount, notes }),
+        }
+    }
+
+    /// Returns the transforms that the mount of a laser depends on, and notes about them.
+    pub(crate) fn transforms_of(
+        &self,
+        laser: &str,
+    ) -> Result<(TransformTree, Vec<String>), RecordingError> {
         let (mut tree, mut notes) = self.fixed_transforms()?;
         notes.extend(tree.notes());
         if let Some(child) = self.moved_frame() {
@@ -104,18 +127,7 @@ impl Recording {
             }
             notes.extend(self.add_still(&mut tree, laser)?);
         }
-        let mount = tree.base_from(laser);
-        match mount {
-            Some(mount) if mount.tilt_degrees > MAX_TILT_DEGREES => {
-                Err(RecordingError::TiltedLaser {
-                    path: self.path().to_owned(),
-                    laser: laser.to_owned(),
-                    base: mount.base_frame,
-                    tilt_degrees: mount.tilt_degrees,
-                })
-            }
-            mount => Ok(Mounted { mount, notes }),
-        }
+        Ok((tree, notes))
     }
 
     /// Returns the child frame of odometry: that of the first odometry message, or if there is no

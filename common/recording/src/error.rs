@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ros::ConversionError;
+use ros::{Cloud, ConversionError};
 
 use crate::{Damage, Kind, topics};
 
@@ -106,6 +106,22 @@ pub enum RecordingError {
         /// Channels with messages of the kind.
         found: Vec<String>,
     },
+    /// The recording has no point clouds on the named channel.
+    #[error("{} has no point cloud on {topic}; it has {}", path.display(), listed(found))]
+    NoCloud {
+        path: PathBuf,
+        topic: String,
+        /// All channels of the recording, with their schemas.
+        found: Vec<String>,
+    },
+    /// A lidar whose height and tilt are not known.
+    #[error("{}: no transform says where {frame:?}, the frame of {topic}, sits on the robot: give its pose by --cloud-mount X,Y,Z,YAW_DEG", path.display())]
+    NoCloudMount {
+        path: PathBuf,
+        topic: String,
+        /// Frame of the point clouds.
+        frame: String,
+    },
     /// A laser whose mount depends on an invalid transform.
     #[error("{}: the mount of {laser} is not known, for the transform {transform} is invalid: {reason}", path.display())]
     BrokenMount {
@@ -154,18 +170,13 @@ impl RecordingError {
 
 /// Returns what to do with a recording whose only lasers are in point clouds, if that is so.
 fn way_out(kind: Kind, found: &[String]) -> String {
-    let is_cloud = |channel: &&String| {
-        channel.contains("(sensor_msgs/msg/PointCloud2)") || channel.contains("(livox_ros_driver")
-    };
-    match found
-        .iter()
-        .find(is_cloud)
-        .and_then(|cloud| cloud.split(' ').next())
-    {
+    let cloud = found.iter().find_map(|channel| {
+        let (topic, schema) = channel.strip_suffix(')')?.split_once(" (")?;
+        Cloud::is_schema(schema).then_some(topic)
+    });
+    match cloud {
         Some(topic) if kind == Kind::Scan => format!(
-            ". It has point clouds and no laser scans: while the bag plays, `ros2 run \
-             pointcloud_to_laserscan pointcloud_to_laserscan_node --ros-args -r \
-             cloud_in:={topic}` makes scans of sensor_msgs/msg/PointCloud2; record them"
+            ". It has point clouds and no laser scans: --cloud-topic {topic} takes one as the laser"
         ),
         _ => String::new(),
     }
@@ -185,7 +196,7 @@ mod tests {
     #[test]
     fn point_clouds_alone_have_a_way_out() {
         let clouds = ["/a (sensor_msgs/msg/PointCloud2)".to_owned()];
-        assert!(way_out(Kind::Scan, &clouds).contains("cloud_in:=/a`"));
+        assert!(way_out(Kind::Scan, &clouds).contains("--cloud-topic /a takes"));
         assert_eq!(way_out(Kind::Map, &clouds), "");
         assert_eq!(way_out(Kind::Scan, &["/a (b/msg/C)".to_owned()]), "");
     }

@@ -11,6 +11,7 @@
 mod bag;
 mod block;
 mod chunk;
+mod cloud;
 mod content;
 mod contents;
 mod copy;

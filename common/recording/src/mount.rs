@@ -4,10 +4,13 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use geometry::Pose;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
-use ros::{ConversionError, Mend, Transform, TransformStamped};
+use ros::{CloudMount, ConversionError, Mend, Transform, TransformStamped};
 
 /// Usual names of a robot's base frame, in order of preference.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
+
+/// Usual name of the frame of the floor under the base.
+const FLOOR: &str = BASES[1];
 
 /// Largest tilt of a laser from level, or from upside down, in degrees: at 10 degrees a wall seems
 /// 1.5 percent farther than it is.
@@ -145,18 +148,44 @@ impl TransformTree {
     /// if it is connected at all.
     #[must_use]
     pub fn base_from(&self, laser: &str) -> Option<Mount> {
+        let connected = self.connected_to(plain(laser));
+        let base = self.base_of(laser, &connected)?;
+        Some(mount(base, connected.get(base)?))
+    }
+
+    /// Mount of a lidar in the frame `base`, or in that of [`TransformTree::base_from`], with its
+    /// height over `base_footprint` if that is connected. Also returns the name of the base frame.
+    #[must_use]
+    pub fn cloud_mount(&self, base: Option<&str>, lidar: &str) -> Option<(String, CloudMount)> {
+        let connected = self.connected_to(plain(lidar));
+        let base = match base.map(plain).filter(|base| connected.contains_key(*base)) {
+            Some(named) => named,
+            None => self.base_of(lidar, &connected)?,
+        };
+        let mut base_from_lidar = connected.get(base)?.inverse();
+        let mut frames = connected.iter();
+        if let Some((_, lidar_from_floor)) = frames.find(|(frame, _)| is_called(frame, FLOOR)) {
+            base_from_lidar.translation.z = lidar_from_floor.inverse().translation.z;
+        }
+        Some((base.to_owned(), CloudMount::new(base_from_lidar)))
+    }
+
+    /// Name of the base frame of a laser, among the frames that are connected to it.
+    fn base_of<'a>(
+        &'a self,
+        laser: &str,
+        connected: &'a BTreeMap<String, Isometry3<f64>>,
+    ) -> Option<&'a String> {
         let laser = plain(laser);
-        let connected = self.connected_to(laser);
         let of_usual_name = || {
             BASES.iter().find_map(|base| {
-                let is_base = |frame: &&String| frame.rsplit('/').next() == Some(base);
-                connected.keys().find(is_base)
+                let mut frames = connected.keys();
+                frames.find(|frame| is_called(frame, base))
             })
         };
         let moved = self.moved.as_ref().filter(|frame| *frame != laser);
         let bearing = moved.filter(|frame| self.bears(frame, laser));
-        let base = bearing.or_else(of_usual_name).or(moved)?;
-        Some(mount(base, connected.get(base)?))
+        bearing.or_else(of_usual_name).or(moved)
     }
 
     /// True if `frame` is an ancestor of `child`.
@@ -224,6 +253,11 @@ fn mount(base: &str, laser_from_base: &Isometry3<f64>) -> Mount {
         height_m: place.z,
         tilt_degrees: up.xy().norm().atan2(up.z.abs()).to_degrees(),
     }
+}
+
+/// True if the frame has this name, with any prefix that ends in a slash.
+fn is_called(frame: &str, name: &str) -> bool {
+    frame.rsplit('/').next() == Some(name)
 }
 
 /// Strips the leading slash that some writers put before a frame's name, as ROS 1 once did.

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::block::{Block, Part};
+use crate::cloud::CloudLaser;
 use crate::file::RecordedFile;
 use crate::folder::{self, Listed};
 use crate::{AttachedFile, Channel, Damage, Kind, MetadataRecord, RecordingError, topics};
@@ -27,6 +28,8 @@ pub struct Recording {
     metadata: Vec<MetadataRecord>,
     /// Channels that the user has selected.
     preferred: BTreeMap<Kind, Arc<str>>,
+    /// Point cloud that is taken as the laser.
+    cloud: Option<CloudLaser>,
 }
 
 impl Recording {
@@ -87,6 +90,7 @@ impl Recording {
             attachments: Vec::new(),
             metadata: Vec::new(),
             preferred: BTreeMap::new(),
+            cloud: None,
         };
         for (index, file) in files.iter().enumerate() {
             for channel in file.survey.registry.channels() {
@@ -310,6 +314,22 @@ impl Recording {
         files
             .flat_map(|file| file.survey.registry.definitions())
             .collect()
+    }
+
+    pub(crate) fn cloud(&self) -> Option<&CloudLaser> {
+        self.cloud.as_ref()
+    }
+
+    /// Has the point clouds of a topic decoded as the only scans.
+    pub(crate) fn set_cloud(&mut self, topic: Arc<str>, cloud: CloudLaser) {
+        for channel in &mut self.channels {
+            channel.take_cloud(&topic);
+        }
+        for file in &mut self.files {
+            file.survey.registry.take_cloud(&topic);
+        }
+        self.preferred.insert(Kind::Scan, topic);
+        self.cloud = Some(cloud);
     }
 
     pub(crate) fn files(&self) -> &[RecordedFile] {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use mcap::McapError;
 use mcap::read::ChannelAccumulator;
 use mcap::records::Record;
+use ros::Cloud;
 
 use crate::parse::{parse, reason};
 use crate::{Damage, Kind};
@@ -23,6 +24,19 @@ pub struct Channel {
     pub kind: Option<Kind>,
     /// Number of readable messages.
     pub messages: u64,
+}
+
+impl Channel {
+    /// True if it has point clouds on this topic.
+    pub(crate) fn is_cloud(&self, topic: &str) -> bool {
+        *self.topic == *topic && Cloud::is_schema(&self.schema)
+    }
+
+    pub(crate) fn take_cloud(&mut self, topic: &str) {
+        if self.is_cloud(topic) {
+            self.kind = Some(Kind::Scan);
+        }
+    }
 }
 
 /// All channels by id, each complete before the first message refers to it.
@@ -55,6 +69,13 @@ impl Registry {
     pub(crate) fn count(&mut self, id: u16, messages: u64) {
         if let Some(channel) = self.channels.get_mut(&id) {
             channel.messages += messages;
+        }
+    }
+
+    /// Has the point clouds of a topic decoded as scans.
+    pub(crate) fn take_cloud(&mut self, topic: &str) {
+        for channel in self.channels.values_mut() {
+            channel.take_cloud(topic);
         }
     }
 

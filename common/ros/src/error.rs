@@ -39,6 +39,34 @@ pub enum ConversionError {
         /// Name of the frame.
         frame: String,
     },
+    /// A point cloud without a usable coordinate.
+    #[error(
+        "the point cloud has no usable field {field}: allowed is one float32 (7) or float64 (8) \
+         within its points of {point_step} bytes; it has {found}"
+    )]
+    CloudField {
+        /// `x`, `y` or `z`.
+        field: &'static str,
+        /// Size of a point, in bytes.
+        point_step: u32,
+        /// Fields of the cloud, with datatype, count and offset.
+        found: String,
+    },
+    /// A point cloud with fewer bytes than its sizes say, or with rows that overlap.
+    #[error(
+        "the point cloud has {found} bytes: {height} rows of {width} points, {point_step} bytes a \
+         point and {row_step} a row, do not fit"
+    )]
+    CloudSize {
+        height: u32,
+        width: u32,
+        /// Size of a point, in bytes.
+        point_step: u32,
+        /// Size of a row, in bytes.
+        row_step: u32,
+        /// Number of bytes of the data.
+        found: usize,
+    },
     /// A map that exceeds the limits.
     #[error(transparent)]
     Map(Box<MapError>),

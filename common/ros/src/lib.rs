@@ -12,6 +12,7 @@
 //! | `poses`, `planar` | poses and transforms, to ROS |
 //! | `diagnostics` | health, to ROS |
 //! | `lasers` | names of lasers and topics, both ways |
+//! | `cloud` | point clouds, to scans of a laser |
 //!
 //! The types are written by hand although `hiroz-msgs` generates those of ROS: it depends on
 //! `hiroz`, and with it on all of Zenoh, which takes longer to build than everything that reads or
@@ -21,6 +22,8 @@ pub mod backcast_msgs;
 mod bond;
 pub mod cdr;
 mod clock;
+pub mod cloud;
+mod cloud_mount;
 mod definition;
 mod diagnostic_array;
 pub mod diagnostics;
@@ -29,12 +32,14 @@ mod geometry_msgs;
 mod laser_scan;
 pub mod lasers;
 pub mod lifecycle_msgs;
+mod livox;
 mod log;
 pub mod measurements;
 pub mod nav2_msgs;
 mod occupancy_grid;
 mod odometry;
 pub mod planar;
+mod point_cloud;
 mod pose_array;
 mod pose_stamped;
 mod pose_with_covariance_stamped;
@@ -42,11 +47,14 @@ pub mod poses;
 pub mod rcl_interfaces;
 mod service;
 mod std_msgs;
+mod sweep;
 mod tf_message;
 pub mod type_description_interfaces;
 
 pub use bond::BondStatus;
 pub use clock::Clock;
+pub use cloud::{Cloud, CloudOptions, Heights};
+pub use cloud_mount::CloudMount;
 pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
 pub use error::ConversionError;
 pub use geometry_msgs::{
@@ -54,9 +62,11 @@ pub use geometry_msgs::{
     Vector3,
 };
 pub use laser_scan::LaserScan;
+pub use livox::{CustomMsg, CustomPoint};
 pub use log::Log;
 pub use occupancy_grid::{MapMetaData, OccupancyGridMsg};
 pub use odometry::Odometry;
+pub use point_cloud::{CloudPoint, PointCloud2, PointField};
 pub use pose_array::PoseArray;
 pub use pose_stamped::PoseStamped;
 pub use pose_with_covariance_stamped::PoseWithCovarianceStamped;
@@ -82,6 +92,7 @@ mod tests {
     fn definitions_agree_on_the_types_that_they_share() {
         let definitions = [
             LaserScan::DEFINITION,
+            PointCloud2::DEFINITION,
             OccupancyGridMsg::DEFINITION,
             Odometry::DEFINITION,
             PoseStamped::DEFINITION,

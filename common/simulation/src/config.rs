@@ -37,6 +37,16 @@ pub struct DriveConfig {
         conflicts_with_all = ["mount", "sonar"]
     )]
     pub lasers: Vec<NamedMount>,
+    /// Rings of a lidar in place of the laser, 2..=128, from 15 degrees below level to 15 above,
+    /// 0.4 m over the floor: it sees the map's obstacles as walls, and the floor. Its points are
+    /// recorded on /points, and on /scan the ring in the middle as a level laser.
+    #[arg(
+        long,
+        value_name = "COUNT",
+        value_parser = clap::value_parser!(u32).range(2..=128),
+        conflicts_with_all = ["lasers", "sonar"]
+    )]
+    pub rings: Option<u32>,
     /// Time from the first beam of a scan to the last, seconds, 0..=1; the robot keeps moving. 0
     /// measures all beams at once.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = number(0.0..=1.0, "seconds"), conflicts_with = "sonar")]

@@ -35,7 +35,7 @@ pub struct Snapshot {
     /// Readings of the (first) sensor by bearing, in metres; infinite without a return, NaN without
     /// a transducer.
     pub ranges: Vec<f32>,
-    /// Readings of the other lasers, in their order.
+    /// Readings of the other lasers, in their order, or of the other rings of a lidar.
     pub others: Vec<Vec<f32>>,
     /// Odometry at the last beam, if a scan takes time.
     pub after: Option<Wheels>,
@@ -106,9 +106,15 @@ impl Drive {
             true => Sensor::Sonar(Ring::new(config.sonar, rng())),
             false => Sensor::Laser(config.laser.bearings()),
         };
+        // Each ring of a lidar is a sensor at the same place.
+        let rings = config.rings.map_or(1, |rings| rings as usize);
+        let mounts = mounts.into_iter().map(|named| named.mount);
+        let mounts: Vec<Mount> = match mounts.len() {
+            1 => mounts.cycle().take(rings).collect(),
+            _ => mounts.collect(),
+        };
         let others = mounts.iter().skip(1).map(|_| receiver(rng()));
         let receivers: Vec<Receiver> = std::iter::once(first).chain(others).collect();
-        let mounts = mounts.into_iter().map(|named| named.mount);
         let beams = match &sensor {
             Sensor::Laser(bearings) => bearings.count,
             Sensor::Sonar(_) => Ring::BEARINGS.count,
@@ -117,7 +123,7 @@ impl Drive {
             scene: Scene { obstacles, people },
             timetable,
             sensor,
-            sensors: mounts.zip(receivers).collect(),
+            sensors: mounts.into_iter().zip(receivers).collect(),
             odometer,
             time_increment_s: config.time_increment_s(beams).into(),
             rate: config.rate,

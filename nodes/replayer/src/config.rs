@@ -22,7 +22,7 @@ pub struct Config {
 
     /// Topic of the scans [default: the only one, or /scan]; may be repeated for several lasers,
     /// and answers are expected for the scans of the first one
-    #[arg(long, value_name = "TOPIC")]
+    #[arg(long, value_name = "TOPIC", conflicts_with = "cloud_topic")]
     pub scan_topic: Vec<String>,
 
     /// Topic of the odometry [default: the only one, or /odom]
@@ -72,6 +72,9 @@ pub struct Config {
     /// last one if the scans have a subscriber.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = number(0.1..=3600.0, "seconds"))]
     pub patience: f64,
+
+    #[command(flatten)]
+    pub cloud: ros::CloudOptions,
 }
 
 fn node(text: &str) -> Result<String, String> {

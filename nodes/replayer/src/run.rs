@@ -103,6 +103,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
 /// Opens the recording and sets the topics from the options.
 fn open(config: &Config) -> Result<Recording, ReplayerError> {
     let mut recording = Recording::open_all(&config.recording)?;
+    recording.take_cloud(&config.cloud)?;
     // In reverse order, so that the first topic is preferred if only one is allowed.
     for topic in config.scan_topic.iter().rev() {
         recording.prefer(Kind::Scan, topic)?;

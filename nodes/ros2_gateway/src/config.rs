@@ -70,6 +70,7 @@ pub struct Config {
     #[arg(
         long = "mount",
         value_name = "X,Y,YAW_DEG[,180]",
+        conflicts_with = "cloud_topic",
         allow_hyphen_values = true
     )]
     pub mounts: Vec<Mount>,
@@ -104,6 +105,9 @@ pub struct Config {
     pub memory: map::MemoryOptions,
 
     #[command(flatten)]
+    pub cloud: ros::CloudOptions,
+
+    #[command(flatten)]
     pub names: Names,
 
     #[command(flatten)]
@@ -117,7 +121,7 @@ pub struct Names {
     /// sensor_msgs/LaserScan, in; for several lasers, repeat it for each. Hypotheses refer to the
     /// first one. The graph names lasers after their topics: front for front/scan, scan_front and
     /// front_scan [default: scan]
-    #[arg(long = "scan", value_name = "NAME")]
+    #[arg(long = "scan", value_name = "NAME", conflicts_with = "cloud_topic")]
     pub scans: Vec<String>,
     /// nav_msgs/Odometry, in
     #[arg(long, value_name = "NAME", default_value = "odom")]
@@ -226,12 +230,13 @@ impl Config {
         }
     }
 
-    /// Returns the names of the scans' topics, one for each laser.
+    /// Returns the names of the scans' topics, one for each laser, or that of the point clouds.
     #[must_use]
     pub fn scans(&self) -> Vec<String> {
-        match &*self.names.scans {
-            [] => vec!["scan".to_owned()],
-            names => names.to_vec(),
+        match (&self.cloud.cloud_topic, &*self.names.scans) {
+            (Some(cloud), _) => vec![cloud.clone()],
+            (None, []) => vec!["scan".to_owned()],
+            (None, names) => names.to_vec(),
         }
     }
 
@@ -260,6 +265,9 @@ impl Config {
         if self.upside_down && lasers > 1 {
             let reason = "which of the lasers is not clear: allowed is --mount X,Y,YAW_DEG,180";
             return refuse("upside-down", reason.to_owned());
+        }
+        if let Some(mount) = &self.cloud.cloud_mount {
+            return Ok(vec![mount.planar()]);
         }
         let turned = |mount: &Mount| Mount {
             is_upside_down: mount.is_upside_down || self.upside_down,

@@ -193,6 +193,15 @@ pub enum GatewayError {
         /// Angle between their z axes, degrees.
         tilt_degrees: f64,
     },
+    /// A lidar whose height and tilt are not known.
+    #[error(
+        "no transform says where {frame}, the frame of the point cloud, sits on the robot: allowed \
+         are clouds with a mount, by /tf_static or --cloud-mount"
+    )]
+    NoCloudMount {
+        /// Frame of the point clouds.
+        frame: String,
+    },
     /// The name of a frame is too long.
     #[error("a frame's name has {found} bytes: allowed are at most {most}")]
     FrameName {

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use geometry::{Mount, Pose};
 use messages::{HypothesesHeader, Hypothesis, Odometry};
 use recording::{MAX_TILT_DEGREES, TransformTree};
-use ros::{TfMessage, TransformStamped};
+use ros::{CloudMount, TfMessage, TransformStamped};
 
 use crate::GatewayError;
 
@@ -155,6 +155,26 @@ impl Frames {
             self.mounts.clear();
         }
         self.mounts.insert(key, mount);
+        Ok(mount)
+    }
+
+    /// Returns the mount of a lidar with this frame: the given one, or that of the transforms. Its
+    /// planar part is that of the first laser from now on.
+    pub(crate) fn cloud_mount(
+        &mut self,
+        given: Option<CloudMount>,
+        lidar: &str,
+    ) -> Result<CloudMount, GatewayError> {
+        let found = || self.fixed.cloud_mount(self.base.as_deref(), lidar);
+        let mount = given.or_else(|| found().map(|(_, mount)| mount));
+        let mount = mount.ok_or_else(|| GatewayError::NoCloudMount {
+            frame: lidar.to_owned(),
+        })?;
+        if self.mounts.len() >= MAX_MOUNTS {
+            self.mounts.clear();
+        }
+        self.mounts
+            .insert((0, lidar.to_owned()), Some(mount.planar()));
         Ok(mount)
     }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use ros::{
-    LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, Quaternion, RosMessage,
-    TfMessage,
+    Cloud, CloudOptions, LaserScan, OccupancyGridMsg, Odometry, PointCloud2,
+    PoseWithCovarianceStamped, Quaternion, RosMessage, TfMessage,
 };
 use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
@@ -24,6 +24,9 @@ use crate::{GatewayError, Seed};
 /// Largest size of a scan, odometry, a pose or transforms, bytes.
 pub(crate) const MAX_BYTES: usize = 1 << 20;
 
+/// Largest size of a point cloud, bytes: 128 rings of 2048 points of 48 bytes, and more.
+const MAX_CLOUD_BYTES: usize = 16 << 20;
+
 /// Largest size of a map, bytes: 64 million cells, and the fields before them.
 const MAX_MAP_BYTES: usize = (64 << 20) + 4096;
 
@@ -37,6 +40,9 @@ pub(crate) struct Incoming {
     odometry: Option<Subscription<Odometry>>,
     /// One per laser, in the order of `--scan`; empty if scans are not wanted.
     scans: Vec<Subscription<LaserScan>>,
+    /// Point clouds that are taken as the scans of the only laser.
+    clouds: Option<Subscription<PointCloud2>>,
+    cloud: CloudOptions,
     maps: Option<Subscription<OccupancyGridMsg>>,
     beliefs: Option<Subscription<PoseWithCovarianceStamped>>,
     outlet: Outlet,
@@ -75,11 +81,18 @@ impl Incoming {
         let reliable = Keeping::Reliable;
         let sizes = (MAX_BYTES, MAX_MAP_BYTES);
         let mut scans = Vec::with_capacity(topics.scans.len());
+        let mut clouds = None;
         for of_laser in topics.scans.iter().filter(|_| brings(Brought::Scan)) {
-            scans.push(open.subscribe(&of_laser.topic, Keeping::Fresh, 5, sizes.0)?);
+            let (topic, keeping) = (&of_laser.topic, Keeping::Fresh);
+            match config.cloud.cloud_topic {
+                Some(_) => clouds = Some(open.subscribe(topic, keeping, 5, MAX_CLOUD_BYTES)?),
+                None => scans.push(open.subscribe(topic, keeping, 5, sizes.0)?),
+            }
         }
         Ok(Incoming {
             scans,
+            clouds,
+            cloud: config.cloud.clone(),
             fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
             moving: open.wanted(odometry, &topics.tf, reliable, 100, sizes.0)?,
             // `Fresh` also accepts robots whose odometry is best effort.
@@ -135,6 +148,8 @@ impl Incoming {
             moving,
             odometry,
             scans,
+            clouds,
+            cloud,
             maps,
             beliefs,
             outlet,
@@ -189,6 +204,11 @@ impl Incoming {
                 outlet.send_scan(laser, &message, frames, report)
             })?;
         }
+        take_if(clouds, report, |message, report| {
+            let mount = frames.cloud_mount(cloud.cloud_mount, &message.header.frame_id)?;
+            let scan = Cloud::Points(message).scan(&mount, cloud.heights)?;
+            outlet.send_scan(0, &scan, frames, report)
+        })?;
         take_if(beliefs, report, |message, _| {
             let turn = message.pose.pose.orientation;
             on_belief(Belief {

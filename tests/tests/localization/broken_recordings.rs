@@ -139,3 +139,17 @@ fn a_robot_that_stands_is_found_by_a_hint_or_where_one_scan_is_believed() {
     let misled = said("stands-misled", &["--initial-pose", &wrong]);
     assert_eq!(unique(&misled), 0);
 }
+
+#[test]
+fn point_clouds_are_a_laser() {
+    let Some(folder) = folder("point_clouds_are_a_laser", "files") else {
+        return;
+    };
+    let found = tests::json_of(
+        tests::executables::backcast()
+            .args(["evaluate", "--json", "--cloud-topic", "/velodyne_points"])
+            .arg(folder.join("velodyne.mcap")),
+    );
+    assert_eq!(found["success_20cm_3deg"], 1.0, "{found}");
+    assert_eq!(found["unique_wrong"], 0.0, "{found}");
+}

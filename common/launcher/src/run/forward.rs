@@ -8,6 +8,7 @@ use command_line::wrong_use;
 use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
+use ros::CloudOptions;
 use ros::lasers::name_of;
 
 use super::arguments::{
@@ -33,6 +34,10 @@ const MAX_AGE: &str = "--heading-max-age-s";
 pub(crate) fn apply(options: &Options, dataflow: &mut Dataflow, file: &Path) -> anyhow::Result<()> {
     if !options.replay.is_empty() {
         forward_replay(options, dataflow)?;
+    } else if let Some(topic) = &options.cloud.cloud_topic {
+        return Err(wrong_use(format!(
+            "--cloud-topic {topic} is of a recording: allowed with --replay"
+        )));
     }
     if let Some(map) = &options.map {
         let map = std::path::absolute(map).context(NO_FOLDER)?;
@@ -101,13 +106,33 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> anyhow::Result<
     }
     let replayer = replay::play(dataflow, &recordings);
     if !options.scan_topic.is_empty() {
-        unset(replayer, "--scan-topic", true);
+        for option in [
+            "--scan-topic",
+            "--cloud-topic",
+            "--heights",
+            "--cloud-mount",
+        ] {
+            unset(replayer, option, true);
+        }
     }
     for topic in &options.scan_topic {
         replayer.args.push(format!("--scan-topic={topic}"));
     }
     if options.odom_topic.is_some() {
         set(replayer, "--odom-topic", options.odom_topic.as_deref());
+    }
+    if let CloudOptions {
+        cloud_topic: Some(topic),
+        heights,
+        cloud_mount,
+    } = &options.cloud
+    {
+        unset(replayer, "--scan-topic", true);
+        set(replayer, "--cloud-topic", Some(topic));
+        set(replayer, "--heights", Some(&heights.to_string()));
+        if let Some(mount) = cloud_mount {
+            set(replayer, "--cloud-mount", Some(&mount.to_string()));
+        }
     }
     if options.scan_topic.len() > 1 {
         let names = options.scan_topic.iter().map(|topic| name_of(topic));

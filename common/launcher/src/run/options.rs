@@ -39,12 +39,20 @@ pub struct Options {
 
     /// With --replay: the topic of the scans [default: the only one, or /scan];
     /// several are joined
-    #[arg(long, value_name = "TOPIC", requires = "replay")]
+    #[arg(
+        long,
+        value_name = "TOPIC",
+        requires = "replay",
+        conflicts_with = "cloud_topic"
+    )]
     pub scan_topic: Vec<String>,
 
     /// With --replay: the topic of the odometry [default: the only one, or /odom]
     #[arg(long, value_name = "TOPIC", requires = "replay")]
     pub odom_topic: Option<String>,
+
+    #[command(flatten)]
+    pub cloud: ros::CloudOptions,
 
     /// Playback speed as a factor, or `max`: wait for each answer and lose nothing
     #[arg(long, value_name = "FACTOR|max")]

@@ -1,5 +1,7 @@
 //! Decoded messages of a recording, in the order of their log times.
 
+use ros::Cloud;
+
 use super::Recording;
 use super::raw::{RawRecord, RawRecords};
 use crate::{Channel, Kind, Message, Record, RecordingError, unpack};
@@ -40,7 +42,13 @@ impl<'a> Records<'a> {
         }
         let log_time_ns = raw.log_time_ns;
         let unpacked = unpack::message(&raw.body);
-        match unpacked.and_then(|body| Message::decode(kind, &body)) {
+        let decode = |body: &[u8]| match self.raw.recording().cloud() {
+            Some(cloud) if kind == Kind::Scan && Cloud::is_schema(&channel.schema) => {
+                cloud.scan(&channel.schema, body).map(Message::Scan)
+            }
+            _ => Message::decode(kind, body),
+        };
+        match unpacked.and_then(|body| decode(&body)) {
             Ok(message) => Ok(Record {
                 topic: channel.topic.clone(),
                 log_time_ns,

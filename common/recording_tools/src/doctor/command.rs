@@ -9,6 +9,7 @@ use offline::TopicOptions;
 use recording::Recording;
 use serde::Serialize;
 
+use super::bands;
 use super::checks;
 use super::finding::{Finding, Severity};
 use super::located;
@@ -110,6 +111,9 @@ fn examine(config: &Config, recordings: &[PathBuf], known: &[Finding]) -> anyhow
             &Survey::of(&recording),
             map.as_ref(),
         ));
+        // Errors are found by the other checks.
+        let band = bands::compare(&mut recording, &config.topics.cloud, map.as_ref());
+        findings.extend(band.ok().flatten());
         let severity = findings.iter().map(|finding| finding.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));
         let report = Report {

@@ -3,8 +3,10 @@
 //! `finding` is the type of a result. `survey` gathers data in one pass over the messages, and
 //! `checks` judges it. `drive` matches scans without a map, and `sensors` compares the result with
 //! the odometry. `located` locates scans on the map, and `map_fit` and `delay` compare the result
-//! with the map and the odometry. Nothing is repaired.
+//! with the map and the odometry. `bands` compares bands of heights of a point cloud. Nothing is
+//! repaired.
 
+mod bands;
 mod checks;
 mod command;
 mod delay;

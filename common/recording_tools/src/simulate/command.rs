@@ -7,9 +7,10 @@ use command_line::{output, stdout};
 use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
-use ros::Time;
+use ros::{PointCloud2, RosMessage, Time};
 use simulation::{Drive, DriveConfig, Path, Wheels};
 
+use super::lidar;
 use super::messages::Messages;
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -75,6 +76,11 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         if let Some(wheels) = &snapshot.after {
             end_ns = start_ns + wheels.time_ns;
             writer.write(ODOM, end_ns, &messages.odometry(wheels, time(end_ns)))?;
+        }
+        if let Some(cloud) = messages.cloud(&snapshot, stamp) {
+            let (schema, text) = (PointCloud2::SCHEMA, PointCloud2::DEFINITION);
+            let body = ros::cdr::encode(&cloud)?;
+            writer.write_bytes(lidar::TOPIC, schema, text, "cdr", end_ns, &body)?;
         }
         for (topic, scan) in messages.scans(snapshot, stamp) {
             writer.write(&topic, end_ns, &scan)?;

@@ -4,15 +4,18 @@
 use map::OccupancyGrid;
 use recording::Message;
 use ros::{
-    Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, Time, Transform,
-    TransformStamped, Twist, lasers, planar,
+    Header, LaserScan, OccupancyGridMsg, Odometry, PointCloud2, PoseStamped, TfMessage, Time,
+    Transform, TransformStamped, Twist, lasers, planar,
 };
 use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
+
+use super::lidar;
 
 /// Data that all messages of a recording share.
 pub(super) struct Messages {
     bearings: Bearings,
     lasers: Vec<NamedMount>,
+    has_rings: bool,
     time_increment_s: f32,
     range_max_m: f32,
     scan_time_s: f32,
@@ -23,6 +26,7 @@ impl Messages {
         Messages {
             bearings,
             lasers: config.mounts(),
+            has_rings: config.rings.is_some(),
             time_increment_s: config.time_increment_s(bearings.count),
             range_max_m: config.range_max_m() as f32,
             scan_time_s: (1.0 / config.rate) as f32,
@@ -38,7 +42,10 @@ impl Messages {
 
     pub(super) fn mounts(&self, stamp: Time) -> Message {
         let transform = |laser: &NamedMount| {
-            let level = Transform::from_planar(laser.mount.base_from_laser);
+            let mut level = Transform::from_planar(laser.mount.base_from_laser);
+            if self.has_rings {
+                level.translation.z = lidar::HEIGHT_M;
+            }
             TransformStamped {
                 header: Header::new(stamp, "base_link"),
                 child_frame_id: frame(&laser.name),
@@ -70,13 +77,26 @@ impl Messages {
         })
     }
 
-    /// Scans of all lasers, with their topics.
+    /// Points of the lidar, if there is one.
+    pub(super) fn cloud(&self, snapshot: &Snapshot, stamp: Time) -> Option<PointCloud2> {
+        let rings = || std::iter::once(&snapshot.ranges).chain(&snapshot.others);
+        let header = Header::new(stamp, &frame(""));
+        let times = self.time_increment_s;
+        let is_upside_down = self.lasers.first()?.mount.is_upside_down;
+        self.has_rings
+            .then(|| lidar::cloud(header, self.bearings, times, is_upside_down, rings()))
+    }
+
+    /// Scans of all lasers, with their topics; of a lidar, the ring in the middle.
     pub(super) fn scans(
         &self,
         snapshot: Snapshot,
         stamp: Time,
     ) -> impl Iterator<Item = (String, Message)> {
+        let rings = snapshot.others.len() + 1;
+        let first = if self.has_rings { rings / 2 } else { 0 };
         let scans = std::iter::once(snapshot.ranges).chain(snapshot.others);
+        let scans = scans.skip(first);
         self.lasers.iter().zip(scans).map(move |(laser, ranges)| {
             let scan = self.scan(Header::new(stamp, &frame(&laser.name)), ranges);
             (lasers::topic_of(&laser.name), scan)

@@ -4,6 +4,7 @@
 //! to messages and a file. It searches nothing.
 
 mod command;
+mod lidar;
 mod messages;
 
 pub use command::{Config, run};

@@ -92,6 +92,23 @@ fn the_motion_within_scans_is_taken_out() {
 }
 
 #[test]
+fn a_lidar_tracks_as_well_as_its_middle_ring() {
+    let folder = simulated(&format!(
+        "--path '{CORRIDOR}' --rings 16 --field-of-view 360 --beams 720 --scan-duration 0.1"
+    ));
+    let followed = |topic: &str| {
+        let judged = evaluate(&folder, &format!("--sequence --starts 4 {topic}"));
+        assert_eq!(judged["wrong_scans"], 0, "{judged}");
+        judged["rms_m"].as_f64().unwrap()
+    };
+    let (ring, band) = (
+        followed("--scan-topic /scan"),
+        followed("--cloud-topic /points"),
+    );
+    assert!(band < 1.1 * ring, "{band} and {ring}");
+}
+
+#[test]
 fn a_recording_is_the_same_byte_for_byte_by_its_seed() {
     let bytes = |seed: u32| {
         let options = format!("--path '4,-10.5 5,-10.6' --people 2 --outliers 0.1 --seed {seed}");

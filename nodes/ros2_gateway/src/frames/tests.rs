@@ -226,3 +226,21 @@ fn the_odometry_lies_where_the_hypothesis_says() {
     let nobody = Frames::new(Vec::new());
     assert_eq!(nobody.map_from_odom(&header, &best), None);
 }
+
+#[test]
+fn a_lidar_may_be_tilted_and_must_have_a_mount() {
+    let mut frames = Frames::new(Vec::new());
+    let error = frames.cloud_mount(None, "lidar").unwrap_err();
+    assert!(error.to_string().contains("--cloud-mount"), "{error}");
+    // On its side, which no laser may be.
+    let side = Quaternion {
+        x: std::f64::consts::FRAC_1_SQRT_2,
+        w: std::f64::consts::FRAC_1_SQRT_2,
+        ..Quaternion::default()
+    };
+    let mount = fixed("base_link", "lidar", 0.5, side);
+    frames.on_static_transforms(&mount).unwrap();
+    assert!(frames.base_from_laser(0, "lidar").is_err());
+    frames.cloud_mount(None, "lidar").unwrap();
+    check_mount(&mut frames, 0, "lidar", Some(mounted(0.5)));
+}

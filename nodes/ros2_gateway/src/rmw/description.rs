@@ -239,8 +239,8 @@ mod tests {
     use ros::rcl_interfaces::{DescribeParameters, GetParameters, ParameterEvent};
     use ros::type_description_interfaces::GetTypeDescription;
     use ros::{
-        BondStatus, Clock, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
-        PoseWithCovarianceStamped, RosService, TfMessage,
+        BondStatus, Clock, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PointCloud2,
+        PoseArray, PoseWithCovarianceStamped, RosService, TfMessage,
     };
 
     use super::*;
@@ -274,6 +274,7 @@ mod tests {
         // ROS 2 jazzy publishes these hashes with these types.
         check(&[
             (of_message::<LaserScan>(), "sensor_msgs::msg LaserScan", "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"),
+            (of_message::<PointCloud2>(), "sensor_msgs::msg PointCloud2", "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"),
             (of_message::<Odometry>(), "nav_msgs::msg Odometry", "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"),
             (of_message::<OccupancyGridMsg>(), "nav_msgs::msg OccupancyGrid", "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"),
             (of_message::<TfMessage>(), "tf2_msgs::msg TFMessage", "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"),

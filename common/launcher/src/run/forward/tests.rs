@@ -183,6 +183,27 @@ fn playing_at_max_is_seen_in_the_arguments() {
 }
 
 #[test]
+fn a_point_cloud_goes_to_the_replayer_in_place_of_scans() {
+    let mut options = Options {
+        replay: vec!["/a.mcap".into()],
+        ..Options::default()
+    };
+    options.cloud.cloud_topic = Some("/points".to_owned());
+    options.cloud.cloud_mount = Some("0.5,0,-1,0".parse().unwrap());
+    let args = applied(&options, graph("--scan-topic /scan", "")).unwrap();
+    let expected = [
+        "--recording=/a.mcap",
+        "--cloud-topic=/points",
+        "--heights=0.2,0.6",
+        "--cloud-mount=0.5,0,-1,0,0,0",
+    ];
+    assert_eq!(args[0], expected);
+    options.replay.clear();
+    let refusal = applied(&options, graph("", "")).unwrap_err().to_string();
+    assert!(refusal.contains("allowed with --replay"), "{refusal}");
+}
+
+#[test]
 fn recordings_and_their_topics_go_to_the_replayer() {
     let options = Options {
         replay: vec!["/a.mcap".into(), "/b".into()],
