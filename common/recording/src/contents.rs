@@ -89,7 +89,10 @@ impl Recording {
     /// upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         if let Some(cloud) = self.cloud().filter(|cloud| cloud.frame == laser) {
-            return Ok(cloud.mounted());
+            return Ok(Mounted {
+                mount: Some(cloud.mount()),
+                notes: cloud.notes.clone(),
+            });
         }
         let (tree, notes) = self.transforms_of(laser)?;
         let mount = tree.base_from(laser);

@@ -33,6 +33,7 @@ mod sample;
 #[cfg(test)]
 mod soundness;
 mod survey;
+mod take_cloud;
 mod topics;
 mod truth;
 mod unpack;

@@ -62,7 +62,8 @@ impl fmt::Display for CloudMount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.base_from_sensor.translation.vector.into();
         let (roll, pitch, yaw) = self.base_from_sensor.rotation.euler_angles();
-        let [yaw, pitch, roll] = [yaw, pitch, roll].map(f64::to_degrees);
+        // Zero has no sign.
+        let [yaw, pitch, roll] = [yaw, pitch, roll].map(|angle| angle.to_degrees() + 0.0);
         write!(f, "{x},{y},{z},{yaw},{pitch},{roll}")
     }
 }

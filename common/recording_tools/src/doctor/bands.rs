@@ -15,6 +15,10 @@ const BANDS: [[f64; 2]; 5] = [[0.05, 0.3], [0.2, 0.6], [0.5, 1.0], [1.0, 1.5], [
 /// Number of scans of each band, spread over the recording.
 const SCANS: u64 = 12;
 
+/// Difference of mean scores from which a band is better: bands that see the same walls differ by
+/// less.
+const CLEARLY: f64 = 0.03;
+
 /// Smallest number of readings of a scan that count, a twelfth of a turn: fewer fit anywhere.
 const MIN_READINGS: usize = 120;
 
@@ -45,10 +49,15 @@ pub(super) fn compare(
     let (Some((chosen, fit)), Some((better, most))) = (fits.first(), best) else {
         return Ok(None);
     };
+    let words = match most - fit < CLEARLY {
+        true => format!("no other of {} bands fits clearly better", fits.len()),
+        false => format!(
+            "of {} bands, --heights {better} fits best, by {most:.2}",
+            fits.len()
+        ),
+    };
     Ok(Some(Finding::note(format!(
-        "readings of the heights {chosen} fit the map by {fit:.2}; of {} bands, --heights {better} \
-         fits best, by {most:.2}",
-        fits.len()
+        "readings of the heights {chosen} fit the map by {fit:.2}; {words}"
     ))))
 }
 

@@ -71,7 +71,7 @@ fn the_card_knows_the_graph_and_not_the_tracker_alone() {
                  const store = Object.assign(new a.Store(), known);
                  store.nodes = new Map((nodes ?? []).map((node) => [node.name, node]));
                  if (heard) store.heardAt = performance.now();
-                 if (known.fresh) store.scanAt = store.posedAt = performance.now();
+                 store.scanAt = store.posedAt = known.pose ? performance.now() - (known.fresh ? 0 : 5000) : null;
                  const is = b.situation(store);
                  done([is.word, is.means, is.todo.join(' '), String(Boolean(is.well))]);
              }}, (error) => done([String(error)]))"
