@@ -93,7 +93,7 @@ function showLink() {
   const is = situation(store, link, paused);
   const silent = link === "live" && is.stale;
   document.body.toggleAttribute("data-silent", silent);
-  document.body.toggleAttribute("data-well", link === "live" && is.well);
+  document.body.toggleAttribute("data-well", link === "live" && Boolean(is.well));
   const age = delay === null ? null : Math.round(delay + ((store.pose ?? store.answer)?.age_ms ?? 0));
   const live = age === null ? "live" : `live · ${age} ms`;
   const nothing = is.silence === null ? "no data yet" : `no data for ${duration(is.silence)}`;
