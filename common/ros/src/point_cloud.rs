@@ -96,7 +96,7 @@ const MAX_SECONDS: f64 = 1e11;
 /// Times above this are counted from 1970, not from the stamp: 11 days, in seconds.
 const MAX_AFTER_STAMP_S: f64 = 1e6;
 
-/// Where a number stands in a point, and its datatype.
+/// Offset of a number in a point, and its datatype.
 #[derive(Debug, Clone, Copy)]
 struct Number {
     at: usize,

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use geometry::wrap_angle;
+
 /// Order of the beams of a scan in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sweep {
@@ -96,7 +98,7 @@ impl Turn {
 fn rate(points: &[(f64, f64)]) -> Option<f64> {
     let lag = points.len() / MIN_POINTS;
     let ends = points.iter().zip(points.get(lag.max(1)..)?);
-    let rates = ends.map(|(a, b)| wrapped(b.1 - a.1) / (b.0 - a.0));
+    let rates = ends.map(|(a, b)| wrap_angle(b.1 - a.1) / (b.0 - a.0));
     let mut rates: Vec<f64> = rates.filter(|rate| rate.is_finite()).collect();
     rates.sort_by(f64::total_cmp);
     (lag > 0).then(|| rates.get(rates.len() / 2).copied())?
@@ -107,7 +109,7 @@ fn fit(points: &[(f64, f64)], start_s: f64, rate: f64) -> Option<Turn> {
     let deviations = |bearing: f64, rate: f64| {
         let at = move |&(time_s, b): &(f64, f64)| {
             let time_s = time_s - start_s;
-            (time_s, wrapped(b - bearing - rate * time_s))
+            (time_s, wrap_angle(b - bearing - rate * time_s))
         };
         points.iter().map(at)
     };
@@ -135,11 +137,6 @@ fn fit(points: &[(f64, f64)], start_s: f64, rate: f64) -> Option<Turn> {
     ((squares.sum::<f64>() / count).sqrt() <= MAX_DEVIATION).then_some(turn)
 }
 
-/// The angle from -π to π.
-fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,7 +148,7 @@ mod tests {
         let points = seen.map(|i| {
             let share = f64::from(i) / 400.0;
             let jitter = if i % 2 == 0 { 0.03 } else { -0.03 };
-            let bearing = wrapped(2.0 + direction * TAU * share + jitter);
+            let bearing = wrap_angle(2.0 + direction * TAU * share + jitter);
             (0.1 * share + start_s, bearing)
         });
         Sweep::of(points.collect())
@@ -168,7 +165,7 @@ mod tests {
                 assert_eq!(sweep.start_s, start_s);
                 assert_eq!(sweep.is_clockwise, direction * order < 0.0);
                 // Within the jitter, and 1 percent.
-                assert!(wrapped(sweep.bearing - 2.0).abs() < 0.06, "{sweep:?}");
+                assert!(wrap_angle(sweep.bearing - 2.0).abs() < 0.06, "{sweep:?}");
                 assert!(
                     (sweep.s_per_rad * TAU / 0.1 - order).abs() < 0.01,
                     "{sweep:?}"
@@ -179,7 +176,7 @@ mod tests {
 
     #[test]
     fn what_does_not_turn_is_measured_at_once() {
-        let rosette = |i| (0.001 * f64::from(i), wrapped(f64::from(i * i) * 0.7));
+        let rosette = |i| (0.001 * f64::from(i), wrap_angle(f64::from(i * i) * 0.7));
         assert_eq!(Sweep::of((0..100).map(rosette).collect()), AT_ONCE);
         assert_eq!(Sweep::of(vec![(0.0, 1.0); 100]), AT_ONCE);
         assert_eq!(Sweep::of(vec![]), AT_ONCE);
