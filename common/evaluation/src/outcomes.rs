@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use command_line::output;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use serde::Serialize;
 
 /// Options about what is printed and written of the outcomes.
 #[derive(Debug, Clone, clap::Args)]
@@ -30,6 +31,15 @@ pub(crate) struct ReportOptions {
         help_heading = "Requirements: exit code 1 if a file misses one"
     )]
     pub(crate) total: bool,
+}
+
+/// Returns the line of JSON for the figures of all files.
+pub(crate) fn total_line(total: &impl Serialize) -> String {
+    #[derive(Serialize)]
+    struct Line<'a, T> {
+        total: &'a T,
+    }
+    json::object(&Line { total }) + "\n"
 }
 
 /// Outcomes of the files so far.

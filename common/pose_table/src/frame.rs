@@ -37,15 +37,3 @@ impl Frame {
         }
     }
 }
-
-/// Appends words and the name of the map to a row.
-pub(super) fn with_words(row: &str, words: &str, map: Option<&str>) -> String {
-    let mut row = row.to_owned();
-    if !words.is_empty() {
-        row += &format!("  {words}");
-    }
-    if let Some(map) = map {
-        row += &format!("  on {map}");
-    }
-    row
-}

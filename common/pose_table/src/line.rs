@@ -5,7 +5,7 @@ use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Pose2, Verdict};
 use serde::Serialize;
 
-use super::frame::{Frame, with_words};
+use super::frame::Frame;
 
 pub(super) const NS_PER_MS: f64 = 1e6;
 
@@ -140,6 +140,18 @@ pub fn number(value: Option<f64>, decimals: usize) -> String {
 pub(super) fn seconds(ns: i64) -> String {
     let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
     format!("{sign}{}.{:03}", ns / 1_000_000_000, ns / 1_000_000 % 1000)
+}
+
+/// Appends words and the name of the map to a row.
+pub(super) fn with_words(row: &str, words: &str, map: Option<&str>) -> String {
+    let mut row = row.to_owned();
+    if !words.is_empty() {
+        row += &format!("  {words}");
+    }
+    if let Some(map) = map {
+        row += &format!("  on {map}");
+    }
+    row
 }
 
 #[cfg(test)]

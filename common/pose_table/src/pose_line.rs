@@ -5,8 +5,8 @@ use geometry::{Covariance, ELLIPSE_95};
 use messages::{Pose2, PoseHeader, TrackState};
 use serde::Serialize;
 
-use super::frame::{Frame, with_words};
-use super::line::{Line, NS_PER_MS, number, seconds};
+use super::frame::Frame;
+use super::line::{Line, NS_PER_MS, number, seconds, with_words};
 
 /// The tracker's pose at one scan. Fields of the pose are `None` without a pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]

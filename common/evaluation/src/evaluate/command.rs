@@ -8,13 +8,12 @@ use command_line::{number, stdout, wrong_use};
 use map::OccupancyGrid;
 use offline::{Accepted, Options, Session, World, no_truth_taken};
 use progress::{Progress, say};
-use serde::Serialize;
 
 use super::judge::{Effort, Evaluation, Judge, Total};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
-use crate::outcomes::{Outcomes, ReportOptions};
+use crate::outcomes::{Outcomes, ReportOptions, total_line};
 use crate::sequence::{self, SequenceOptions, Task};
 use crate::truths::{TruthOptions, Truths};
 
@@ -161,16 +160,9 @@ impl Printer {
     }
 
     fn total(&mut self, total: &Evaluation) -> anyhow::Result<()> {
-        #[derive(Serialize)]
-        struct Last<'a> {
-            total: &'a Evaluation,
-        }
         match self.table {
             Some(_) => self.file(total),
-            None => Ok(stdout::print(&format!(
-                "{}\n",
-                json::object(&Last { total })
-            ))?),
+            None => Ok(stdout::print(&total_line(total))?),
         }
     }
 }

@@ -6,14 +6,13 @@ use command_line::{names, stdout};
 use offline::{Accepted, Options, Session, no_truth_taken};
 use plots::draw_drive;
 use progress::{Progress, say};
-use serde::Serialize;
 
 use super::drive::Moment;
 use super::errors::Samples;
 use super::figures::{Figures, Judged};
 use super::run::Said;
 use super::{SequenceOptions, Task, course, drive, follow, jumps, outages, starts, stress};
-use crate::outcomes::Outcomes;
+use crate::outcomes::{Outcomes, total_line};
 
 /// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
 /// and the next one follows.
@@ -56,12 +55,8 @@ pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Resu
     }
     let total = Figures::of("total".to_owned(), &total);
     if drives > 1 {
-        #[derive(Serialize)]
-        struct Last<'a> {
-            total: &'a Figures,
-        }
         stdout::print(&match task.report.json {
-            true => format!("{}\n", json::object(&Last { total: &total })),
+            true => total_line(&total),
             false => total.text(),
         })?;
     }

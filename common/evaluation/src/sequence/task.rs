@@ -9,7 +9,7 @@ use super::SequenceOptions;
 use crate::outcomes::ReportOptions;
 use crate::truths::TruthOptions;
 
-/// What `backcast evaluate --sequence` was asked for.
+/// Drives and options of `backcast evaluate --sequence`.
 pub(crate) struct Task<'a> {
     pub(crate) bags: &'a [PathBuf],
     /// The map, unless it is that of each recording.
