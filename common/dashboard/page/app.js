@@ -277,7 +277,7 @@ function setChoosing(what) {
 
 const AIMED_PX = 12; // a shorter drag has no direction
 
-/** Restarts a node, once somebody has said so twice. */
+/** Restarts a node after a confirmation. */
 async function restart(node) {
   if (!confirm(`Restart ${node}?`)) return;
   await ask(robot, "POST", `nodes/${encodeURIComponent(node)}/restart`, null, `${node} is restarted.`);

@@ -17,7 +17,7 @@ export function situation(store, link = "live", paused = false) {
   const stale = silence === null || silence > STALE_S;
   const is = STATES[state] ?? { word: state ?? "Waiting", means: "Waiting for the first scan.", todo: "" };
   const why = pose ? pose.why : answer ? answer.says : "";
-  const scanning = store.heardAt !== null && performance.now() - store.heardAt < 1000 * STALE_S;
+  const scanning = store.rawScanAt !== null && performance.now() - store.rawScanAt < 1000 * STALE_S;
   const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique", title: "What to check" };
   const past = state ? `Before: ${is.word}. ${capital(sentence(why))}` : "";
   if (link === "stopped") {

@@ -22,7 +22,7 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", graph: null, states: [], heardAt: null, map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, scans: new Map(), scanPose: null, field: null,
+      robot: "", graph: null, states: [], rawScanAt: null, map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, scans: new Map(), scanPose: null, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
       abilities: { region: false, save: false, hint: false, restart: false },
     });
@@ -95,7 +95,7 @@ export class Store {
   /** Takes the end points of a laser's newest scan. */
   #scan(scan) {
     this.scans.set(scan.laser, scan);
-    this.heardAt = performance.now();
+    this.rawScanAt = performance.now();
     return "scan";
   }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use dashboard::{Abilities, Request, Robot, Robots, Server};
+use dashboard::{Request, Robot, Robots, Server};
 use messages::{NodeState, topic};
 use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
@@ -63,10 +63,8 @@ impl Node {
         if tick {
             self.follow_field(graph)?;
             self.handle_requests()?;
-            self.robot.on_abilities(Abilities {
-                restart: self.restarts.are_possible(),
-                ..self.outputs.abilities()
-            });
+            let abilities = self.outputs.abilities(self.restarts.are_possible());
+            self.robot.on_abilities(abilities);
             self.robot.look_for_silence(monotonic_ns());
         }
         self.health.tick()

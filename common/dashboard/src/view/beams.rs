@@ -53,8 +53,8 @@ impl Beams {
 }
 
 /// Rounds to 1/`steps`; more digits would not be visible.
-fn rounded(number: f32, steps: f64) -> f64 {
-    (f64::from(number) * steps).round() / steps
+pub(super) fn rounded(number: impl Into<f64>, steps: f64) -> f64 {
+    (number.into() * steps).round() / steps
 }
 
 fn letter(beam: &Beam) -> Option<char> {

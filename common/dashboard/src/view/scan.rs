@@ -4,6 +4,7 @@ use messages::ScanHeader;
 use serde::Serialize;
 
 use super::PoseJson;
+use super::beams::rounded;
 
 /// Maximum number of points sent: as many as a picture can show.
 const MAX_POINTS: usize = 1440;
@@ -44,7 +45,7 @@ impl Scan {
             }
             let (sin, cos) = bearing.sin_cos();
             for (column, share) in [(&mut points.x, cos), (&mut points.y, sin)] {
-                column.push((f64::from(range) * share * 100.0).round() / 100.0);
+                column.push(rounded(f64::from(range) * share, 100.0));
             }
         }
         points

@@ -21,13 +21,14 @@ impl Outputs {
         })
     }
 
-    /// Returns which requests have a subscriber; restarts have none.
-    pub(super) fn abilities(&self) -> Abilities {
+    /// Returns which requests have a subscriber. Restarts have none: `restart` says if they are
+    /// possible.
+    pub(super) fn abilities(&self, restart: bool) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),
             save: self.saves.has_subscribers(),
             hint: self.hints.has_subscribers(),
-            restart: false,
+            restart,
         }
     }
 

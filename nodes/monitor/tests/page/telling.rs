@@ -70,7 +70,7 @@ fn the_card_knows_the_graph_and_not_the_tracker_alone() {
                  const {{ nodes, heard, ...known }} = {store};
                  const store = Object.assign(new a.Store(), known);
                  store.nodes = new Map((nodes ?? []).map((node) => [node.name, node]));
-                 if (heard) store.heardAt = performance.now();
+                 if (heard) store.rawScanAt = performance.now();
                  store.scanAt = store.posedAt = known.pose ? performance.now() - (known.fresh ? 0 : 5000) : null;
                  const is = b.situation(store);
                  done([is.word, is.means, is.todo.join(' '), String(Boolean(is.well))]);
