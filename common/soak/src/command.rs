@@ -35,6 +35,8 @@ Exit codes: 0 all guarantees were met, 1 a pose was wrong, something did not rec
 behind, 2 wrong use";
 
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
+/// Duration of a part of the recording.
+const PART: &str = "5m";
 const DEFAULT_MINUTES: f64 = 60.0;
 
 /// Options of `backcast soak`.
@@ -60,7 +62,7 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
-    /// Record the graph to this MCAP file
+    /// Record the graph to parts of this name, FILE_0.mcap and so on, which are read at the end
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 
@@ -113,11 +115,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         pause: Duration::from_secs_f64(config.pause),
         faults: config.faults.clone(),
         seed: config.seed,
-        disk: config
-            .record
-            .as_deref()
-            .map(output::folder_of)
-            .map(Path::to_owned),
+        record: config.record.clone(),
     };
     let report = Course::start(plan, maps, truths)?.run()?;
     print(&match config.json {
@@ -146,6 +144,10 @@ impl Config {
             if let Some(file) = file {
                 arguments.extend([option.into(), text(file)]);
             }
+        }
+        if self.record.is_some() {
+            // A launcher that is started again goes on with the next part.
+            arguments.push(format!("--split-time={PART}"));
         }
         arguments
     }

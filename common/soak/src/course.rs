@@ -9,6 +9,7 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
+use command_line::output;
 use geometry::Pose;
 use launcher::run::console::{LAUNCHER, say};
 use launcher::run::control::{Answer, NodeStatus, Question, Status, ask};
@@ -21,6 +22,7 @@ use super::fault::{Draw, Fault};
 use super::filler::Filler;
 use super::launched::{Launched, Losses, Printed, signal};
 use super::maps::Maps;
+use super::recorded::Recorded;
 use super::report::Report;
 use super::tally::{Gap, Tally};
 use super::usage::Usage;
@@ -47,8 +49,8 @@ pub(super) struct Plan {
     pub(super) pause: Duration,
     pub(super) faults: Vec<Fault>,
     pub(super) seed: u64,
-    /// Folder whose disk is filled.
-    pub(super) disk: Option<PathBuf>,
+    /// Name of the recording's parts, on the disk that is filled.
+    pub(super) record: Option<PathBuf>,
 }
 
 /// A running test.
@@ -258,8 +260,8 @@ impl Course {
             Fault::Launcher => over_ns = self.kill_launcher()?,
             Fault::Shm => over_ns = self.fill(Path::new("/dev/shm"), fault)?,
             Fault::Disk => {
-                if let Some(folder) = self.plan.disk.clone() {
-                    over_ns = self.fill(&folder, fault)?;
+                if let Some(file) = self.plan.record.clone() {
+                    over_ns = self.fill(output::folder_of(&file), fault)?;
                 }
             }
         }
@@ -346,6 +348,10 @@ impl Course {
             self.failures
                 .push(format!("the launcher ended with {status}"));
         }
+        let recorded = match &self.plan.record {
+            Some(file) => Some(Recorded::read(file, &mut self.failures)?),
+            None => None,
+        };
         let left = files_of(&self.plan.graph).into_iter();
         let (poses, faults) = self.tally.figures();
         Ok(Report {
@@ -357,6 +363,7 @@ impl Course {
             nodes_ended_s: Gap::of(&self.nodes_ended_s),
             restarts,
             usage: self.usage,
+            recorded,
             leftovers: left.map(|file| file.display().to_string()).collect(),
             failures: self.failures,
         })

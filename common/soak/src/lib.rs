@@ -12,6 +12,7 @@ mod fault;
 mod filler;
 mod launched;
 mod maps;
+mod recorded;
 mod report;
 mod tally;
 mod usage;

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::launched::Losses;
+use super::recorded::Recorded;
 use super::tally::{FaultFigures, Gap, PoseFigures};
 use super::usage::{Span, Usage};
 
@@ -26,6 +27,8 @@ pub(super) struct Report {
     /// Number of restarts of nodes.
     pub(super) restarts: u64,
     pub(super) usage: Usage,
+    /// What was recorded; `None` without `--record`.
+    pub(super) recorded: Option<Recorded>,
     /// Files that were left after the end.
     pub(super) leftovers: Vec<String>,
     /// Failures in addition to wrong poses and leftovers.
@@ -71,6 +74,17 @@ impl Report {
         }
         latencies(&mut text, poses);
         usage(&mut text, &self.usage);
+        if let Some(Recorded {
+            parts,
+            cut,
+            messages,
+        }) = self.recorded
+        {
+            let _ = writeln!(
+                text,
+                "recorded: {messages} messages in {parts} parts, {cut} of them cut off"
+            );
+        }
         for wrong in &poses.first_wrong {
             let _ = writeln!(
                 text,
@@ -215,6 +229,11 @@ mod tests {
             },
             restarts: 20,
             usage: Usage::default(),
+            recorded: Some(Recorded {
+                parts: 3,
+                cut: 1,
+                messages: 400,
+            }),
             leftovers: Vec::new(),
             failures: Vec::new(),
         }
@@ -237,6 +256,7 @@ latency ms by tenths, p50    2.50    2.50
 memory MB               start      end     peak    files    end   peak
 /dev/shm                    -        -        -
 
+recorded: 400 messages in 3 parts, 1 of them cut off
 no pose was wrong, all recovered, nothing was left behind
 ";
         assert_eq!(report().text(), expected);

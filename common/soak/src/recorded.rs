@@ -1,0 +1,55 @@
+//! Parts of a recording, read after the run.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use command_line::output;
+use recording::Recording;
+use serde::Serialize;
+
+/// Figures of all parts that could be read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub(super) struct Recorded {
+    pub(super) parts: u64,
+    /// Number of parts whose recorder was killed, which are read up to their last whole chunk.
+    pub(super) cut: u64,
+    pub(super) messages: u64,
+}
+
+impl Recorded {
+    /// Reads the parts of a name; adds a failure for each that cannot be read.
+    ///
+    /// # Errors
+    /// Their folder cannot be read.
+    pub(super) fn read(name: &Path, failures: &mut Vec<String>) -> anyhow::Result<Self> {
+        let mut recorded = Recorded::default();
+        for part in parts(name)? {
+            match Recording::open(&part) {
+                Ok(recording) => {
+                    recorded.parts += 1;
+                    recorded.cut += u64::from(recording.damage().is_some());
+                    recorded.messages += recording.messages();
+                }
+                Err(error) => failures.push(error.to_string()),
+            }
+        }
+        if recorded.messages == 0 {
+            failures.push(format!("nothing was recorded to {}", name.display()));
+        }
+        Ok(recorded)
+    }
+}
+
+fn parts(name: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let folder = output::folder_of(name);
+    let stem = name.file_stem().unwrap_or_default().to_string_lossy();
+    let listed = std::fs::read_dir(folder);
+    let listed = listed.with_context(|| format!("cannot read {}", folder.display()))?;
+    let files = listed.map(|entry| Ok(entry?.path()));
+    let files: Vec<PathBuf> = files.collect::<std::io::Result<_>>()?;
+    let is_part = |file: &PathBuf| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        name.starts_with(&*stem)
+    };
+    Ok(files.into_iter().filter(is_part).collect())
+}
