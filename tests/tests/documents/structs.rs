@@ -116,6 +116,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`backcast regress --json`", &[("common/regression/src/object.rs", "Object")]),
     ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
+    ("The recording of a graph", &[("common/launcher/src/run/control.rs", "Recording")]),
     ("`backcast logs --json`", &[("common/launcher/src/control/logs.rs", "LogLine")]),
     ("`backcast info --json`", &[("common/recording_tools/src/info/contents.rs", "Contents")]),
     ("`backcast doctor --json`", &[("common/recording_tools/src/doctor/command.rs", "Report")]),
