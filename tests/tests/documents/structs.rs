@@ -138,6 +138,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`log`", &[("common/dashboard/src/view/log.rs", "LogLine")]),
     ("`region`", &[("common/dashboard/src/view.rs", "Region")]),
     ("`abilities`", &[("common/dashboard/src/view.rs", "Abilities")]),
+    ("`recording`", &[("common/dashboard/src/view.rs", "Recording")]),
     ("`field`", &[("common/dashboard/src/view/field.rs", "Head")]),
 ];
 
