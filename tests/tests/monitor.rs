@@ -10,10 +10,13 @@ use std::thread::JoinHandle;
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use recording::Recording;
+use serde_json::{Value, json};
 use tempfile::TempDir;
+use tests::axe;
 use tests::browser::Browser;
 use tests::executables;
-use tests::http::token_file;
+use tests::http::{Site, token_file};
 use tests::needs::Need;
 use tests::recorded::graph_with;
 use tests::world::World;
@@ -37,6 +40,7 @@ impl Graph {
         let mut launcher = executables::backcast()
             .args(["run", "--loop"])
             .arg(&descriptor)
+            .current_dir(&folder)
             .env_remove("BACKCAST_GRAPH")
             .env_remove("RUST_LOG")
             .stdout(Stdio::null())
@@ -59,13 +63,21 @@ impl Graph {
     }
 }
 
+impl Graph {
+    fn stop(&mut self) {
+        if let Ok(None) = self.launcher.try_wait() {
+            let _ = kill(
+                Pid::from_raw(self.launcher.id().cast_signed()),
+                Signal::SIGINT,
+            );
+            let _ = self.launcher.wait();
+        }
+    }
+}
+
 impl Drop for Graph {
     fn drop(&mut self) {
-        let _ = kill(
-            Pid::from_raw(self.launcher.id().cast_signed()),
-            Signal::SIGINT,
-        );
-        let _ = self.launcher.wait();
+        self.stop();
         if let Some(log) = self.log.take() {
             let _ = log.join();
         }
@@ -189,6 +201,73 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     browser.wait_until(
         "document.getElementById('lost').hidden && document.body.dataset.link === 'live'",
     );
+}
+
+#[test]
+fn a_recording_is_started_and_stopped_from_the_page() {
+    let test = "a_recording_is_started_and_stopped_from_the_page";
+    let Some(browser) = Browser::open(1280, 800) else {
+        Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
+        return;
+    };
+    let mut graph = Graph::start(&World::of("malaga_corridor"));
+    let site = Site(graph.url["http://".len()..].parse().unwrap());
+    let recording = |is_awaited: fn(&Value) -> bool| loop {
+        let known = site.get("/api/v1/robots/r7")["recording"].take();
+        if is_awaited(&known) {
+            return known;
+        }
+    };
+    let ask = |method: &str, token: &str| {
+        let token = format!("Authorization: Bearer {token}");
+        let path = "/api/v1/robots/r7/recording";
+        site.ask(method, path, &[&token], "").0
+    };
+    let nothing = recording(Value::is_object);
+    assert_eq!(
+        nothing,
+        json!({"file": null, "size_mb": null, "refused": null})
+    );
+    assert_eq!(ask("POST", "another"), 403);
+    assert_eq!(ask("DELETE", TOKEN), 409, "nothing is recorded");
+
+    browser.visit(&format!("{}/#token={TOKEN}", graph.url));
+    let button = "document.getElementById('record')";
+    browser.wait_until(&format!("!{button}.disabled"));
+    let _ = browser.run(&format!("{button}.click()"));
+    browser.wait_until(&format!("{button}.textContent === 'Stop recording'"));
+    let known = recording(|known| known["size_mb"].as_f64() > Some(0.0));
+    let file = known["file"].as_str().unwrap().to_owned();
+    browser.wait_until(&format!(
+        "document.getElementById('recording').textContent.startsWith('Recording to {file}, ')"
+    ));
+    assert_eq!(ask("POST", TOKEN), 409, "one recording at a time");
+    if let Ok(script) = axe::script() {
+        assert_eq!(axe::violations(&browser, &script), [""; 0]);
+    }
+    let _ = browser.run(&format!("window.confirm = () => true; {button}.click()"));
+    browser.wait_until(&format!("{button}.textContent === 'Record'"));
+    assert_is_whole(&file);
+
+    // The end of the graph finishes a recording, too.
+    assert_eq!(ask("POST", TOKEN), 202);
+    let known = recording(|known| known["size_mb"].as_f64() > Some(0.0));
+    let second = known["file"].as_str().unwrap().to_owned();
+    assert_ne!(second, file);
+    drop(browser);
+    graph.stop();
+    assert_is_whole(&second);
+}
+
+/// Checks that the recording is complete and holds the map, from before it began.
+fn assert_is_whole(file: &str) {
+    let recording = Recording::open(file).unwrap();
+    assert_eq!(recording.damage(), None);
+    assert!(recording.map().unwrap().is_some(), "{file}");
+    let topics = recording
+        .raw_records()
+        .map(|r| r.unwrap().channel.topic.to_string());
+    assert_ne!(topics.filter(|topic| topic == "/scan").count(), 0, "{file}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ import { $, write } from "./dom.js";
 import * as inspector from "./inspect.js";
 import { keys } from "./keys.js";
 import * as notify from "./notify.js";
-import { showEvents, showLegend, showNodes, showPlaces, showScale, showTiming } from "./panel.js";
+import { showEvents, showLegend, showNodes, showPlaces, showRecording, showScale, showTiming } from "./panel.js";
 import { inFrame, situation } from "./situation.js";
 import { showState } from "./state_card.js";
 import { Store } from "./store.js";
@@ -132,6 +132,7 @@ function show(now) {
   $("everywhere").disabled = !store.abilities.region || store.region.length === 0;
   $("save").disabled = !store.abilities.save;
   $("save").title = store.abilities.save ? "" : "No recorder keeps the last minutes: backcast run --record FILE --keep 10m";
+  showRecording(store.recording);
   $("graph-name").hidden = !store.graph;
   write("graph-name", store.graph ?? "");
   const title = [is.word.toLowerCase(), robot, store.graph, "Backcast"].filter(Boolean).join(" · ");
@@ -283,6 +284,13 @@ async function restart(node) {
   await ask(robot, "POST", `nodes/${encodeURIComponent(node)}/restart`, null, `${node} is restarted.`);
 }
 
+/** Starts a recording; stops one after a confirmation. */
+async function record() {
+  const file = store.recording?.file;
+  if (!file) return ask(robot, "POST", "recording", null, "The recording begins.");
+  if (confirm(`Stop recording ${file}?`)) await ask(robot, "DELETE", "recording", null, `The recorder finishes ${file}.`);
+}
+
 /** Takes where a drag began and ended. */
 function chosen(corners) {
   const what = view.choosing;
@@ -353,6 +361,7 @@ const choose = (what) => { setChoosing(view.choosing === what ? "" : what); $("m
 $("region").onclick = () => choose("region");
 $("hint-button").onclick = () => choose("hint");
 $("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are searched everywhere again.");
+$("record").onclick = record;
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");
 
 keys({

@@ -69,6 +69,16 @@ export function showNodes({ robot, nodes, answer, abilities }, restart) {
   replace($("nodes"), JSON.stringify([rows, abilities.restart]), () => rows.map((row) => nodeRow(row, button)));
 }
 
+/** What is recorded, or why nothing can be. */
+export function showRecording(recording) {
+  const { file, size_mb, refused } = recording ?? {};
+  $("record").disabled = !recording || Boolean(refused && !file);
+  $("record").title = recording ? refused ?? "" : "No launcher records: backcast run --record FILE";
+  write("record", file ? "Stop recording" : "Record");
+  const size = size_mb ? `, ${fixed(size_mb, 1)} MB` : "";
+  write("recording", file ? `Recording to ${file}${size}` : refused ? `Cannot record: ${refused}` : "");
+}
+
 function nodeWords(node, took) {
   const rates = [];
   if (node.received_hz) rates.push(`${fixed(node.received_hz, 1)} in`);

@@ -24,7 +24,7 @@ export class Store {
     Object.assign(this, {
       robot: "", graph: null, states: [], rawScanAt: null, map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, scans: new Map(), scanPose: null, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
-      abilities: { region: false, save: false, hint: false, restart: false },
+      abilities: { region: false, save: false, hint: false, restart: false }, recording: null,
     });
   }
 
@@ -42,6 +42,7 @@ export class Store {
       case "log": return this.#log(message);
       case "region": this.region = message.corners; return "region";
       case "abilities": this.abilities = message; return "abilities";
+      case "recording": this.recording = message; return "recording";
       case "missed":
         this.missed += message.messages;
         this.event(`${message.messages} messages were missed: this page is too slow`, "warn");
@@ -50,8 +51,8 @@ export class Store {
     }
   }
 
-  #snapshot({ robot, graph, map, answer, pose, ages, states, beams, nodes, track, log, region, abilities }) {
-    Object.assign(this, { robot, graph, map, answer, pose, beams, track, region, abilities });
+  #snapshot({ robot, graph, map, answer, pose, ages, states, beams, nodes, track, log, region, abilities, recording }) {
+    Object.assign(this, { robot, graph, map, answer, pose, beams, track, region, abilities, recording });
     this.states = states.map(began);
     const since = (seconds) => (seconds === null ? null : performance.now() - 1000 * seconds);
     this.scanAt = since(ages.scan_s);

@@ -27,4 +27,4 @@ pub use options::Options;
 pub use robot::{Request, Robot, hint};
 pub use robots::Robots;
 pub use server::Server;
-pub use view::Abilities;
+pub use view::{Abilities, Recording};

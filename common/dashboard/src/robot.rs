@@ -19,8 +19,8 @@ use tokio::sync::{broadcast, watch};
 use transport::wall_ns;
 
 use crate::view::{
-    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Scan, Snapshot,
-    StateChange, Times, Track, Tracked, field_frame,
+    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Recording, Region, Roster, Scan,
+    Snapshot, StateChange, Times, Track, Tracked, field_frame,
 };
 use crate::webhook::Webhook;
 
@@ -44,6 +44,8 @@ pub enum Request {
     Hint(Pose2),
     /// Restart the node with this name.
     Restart(String),
+    /// Start or stop a recording.
+    Record(bool),
 }
 
 /// Standard deviations of a hint: a user points at a map that is some pixels per metre.
@@ -90,6 +92,7 @@ struct Known {
     log: Log,
     region: Vec<[f64; 2]>,
     abilities: Abilities,
+    recording: Option<Recording>,
 }
 
 /// A new viewer's snapshot, and the messages that follow it.
@@ -233,6 +236,15 @@ impl Robot {
         }
     }
 
+    /// Stores and sends what is recorded, or why nothing can be.
+    pub fn on_recording(&self, recording: Recording) {
+        let mut known = self.known();
+        if known.recording.as_ref() != Some(&recording) {
+            self.broadcast(&Message::Recording(&recording));
+            known.recording = Some(recording);
+        }
+    }
+
     /// Reports nodes that have become silent, and the state `NoData` if scans stay away.
     pub fn look_for_silence(&self, now_ns: i64) {
         let mut known = self.known();
@@ -320,6 +332,10 @@ impl Robot {
         self.known().abilities
     }
 
+    pub(crate) fn recording(&self) -> Option<Recording> {
+        self.known().recording.clone()
+    }
+
     /// Queues a request for the source; false if the queue is full.
     pub(crate) fn request(&self, request: Request) -> bool {
         self.requests.try_send(request).is_ok()
@@ -351,6 +367,7 @@ impl Robot {
             log: known.log.lines().collect(),
             region: &known.region,
             abilities: known.abilities,
+            recording: known.recording.as_ref(),
         }))
     }
 

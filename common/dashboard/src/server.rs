@@ -97,6 +97,10 @@ fn router(site: Arc<Site>) -> Router {
         .route(&format!("{robot}/save"), post(actions::save))
         .route(&format!("{robot}/hint"), post(actions::hint))
         .route(
+            &format!("{robot}/recording"),
+            post(actions::start_recording).delete(actions::stop_recording),
+        )
+        .route(
             &format!("{robot}/nodes/{{node}}/restart"),
             post(actions::restart),
         )

@@ -32,7 +32,7 @@ pub(crate) use tracked::Tracked;
 
 use geometry::Covariance;
 use messages::Pose2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A message to the viewers of a robot.
 #[derive(Debug, Serialize)]
@@ -54,6 +54,7 @@ pub(crate) enum Message<'a> {
     /// Search region.
     Region(Region<'a>),
     Abilities(Abilities),
+    Recording(&'a Recording),
     /// This many messages were lost, because the reader was too slow.
     Missed {
         messages: u64,
@@ -76,6 +77,17 @@ pub struct Abilities {
     pub hint: bool,
     /// A launcher restarts nodes.
     pub restart: bool,
+}
+
+/// Recording of the graph, as its launcher reports it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Recording {
+    /// File that is being written; `None` while nothing is recorded.
+    pub file: Option<String>,
+    /// Its size so far, in megabytes (10^6 bytes).
+    pub size_mb: Option<f64>,
+    /// Reason why no recording can be started.
+    pub refused: Option<String>,
 }
 
 /// Search region in the map.
@@ -104,6 +116,8 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) log: Vec<&'a LogLine>,
     pub(crate) region: &'a [[f64; 2]],
     pub(crate) abilities: Abilities,
+    /// `None` without a launcher that records on request.
+    pub(crate) recording: Option<&'a Recording>,
 }
 
 /// A pose in the map: metres and radians.

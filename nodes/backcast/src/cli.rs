@@ -49,6 +49,9 @@ enum Command {
     /// Restarts one node of a running graph
     #[command(after_help = EXIT_CODES)]
     Restart(control::RestartConfig),
+    /// Starts or stops a recording of a running graph
+    #[command(after_help = EXIT_CODES)]
+    Record(control::RecordConfig),
     /// Shows the log of a running graph
     #[command(after_help = EXIT_CODES)]
     Logs(control::LogsConfig),
@@ -70,6 +73,7 @@ pub fn main() -> ExitCode {
         Some(Command::Status(config)) => end(control::status(&config)),
         Some(Command::Stop(config)) => end(control::stop(&config)),
         Some(Command::Restart(config)) => end(control::restart(&config)),
+        Some(Command::Record(config)) => end(control::record(&config)),
         Some(Command::Logs(config)) => end(control::logs(&config)),
         #[cfg(feature = "tools")]
         Some(Command::OnTheSide(tool)) => tool.run(),

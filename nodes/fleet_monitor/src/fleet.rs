@@ -226,8 +226,8 @@ impl Member {
                 tracing::info!(robot, "asking the recorder to save the last minutes");
                 self.requests.save()
             }
-            // It is refused before, as the launcher takes no request from other machines.
-            Request::Restart(_) => Ok(()),
+            // They are refused before, as the launcher takes no request from other machines.
+            Request::Restart(_) | Request::Record(_) => Ok(()),
             Request::Hint(pose) => {
                 tracing::info!(
                     robot,

@@ -1,8 +1,8 @@
 //! Subscribes to the graph and feeds the server.
 
 mod inputs;
+mod launcher;
 mod outputs;
-mod restarts;
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -14,8 +14,8 @@ use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
 use crate::{Config, MonitorError};
 use inputs::Inputs;
+use launcher::Launcher;
 use outputs::Outputs;
-use restarts::Restarts;
 
 /// Longest delay for a request, an image and the detection of a silent node.
 const TICK: Duration = Duration::from_millis(50);
@@ -32,7 +32,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         requests,
         field: None,
         outputs: Outputs::open(graph)?,
-        restarts: Restarts::of(graph),
+        launcher: Launcher::of(graph, &robot),
         health: graph.health()?,
     };
     let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
@@ -53,7 +53,7 @@ struct Node {
     /// Subscription to the image, which is computed only while it is viewed.
     field: Option<Subscriber<topic::Field>>,
     outputs: Outputs,
-    restarts: Restarts,
+    launcher: Launcher,
     health: Health,
 }
 
@@ -63,7 +63,7 @@ impl Node {
         if tick {
             self.follow_field(graph)?;
             self.handle_requests()?;
-            let abilities = self.outputs.abilities(self.restarts.are_possible());
+            let abilities = self.outputs.abilities(self.launcher.is_there());
             self.robot.on_abilities(abilities);
             self.robot.look_for_silence(monotonic_ns());
         }
@@ -105,7 +105,12 @@ impl Node {
                 }
                 Request::Restart(node) => {
                     tracing::info!("asking the launcher to restart {node}");
-                    self.restarts.ask(node);
+                    self.launcher.restart(&node);
+                }
+                Request::Record(on) => {
+                    let what = if on { "start" } else { "stop" };
+                    tracing::info!("asking the launcher to {what} a recording");
+                    self.launcher.record(on);
                 }
                 Request::Save => {
                     tracing::info!("asking the recorder to save the last minutes");

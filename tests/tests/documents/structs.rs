@@ -116,6 +116,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`backcast regress --json`", &[("common/regression/src/object.rs", "Object")]),
     ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
+    ("The recording of a graph", &[("common/launcher/src/run/control.rs", "Recording")]),
     ("`backcast logs --json`", &[("common/launcher/src/control/logs.rs", "LogLine")]),
     ("`backcast info --json`", &[("common/recording_tools/src/info/contents.rs", "Contents")]),
     ("`backcast doctor --json`", &[("common/recording_tools/src/doctor/command.rs", "Report")]),
@@ -137,6 +138,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`log`", &[("common/dashboard/src/view/log.rs", "LogLine")]),
     ("`region`", &[("common/dashboard/src/view.rs", "Region")]),
     ("`abilities`", &[("common/dashboard/src/view.rs", "Abilities")]),
+    ("`recording`", &[("common/dashboard/src/view.rs", "Recording")]),
     ("`field`", &[("common/dashboard/src/view/field.rs", "Head")]),
 ];
 

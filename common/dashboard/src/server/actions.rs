@@ -14,7 +14,7 @@ use serde::Deserialize;
 use super::gate::authorize;
 use super::{Refusal, Site};
 use crate::robot::Request;
-use crate::view::Abilities;
+use crate::view::{Abilities, Recording};
 
 /// Largest coordinate of a hint, metres: no map reaches further from its origin.
 const MAX_M: f64 = 1e6;
@@ -94,6 +94,26 @@ pub(super) async fn restart(
     request(&site, &name, Request::Restart(node))
 }
 
+/// Has the launcher start a recording.
+pub(super) async fn start_recording(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    request(&site, &name, Request::Record(true))
+}
+
+/// Has the launcher stop the recording.
+pub(super) async fn stop_recording(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    request(&site, &name, Request::Record(false))
+}
+
 /// Makes the recorder save the last minutes.
 pub(super) async fn save(
     State(site): State<Arc<Site>>,
@@ -112,6 +132,7 @@ fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refu
         hint,
         restart,
     } = robot.abilities();
+    let recording = robot.recording();
     let (able, who) = match request {
         Request::Region(_) => (region, "no accumulator accepts a region"),
         Request::Save => (
@@ -120,6 +141,12 @@ fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refu
         ),
         Request::Hint(_) => (hint, "no tracker accepts a hint"),
         Request::Restart(_) => (restart, "no launcher is there: backcast restart NODE"),
+        Request::Record(on) => match &recording {
+            None => (false, "no launcher is there: backcast run --record FILE"),
+            Some(now) if !on => (now.file.is_some(), "nothing is being recorded"),
+            Some(Recording { file: Some(_), .. }) => (false, "a recording runs already"),
+            Some(now) => (now.refused.is_none(), now.refused.as_deref().unwrap_or("")),
+        },
     };
     if !able {
         return Err(Refusal::new(StatusCode::CONFLICT, who));

@@ -8,7 +8,7 @@ use std::{
 };
 
 use anyhow::{Context, anyhow, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use command_line::{stdout::print, wrong_use};
 use nix::unistd::{Uid, User};
 use transport::{GraphName, control_socket, graphs_of_others, is_launched, running_graphs};
@@ -48,6 +48,22 @@ pub struct RestartConfig {
     graph: Option<GraphName>,
 }
 
+#[derive(Debug, Args)]
+pub struct RecordConfig {
+    /// Start a recording, or stop the one that runs
+    action: RecordAction,
+
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum RecordAction {
+    Start,
+    Stop,
+}
+
 /// Prints the state of graphs and of their nodes.
 ///
 /// # Errors
@@ -77,17 +93,42 @@ pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
 pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let code = done(&graph, &Question::Stop)?;
+    wait_while(&format!("graph {graph}"), || Ok(is_launched(&graph)))?;
+    Ok(code)
+}
+
+/// Starts or stops a recording of a graph and prints its file. When a stopped one is printed, the
+/// file is complete.
+///
+/// # Errors
+/// The graph is not running or cannot be recorded, or nothing is being recorded.
+pub fn record(config: &RecordConfig) -> anyhow::Result<ExitCode> {
+    let graph = the_graph(config.graph.as_ref())?;
+    let on = config.action == RecordAction::Start;
+    let file = match asked(&graph, &Question::Record { on })? {
+        Answer::Record(file) => file,
+        Answer::Refused(why) => return Err(wrong_use(why)),
+        _ => return Err(wrong_use("unexpected answer")),
+    };
+    wait_while("the recorder", || {
+        Ok(!on && status_of(&graph)?.recording.file.is_some())
+    })?;
+    print(&format!("{file}\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn wait_while(what: &str, mut runs: impl FnMut() -> anyhow::Result<bool>) -> anyhow::Result<()> {
     let begin = Instant::now();
-    while is_launched(&graph) {
+    while runs()? {
         if begin.elapsed() >= STOPPED_WITHIN {
             bail!(
-                "graph {graph} still runs {} s after it was asked to stop: `backcast status` shows what runs",
+                "{what} still runs {} s after it was asked to stop: `backcast status` shows what runs",
                 STOPPED_WITHIN.as_secs()
             );
         }
         thread::sleep(LOOK);
     }
-    Ok(code)
+    Ok(())
 }
 
 /// Restarts a node.
@@ -139,7 +180,7 @@ fn status_of(graph: &GraphName) -> anyhow::Result<Status> {
     match asked(graph, &Question::Status)? {
         Answer::Status(status) => Ok(status),
         Answer::Refused(why) => Err(wrong_use(why)),
-        Answer::Done => Err(wrong_use("unexpected answer")),
+        _ => Err(wrong_use("unexpected answer")),
     }
 }
 

@@ -1,8 +1,10 @@
-//! `backcast status`, `stop`, `restart` and `logs`: control a running graph from another terminal.
+//! `backcast status`, `stop`, `restart`, `record` and `logs`: control a running graph from another terminal.
 
 mod command;
 mod logs;
 mod text;
 
-pub use command::{RestartConfig, StatusConfig, StopConfig, restart, status, stop};
+pub use command::{
+    RecordConfig, RestartConfig, StatusConfig, StopConfig, record, restart, status, stop,
+};
 pub use logs::{LogLine, LogsConfig, logs};

@@ -21,6 +21,10 @@ pub(super) fn status(status: &Status) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", line(node));
     }
+    if let Some(file) = &status.recording.file {
+        let size_mb = status.recording.size_mb.unwrap_or_default();
+        let _ = writeln!(text, "  recording to {file}, {size_mb:.1} MB");
+    }
     let failing = status.nodes.iter().filter_map(|node| node.fails.as_ref());
     for sentence in status.given_up.iter().chain(failing) {
         let _ = writeln!(text, "  {sentence}");

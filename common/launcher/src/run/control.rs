@@ -35,6 +35,8 @@ pub enum Question {
         /// Id of the node.
         node: String,
     },
+    /// Start or stop a recording.
+    Record { on: bool },
 }
 
 /// Answer to a control request.
@@ -44,6 +46,8 @@ pub enum Answer {
     Status(Status),
     /// The request is being carried out.
     Done,
+    /// The recording to this file begins or ends.
+    Record(String),
     /// The request is rejected, for this reason.
     Refused(String),
 }
@@ -59,8 +63,21 @@ pub struct Status {
     pub uptime_s: u64,
     /// A sentence for each failed node that the graph continues without.
     pub given_up: Vec<String>,
+    #[serde(default)]
+    pub recording: Recording,
     /// Nodes in the order of the descriptor.
     pub nodes: Vec<NodeStatus>,
+}
+
+/// Recording of the graph.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Recording {
+    /// File that is being written; `None` while nothing is recorded.
+    pub file: Option<String>,
+    /// Its size so far, in megabytes (10^6 bytes).
+    pub size_mb: Option<f64>,
+    /// Reason why no recording can be started.
+    pub refused: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -19,7 +19,7 @@ use messages::{HealthHeader, NodeState};
 use nix::sys::signal::Signal;
 use transport::GraphName;
 
-use self::member::{Member, State, lost_data, not_supervised};
+use self::member::{Member, State, Wanted, lost_data, not_supervised};
 use super::{
     console::warn,
     control::NodeStatus,
@@ -43,8 +43,6 @@ pub struct Crew {
     /// Each thread that forwards output holds a copy.
     output_open: Option<Sender<()>>,
     output_closed: Receiver<()>,
-    /// A sentence for each failed node that the graph continues without.
-    given_up: Vec<String>,
 }
 
 impl Crew {
@@ -62,7 +60,6 @@ impl Crew {
             graph: graph.clone(),
             output_open: Some(output_open),
             output_closed,
-            given_up: Vec::new(),
         })
     }
 
@@ -90,7 +87,7 @@ impl Crew {
                     let goes_on = format!("the graph continues without {}", member.node.id);
                     let sentence = format!("{error:#}; {goes_on}");
                     warn(&sentence);
-                    self.given_up.push(sentence);
+                    member.given_up = Some(sentence);
                 }
                 Err(error) => return Err(error),
             }
@@ -128,9 +125,10 @@ impl Crew {
         let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
             return Ok(false);
         };
+        member.given_up = None;
         match &member.state {
             State::Running(process) => {
-                member.wanted_anew = true;
+                member.wanted = Some(Wanted::Restart);
                 let asked = process.signal(Signal::SIGTERM);
                 asked.with_context(|| not_supervised(&member.node, process.pid()))?;
             }
@@ -139,15 +137,49 @@ impl Crew {
         Ok(true)
     }
 
+    /// Adds a node, in place of an ended one with its id, and starts it at the next tick.
+    ///
+    /// # Errors
+    /// See [`Crew::new`].
+    pub fn start(&mut self, node: Node, now: Instant) -> anyhow::Result<()> {
+        self.members.retain(|member| member.node.id != node.id);
+        self.members.push(Member::new(node, now)?);
+        Ok(())
+    }
+
+    /// Ends a node in order, for good.
+    ///
+    /// # Errors
+    /// The process cannot be signalled.
+    pub fn end(&mut self, id: &str) -> anyhow::Result<()> {
+        for member in self.members.iter_mut().filter(|m| m.node.id == id) {
+            if let State::Running(process) = &member.state {
+                member.wanted = Some(Wanted::End);
+                let asked = process.signal(Signal::SIGTERM);
+                asked.with_context(|| not_supervised(&member.node, process.pid()))?;
+            } else {
+                member.state = State::Done;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the node with this id if it runs or is due to start.
+    pub fn active(&self, id: &str) -> Option<&Node> {
+        let mut members = self.members.iter();
+        let is_it = |m: &&Member| m.node.id == id && !matches!(m.state, State::Done);
+        members.find(is_it).map(|member| &member.node)
+    }
+
     /// A sentence for each node that failed for good and that the graph continues without.
-    pub fn given_up(&self) -> &[String] {
-        &self.given_up
+    pub fn given_up(&self) -> impl Iterator<Item = String> {
+        self.members.iter().filter_map(|m| m.given_up.clone())
     }
 
     /// Returns [`Crew::given_up`] and a sentence for each node that fails again and again.
     pub fn problems(&self, now: Instant) -> Vec<String> {
         let failing = self.members.iter().filter_map(|member| member.fails(now));
-        self.given_up.iter().cloned().chain(failing).collect()
+        self.given_up().chain(failing).collect()
     }
 
     /// True if the run is over: all sources or all nodes are done.

@@ -37,6 +37,7 @@ use super::{
     options::Config,
     output::{Output, Reader},
     record::{self, RECORDER},
+    recording::Recorder,
     replay, tracker,
     watch::Watch,
 };
@@ -175,6 +176,7 @@ fn launch(
         questions: control::listen(&control_socket(name), graph.waker()?)?,
         graph: name.clone(),
         descriptor: descriptor.file.clone(),
+        recorder: Recorder::of(descriptor),
         started: Instant::now(),
     };
     let end = stay(
@@ -277,6 +279,7 @@ struct ControlPort {
     questions: Receiver<Asked>,
     graph: GraphName,
     descriptor: PathBuf,
+    recorder: Recorder,
     started: Instant,
 }
 
@@ -294,7 +297,8 @@ impl ControlPort {
                         .display()
                         .to_string(),
                     uptime_s: (now - self.started).as_secs(),
-                    given_up: crew.given_up().to_vec(),
+                    given_up: crew.given_up().collect(),
+                    recording: self.recorder.status(crew),
                     nodes: crew.status(now),
                 }),
                 Question::Stop => {
@@ -309,6 +313,16 @@ impl ControlPort {
                     } else {
                         Answer::Refused(control::no_node(&node, &crew.status(now)))
                     }
+                }
+                Question::Record { on } => {
+                    let (file, what) = match on {
+                        true => (self.recorder.start(crew, now)?, "starts"),
+                        false => (self.recorder.stop(crew)?, "stops"),
+                    };
+                    file.map_or_else(Answer::Refused, |file| {
+                        note(&format!("the recording to {file} {what}"));
+                        Answer::Record(file)
+                    })
                 }
             };
             // The client may have hung up.

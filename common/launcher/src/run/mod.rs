@@ -22,6 +22,7 @@ mod output;
 mod pairs;
 mod process;
 mod record;
+mod recording;
 pub mod replay;
 mod report;
 mod summary;

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use command_line::output;
-use dataflow::Dataflow;
+use dataflow::{Dataflow, Node};
 
 use super::added;
-use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
+use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, set, value};
 use super::options::RecordOptions;
 use crate::descriptor::NO_FOLDER;
 
@@ -31,29 +31,22 @@ pub(crate) fn add(
     };
     let output = std::path::absolute(output).context(NO_FOLDER)?;
     check(&output, options, dataflow)?;
-    let mut args = vec![argument("--output", &output.to_string_lossy())];
+    let mut node = node(dataflow, file, folder);
+    node.build = added::build(dataflow, RECORDER);
+    set(&mut node, "--output", Some(&output.to_string_lossy()));
     let passed_on = [
         ("--keep", options.keep.as_ref()),
         ("--split-time", options.split_time.as_ref()),
         ("--split-size", options.split_size.as_ref()),
     ];
-    let passed_on = passed_on
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value?)));
-    args.extend(passed_on.map(|(name, value)| argument(name, value)));
-    if options.record_field {
-        args.push("--field".to_owned());
+    for (name, value) in passed_on {
+        if let Some(value) = value {
+            set(&mut node, name, Some(value));
+        }
     }
-    let attached = attached(dataflow, file, folder);
-    args.extend(
-        attached
-            .iter()
-            .map(|file| argument("--attach", &file.to_string_lossy())),
-    );
-    let build = added::build(dataflow, RECORDER);
-    // It may be restarted, and continues in another file.
-    let mut node = added::node(dataflow, RECORDER, build);
-    node.args = args;
+    if options.record_field {
+        node.args.push("--field".to_owned());
+    }
     for source in &mut dataflow.nodes {
         if PLAYERS.contains(&source.executable()) {
             add_to_list(source, "--wait-for", RECORDER);
@@ -61,6 +54,16 @@ pub(crate) fn add(
     }
     dataflow.nodes.push(node);
     Ok(())
+}
+
+/// Creates a recorder that is not built, without an output. It may be restarted, and continues in
+/// another file.
+pub(super) fn node(dataflow: &Dataflow, file: &Path, folder: &Path) -> Node {
+    let mut node = added::node(dataflow, RECORDER, Vec::new());
+    let attached = attached(dataflow, file, folder).into_iter();
+    node.args
+        .extend(attached.map(|file| format!("--attach={}", file.display())));
+    node
 }
 
 fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow::Result<()> {
@@ -90,10 +93,6 @@ fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
     let descriptor = std::path::absolute(file).ok();
     let all = [descriptor, yaml, image].into_iter().flatten();
     all.filter(|file| file.is_file()).collect()
-}
-
-fn argument(option: &str, value: &str) -> String {
-    format!("{option}={value}")
 }
 
 #[cfg(test)]

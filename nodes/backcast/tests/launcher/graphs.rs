@@ -209,6 +209,13 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     assert_eq!(status["nodes"][0]["restarts"], 1);
     assert!(ask(&["status"]).1.contains("source               running"));
 
+    let (code, _, said) = ask(&["record", "start"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("there is no /bin/recorder"), "{said}");
+    let (code, _, said) = ask(&["record", "stop"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("nothing is being recorded"), "{said}");
+
     let (code, stdout, said) = ask(&["logs", "backcast"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(

@@ -42,10 +42,17 @@ pub(super) struct Member {
     pub(super) last_end: Option<ExitStatus>,
     /// Last line of standard error.
     pub(super) last_line: Arc<Mutex<String>>,
-    /// True if a user asked for a restart that is still due.
-    pub(super) wanted_anew: bool,
+    /// Request of a user that follows the end of the process.
+    pub(super) wanted: Option<Wanted>,
+    /// A sentence if it failed for good and the graph continues without it.
+    pub(super) given_up: Option<String>,
     /// True if the exit code of its last process says that it lost data.
     pub(super) lost_data: bool,
+}
+
+pub(super) enum Wanted {
+    Restart,
+    End,
 }
 
 pub(super) enum State {
@@ -70,7 +77,8 @@ impl Member {
             restarted: 0,
             last_end: None,
             last_line: Arc::default(),
-            wanted_anew: false,
+            wanted: None,
+            given_up: None,
             lost_data: false,
             node,
         })
@@ -132,8 +140,11 @@ impl Member {
         };
         self.lost_data = lost_data(status);
         self.last_end = Some(status);
-        if std::mem::take(&mut self.wanted_anew) {
-            self.state = State::Due(now);
+        if let Some(wanted) = self.wanted.take() {
+            self.state = match wanted {
+                Wanted::Restart => State::Due(now),
+                Wanted::End => State::Done,
+            };
             return Ok(true);
         }
         let ended = match how_ended(status) {
