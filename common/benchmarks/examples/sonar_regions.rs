@@ -9,11 +9,11 @@ use std::error::Error;
 use std::fmt;
 use std::path::PathBuf;
 
+use benchmarks::distinct;
 use clap::Parser;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior, Workspace};
-use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::program::VoteConfig;
 use engine::regions::{self, Echo, RegionConfig};
 use engine::scan::Scan;
@@ -214,7 +214,6 @@ fn tally(
     reading: Reading,
 ) -> Result<Tally, EngineError> {
     let (mut tally, mut workspace) = (Tally::default(), Workspace::default());
-    let mut peaks = peaks::Workspace::default();
     for (i, last) in drive.iter().enumerate() {
         // Skips scans before the first full window.
         if last.way_m < way_m {
@@ -227,15 +226,9 @@ fn tally(
         let scan = regions::scan_of(&ranges);
         let outcome = localizer.search_in(&mut workspace, &scan, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");
-        let input = PeakInput::of(outcome, localizer.frame());
-        let found = peaks.by_votes(&input, &PeakConfig::default());
-        let places = found.places.iter().take(PLACES);
+        let places = distinct(outcome, localizer.frame(), PLACES).into_iter();
         let is_right: Vec<bool> = places
-            .map(|place| {
-                place
-                    .map_from_laser
-                    .is_within(last.map_from_laser, RIGHT.0, RIGHT.1)
-            })
+            .map(|pose| pose.is_within(last.map_from_laser, RIGHT.0, RIGHT.1))
             .collect();
         tally.scans += 1;
         tally.echoes += echoes.len();

@@ -5,10 +5,13 @@
 
 pub mod baselines;
 pub mod counted;
+mod distinct;
 pub mod particles;
 pub mod scans;
 pub mod timing;
 pub mod worlds;
+
+pub use distinct::distinct;
 
 /// Side of a cell of every generated world, in metres.
 pub const RESOLUTION_M: f64 = 0.05;

@@ -13,7 +13,7 @@ use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::{CellRules, GridFrame};
 use crate::localizer::{self, Localizer, LocalizerConfig, Outcome, Prior};
 use crate::observation::Observation;
-use crate::peaks::{self, Judged, PeakConfig, PeakInput, Score};
+use crate::peaks::{self, Judged, PeakConfig, PeakInput};
 use crate::space::Space;
 
 /// A borrowed occupancy map.
@@ -113,8 +113,8 @@ pub struct Located<'w> {
     pub outcome: &'w Outcome,
     /// Places and verdict.
     pub places: &'w peaks::Places,
-    /// Beams of the scan as they were compared with the map; `None` if the votes alone decide.
-    pub ends: Option<&'w Ends>,
+    /// Beams of the scan as they were compared with the map.
+    pub ends: &'w Ends,
 }
 
 impl Workspace {
@@ -132,9 +132,9 @@ impl Workspace {
         self.peaks.classes()
     }
 
-    /// Beams of the last scan; `None` if the votes alone decide.
-    pub(crate) fn ends(&self, score: Score) -> Option<&Ends> {
-        self.peaks.judged_ends(score)
+    /// Beams of the last scan.
+    pub(crate) fn ends(&self) -> &Ends {
+        self.peaks.ends()
     }
 }
 

@@ -41,8 +41,8 @@ pub struct Located<'w> {
     pub places: &'w Places,
     /// Places in the form that is merged with results of other processes on other maps.
     pub found: &'w Found,
-    /// Beams of the scan as they were compared with that map; `None` if the votes alone decide.
-    pub ends: Option<&'w Ends>,
+    /// Beams of the scan as they were compared with that map.
+    pub ends: &'w Ends,
 }
 
 impl Workspace {
@@ -105,7 +105,7 @@ impl MapSet {
         for (map, (locator, workspace)) in (0..).zip(self.locators.iter().zip(maps.iter_mut())) {
             let how = (&all, has_others);
             found.push(locator.judge(workspace, scan, how, |outcome, judged| {
-                Found::on(map, outcome, judged)
+                Found::on(map, outcome.best_share(), judged)
             })?);
         }
         *merged = merge(&found, config);
@@ -115,7 +115,7 @@ impl MapSet {
             outcome: best.outcome(),
             places: &merged.places,
             found: &merged.found,
-            ends: best.ends(config.score),
+            ends: best.ends(),
         }))
     }
 

@@ -74,7 +74,7 @@ struct Seed {
 
 impl Seeds {
     /// Prepares the candidates. Those with numbers that are not finite or a negative weight are
-    /// dropped; if all weights are 0, as after a judgement by votes alone, all weigh the same.
+    /// dropped; if all weights are 0, all weigh the same.
     ///
     /// # Errors
     /// If no candidate is left.

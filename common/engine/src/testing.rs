@@ -1,5 +1,6 @@
 //! Random worlds for the tests of this crate.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use geometry::Pose;
@@ -29,6 +30,34 @@ const BEAMS: usize = if cfg!(miri) { 5 } else { 24 };
 
 /// Number of cells along the longer side of long grids: more steps than a byte can count.
 const LONG: Range<usize> = if cfg!(miri) { 260..270 } else { 400..900 };
+
+/// Ranges of a laser with one beam per degree all around, at the cell and heading (degrees) of a
+/// grid.
+pub(crate) fn ranges_at(
+    grid: &Grid,
+    resolution_m: f64,
+    (x, y, heading): (i64, i64, usize),
+) -> Vec<f32> {
+    let space = Space::new(360, resolution_m, grid.width(), grid.height()).unwrap();
+    let beams = (0..360).map(|beam| {
+        let direction = space.directions.get(heading + 180 + beam);
+        reference::range(grid, x, y, direction).map_or(f32::INFINITY, |steps| {
+            (f64::from(steps) / direction.steps_per_cell * resolution_m) as f32
+        })
+    });
+    beams.collect()
+}
+
+/// Scan with one beam per degree, all around if there are 360.
+pub(crate) fn scan_around(ranges: &[f32]) -> Scan<'_> {
+    Scan {
+        angle_min: -PI,
+        angle_increment: 1f64.to_radians(),
+        range_min_m: 0.0,
+        range_max_m: 30.0,
+        ranges,
+    }
+}
 
 /// Grids of 1 to [`SIDE`] cells a side, from empty to cluttered, with unknown cells that may block
 /// and are often in one large piece.

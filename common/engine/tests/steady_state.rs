@@ -225,18 +225,18 @@ fn the_second_stage_allocates_nothing() {
     let space = localizer.space();
     let search = |scan: Scan<'_>| localizer.search(&scan, &|| false).unwrap().unwrap();
     let outcomes: Vec<Outcome> = world.scans().map(search).collect();
-    let (mut ends, mut workspace) = (Ends::default(), peaks::Workspace::default());
+    let mut workspace = peaks::Workspace::default();
     let (config, mut next, mut candidates) = (PeakConfig::default(), 0, 0);
     let count = allocations(&world, |scan| {
         let outcome = &outcomes[next % outcomes.len()];
         next += 1;
         let input = PeakInput::of(outcome, FRAME);
         let beams = &localizer.config().votes.beams;
-        ends.find(scan, space, beams).unwrap();
-        let places = workspace.by_fit(&input, (&distance_field, &ends), &config);
+        let find = |ends: &mut Ends| ends.find(scan, space, beams);
+        let judged = workspace.judge(&input, &distance_field, &config, find);
+        let places = judged.unwrap().places;
         assert_ne!(places.verdict, Verdict::NoScan);
         candidates = candidates.max(places.places.len());
-        workspace.by_votes(&input, &config);
     });
     assert!(candidates > 32, "there is something to sort: {candidates}");
     assert_eq!(count, 0);

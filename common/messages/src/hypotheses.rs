@@ -30,7 +30,7 @@ pub struct HypothesesHeader {
     pub verdict: u32,
     /// Number of other places that fit about as well as the best; 0 if it is unique.
     pub alternatives: u32,
-    /// Probability of the best pose, 0..=1; from votes alone, its lead over the next.
+    /// Probability of the best pose, 0..=1.
     pub confidence: f32,
     /// Share of the beams' weight that agrees with the best pose, 0..=1.
     pub inlier_share: f32,
@@ -69,8 +69,7 @@ pub struct Hypothesis {
     /// Covariance of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
     /// Fit of the scan to the map at this pose, at most 1; for a place too far behind the best to
-    /// matter, an upper bound of the fit. From votes alone, the share of votes in the highest
-    /// possible.
+    /// matter, an upper bound of the fit.
     pub score: f32,
     /// Probability of the pose, 0..=1. The rest of the sum over all hypotheses is the probability
     /// of none of them.

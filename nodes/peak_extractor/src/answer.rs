@@ -1,6 +1,8 @@
 //! Core of the node: turns a message of `votes` into one of `hypotheses`.
 
 mod beams;
+#[cfg(test)]
+mod testing;
 mod together;
 
 use bytemuck::Zeroable;
@@ -51,7 +53,7 @@ pub struct Answer<'a> {
     /// Ids of the maps, indexed by the map numbers of places.
     pub map_ids: &'a [u64],
     pub beams_header: BeamsHeader,
-    /// Items of `beams`; empty if only votes are used.
+    /// Items of `beams`.
     pub beams: &'a [Beam],
     /// Frame whose poses the places are.
     pub target: Target,
@@ -59,7 +61,7 @@ pub struct Answer<'a> {
     pub frame: Option<GridFrame>,
 }
 
-/// Finds the places of a scan from its votes and, unless only votes are used, from the scan.
+/// Finds the places of a scan from its votes and from the scan.
 ///
 /// # Errors
 /// If the votes are rejected, see [`check`] and [`mount`], or their scan is not known; [`nothing`]
@@ -93,9 +95,7 @@ pub fn answer<'w>(
     } = workspace;
     let Judged { places, ends, .. } = maps[0].judge(header, &checked, scans, config)?;
     beams.clear();
-    if let Some(ends) = ends {
-        beams.extend(judged(ends, places));
-    }
+    beams.extend(judged(ends, places));
     let frame = checked.map.frame;
     Ok(said(
         header,
@@ -217,27 +217,24 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use engine::peaks::Score;
-    use messages::{MapHeader, Pose2, ScanHeader, Stamp};
+    use messages::{BeamFate, MapHeader, Pose2, ScanHeader, Stamp};
 
+    use super::testing::{cells, room, scans};
     use super::*;
 
-    /// Returns a map with cells of one metre, rotated by 90°: grid x is map y, grid y is -x.
-    fn maps() -> Maps {
+    /// Returns a map with these cells, rotated by 90°: grid x is map y, grid y is -x.
+    fn maps(cells: &[u8]) -> Maps {
         let mut maps = Maps::default();
         let map = MapHeader {
             map_id: 7,
-            width: 30,
-            height: 20,
-            resolution_m: 1.0,
             map_from_grid: Pose2 {
                 x: 0.0,
                 y: 0.0,
                 yaw: FRAC_PI_2,
             },
-            ..MapHeader::default()
+            ..room()
         };
-        maps.receive(&map, &[0; 30 * 20]).unwrap();
+        maps.receive(&map, cells).unwrap();
         maps
     }
 
@@ -286,16 +283,24 @@ mod tests {
     ];
 
     fn extract<'w>(header: &VotesHeader, workspace: &'w mut Workspace) -> Answer<'w> {
-        let by_votes = PeakConfig {
-            score: Score::Votes,
-            ..PeakConfig::default()
-        };
-        let known = (&maps(), &Scans::default());
-        answer(header, &VOTES, known, &by_votes, workspace).unwrap()
+        let known = (&maps(&cells()), &scans(header.stamp));
+        answer(header, &VOTES, known, &PeakConfig::default(), workspace).unwrap()
     }
 
     #[test]
     fn the_header_shows_the_best_place() {
+        let mut workspace = Workspace::default();
+        let answer = extract(&header(), &mut workspace);
+        let best = answer.hypotheses().next().unwrap();
+        let weights = answer.beams.iter().map(|beam| beam.weight);
+        let hits = answer
+            .beams
+            .iter()
+            .filter(|beam| beam.fate == BeamFate::Hit as u32);
+        let inlier_share = hits.map(|beam| beam.weight).sum::<f32>() / weights.sum::<f32>();
+        // Sums of numbers of 32 bits, added in another order.
+        assert!((answer.header.inlier_share - inlier_share).abs() < 1e-5);
+        assert!(inlier_share > 0.9, "{inlier_share}");
         let expected = HypothesesHeader {
             stamp: header().stamp,
             map_id: 7,
@@ -304,15 +309,14 @@ mod tests {
             extract_ns: 0,
             verdict: Verdict::Unique as u32,
             alternatives: 0,
-            confidence: 0.25,
-            inlier_share: 0.8,
+            confidence: best.probability,
+            inlier_share: answer.header.inlier_share,
             best: 100,
             highest_possible: 125,
             mount_known: 1,
             searched: 9,
         };
-        let mut workspace = Workspace::default();
-        assert_eq!(extract(&header(), &mut workspace).header, expected);
+        assert_eq!(answer.header, expected);
     }
 
     #[test]
@@ -323,15 +327,17 @@ mod tests {
         assert_eq!(hypotheses.len(), 2);
         let laser = Pose::from(hypotheses[0].map_from_laser);
         let base = Pose::from(hypotheses[0].map_from_base);
-        // The middle of cell (10, 5), and the base 0.75 m behind the laser, which looks along map
-        // y; up to a few rounding errors of numbers around ten.
-        assert!(laser.is_within(Pose::new(-5.5, 10.5, FRAC_PI_2), 1e-12, 1e-12));
-        assert!(base.is_within(Pose::new(-5.5, 9.75, FRAC_PI_2), 1e-12, 1e-12));
-        assert_eq!((hypotheses[0].score, hypotheses[0].intensity), (0.8, 100));
-        assert_eq!(hypotheses[0].support, 1);
-        // Rounding to a cell: its side squared over twelve.
-        let spread = hypotheses[1].covariance;
-        assert!((spread[0] - 1.0 / 12.0).abs() < 1e-12, "{spread:?}");
+        // The middle of cell (10, 5), from which the laser looks along map y; the fit finds it
+        // within a small part of a cell.
+        assert!(laser.is_within(Pose::new(-5.5, 10.5, FRAC_PI_2), 0.3, 0.02));
+        // The base is 0.75 m behind the laser, up to a few rounding errors of numbers around ten.
+        let behind = laser.then(Pose::new(-0.75, 0.0, 0.0));
+        assert!(base.is_within(behind, 1e-12, 1e-12));
+        assert!(hypotheses[0].score > 0.9, "{hypotheses:?}");
+        assert_eq!((hypotheses[0].intensity, hypotheses[0].support), (100, 1));
+        let spread = hypotheses[0].covariance;
+        // The deviation is less than half a cell.
+        assert!(spread[0] > 0.0 && spread[0] < 0.25, "{spread:?}");
     }
 
     #[test]
@@ -355,7 +361,7 @@ mod tests {
         let mut scans = Scans::default();
         let config = PeakConfig::default();
         let mut workspace = Workspace::default();
-        let known = (&maps(), &scans);
+        let known = (&maps(&[0; 30 * 20]), &scans);
         let unknown = answer(&header(), &VOTES, known, &config, &mut workspace);
         assert!(matches!(unknown, Err(PeakError::UnknownScan)));
         let scan = ScanHeader {
@@ -365,7 +371,7 @@ mod tests {
             ..Zeroable::zeroed()
         };
         scans.receive(&scan, &[1.0, 2.0]);
-        let known = (&maps(), &scans);
+        let known = (&maps(&[0; 30 * 20]), &scans);
         let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
         // The map is empty, so nothing fits.
         assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
@@ -382,7 +388,7 @@ mod tests {
                 best: 0,
                 ..header()
             };
-            let known = (&maps(), &Scans::default());
+            let known = (&maps(&[0; 30 * 20]), &Scans::default());
             let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
             let said = answer(&empty, &[], known, &config, &mut workspace).unwrap();
             let mut expected = nothing(&empty);

@@ -93,11 +93,12 @@ fn expected(searched: &Searched, frame: GridFrame) -> Places {
     let distance_field =
         DistanceField::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
     let space = Space::new(360, frame.resolution_m, 16, 9).unwrap();
-    let ends = Ends::new(&scan(&searched.ranges), &space, &BeamConfig::default()).unwrap();
+    let (scan, beams) = (scan(&searched.ranges), BeamConfig::default());
+    let find = |ends: &mut Ends| ends.find(&scan, &space, &beams);
     let input = PeakInput::of(&searched.outcome, frame);
     let mut workspace = peaks::Workspace::default();
-    let places = workspace.by_fit(&input, (&distance_field, &ends), &PeakConfig::default());
-    places.clone()
+    let judged = workspace.judge(&input, &distance_field, &PeakConfig::default(), find);
+    judged.unwrap().places.clone()
 }
 
 /// Neighbours of the node.

@@ -57,7 +57,7 @@ SETTINGS = [
         {"threads": 2, "floor_share": 0.9, "candidates": 16},
         ["--threads=2", "--floor-share=0.9", "--candidates=16"],
     ),
-    ({"score": "votes", "unknown_blocks": True}, ["--score=votes", "--unknown-blocks"]),
+    ({"least_score": 0.9, "unknown_blocks": True}, ["--least-score=0.9", "--unknown-blocks"]),
     ({"region": [(-20.0, -14.5), (20.25, 3)]}, ["--region=-20,-14.5 20.25,3"]),
     ({"headings_within": (math.radians(-90), math.radians(45))}, ["--headings-within=-90,45"]),
 ]

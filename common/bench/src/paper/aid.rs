@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use benchmarks::baselines::{
     Baseline, Estimate, MonteCarlo, MonteCarloConfig, RayCasting, Readings,
 };
+use benchmarks::distinct;
 use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
 use benchmarks::timing::cpu_ms;
 use benchmarks::worlds::{Kind, World};
@@ -15,10 +16,9 @@ use drawing::Scene;
 use engine::grid::GridFrame;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::particles::Candidate;
-use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::space::Space;
 use engine::taper::TaperShape;
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use plots::{Curve, CurvePoint, Curves};
 use statistics::SUCCESS;
 
@@ -29,6 +29,9 @@ use super::interval::{self, Interval};
 const NOISE: [u32; 3] = [2, 5, 10];
 const P_OVER_N: f64 = 0.10;
 const HEADINGS: u32 = 360;
+
+/// Number of distinct poses around which particles start, at most.
+const CANDIDATES: usize = 64;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -204,10 +207,15 @@ impl Bench {
     }
 
     fn candidates(&self, outcome: &Outcome) -> Vec<Candidate> {
-        let input = PeakInput::of(outcome, self.localizer.frame());
-        let mut workspace = peaks::Workspace::default();
-        let places = workspace.by_votes(&input, &PeakConfig::default());
-        places.places.iter().map(Candidate::from).collect()
+        let rounding_m = self.space.resolution_m / 2.0;
+        let rounding = self.space.directions.spacing() / 2.0;
+        let candidate = |map_from_target| Candidate {
+            map_from_target,
+            covariance: Covariance::from_deviations(rounding_m, rounding_m, rounding),
+            weight: 1.0,
+        };
+        let poses = distinct(outcome, self.localizer.frame(), CANDIDATES).into_iter();
+        poses.map(candidate).collect()
     }
 
     fn is_best_near(&self, outcome: &Outcome, scan: &SimulatedScan) -> bool {

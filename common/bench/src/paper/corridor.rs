@@ -1,6 +1,7 @@
 //! Section V: a robot with a laser in a corridor localizes at three places: the corridor
 //! of the University of Málaga in place of the paper's, whose recording is not public.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use clap::Parser;
@@ -8,8 +9,7 @@ use command_line::wrong_use;
 use drawing::Scene;
 use engine::grid::CellRules;
 use engine::localizer::Prior;
-use engine::peaks::Score;
-use geometry::Pose;
+use geometry::{Pose, wrap_angle};
 use offline::{Field, Options, Session, TakenScan, World, no_truths};
 use plots::Votes;
 use recording::Recording;
@@ -32,7 +32,7 @@ pub(super) struct Localized {
     /// Which scan of the recording, from 1.
     pub(super) scan: usize,
     truth: Pose,
-    /// By the votes alone, as the paper does it, and after the second stage.
+    /// The pose with the most votes, as the paper does it, and that after the second stage.
     by_votes: Pose,
     by_fit: Pose,
     field: Field,
@@ -105,33 +105,32 @@ fn locate(
     (number, scan): (usize, &TakenScan),
     truth: Pose,
 ) -> anyhow::Result<Localized> {
-    let [by_votes, by_fit] = [Score::Votes, Score::Fit].map(|score| {
-        let mut options = options.clone();
-        options.engine.peaks.score = score;
-        best_place((recording, &options), (number, scan))
-    });
-    let by_votes = by_votes?;
     let mut session = Session::open(recording, options, None)?;
-    session.ask(scan)?;
+    let answer = session.ask(scan)?.answer?;
+    let (most, best) = (
+        answer.outcome.found.votes.first(),
+        answer.places.places.first(),
+    );
+    let (Some(most), Some(best)) = (most, best) else {
+        return Err(plots::no_place(
+            recording.path(),
+            number as u64,
+            answer.places,
+        ));
+    };
+    let (most, by_fit) = (*most, best.map_from_laser);
+    let heading = f64::from(most.heading) * TAU / f64::from(answer.outcome.headings);
+    let yaw = wrap_angle(heading + answer.frame.map_from_grid.yaw);
     let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
-    let field = world.and_then(|world| world.field_at(&scan.borrowed(), by_votes.yaw))?;
+    let field = world.and_then(|world| world.field_at(&scan.borrowed(), yaw))?;
+    let (x, y) = (f64::from(most.x) + 0.5, f64::from(most.y) + 0.5);
     Ok(Localized {
         scan: number,
         truth,
-        by_votes,
-        by_fit: by_fit?,
+        by_votes: field.frame.map_from_cells(x, y, heading),
+        by_fit,
         field,
     })
-}
-
-fn best_place(
-    (recording, options): (&Recording, &Options),
-    (number, scan): (usize, &TakenScan),
-) -> anyhow::Result<Pose> {
-    let mut session = Session::open(recording, options, None)?;
-    let places = session.ask(scan)?.answer?.places;
-    let best = places.places.first().map(|place| place.map_from_laser);
-    best.ok_or_else(|| plots::no_place(recording.path(), number as u64, places))
 }
 
 /// A row for each place.

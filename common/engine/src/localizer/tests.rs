@@ -1,5 +1,5 @@
 use std::cell::Cell;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use geometry::Pose;
 use proptest::collection::vec;
@@ -9,9 +9,9 @@ use super::*;
 use crate::fit::{DistanceField, Ends};
 use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
-use crate::reference;
-use crate::scan::Scan;
-use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan, occupancy_of};
+use crate::testing::{
+    AnyScan, RESOLUTION_M, any_grid, any_scan, occupancy_of, ranges_at, scan_around as scan,
+};
 
 /// An L-shaped room with a pillar, without symmetry: every pose is distinguishable.
 const ROOM: [&str; 12] = [
@@ -38,28 +38,8 @@ fn localizer(prior: Prior) -> Localizer {
     Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
 }
 
-/// Ranges of a laser with one beam per degree all around at a pose of the grid.
 fn ranges(x: i64, y: i64, heading: usize) -> Vec<f32> {
-    let grid = grid(&ROOM);
-    let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
-    let beams = (0..360).map(|beam| {
-        let direction = space.directions.get(heading + 180 + beam);
-        reference::range(&grid, x, y, direction).map_or(f32::INFINITY, |steps| {
-            (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m) as f32
-        })
-    });
-    beams.collect()
-}
-
-fn scan(ranges: &[f32]) -> Scan<'_> {
-    let angle_increment = 1f64.to_radians();
-    Scan {
-        angle_min: -PI,
-        angle_increment,
-        range_min_m: 0.0,
-        range_max_m: 30.0,
-        ranges,
-    }
+    ranges_at(&grid(&ROOM), FRAME.resolution_m, (x, y, heading))
 }
 
 #[test]
@@ -143,7 +123,6 @@ fn a_scan_in_which_nothing_returned_has_no_votes() {
 #[derive(Default)]
 struct All {
     localizer: Workspace,
-    ends: Ends,
     peaks: peaks::Workspace,
 }
 
@@ -181,13 +160,10 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     };
     let outcome = outcome.unwrap().unwrap();
     let beams = &localizer.config().votes.beams;
-    all.ends.find(&scan, localizer.space(), beams).unwrap();
     let (input, peaks) = (PeakInput::of(outcome, frame), PeakConfig::default());
-    let by_votes = format!("{:?}", all.peaks.by_votes(&input, &peaks));
-    let by_fit = all
-        .peaks
-        .by_fit(&input, (&distance_field, &all.ends), &peaks);
-    Some(text + &format!("{outcome:?} {by_votes} {by_fit:?}"))
+    let find = |ends: &mut Ends| ends.find(&scan, localizer.space(), beams);
+    let judged = all.peaks.judge(&input, &distance_field, &peaks, find);
+    Some(text + &format!("{outcome:?} {:?}", judged.unwrap()))
 }
 
 proptest! {

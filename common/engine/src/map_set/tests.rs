@@ -7,13 +7,13 @@ use crate::fit::GridPose;
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{LocalizerConfig, Prior};
 use crate::locator::{LocatorConfig, OccupancyView};
-use crate::peaks::{PeakConfig, Score};
+use crate::peaks::PeakConfig;
 use crate::program::VoteConfig;
 use crate::scan::Scan;
 use crate::testing::{any_grid, any_scan, occupancy_of};
 
 /// Prepares a locator; `None` if the grid has no obstacle or no free cell.
-fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> Option<Locator> {
+fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig) -> Option<Locator> {
     let occupancy = occupancy_of(grid);
     let map = OccupancyView {
         frame: GridFrame {
@@ -30,10 +30,7 @@ fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> O
             votes,
             ..LocalizerConfig::default()
         },
-        peaks: PeakConfig {
-            score,
-            ..PeakConfig::default()
-        },
+        peaks: PeakConfig::default(),
     };
     Locator::new(map, config, Prior::None).ok()
 }
@@ -41,22 +38,16 @@ fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> O
 proptest! {
     #[test]
     fn a_set_of_one_map_answers_as_that_map_does(
-        grid in any_grid(), scan in any_scan(), by_votes: bool,
+        grid in any_grid(), scan in any_scan(),
     ) {
-        let score = if by_votes { Score::Votes } else { Score::Fit };
-        let Some(locator) = locator(&grid, 0.1, scan.config(), score) else { return Ok(()) };
+        let Some(locator) = locator(&grid, 0.1, scan.config()) else { return Ok(()) };
         let mut alone = locator::Workspace::default();
         let found = locator.locate(&mut alone, &scan.scan()).unwrap();
         let set = MapSet::new(vec![locator.clone()]);
         let mut together = Workspace::default();
         let all = set.locate_unless(&mut together, &scan.scan(), None, &|| false).unwrap().unwrap();
         prop_assert_eq!(all.outcome, found.outcome);
-        prop_assert_eq!(&all.places.places, &found.places.places);
-        prop_assert_eq!(&all.places.classes, &found.places.classes);
-        let said = |places: &Places| (places.verdict, places.alternatives, places.inlier_share);
-        prop_assert_eq!(said(all.places), said(found.places));
-        // By votes alone, confidences are computed from shares here and from votes there.
-        prop_assert!((all.places.confidence - found.places.confidence).abs() < 1e-12);
+        prop_assert_eq!(all.places, found.places);
         prop_assert_eq!(all.ends, found.ends);
     }
 
@@ -64,12 +55,12 @@ proptest! {
     fn alternatives_are_counted_by_scores_and_not_by_bounds(
         grid in any_grid(), scan in any_scan(),
     ) {
-        let Some(locator) = locator(&grid, 0.1, scan.config(), Score::Fit) else { return Ok(()) };
+        let Some(locator) = locator(&grid, 0.1, scan.config()) else { return Ok(()) };
         let set = MapSet::new(vec![locator.clone(); 2]);
         let mut workspace = Workspace::default();
         let found = set.locate_unless(&mut workspace, &scan.scan(), None, &|| false);
         let found = found.unwrap().unwrap();
-        let (ends, config) = (found.ends.unwrap(), locator.peaks());
+        let (ends, config) = (found.ends, locator.peaks());
         let mut scored = found.found.clone();
         for place in &mut scored.places {
             let pose = GridPose::of(locator.distance_field().frame, place.map_from_laser);
@@ -102,7 +93,7 @@ fn a_place_on_another_map_is_an_alternative() {
         range_max_m: 9.0,
         ranges: &ranges,
     };
-    let locator = locator(&grid, 0.1, VoteConfig::default(), Score::Fit).unwrap();
+    let locator = locator(&grid, 0.1, VoteConfig::default()).unwrap();
     let mut workspace = Workspace::default();
     let mut ask = |count| {
         let set = MapSet::new(vec![locator.clone(); count]);

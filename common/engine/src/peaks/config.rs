@@ -5,23 +5,10 @@ use crate::config::{parse_degrees, parse_length, parse_share};
 use crate::fit::FitConfig;
 use crate::votes::{DISTINCT_DEG, DISTINCT_M};
 
-/// Score by which the places are judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Score {
-    /// Fit of the scan to the map at the refined pose.
-    Fit,
-    /// Votes alone, the paper's method.
-    Votes,
-}
-
 /// Settings for distinct places and for the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct PeakConfig {
-    /// Score by which places are judged and ordered.
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Score::Fit))]
-    pub score: Score,
     /// Poses within this distance and `--same-place-deg` are one place,
     /// metres, 0..=2.
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.5, value_parser = parse_length))]
@@ -90,14 +77,6 @@ pub struct PeakConfig {
     /// a factor of e, 0.001..=1.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale))]
     pub score_scale: f64,
-    /// With `--score votes`: another place with at least this share of the best place's
-    /// votes makes the answer ambiguous, 0..=1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share))]
-    pub ambiguous_share: f64,
-    /// With `--score votes`: a best place with less than this share of the possible
-    /// votes has the verdict PoorFit, 0..=1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share))]
-    pub poor_fit_share: f64,
 }
 
 /// Parses a scale of scores, which is a divisor.
@@ -132,10 +111,7 @@ impl PeakConfig {
     #[must_use]
     pub fn of_each_map(&self) -> Self {
         PeakConfig {
-            max_hypotheses: match self.score {
-                Score::Fit => u32::MAX,
-                Score::Votes => self.max_hypotheses,
-            },
+            max_hypotheses: u32::MAX,
             ..*self
         }
     }
@@ -144,7 +120,6 @@ impl PeakConfig {
 impl Default for PeakConfig {
     fn default() -> Self {
         PeakConfig {
-            score: Score::Fit,
             same_place_m: 0.5,
             same_place_deg: 10.0,
             max_hypotheses: 64,
@@ -161,8 +136,6 @@ impl Default for PeakConfig {
             lead_scale: 0.025,
             even_score: 0.55,
             score_scale: 0.06,
-            ambiguous_share: 0.92,
-            poor_fit_share: 0.35,
         }
     }
 }

@@ -1,9 +1,6 @@
 //! Merges places on several maps, or found by several machines, into one answer.
 
-use messages::Verdict;
-
-use super::{Judged, Margin, PeakConfig, Place, Places, Score};
-use crate::localizer::Outcome;
+use super::{Judged, Margin, PeakConfig, Place, Places};
 use crate::votes::{VoteShare, is_close};
 
 /// Result on one map, or the merged result on several.
@@ -19,31 +16,20 @@ pub struct Found {
     pub leading_map: u32,
     /// Votes of its best pose.
     pub lead: VoteShare,
-    /// Largest share of the possible votes of a pose that was not collected, 0..=1.
-    pub unseen: f64,
 }
 
 impl Found {
-    /// Makes the result of a search on the map with this number.
+    /// Makes the result of a search on the map with this number from the votes of its best pose
+    /// and the places.
     #[must_use]
-    pub fn on(map: u32, outcome: &Outcome, judged: &Judged<'_>) -> Self {
-        let certified_floor = outcome.found.certified_floor;
-        Found::with((map, outcome.best_share()), certified_floor.into(), judged)
-    }
-
-    /// Does the same from the vote share of the best pose and the certified floor, if no more of
-    /// the search is known.
-    #[must_use]
-    pub fn with((map, lead): (u32, VoteShare), certified_floor: u32, judged: &Judged<'_>) -> Self {
+    pub fn on(map: u32, lead: VoteShare, judged: &Judged<'_>) -> Self {
         let places = judged.places.places.iter();
-        let unseen = certified_floor.saturating_sub(1);
         Found {
             places: places.map(|place| Place { map, ..*place }).collect(),
             margin: judged.margin,
             inlier_share: judged.places.inlier_share,
             leading_map: map,
             lead,
-            unseen: f64::from(unseen) / f64::from(lead.possible),
         }
     }
 
@@ -102,7 +88,6 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
         may_lack,
         ..all[best_of].margin
     };
-    let unseen = all.iter().map(|found| found.unseen).fold(0.0, f64::max);
     let mut merged = Places {
         places: places.into_iter().map(|(_, place)| place).collect(),
         inlier_share: all[best_of].inlier_share,
@@ -114,16 +99,9 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
         inlier_share: merged.inlier_share,
         leading_map: leading.leading_map,
         lead: leading.lead,
-        unseen,
     };
     if let Some(best) = merged.places.first().copied() {
-        match config.score {
-            Score::Fit => merged.judge_by_fit((best.score, margin), &mut Vec::new(), config),
-            Score::Votes => {
-                let unseen = unseen * f64::from(best.possible);
-                merged.judge_by_votes(best, margin.may_lack, unseen, config);
-            }
-        }
+        merged.judge((best.score, margin), &mut Vec::new(), config);
     }
     Merged {
         places: merged,
@@ -132,41 +110,10 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     }
 }
 
-impl Places {
-    /// Derives verdict, alternatives and confidence from the votes of the places, which may be on
-    /// several maps. If there is no second place, the next one has `unseen` votes on the map of the
-    /// best.
-    pub(super) fn judge_by_votes(
-        &mut self,
-        best: Place,
-        may_lack: bool,
-        unseen: f64,
-        config: &PeakConfig,
-    ) {
-        // Returns votes of one map on another; on the same map they stay as they are.
-        let on = |to: &Place, from: &Place| {
-            let votes = f64::from(from.intensity) * f64::from(to.possible);
-            votes / f64::from(from.possible.max(1))
-        };
-        let others = self.places[1..].iter();
-        let rivals = others.filter(|place| {
-            f64::from(place.intensity) >= on(place, &best) * config.ambiguous_share
-        });
-        self.alternatives = rivals.count() as u32;
-        let next = self.places.get(1).map_or(unseen, |next| on(&best, next));
-        self.confidence = (1.0 - next / f64::from(best.intensity)).clamp(0.0, 1.0);
-        self.verdict = match () {
-            () if best.score < config.poor_fit_share => Verdict::PoorFit,
-            () if self.alternatives > 0 || may_lack => Verdict::Ambiguous,
-            () => Verdict::Unique,
-        };
-        self.places.truncate(config.max_hypotheses as usize);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use geometry::{Covariance, Pose};
+    use messages::Verdict;
     use proptest::collection::vec;
     use proptest::prelude::*;
 
@@ -194,7 +141,6 @@ mod tests {
             inlier_share: 0.9,
             leading_map: map,
             lead: VoteShare::new(lead, 100),
-            unseen: 0.0,
         }
     }
 
@@ -220,15 +166,12 @@ mod tests {
         #[test]
         fn what_stands_alone_is_the_first_place_of_its_part(
             parts in vec((0u16..=100, 0.0..0.3f64, vec((0.0..1.0f64, 0u16..=100), 0..4)), 1..4),
-            by_votes: bool,
         ) {
             let parts: Vec<Found> = (0..).zip(parts).map(|(map, (lead, needed, mut places))| {
                 places.sort_by(|a, b| b.0.total_cmp(&a.0));
                 found(map, lead, needed, &places)
             }).collect();
-            let score = if by_votes { Score::Votes } else { Score::Fit };
-            let config = PeakConfig { score, ..PeakConfig::default() };
-            let merged = merge(&parts, &config);
+            let merged = merge(&parts, &PeakConfig::default());
             if let Some(best) = merged.found.places.first() {
                 let is_first = parts[merged.best_of].places.first() == Some(best);
                 prop_assert!(is_first || merged.places.verdict != Verdict::Unique);

@@ -3,13 +3,11 @@
 //! The votes give candidates, and the fit of the scan decides between them:
 //!
 //! ```text
-//! votes ─ summits ─┬─ by_votes ───────────────────────────┬─ places, verdict
-//!                  └─ by_fit ─ refined and judged again ──┘
+//! votes ─ summits ─ refined, scored ─ judge: places, verdict
 //! ```
 
-mod by_fit;
-mod by_votes;
 mod config;
+mod judge;
 mod likelihood;
 mod merged;
 pub mod sentence;
@@ -22,11 +20,14 @@ use nalgebra::Matrix3;
 use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
-pub(crate) use by_fit::{doubt_between, lead};
-pub use config::{PeakConfig, Score};
+pub use config::PeakConfig;
+pub(crate) use judge::{doubt_between, lead};
 pub use merged::{Found, Merged, merge};
 use sentence::PlaceSummary;
 use summits::Summit;
+
+/// Share of the best pose's votes from which a pose that the search did not reach may be as good.
+const RIVAL_SHARE: f64 = 0.92;
 
 /// Votes of one scan, and the data needed to interpret them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,10 +70,10 @@ impl<'a> PeakInput<'a> {
         }
     }
 
-    /// True if a pose that the search did not reach may have this share of the best one's votes.
-    fn may_lack(&self, share: f64) -> bool {
-        let unseen = self.certified_floor.saturating_sub(1);
-        self.cut && f64::from(unseen) >= f64::from(self.lead) * share
+    /// True if a pose that the search did not reach may be as good as the best one.
+    fn may_lack(&self) -> bool {
+        let left = self.certified_floor.saturating_sub(1);
+        self.cut && f64::from(left) >= f64::from(self.lead) * RIVAL_SHARE
     }
 
     /// Known heading in the grid's frame, in radians.
@@ -98,9 +99,9 @@ pub struct Place {
     /// Covariance of the pose, in the map frame.
     pub covariance: Covariance,
     /// Score of the fit there, at most 1; an upper bound for places too far behind the best to
-    /// matter. By votes alone, its share of the highest possible votes.
+    /// matter.
     pub score: f64,
-    /// Probability that the robot is there, 0..=1; 0 by votes alone.
+    /// Probability that the robot is there, 0..=1.
     pub probability: f64,
     /// Votes of the best pose from which the place was refined.
     pub intensity: u16,
@@ -121,14 +122,11 @@ pub struct Places {
     pub verdict: Verdict,
     /// Number of other places that fit about as well as the best.
     pub alternatives: u32,
-    /// Probability of the best place, 0..=1. By votes alone, the gap from its votes to those of the
-    /// next place, as a share of its votes; if no next place was collected, the gap to the floor of
-    /// the search.
+    /// Probability of the best place, 0..=1.
     pub confidence: f64,
-    /// Share of the beams, by weight, that end at an obstacle at the best place; by votes alone,
-    /// its score.
+    /// Share of the beams, by weight, that end at an obstacle at the best place.
     pub inlier_share: f64,
-    /// Class of each beam at the best place, in the order of bearings; empty by votes alone.
+    /// Class of each beam at the best place, in the order of bearings.
     pub classes: Vec<BeamClass>,
 }
 
@@ -290,8 +288,8 @@ pub struct Workspace {
 pub struct Judged<'w> {
     /// Distinct places and verdict.
     pub places: &'w Places,
-    /// Beams that were compared with the map; `None` if the votes alone decide.
-    pub ends: Option<&'w Ends>,
+    /// Beams that were compared with the map.
+    pub ends: &'w Ends,
     /// Lead over others that the best place needs.
     pub margin: Margin,
 }
@@ -303,15 +301,14 @@ impl Workspace {
         &self.places.classes
     }
 
-    /// Beams of the last scan; `None` if the votes alone decide.
+    /// Beams of the last scan.
     #[must_use]
-    pub fn judged_ends(&self, score: Score) -> Option<&Ends> {
-        (score == Score::Fit).then_some(&self.ends)
+    pub fn ends(&self) -> &Ends {
+        &self.ends
     }
 
-    /// Finds the places by the configured score: from the votes alone, or from the fit of the scan
-    /// to the map. `scan` is called in the latter case, to fill in the beams. The map must be that
-    /// of the votes; its cells may be finer, with the same origin.
+    /// Finds the places from the votes of a scan and from its fit to the map. `scan` fills in the
+    /// beams. The map must be that of the votes; its cells may be finer, with the same origin.
     ///
     /// # Errors
     /// The error of `scan`.
@@ -322,26 +319,15 @@ impl Workspace {
         config: &PeakConfig,
         scan: impl FnOnce(&mut Ends) -> Result<(), E>,
     ) -> Result<Judged<'_>, E> {
-        if config.score == Score::Votes {
-            let places = self.by_votes(input, config);
-            return Ok(Judged {
-                places,
-                ends: None,
-                margin: Margin {
-                    may_lack: input.may_lack(config.ambiguous_share),
-                    ..Margin::default()
-                },
-            });
-        }
         // The ends are taken out of the workspace while it is borrowed.
         let mut ends = std::mem::take(&mut self.ends);
         let found = scan(&mut ends).map(|()| {
-            self.by_fit(input, (distance_field, &ends), config);
+            self.find(input, (distance_field, &ends), config);
         });
         self.ends = ends;
         found.map(|()| Judged {
             places: &self.places,
-            ends: Some(&self.ends),
+            ends: &self.ends,
             margin: self.margin,
         })
     }

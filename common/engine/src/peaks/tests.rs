@@ -1,6 +1,55 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
+use crate::beams::BeamConfig;
+use crate::grid::{CellRules, drawn};
+use crate::space::Space;
+use crate::testing::{ranges_at, scan_around};
+
+const FRAME: GridFrame = GridFrame {
+    resolution_m: 0.1,
+    map_from_grid: Pose::new(0.0, 0.0, FRAC_PI_2),
+};
+
+/// A room in which every pose is distinguishable.
+const ROOM: [&str; 20] = [
+    "########################################",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#.................###..................#",
+    "#.................###..................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#.............##########################",
+    "#.............#.........................",
+    "#.............#.........................",
+    "#......##.....#.........................",
+    "#......##.....#.........................",
+    "#.............#.........................",
+    "#.............#.........................",
+    "###############.........................",
+];
+
+/// A hall that looks the same when it is turned by half.
+const HALL: [&str; 12] = [
+    "########################################",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "########################################",
+];
 
 fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
     Vote {
@@ -11,8 +60,21 @@ fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
     }
 }
 
-fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
-    Workspace::default().by_votes(input, config).clone()
+/// Places of a scan in a drawn building.
+fn places(rows: &[&str], ranges: &[f32], input: &PeakInput<'_>) -> Places {
+    let (width, height, occupancy) = drawn::occupancy(rows);
+    let sides = (width, height);
+    let field = DistanceField::new(FRAME, sides, &occupancy, CellRules::default()).unwrap();
+    let space = Space::new(360, FRAME.resolution_m, width, height).unwrap();
+    let (scan, beams) = (scan_around(ranges), BeamConfig::default());
+    let find = |ends: &mut Ends| ends.find(&scan, &space, &beams);
+    let mut workspace = Workspace::default();
+    let judged = workspace.judge(input, &field, &PeakConfig::default(), find);
+    judged.unwrap().places.clone()
+}
+
+fn ranges(rows: &[&str], at: (i64, i64, usize)) -> Vec<f32> {
+    ranges_at(&drawn::grid(rows), FRAME.resolution_m, at)
 }
 
 fn input(votes: &[Vote]) -> PeakInput<'_> {
@@ -25,93 +87,67 @@ fn input(votes: &[Vote]) -> PeakInput<'_> {
         has_others: false,
         headings: 360,
         known_heading: None,
-        frame: GridFrame {
-            resolution_m: 0.1,
-            map_from_grid: Pose::new(0.0, 0.0, FRAC_PI_2),
-        },
+        frame: FRAME,
     }
 }
 
 #[test]
 fn no_votes_are_no_scan() {
-    let places = by_votes(&input(&[]), &PeakConfig::default());
-    assert_eq!((places.verdict, places.places.len()), (Verdict::NoScan, 0));
+    let places = places(&ROOM, &[f32::INFINITY; 360], &input(&[]));
+    assert_eq!(places, Places::default());
+    assert_eq!(places.verdict, Verdict::NoScan);
 }
 
 #[test]
-fn votes_close_by_are_one_place_refined_to_its_centre() {
+fn votes_close_by_are_one_place_refined_to_the_pose_of_the_scan() {
     let votes = [
-        vote(10, 20, 359, 100),
-        vote(11, 20, 1, 100),
-        vote(10, 20, 1, 99),
-        vote(11, 20, 359, 99),
+        vote(6, 13, 41, 100),
+        vote(5, 12, 39, 99),
+        vote(7, 13, 40, 99),
+        vote(30, 12, 200, 60),
     ];
-    let places = by_votes(&input(&votes), &PeakConfig::default());
-    assert_eq!(
-        (places.verdict, places.places.len(), places.alternatives),
-        (Verdict::Unique, 1, 0)
-    );
+    let places = places(&ROOM, &ranges(&ROOM, (6, 12, 40)), &input(&votes));
+    assert_eq!((places.verdict, places.alternatives), (Verdict::Unique, 0));
     let best = places.places[0];
-    // Cells (11, 20.5) of a grid that is turned by a quarter: x is -y, y is x.
-    let centre = Pose::new(-2.05, 1.1, FRAC_PI_2);
+    // The middle of cell (6, 12) of a grid that is turned by a quarter: x is -y, y is x. Ranges end
+    // anywhere in the cells of walls.
+    let truth = Pose::new(-1.25, 0.65, FRAC_PI_2 + 40f64.to_radians());
     assert!(
-        best.map_from_laser.is_within(centre, 1e-9, 1e-9),
+        best.map_from_laser.is_within(truth, 0.05, 0.02),
         "{:?}",
         best.map_from_laser
     );
-    assert_eq!((best.score, best.support), (0.5, 4));
-    // Nothing else was found down to 85: the lead is at least 16 of 100.
-    assert!((places.confidence - 0.16).abs() < 1e-12);
-}
-
-#[test]
-fn the_covariance_lies_as_the_peak_does() {
-    let votes: Vec<Vote> = (8..=12).map(|x| vote(x, 20, 0, 100)).collect();
-    let places = by_votes(&input(&votes), &PeakConfig::default());
-    let ellipse = places.places[0].covariance.ellipse();
-    // Five cells in a row have variance 2, and rounding adds 1/12.
-    assert!((ellipse.major_m - 0.1 * (2.0f64 + 1.0 / 12.0).sqrt()).abs() < 1e-9);
-    assert!((ellipse.minor_m - 0.1 * (1.0f64 / 12.0).sqrt()).abs() < 1e-9);
-    assert!(
-        (ellipse.angle.sin().abs() - 1.0).abs() < 1e-9,
-        "the grid's x is the map's y"
-    );
+    assert_eq!((best.intensity, best.support), (100, 3));
+    assert!(best.score > 0.9, "{}", best.score);
+    assert_eq!(places.confidence, best.probability);
 }
 
 #[test]
 fn equal_places_are_ambiguous_and_weak_ones_fit_poorly() {
-    let votes = [
-        vote(10, 20, 0, 100),
-        vote(40, 20, 0, 95),
-        vote(10, 20, 180, 93),
-        vote(70, 70, 0, 86),
-    ];
-    let places = by_votes(&input(&votes), &PeakConfig::default());
+    let votes = [vote(10, 4, 0, 100), vote(29, 7, 180, 98)];
+    let taken = ranges(&HALL, (10, 4, 0));
+    let equal = places(&HALL, &taken, &input(&votes));
     assert_eq!(
-        (places.verdict, places.alternatives, places.places.len()),
-        (Verdict::Ambiguous, 2, 4)
+        (equal.verdict, equal.alternatives, equal.places.len()),
+        (Verdict::Ambiguous, 1, 2)
     );
-    assert!((places.confidence - 0.05).abs() < 1e-12);
-    let weak = PeakInput {
-        highest_possible: 1000,
-        ..input(&votes)
-    };
-    assert_eq!(
-        by_votes(&weak, &PeakConfig::default()).verdict,
-        Verdict::PoorFit
-    );
+    assert!((0.4..=0.6).contains(&equal.confidence), "{equal:?}");
+    let half: Vec<f32> = taken.iter().map(|range| range / 2.0).collect();
+    let weak = places(&HALL, &half, &input(&votes));
+    assert_eq!(weak.verdict, Verdict::PoorFit);
 }
 
 #[test]
 fn a_cut_search_is_unique_only_where_no_rival_can_have_been_missed() {
-    let votes = [vote(10, 20, 0, 100), vote(40, 20, 0, 60)];
+    let votes = [vote(6, 12, 40, 100), vote(30, 12, 200, 60)];
+    let ranges = ranges(&ROOM, (6, 12, 40));
     let verdict = |cut, certified_floor| {
         let input = PeakInput {
             cut,
             certified_floor,
             ..input(&votes)
         };
-        by_votes(&input, &PeakConfig::default()).verdict
+        places(&ROOM, &ranges, &input).verdict
     };
     // Rivals have at least 92 votes, and poses with one less than the floor may be missing.
     assert_eq!(verdict(true, 92), Verdict::Unique);
@@ -122,12 +158,13 @@ fn a_cut_search_is_unique_only_where_no_rival_can_have_been_missed() {
 
 #[test]
 fn a_known_heading_is_kept_as_given() {
-    let votes = [vote(10, 20, 30, 100)];
+    let votes = [vote(6, 12, 40, 100)];
+    let heading = FRAC_PI_2 + 41f64.to_radians();
     let known = PeakInput {
-        known_heading: Some(0.123),
+        known_heading: Some(heading),
         ..input(&votes)
     };
-    let best = by_votes(&known, &PeakConfig::default()).places[0];
-    assert_eq!(best.map_from_laser.yaw, 0.123);
+    let best = places(&ROOM, &ranges(&ROOM, (6, 12, 40)), &known).places[0];
+    assert_eq!(best.map_from_laser.yaw, heading);
     assert_eq!(best.covariance.0[(2, 2)], 0.0);
 }

@@ -52,8 +52,7 @@ pub(super) fn on_several<'w>(
         let mut checked = check_on_map(on_map, here, maps, lead)?;
         checked.input.has_others = by_map.len() > 1;
         let judged = workspace.judge(header, &checked, scans, &each)?;
-        let lead = (number, share(on_map));
-        found.push(Found::with(lead, on_map.certified_floor, &judged));
+        found.push(Found::on(number, share(on_map), &judged));
     }
     *merged = merge(&found, config);
     let best = &on_maps[merged.best_of];
@@ -61,9 +60,7 @@ pub(super) fn on_several<'w>(
     let best_map = &by_map[merged.best_of];
     let frame = maps.get(best_map.map_id)?.frame;
     beams.clear();
-    if let Some(ends) = best.peaks.judged_ends(config.score) {
-        beams.extend(judged(ends, &merged.places));
-    }
+    beams.extend(judged(best.peaks.ends(), &merged.places));
     let votes = VotesHeader {
         maps: header.maps,
         engine_ns: header.engine_ns,
@@ -77,10 +74,10 @@ pub(super) fn on_several<'w>(
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use engine::peaks::Score;
     use messages::{Hypothesis, MapHeader, MapSet, SearchOutcome, Stamp, Verdict};
 
     use super::super::answer;
+    use super::super::testing::{cells, room, scans};
     use super::*;
 
     const STAMP: Stamp = Stamp {
@@ -89,16 +86,10 @@ mod tests {
         counter: 3,
     };
 
-    /// Returns two maps of a set, 7 and 8.
+    /// Returns two maps of a set, 7 and 8, which look alike.
     fn maps() -> Maps {
-        let map = |map_id| MapHeader {
-            map_id,
-            width: 30,
-            height: 20,
-            resolution_m: 1.0,
-            ..MapHeader::default()
-        };
-        let cells = [0; 30 * 20];
+        let map = |map_id| MapHeader { map_id, ..room() };
+        let cells = cells();
         let set = MapSet {
             maps: vec![(map(7), &cells[..]), (map(8), &cells)],
             transitions: Vec::new(),
@@ -144,7 +135,7 @@ mod tests {
         parts: &[VotesHeader],
         votes: &[Vote],
     ) -> Result<(Verdict, Vec<Hypothesis>), PeakError> {
-        let mut scans = Scans::default();
+        let mut scans = scans(STAMP);
         scans.take_by_map(STAMP, parts);
         said_after(&scans, parts, votes)
     }
@@ -159,12 +150,8 @@ mod tests {
             total: votes.len() as u64,
             ..parts[0]
         };
-        let by_votes = PeakConfig {
-            score: Score::Votes,
-            ..PeakConfig::default()
-        };
-        let mut workspace = Workspace::default();
-        let answer = answer(&header, votes, (&maps(), scans), &by_votes, &mut workspace)?;
+        let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
+        let answer = answer(&header, votes, (&maps(), scans), &config, &mut workspace)?;
         let verdict = Verdict::from_code(answer.header.verdict).unwrap();
         Ok((verdict, answer.hypotheses().collect()))
     }
@@ -181,10 +168,12 @@ mod tests {
         let votes = [vote(10, 100), vote(20, 60), vote(3, 75)];
         let (verdict, found) = said(&parts, &votes).unwrap();
         assert_eq!(verdict, Verdict::Unique);
-        let found: Vec<_> = found.iter().map(|h| (h.map_id, h.intensity)).collect();
-        assert_eq!(found, [(7, 100), (8, 75), (7, 60)]);
+        let mut found: Vec<_> = found.iter().map(|h| (h.map_id, h.intensity)).collect();
+        assert_eq!(found[0], (7, 100));
+        found.sort_unstable();
+        assert_eq!(found, [(7, 60), (7, 100), (8, 75)]);
         let even = [on_map(7, 1, 100), on_map(8, 1, 99)];
-        let (verdict, _) = said(&even, &[vote(10, 100), vote(3, 99)]).unwrap();
+        let (verdict, _) = said(&even, &[vote(10, 100), vote(10, 99)]).unwrap();
         assert_eq!(verdict, Verdict::Ambiguous, "on another map");
     }
 

@@ -94,10 +94,6 @@ class Settings(TypedDict, total=False):
     # than this, about, megabytes of 10⁶ bytes, 1..=1000000; by default none is.
     memory_limit: int | None
 
-    # By what places are judged and ordered. "fit": By how well the scan fits the map at the
-    # refined pose; "votes": By the votes alone: the paper's method. Default: "fit".
-    score: Literal["fit", "votes"]
-
     # Poses within this distance and same_place_deg are one place, metres, 0..=2. Default: 0.5.
     same_place_m: float
 
@@ -181,14 +177,6 @@ class Settings(TypedDict, total=False):
     # By each such score above that, none becomes less likely by a factor of e, 0.001..=1.
     # Default: 0.06.
     score_scale: float
-
-    # With `score="votes"`: another place with at least this share of the best one's votes makes
-    # the answer ambiguous, 0..=1. Default: 0.92.
-    ambiguous_share: float
-
-    # With `score="votes"`: a best place with less than this share of the votes that are
-    # possible fits poorly, 0..=1. Default: 0.35.
-    poor_fit_share: float
 
 
 class TrackerSettings(Settings, total=False):

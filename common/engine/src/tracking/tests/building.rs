@@ -80,10 +80,12 @@ impl Building {
         let outcome = self.localizer.search(&self.scan(ranges), &|| false);
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
-        let ends = self.ends_of(ranges);
         let mut workspace = peaks::Workspace::default();
-        let fit = (&self.distance_field, &ends);
-        let places = workspace.by_fit(&input, fit, &PeakConfig::default());
+        let beams = BeamConfig::default();
+        let find = |ends: &mut Ends| ends.find(&self.scan(ranges), &self.space, &beams);
+        let config = PeakConfig::default();
+        let judged = workspace.judge(&input, &self.distance_field, &config, find);
+        let places = judged.unwrap().places;
         let target = Target::of(None, false);
         let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();

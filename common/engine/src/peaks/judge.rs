@@ -1,5 +1,4 @@
-//! Places judged by the fit of the scan: the candidates of the votes are refined, judged again and
-//! sorted.
+//! Judging by the fit of the scan: the candidates of the votes are refined, scored and sorted.
 
 use std::cmp::Ordering;
 
@@ -25,14 +24,13 @@ const NEGLIGIBLE: f64 = 10.0;
 const ELSEWHERE: f64 = 2.0;
 
 impl Workspace {
-    /// Finds the places from the votes of a scan and from the scan itself, which must be of the
-    /// same map. Its grid may be finer than that of the votes, with the same origin.
-    pub fn by_fit(
+    /// Fills in the places, from the votes of a scan and its beams.
+    pub(super) fn find(
         &mut self,
         input: &PeakInput<'_>,
         (distance_field, ends): (&DistanceField, &Ends),
         config: &PeakConfig,
-    ) -> &Places {
+    ) {
         let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
         let wanted = config.max_candidates as usize;
         let most = (wanted, most_candidates(wanted, input.frame.resolution_m));
@@ -45,7 +43,7 @@ impl Workspace {
         self.refined.extend(places.enumerate());
         self.places.clear();
         self.margin = Margin {
-            may_lack: input.may_lack(config.ambiguous_share),
+            may_lack: input.may_lack(),
             ..Margin::default()
         };
         let grid_pose = |place: &Place| GridPose::of(distance_field.frame, place.map_from_laser);
@@ -77,16 +75,15 @@ impl Workspace {
             }
             self.refined.sort_unstable_by(by_score);
             keep_distinct(&self.refined, &mut found.places, config);
-            found.judge_by_fit((best.score, self.margin), &mut self.leads, config);
+            found.judge((best.score, self.margin), &mut self.leads, config);
         }
-        &self.places
     }
 }
 
 impl Places {
     /// Derives verdict, alternatives and probabilities from the scores of the places, and keeps as
     /// many places as requested. `margin` is the lead that the best place needs to be unique.
-    pub(super) fn judge_by_fit(
+    pub(super) fn judge(
         &mut self,
         (best, margin): (f64, Margin),
         leads: &mut Vec<f64>,
