@@ -18,6 +18,7 @@ pub mod network;
 pub mod python;
 pub mod recorded;
 pub mod robot;
+pub mod schemas;
 pub mod world;
 
 use std::fs::File;

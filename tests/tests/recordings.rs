@@ -16,6 +16,7 @@ use recording::{Kind, Message, Recording};
 use tempfile::TempDir;
 use tests::executables;
 use tests::recorded::{graph, messages, record};
+use tests::schemas::assert_follows;
 use tests::world::World;
 
 /// Topics whose messages contain durations or times of sending.
@@ -227,12 +228,14 @@ fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
         assert_eq!(status.code(), Some(0), "{args:?}: {said}");
         printed
     };
-    start(&["regress", world.folder.to_str().unwrap()]);
+    let printed = start(&["regress", "--json", world.folder.to_str().unwrap()]);
+    assert_follows("regress", &printed);
     let descriptor = descriptor.to_str().unwrap();
     let printed = start(&["run", descriptor, "--json", "--rate", "max"]);
     let of_scan = |line: &&str| {
-        let line: serde_json::Value = serde_json::from_str(line).unwrap();
-        line["stamp_ns"].is_i64()
+        let is_of_scan = !line.starts_with(r#"{"schema":2,"summary""#);
+        assert_follows(if is_of_scan { "run" } else { "run_summary" }, line);
+        is_of_scan
     };
     assert_eq!(printed.lines().filter(of_scan).count(), 37, "{printed}");
 }

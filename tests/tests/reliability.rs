@@ -16,6 +16,7 @@ use recording::{Message, Recording};
 use serde_json::{Value, json};
 use tests::live::{Live, files_of};
 use tests::needs::Need;
+use tests::schemas::assert_follows;
 use transport::testing::{OwnFileSystem, wait_for_health};
 use transport::{Graph, GraphName, monotonic_ns};
 
@@ -154,6 +155,7 @@ fn a_graph_under_faults_meets_its_guarantees() {
         .output()
         .unwrap();
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_follows("soak", &report.to_string());
     assert_eq!(report["failures"], json!([]), "{report}");
     assert_eq!(report["leftovers"], json!([]), "{report}");
     assert_eq!(report["wrong"], 0, "{report}");

@@ -14,3 +14,9 @@ mod scope;
 mod text;
 
 pub use command::{Config, NOTES, run};
+
+/// Schemas of what the command prints.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    vec![json::schema::of_object::<row::Row>("bench")]
+}

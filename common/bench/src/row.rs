@@ -1,11 +1,12 @@
 //! What is reported of one method in one case.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::measure::Measured;
 
 /// One line of JSON, and one of the table.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Row {
     pub(super) table: &'static str,
     pub(super) method: &'static str,

@@ -8,3 +8,19 @@ mod sequence;
 mod text;
 mod trust;
 mod truths;
+
+/// Schemas of what the commands print.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    use json::schema::of_object;
+    use outcomes::TotalLine;
+
+    vec![
+        of_object::<locate::Object>("locate"),
+        of_object::<evaluate::Evaluation>("evaluate"),
+        of_object::<TotalLine<'_, evaluate::Evaluation>>("evaluate_total"),
+        of_object::<sequence::Figures>("evaluate_sequence"),
+        of_object::<TotalLine<'_, sequence::Figures>>("evaluate_sequence_total"),
+        of_object::<sequence::StressFigures>("evaluate_stress"),
+    ]
+}

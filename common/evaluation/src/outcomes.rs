@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use command_line::output;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Options about what is printed and written of the outcomes.
@@ -33,13 +34,15 @@ pub(crate) struct ReportOptions {
     pub(crate) total: bool,
 }
 
-/// Returns the line of JSON for the figures of all files.
+/// Line of JSON for the figures of all files.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct TotalLine<'a, T> {
+    total: &'a T,
+}
+
+/// Formats [`TotalLine`].
 pub(crate) fn total_line(total: &impl Serialize) -> String {
-    #[derive(Serialize)]
-    struct Line<'a, T> {
-        total: &'a T,
-    }
-    json::object(&Line { total }) + "\n"
+    json::object(&TotalLine { total }) + "\n"
 }
 
 /// Outcomes of the files so far.

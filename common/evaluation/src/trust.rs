@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::text::{percent, share};
@@ -10,7 +11,7 @@ use crate::text::{percent, share};
 const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
 
 /// Results whose best place had a probability in one range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Said {
     /// The range: more than `from`, at most `to`.
     pub(crate) from: f64,

@@ -1,13 +1,17 @@
 //! Output of JSON objects for programs, each with the version of its schema (docs/json.md).
 
+pub mod schema;
+
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Version of the schemas of all objects: increased when a field changes its meaning or is removed,
 /// but not when one is added.
 pub const SCHEMA: u32 = 2;
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Versioned<'a, T> {
+    #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     #[serde(flatten)]
     object: &'a T,

@@ -9,3 +9,16 @@ mod installed;
 pub mod run;
 
 pub use installed::node;
+
+/// Schemas of what the commands print.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    use json::schema::of_object;
+
+    vec![
+        of_object::<pose_table::Row>("run"),
+        of_object::<run::SummaryLine<'_>>("run_summary"),
+        of_object::<run::control::Status>("status"),
+        of_object::<control::LogLine>("logs"),
+    ]
+}

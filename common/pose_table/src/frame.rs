@@ -1,10 +1,11 @@
 //! Frame whose pose is printed. Pure.
 
 use messages::Pose2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The base, or the laser where its mount is not known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Frame {
     Base,

@@ -3,6 +3,7 @@
 use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Pose2, Verdict};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frame::Frame;
@@ -10,7 +11,7 @@ use super::frame::Frame;
 pub(super) const NS_PER_MS: f64 = 1e6;
 
 /// One scan and its answer. Fields of the pose are `None` without a pose.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Line {
     /// Time of the measurement, in nanoseconds since 1970; in JSON it is that of the [`Row`].
     ///
@@ -28,6 +29,7 @@ pub struct Line {
     /// Heading in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
     /// Pose of the laser in the map, in metres and radians.
+    #[schemars(with = "Option<json::schema::Pose>")]
     pub map_from_laser: Option<Pose2>,
     /// Fit of the scan to the map at the pose, at most 1.
     pub score: Option<f32>,

@@ -3,13 +3,14 @@
 
 use geometry::{Covariance, ELLIPSE_95};
 use messages::{Pose2, PoseHeader, TrackState};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frame::Frame;
 use super::line::{Line, NS_PER_MS, number, seconds, with_words};
 
 /// The tracker's pose at one scan. Fields of the pose are `None` without a pose.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PoseLine {
     /// Time of the measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
@@ -26,6 +27,7 @@ pub struct PoseLine {
     /// Heading in the map, in degrees counter-clockwise.
     pub heading_deg: Option<f64>,
     /// Pose of the laser in the map, in metres and radians.
+    #[schemars(with = "Option<json::schema::Pose>")]
     pub map_from_laser: Option<Pose2>,
     /// Standard deviation of the position along the long axis of its ellipse, in metres.
     pub deviation_m: Option<f64>,
@@ -44,7 +46,7 @@ pub struct PoseLine {
 }
 
 /// The pose of a scan, and the answer to the scan alone; either may be missing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Row {
     /// Time of the measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,

@@ -6,3 +6,12 @@ pub mod doctor;
 mod each;
 pub mod info;
 pub mod simulate;
+
+/// Schemas of what the commands print.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    vec![
+        json::schema::of_object::<info::Contents>("info"),
+        json::schema::of_object::<doctor::Report>("doctor"),
+    ]
+}

@@ -3,6 +3,7 @@
 use messages::{
     HypothesesHeader, Hypothesis, PoseHeader, TrackReason, TrackState, Verdict, VotesHeader,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -17,7 +18,7 @@ pub(super) struct Expected {
 
 /// Result of the graph for one scan. Integers must be exactly equal; the refined pose and the
 /// scores may differ by the rounding of other math libraries.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub(super) struct Answer {
     pub(super) stamp_ns: i64,
     pub(super) best: u32,
@@ -41,7 +42,7 @@ pub(super) struct Answer {
 }
 
 /// Result of the tracker for a scan.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub(super) struct TrackedPose {
     pub(super) state: String,
     pub(super) reason: String,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail};
 use command_line::{names, wrong_use};
 use recording::Recording;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::answer::{Answer, Expected};
@@ -18,14 +19,17 @@ const EXPECTATION: &str = "expected.json";
 /// Version of the expectation's format: increased when a value changes its meaning.
 const VERSION: u32 = 1;
 
-/// Content of an expectation: with its version, or the bare list of release 0.1.0.
-#[derive(Deserialize)]
+/// Content of an expectation.
+#[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
-enum Expectation {
+pub(super) enum Expectation {
     Versioned {
         version: u32,
+        #[schemars(with = "Vec<Answer>")]
         answers: Vec<Expected>,
     },
+    /// As release 0.1.0 wrote it.
+    #[schemars(skip)]
     Bare(Vec<Expected>),
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use geometry::Pose;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use statistics::SUCCESS;
@@ -88,7 +89,7 @@ const TRACKED: [(&str, Rule); 7] = [
     ("pose.probability", Rule::Share),
 ];
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub(super) struct Difference {
     pub(super) stamp_ns: i64,
     /// Name of the value, or "scan" if results are missing or added.

@@ -13,3 +13,12 @@ mod object;
 mod play;
 
 pub use command::{Config, NOTES, run};
+
+/// Schemas of what the command prints, and of the file of a case.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    vec![
+        json::schema::of_object::<object::Object<'_>>("regress"),
+        json::schema::of_file::<case::Expectation>("expected"),
+    ]
+}

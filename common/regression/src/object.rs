@@ -1,11 +1,12 @@
 //! Outcome of a recording, as JSON. Pure.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::compare::Difference;
 use super::junit::Outcome;
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Object<'a> {
     /// Name of the recording among the others.
     case: &'a str,

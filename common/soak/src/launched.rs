@@ -11,6 +11,7 @@ use geometry::Pose;
 use messages::Pose2;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A line of the launcher's output.
@@ -37,7 +38,7 @@ pub(super) struct SentPose {
 }
 
 /// Counts of the summary.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, serde::Serialize, JsonSchema)]
 pub(super) struct Losses {
     pub(super) scans: u64,
     pub(super) answered: u64,

@@ -18,3 +18,9 @@ mod tally;
 mod usage;
 
 pub use command::{Config, NOTES, run};
+
+/// Schemas of what the command prints.
+#[must_use]
+pub fn schemas() -> Vec<json::schema::Named> {
+    vec![json::schema::of_object::<report::Report>("soak")]
+}

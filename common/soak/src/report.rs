@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::launched::Losses;
@@ -10,7 +11,7 @@ use super::tally::{FaultFigures, Gap, PoseFigures};
 use super::usage::{Span, Usage};
 
 /// All figures of a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Report {
     /// Duration of the run.
     pub(super) seconds: f64,

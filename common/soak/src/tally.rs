@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use geometry::Pose;
 use messages::TrackState;
+use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Distribution, SUCCESS, Tail};
 
@@ -39,7 +40,7 @@ pub(super) struct Tally {
 }
 
 /// A Unique pose that is wrong.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Wrong {
     /// Stamp of its scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
@@ -66,7 +67,7 @@ struct FaultEffect {
 }
 
 /// Effect of one kind of fault.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,
     pub(super) times: u64,
@@ -79,14 +80,14 @@ pub(super) struct FaultFigures {
 }
 
 /// Duration in seconds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Gap {
     pub(super) median: Option<f64>,
     pub(super) max: Option<f64>,
 }
 
 /// Figures about poses.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct PoseFigures {
     /// Number of poses of scans, in any state.
     pub(super) poses: u64,

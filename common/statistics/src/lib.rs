@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 
 use geometry::{Covariance, Pose};
 use messages::Verdict;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Error in metres and degrees up to which a pose is a success.
@@ -81,7 +82,7 @@ impl Distribution {
 }
 
 /// Two percentiles of a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tail {
     /// Half of the values are at or below it.
     pub p50: Option<f64>,
@@ -90,7 +91,7 @@ pub struct Tail {
 }
 
 /// Two percentiles of an error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Spread {
     /// Half of the values are at or below it.
     pub median: Option<f64>,
@@ -187,7 +188,7 @@ fn within(a: Pose, b: Pose, (metres, degrees): (f64, f64)) -> bool {
 }
 
 /// Accuracy over all results; shares are 0..=1 of `truths`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Figures {
     /// Number of results with a known truth.
     pub truths: u64,

@@ -3,6 +3,7 @@
 use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;
+use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
@@ -80,8 +81,8 @@ impl Total {
 }
 
 /// Figures of one file or of all; shares are 0..=1 of `truths`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Evaluation {
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub(crate) struct Evaluation {
     /// The file, as given by the user.
     pub(super) bag: String,
     pub(super) map_cells: u64,
@@ -120,7 +121,7 @@ pub(super) struct Evaluation {
     pub(super) probabilities: Vec<Said>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Times {
     pub(super) median: Option<f64>,
     pub(super) p90: Option<f64>,

@@ -12,3 +12,4 @@ mod memory;
 mod table;
 
 pub use command::{Config, NOTES, run};
+pub(crate) use judge::Evaluation;

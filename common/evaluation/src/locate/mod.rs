@@ -9,3 +9,4 @@ mod particles;
 mod row;
 
 pub use command::{Config, run};
+pub(crate) use object::Object;

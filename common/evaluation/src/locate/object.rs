@@ -9,12 +9,13 @@ use engine::peaks::Place;
 use geometry::Pose;
 use messages::Verdict;
 use offline::{Answer, KnownMap, Reply, TakenScan};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::particles::Particles;
 
-#[derive(Debug, Serialize)]
-pub(super) struct Object {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Object {
     /// Time of measurement, in nanoseconds since 1970.
     stamp_ns: i64,
     /// The map's id in hexadecimal, as in logs: JSON numbers cannot hold 64 bits safely.
@@ -45,7 +46,7 @@ pub(super) struct Object {
 }
 
 /// Header of the topic `votes`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Votes {
     best: u16,
     floor: u16,
@@ -64,7 +65,7 @@ struct Votes {
 }
 
 /// Number of beams that voted, by their end relative to the map.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Beams {
     /// At an obstacle.
     hit: usize,
@@ -77,7 +78,7 @@ struct Beams {
 }
 
 /// A pose `map_from_laser` in metres and radians, with its uncertainty.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Hypothesis {
     /// Name of its map, if several maps are searched; else null.
     map: Option<String>,
@@ -92,6 +93,7 @@ struct Hypothesis {
     intensity: u16,
     support: u64,
     /// Pose of the base, if the laser's mount is known.
+    #[schemars(with = "Option<json::schema::Pose>")]
     map_from_base: Option<Pose>,
 }
 

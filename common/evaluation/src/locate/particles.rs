@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use engine::particles::{self, Candidate};
 use geometry::Pose;
 use offline::{Reply, TakenScan};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -25,11 +26,12 @@ pub(super) struct ParticlesOptions {
 }
 
 /// Particles of a scan; empty if the scan has no place.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Particles {
     /// Frame of the poses: `base`, or `laser` if the mount is not known.
     of: &'static str,
     /// In the map, metres and radians; all have the same weight.
+    #[schemars(with = "Vec<json::schema::Pose>")]
     poses: Vec<Pose>,
 }
 

@@ -2,6 +2,7 @@
 //! alignment, in the map's frame.
 
 use geometry::Pose;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Errors of each pose with a known truth, of one drive or of several.
@@ -13,7 +14,7 @@ pub(super) struct Samples {
 }
 
 /// Figures of these errors; `None` for an error without samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Errors {
     /// Number of poses compared.
     pub(super) poses: usize,
@@ -26,7 +27,7 @@ pub(super) struct Errors {
     pub(super) rpe_deg: Option<Spread>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Spread {
     /// Root mean square error.
     pub(super) rmse: f64,

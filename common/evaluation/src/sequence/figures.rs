@@ -1,5 +1,6 @@
 //! Figures of one drive.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Distribution, Spread};
 
@@ -38,8 +39,8 @@ impl Judged {
 }
 
 /// Figures of one drive, or of several. Shares are 0..=1; docs/tracking.md explains each.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Figures {
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub(crate) struct Figures {
     pub(super) bag: String,
     /// Number of scans with a true pose.
     pub(super) truths: u64,

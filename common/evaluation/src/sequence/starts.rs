@@ -1,7 +1,10 @@
 //! Starts the tracker at many scans of a drive, without an initial pose.
 
+use std::collections::BTreeMap;
+
 use engine::tracking::{MIN_BEAMS, TrackingConfig};
 use offline::World;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::drive::Moment;
@@ -51,8 +54,10 @@ impl Starts {
 }
 
 /// Shares of the starts, by metres after the start.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct After(pub(super) Vec<(f64, Option<f64>)>);
+#[derive(Debug, Clone, PartialEq, JsonSchema)]
+pub(super) struct After(
+    #[schemars(with = "BTreeMap<String, Option<f64>>")] pub(super) Vec<(f64, Option<f64>)>,
+);
 
 impl After {
     /// Shares of the judged starts, for the distances of [`AFTER_M`].

@@ -8,6 +8,7 @@ use std::{
 use clap::Args;
 use command_line::stdout::print;
 use messages::{LogHeader, LogLevel, topic};
+use schemars::JsonSchema;
 use serde::Serialize;
 use transport::{Flow, Graph, GraphName, is_launched};
 
@@ -91,7 +92,7 @@ pub fn logs(config: &LogsConfig) -> anyhow::Result<ExitCode> {
 }
 
 /// A line of a node's log.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LogLine {
     /// Time of logging, in nanoseconds since 1970.
     pub wall_ns: i64,

@@ -14,6 +14,7 @@ use std::{
 };
 
 use anyhow::Context;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use transport::Waker;
 
@@ -52,7 +53,7 @@ pub enum Answer {
     Refused(String),
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Status {
     pub graph: String,
     /// Process id of the launcher.
@@ -70,7 +71,7 @@ pub struct Status {
 }
 
 /// Recording of the graph.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Recording {
     /// File that is being written; `None` while nothing is recorded.
     pub file: Option<String>,
@@ -80,7 +81,7 @@ pub struct Recording {
     pub refused: Option<String>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NodeStatus {
     /// Id in the descriptor.
     pub id: String,

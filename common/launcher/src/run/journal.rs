@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
 use pose_table::{Frame, Line, Row, Rows};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{
@@ -14,6 +15,12 @@ use super::{
     summary::Summary,
 };
 use crate::control::LogLine;
+
+/// Last line of a run in JSON.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct SummaryLine<'a> {
+    summary: &'a Summary,
+}
 
 pub(crate) struct Journal {
     pub report: Report,
@@ -117,15 +124,11 @@ impl Journal {
         wanted: bool,
         patience: Option<Duration>,
     ) -> anyhow::Result<Summary> {
-        #[derive(Serialize)]
-        struct Last<'a> {
-            summary: &'a Summary,
-        }
         let summary = self.report.summary();
         let rest = self.rows.as_mut().map(Rows::finish);
         self.print(&rest.unwrap_or_default());
         if wanted {
-            let last = Last { summary: &summary };
+            let last = SummaryLine { summary: &summary };
             let text = shown(self.json, &last, |last| last.summary.text());
             self.output.line(text);
         }

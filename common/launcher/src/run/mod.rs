@@ -33,6 +33,7 @@ pub mod tracker;
 mod tracking;
 mod watch;
 
+pub(crate) use journal::SummaryLine;
 pub use launch::run;
 pub use options::{Config, Options};
 pub(crate) use process::{executable, not_started};

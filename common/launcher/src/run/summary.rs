@@ -2,6 +2,7 @@
 
 use messages::TrackState;
 use pose_table::number;
+use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{CLOSE_SUCCESS, Figures, SUCCESS, Tail};
 
@@ -16,7 +17,7 @@ const STATES: [TrackState; 4] = [
 ];
 
 /// Figures of a run. Times are in milliseconds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Summary {
     /// Scans that entered the graph.
     pub scans: u64,

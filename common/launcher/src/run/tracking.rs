@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use geometry::Pose;
 use messages::{PoseHeader, TrackState, Verdict};
+use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Accuracy, Answer, Distribution, Figures, Tail};
 
@@ -19,7 +20,7 @@ pub(crate) struct Tracking {
 }
 
 /// The tracker's figures of a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct TrackingFigures {
     /// Scans that the tracker answered, including those without a pose.
     pub scans: u64,

@@ -7,6 +7,7 @@ use std::time::Duration;
 use command_line::{LOST_DATA, stdout};
 use offline::TopicOptions;
 use recording::Recording;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bands;
@@ -58,8 +59,8 @@ pub struct Config {
 }
 
 /// Findings for one file.
-#[derive(Debug, Serialize)]
-struct Report {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Report {
     recording: String,
     findings: Vec<Finding>,
 }

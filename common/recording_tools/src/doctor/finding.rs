@@ -1,9 +1,10 @@
 //! A finding about a recording, with its severity.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Severity of a finding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Severity {
     /// Worth knowing; everything works.
@@ -14,7 +15,7 @@ pub(crate) enum Severity {
     Lost,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub(crate) struct Finding {
     pub severity: Severity,
     /// Description of the fault, and of the remedy.

@@ -19,4 +19,5 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use command::Report;
 pub use command::{Config, NOTES, run, run_on};

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use recording::{Kind, MetadataRecord, Recording};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Statistics of a recording. Stamps are nanoseconds since 1970.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Contents {
     pub recording: String,
     pub bytes: u64,
@@ -19,13 +20,23 @@ pub(crate) struct Contents {
     pub taken: BTreeMap<&'static str, String>,
     /// Reasons why the choice of a topic is ambiguous.
     pub unclear: Vec<String>,
+    #[schemars(with = "Vec<Metadata>")]
     pub metadata: Vec<MetadataRecord>,
     pub attachments: Vec<Attachment>,
     /// Damage of the file; everything else describes the part before it.
     pub damage: Option<String>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Named key-value entries.
+// Stands for [`MetadataRecord`], whose crate does not depend on `schemars`.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "only its schema is used")]
+struct Metadata {
+    name: String,
+    entries: BTreeMap<String, String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Channel {
     pub topic: String,
     pub schema: String,
@@ -35,7 +46,7 @@ pub(crate) struct Channel {
     pub hz: Option<f64>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Attachment {
     pub name: String,
     pub media_type: String,

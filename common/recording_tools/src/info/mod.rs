@@ -7,3 +7,4 @@ mod contents;
 mod text;
 
 pub use command::{Config, run};
+pub(crate) use contents::Contents;

@@ -1,5 +1,7 @@
 //! Graphs and their names: occupied names, access rights, and control from other processes.
 
+use tests::schemas::assert_follows;
+
 use super::*;
 
 /// Returns true if the test may start processes of other users; otherwise counts it as skipped.
@@ -187,6 +189,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     };
     let (code, stdout, said) = ask(&["status", "--json"]);
     assert_eq!(code, Some(0), "{said}");
+    assert_follows("status", &stdout);
     let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(
         (&status["graph"], &status["nodes"][0]["state"]),
@@ -222,6 +225,10 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
         stdout.contains("source is restarted from another terminal"),
         "{stdout}"
     );
+
+    let (_, stdout, _) = ask(&["logs", "--json"]);
+    assert!(stdout.contains("restarted"), "{stdout}");
+    stdout.lines().for_each(|line| assert_follows("logs", line));
 
     let mut follower = launcher(folder.path(), &["logs", "--follow", "--graph", name])
         .spawn()

@@ -11,4 +11,5 @@ mod locate_errors;
 mod paper;
 mod plot;
 mod recording_tools;
+mod schemas;
 mod simulate;

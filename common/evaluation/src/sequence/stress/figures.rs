@@ -1,5 +1,6 @@
 //! Figures of one variant of a drive.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::follow::Followed;
@@ -9,8 +10,8 @@ use crate::text::{number, percent};
 use crate::trust::Said;
 
 /// Figures of one variant. Shares are 0..=1; docs/tracking.md explains each.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Figures {
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub(crate) struct Figures {
     pub(super) bag: String,
     pub(super) variant: &'static str,
     pub(super) starts: u64,

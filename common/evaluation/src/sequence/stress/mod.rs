@@ -18,4 +18,5 @@ mod world;
 mod tests;
 
 pub(super) use command::evaluate;
+pub(crate) use figures::Figures;
 pub(super) use variants::Stress;

@@ -1,0 +1,104 @@
+//! Tests of the schemas in `docs/schemas`: they are those of the types, and what is written follows
+//! them.
+//!
+//! `BACKCAST_ACCEPT=1 cargo test --release -p backcast --test tools schemas` writes them.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use serde_json::Value;
+use tests::schemas::assert_follows;
+
+use crate::drawn::{
+    HERE, THERE, folder, framed_map, mount_message, odometry_at, recordings, run, scan_at, truth_at,
+};
+
+#[test]
+fn the_schemas_are_those_of_the_types() {
+    let made = [
+        bench::schemas(),
+        evaluation::schemas(),
+        launcher::schemas(),
+        recording_tools::schemas(),
+        regression::schemas(),
+        soak::schemas(),
+    ];
+    let made = made.concat().into_iter();
+    let made: BTreeMap<String, Value> = made
+        .map(|(name, schema)| (format!("{name}.json"), schema.to_value()))
+        .collect();
+    let folder = tests::root().join("docs/schemas");
+    if std::env::var_os("BACKCAST_ACCEPT").is_some() {
+        fs::create_dir_all(&folder).unwrap();
+        for (file, schema) in &made {
+            fs::write(folder.join(file), format!("{schema:#}\n")).unwrap();
+        }
+    }
+    let files = fs::read_dir(&folder).unwrap().map(Result::unwrap);
+    let found: BTreeMap<String, Value> = files
+        .map(|file| {
+            let schema = serde_json::from_slice(&fs::read(file.path()).unwrap()).unwrap();
+            (file.file_name().into_string().unwrap(), schema)
+        })
+        .collect();
+    let names = |schemas: &BTreeMap<String, Value>| schemas.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&made));
+    for (file, schema) in made {
+        assert_eq!(
+            found[&file], schema,
+            "docs/schemas/{file} is not of its type"
+        );
+    }
+}
+
+#[test]
+fn what_is_printed_follows_the_schemas() {
+    let folder = folder(&[
+        framed_map(),
+        mount_message(),
+        odometry_at(1, HERE),
+        scan_at(1, HERE),
+        truth_at(1, HERE),
+        odometry_at(2, THERE),
+        scan_at(2, THERE),
+        truth_at(2, THERE),
+    ]);
+    for (arguments, names) in [
+        ("info --json r.mcap", &["info"][..]),
+        ("doctor --json r.mcap", &["doctor"]),
+        ("locate --json r.mcap", &["locate", "locate"]),
+        ("locate --json --particles 2 r.mcap", &["locate", "locate"]),
+        (
+            "evaluate --json r.mcap ./r.mcap",
+            &["evaluate", "evaluate", "evaluate_total"],
+        ),
+        (
+            "evaluate --sequence --json r.mcap ./r.mcap",
+            &[
+                "evaluate_sequence",
+                "evaluate_sequence",
+                "evaluate_sequence_total",
+            ],
+        ),
+    ] {
+        let (_, stdout, stderr) = run(folder.path(), arguments);
+        let lines: Vec<&str> = stdout.lines().collect();
+        assert_eq!(lines.len(), names.len(), "{arguments}: {stdout}{stderr}");
+        for (line, name) in lines.iter().zip(names) {
+            assert_follows(name, line);
+        }
+    }
+}
+
+#[test]
+fn expectations_follow_the_schema() {
+    for case in fs::read_dir(recordings()).unwrap() {
+        let file = case.unwrap().path().join("expected.json");
+        assert_follows("expected", &fs::read_to_string(file).unwrap());
+    }
+}
