@@ -5,8 +5,9 @@
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CollectConfig {
     /// Poses with at least this share of the best pose's votes are collected,
-    /// 0..=1; lower shares show more alternatives and take longer.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share))]
+    /// 0..=1; lower shares show more alternatives and take longer. On a map with fewer
+    /// blocks of 8 × 8 cells than candidates, at most 0.85.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = crate::config::parse_share))]
     pub floor_share: f64,
     /// Maximum number of poses that are collected, 1..=1000000; the floor rises until
     /// they fit.
@@ -56,7 +57,7 @@ impl CollectConfig {
 impl Default for CollectConfig {
     fn default() -> Self {
         CollectConfig {
-            floor_share: 0.85,
+            floor_share: 1.0,
             max_votes: 65_536,
             candidates: 64,
             work_limit: None,

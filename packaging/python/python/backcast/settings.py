@@ -51,7 +51,8 @@ class Settings(TypedDict, total=False):
     sigma_per_m: float
 
     # Poses with at least this share of the best pose's votes are collected, 0..=1; lower shares
-    # show more alternatives and take longer. Default: 0.85.
+    # show more alternatives and take longer. On a map with fewer blocks of 8 x 8 cells than
+    # candidates, at most 0.85. Default: 1.0.
     floor_share: float
 
     # Most poses that are collected, 1..=1000000; the floor rises until they fit. Default:

@@ -92,6 +92,11 @@ impl SearchIndex {
         &self.within.limits
     }
 
+    /// Number of blocks of 8 × 8 cells in which poses are searched, by their quarters.
+    pub(crate) fn blocks(&self) -> usize {
+        self.intervals.ids.count().div_ceil(4)
+    }
+
     /// Returns the grid of the index, prepared for counting every pose.
     pub(in crate::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
         self.sweeps.get_or_init(|| FieldSweep::new(grid))
