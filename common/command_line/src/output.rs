@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
@@ -52,6 +52,39 @@ pub fn folder_of(file: &Path) -> &Path {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     }
+}
+
+/// Returns the existing files of this name and of [`with_number`], in any order.
+#[must_use]
+pub fn numbered(path: &Path) -> Vec<PathBuf> {
+    let folder = folder_of(path);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let is_one = |found: &Path| {
+        let number = found.file_stem().unwrap_or_default().to_string_lossy();
+        let number = number
+            .strip_prefix(&*stem)
+            .map(|rest| rest.strip_prefix('_'));
+        found.file_name() == path.file_name()
+            || number.flatten().is_some_and(|number| {
+                number
+                    .parse()
+                    .is_ok_and(|number| with_number(path, number).file_name() == found.file_name())
+            })
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path());
+    files.filter(|found| is_one(found)).collect()
+}
+
+/// Returns the name with a number after its stem, as of a part: `drive_2.mcap`.
+#[must_use]
+pub fn with_number(path: &Path, number: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let suffix = path
+        .extension()
+        .unwrap_or("mcap".as_ref())
+        .to_string_lossy();
+    path.with_file_name(format!("{stem}_{number}.{suffix}"))
 }
 
 #[cfg(test)]

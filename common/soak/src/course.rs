@@ -348,10 +348,8 @@ impl Course {
             self.failures
                 .push(format!("the launcher ended with {status}"));
         }
-        let recorded = match &self.plan.record {
-            Some(file) => Some(Recorded::read(file, &mut self.failures)?),
-            None => None,
-        };
+        let record = self.plan.record.as_deref();
+        let recorded = record.map(|file| Recorded::read(file, &mut self.failures));
         let left = files_of(&self.plan.graph).into_iter();
         let (poses, faults) = self.tally.figures();
         Ok(Report {

@@ -1,8 +1,7 @@
 //! Parts of a recording, read after the run.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use anyhow::Context;
 use command_line::output;
 use recording::Recording;
 use schemars::JsonSchema;
@@ -19,12 +18,9 @@ pub(super) struct Recorded {
 
 impl Recorded {
     /// Reads the parts of a name; adds a failure for each that cannot be read.
-    ///
-    /// # Errors
-    /// Their folder cannot be read.
-    pub(super) fn read(name: &Path, failures: &mut Vec<String>) -> anyhow::Result<Self> {
+    pub(super) fn read(name: &Path, failures: &mut Vec<String>) -> Self {
         let mut recorded = Recorded::default();
-        for part in parts(name)? {
+        for part in output::numbered(name) {
             match Recording::open(&part) {
                 Ok(recording) => {
                     recorded.parts += 1;
@@ -37,20 +33,6 @@ impl Recorded {
         if recorded.messages == 0 {
             failures.push(format!("nothing was recorded to {}", name.display()));
         }
-        Ok(recorded)
+        recorded
     }
-}
-
-fn parts(name: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let folder = output::folder_of(name);
-    let stem = name.file_stem().unwrap_or_default().to_string_lossy();
-    let listed = std::fs::read_dir(folder);
-    let listed = listed.with_context(|| format!("cannot read {}", folder.display()))?;
-    let files = listed.map(|entry| Ok(entry?.path()));
-    let files: Vec<PathBuf> = files.collect::<std::io::Result<_>>()?;
-    let is_part = |file: &PathBuf| {
-        let name = file.file_stem().unwrap_or_default().to_string_lossy();
-        name.starts_with(&*stem)
-    };
-    Ok(files.into_iter().filter(is_part).collect())
 }

@@ -28,7 +28,7 @@ pub(super) struct Report {
     /// Number of restarts of nodes.
     pub(super) restarts: u64,
     pub(super) usage: Usage,
-    /// What was recorded; `None` without `--record`.
+    /// Figures of the recording; `None` without `--record`.
     pub(super) recorded: Option<Recorded>,
     /// Files that were left after the end.
     pub(super) leftovers: Vec<String>,

@@ -1,12 +1,12 @@
 //! Recording of a running graph on request: its recorder is started and stopped.
 
 use std::{
-    env, fs,
+    env,
     path::{Path, PathBuf},
     time::{Instant, SystemTime},
 };
 
-use command_line::output::folder_of;
+use command_line::output::{folder_of, numbered};
 use dataflow::Node;
 use nix::unistd::{AccessFlags, access};
 
@@ -107,14 +107,7 @@ impl Recorder {
 /// Returns the file that was written last: `output`, or one with a number after its name, which is
 /// a part or was begun when the recorder started again.
 fn newest(output: &Path) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().as_encoded_bytes();
-    let entries = fs::read_dir(folder_of(output)).into_iter().flatten();
-    let parts = entries.flatten().filter(|entry| {
-        let path = entry.path();
-        let name = path.file_stem().unwrap_or_default().as_encoded_bytes();
-        name.starts_with(stem) && path.extension() == output.extension()
-    });
-    let written = |entry: &fs::DirEntry| entry.metadata().and_then(|found| found.modified()).ok();
-    let last = parts.max_by_key(written);
-    last.map_or_else(|| output.to_owned(), |last| last.path())
+    let written = |file: &PathBuf| file.metadata().and_then(|found| found.modified()).ok();
+    let last = numbered(output).into_iter().max_by_key(written);
+    last.unwrap_or_else(|| output.to_owned())
 }

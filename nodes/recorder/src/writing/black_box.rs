@@ -8,6 +8,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use command_line::output;
 use recording::write::{Packing, RecordingWriter};
 use ros_export::Entry;
 
@@ -162,7 +163,7 @@ impl BlackBox {
 
     /// Removes the oldest files beyond the limits; the newest one always stays.
     fn remove_oldest(&self, newest: &Path) {
-        let files = name::created(&self.path).into_iter();
+        let files = output::numbered(&self.path).into_iter();
         let files = files.filter(|path| path != newest).filter_map(|path| {
             let found = path.metadata().ok()?;
             Some((found.modified().ok()?, found.len(), path))
@@ -322,7 +323,7 @@ mod tests {
         assert!(names.contains(&"r_notes.mcap".to_owned()), "{names:?}");
         black_box.room.bytes = 1;
         black_box.save("asked").unwrap();
-        assert_eq!(name::created(&black_box.path).len(), 1);
+        assert_eq!(output::numbered(&black_box.path).len(), 1);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use command_line::output::folder_of;
+use command_line::output::with_number;
 
 use crate::RecorderError;
 
@@ -47,38 +47,10 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
     })
 }
 
-/// Returns the existing files with names of [`create`], in any order.
-pub(super) fn created(path: &Path) -> Vec<PathBuf> {
-    let folder = folder_of(path);
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let is_one = |found: &Path| {
-        let number = found.file_stem().unwrap_or_default().to_string_lossy();
-        let number = number
-            .strip_prefix(&*stem)
-            .map(|rest| rest.strip_prefix('_'));
-        found.file_name() == path.file_name()
-            || number.flatten().is_some_and(|number| {
-                number
-                    .parse()
-                    .is_ok_and(|number| with_number(path, number).file_name() == found.file_name())
-            })
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let files = entries.map(|entry| entry.path());
-    files.filter(|found| is_one(found)).collect()
-}
-
-fn with_number(path: &Path, number: u32) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let suffix = path
-        .extension()
-        .unwrap_or("mcap".as_ref())
-        .to_string_lossy();
-    path.with_file_name(format!("{stem}_{number}.{suffix}"))
-}
-
 #[cfg(test)]
 mod tests {
+    use command_line::output::numbered;
+
     use super::*;
 
     #[test]
@@ -102,7 +74,7 @@ mod tests {
         ] {
             File::create_new(folder.path().join(other)).unwrap();
         }
-        assert_eq!(created(&path).len(), 5);
+        assert_eq!(numbered(&path).len(), 5);
         let nowhere = Path::new("/proc/no/such/r.mcap");
         let error = create(nowhere, false).unwrap_err();
         assert!(error.to_string().contains("/no/such/r.mcap"), "{error}");
