@@ -1,15 +1,15 @@
 //! Section V: a robot with a laser in a corridor localizes at three places: the corridor
 //! of the University of Málaga in place of the paper's, whose recording is not public.
 
-use std::f64::consts::TAU;
 use std::path::Path;
 
+use benchmarks::distinct;
 use clap::Parser;
 use command_line::wrong_use;
 use drawing::Scene;
 use engine::grid::CellRules;
 use engine::localizer::Prior;
-use geometry::{Pose, wrap_angle};
+use geometry::Pose;
 use offline::{Field, Options, Session, TakenScan, World, no_truths};
 use plots::Votes;
 use recording::Recording;
@@ -107,27 +107,21 @@ fn locate(
 ) -> anyhow::Result<Localized> {
     let mut session = Session::open(recording, options, None)?;
     let answer = session.ask(scan)?.answer?;
-    let (most, best) = (
-        answer.outcome.found.votes.first(),
-        answer.places.places.first(),
-    );
-    let (Some(most), Some(best)) = (most, best) else {
+    let most = distinct(answer.outcome, answer.frame, 1);
+    let (Some(&by_votes), Some(best)) = (most.first(), answer.places.places.first()) else {
         return Err(plots::no_place(
             recording.path(),
             number as u64,
             answer.places,
         ));
     };
-    let (most, by_fit) = (*most, best.map_from_laser);
-    let heading = f64::from(most.heading) * TAU / f64::from(answer.outcome.headings);
-    let yaw = wrap_angle(heading + answer.frame.map_from_grid.yaw);
+    let by_fit = best.map_from_laser;
     let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
-    let field = world.and_then(|world| world.field_at(&scan.borrowed(), yaw))?;
-    let (x, y) = (f64::from(most.x) + 0.5, f64::from(most.y) + 0.5);
+    let field = world.and_then(|world| world.field_at(&scan.borrowed(), by_votes.yaw))?;
     Ok(Localized {
         scan: number,
         truth,
-        by_votes: field.frame.map_from_cells(x, y, heading),
+        by_votes,
         by_fit,
         field,
     })
