@@ -61,9 +61,7 @@ impl Graph {
             _folder: folder,
         }
     }
-}
 
-impl Graph {
     fn stop(&mut self) {
         if let Ok(None) = self.launcher.try_wait() {
             let _ = kill(
