@@ -11,8 +11,8 @@ use crate::simd::Simd;
 use crate::sweep::{self, FieldSweep};
 
 /// Number of cells that a sweep passes in the time of one projection step. A step misses the cache:
-/// some 2.5 ns, against 0.1 to 0.25 ns per cell with AVX2 (`field_time boxes 1200 1 5 --beams 8`).
-const CELLS_A_STEP: u64 = 16;
+/// some 2.5 ns, against 0.2 to 0.5 ns per cell with AVX2 (`field_time boxes 1200 1 5 --beams 8`).
+const CELLS_A_STEP: u64 = 8;
 
 /// A grid prepared for votes at known headings.
 #[derive(Debug, Clone)]

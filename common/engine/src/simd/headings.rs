@@ -3,6 +3,7 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use super::table::{LANES, Tables};
 use crate::tables::TABLE;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::Avx2Headings;
@@ -126,31 +127,10 @@ fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [
         let bin = votes.centre.min(last[i]).max(first[i]);
         bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
     });
-    entries(votes, &index)
-}
-
-#[cfg(not(target_arch = "aarch64"))]
-#[inline(always)]
-fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    let mut found = [0; HEADINGS];
-    // Comparing all with each entry is quicker than looking them up one by one.
-    for (entry, &votes) in (0..).zip(&votes.table[..usize::from(votes.used)]) {
-        for (found, &index) in found.iter_mut().zip(index) {
-            *found |= if index == entry { votes } else { 0 };
-        }
-    }
-    found
-}
-
-#[cfg(target_arch = "aarch64")]
-#[inline(always)]
-fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    let mut found = [0; HEADINGS];
-    let pieces = found.as_chunks_mut().0.iter_mut().zip(index.as_chunks().0);
-    for (found, &index) in pieces {
-        *found = super::table::look_up_neon(&votes.table, votes.used.into(), index);
-    }
-    found
+    let halves: [[u8; LANES]; HEADINGS / LANES] = bytemuck::must_cast::<[u8; HEADINGS], _>(index);
+    let [low, high] = halves;
+    let look_up = |index| super::Portable.look_up(&votes.table, votes.used.into(), index);
+    bytemuck::must_cast([look_up(low), look_up(high)])
 }
 
 #[cfg(test)]

@@ -17,12 +17,11 @@
 //! among its portable ones (looking bytes up in tables of 64, sums and carries of three
 //! bits, leading zeros); `docs/engine.md` has the figures.
 
-pub(crate) mod bytes;
 pub(crate) mod cells;
 pub(crate) mod headings;
 pub(crate) mod numbers;
 pub(crate) mod rays;
-mod table;
+pub(crate) mod table;
 pub(crate) mod words;
 
 use crate::instruction_set::InstructionSet;
@@ -123,17 +122,9 @@ macro_rules! avx2 {
     };
 }
 
-/// [`compiled!`] for the instructions of every x86-64 processor: no token is needed.
 #[cfg(target_arch = "x86_64")]
-macro_rules! sse2 {
-    ($($item:tt)*) => {
-        $crate::simd::compiled! { ["sse2"] $($item)* }
-    };
-}
-
+pub(crate) use avx2;
 pub(crate) use compiled;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use {avx2, sse2};
 
 /// The baseline CPU.
 #[derive(Debug, Clone, Copy, Default)]
@@ -145,12 +136,11 @@ pub(crate) struct Portable;
 pub(crate) struct Avx2(());
 
 /// A token, and the vectors of its instruction set.
-pub(crate) trait Set: numbers::Numbers {
+pub(crate) trait Set: numbers::Numbers + table::Tables {
     type Words: words::BitWords<Set = Self>;
     type Headings: headings::HeadingLanes<Set = Self>;
     type Cells: cells::CellLanes<Set = Self>;
     type Rays: rays::RayLanes<Set = Self>;
-    type Bytes: bytes::Lanes<Set = Self>;
 }
 
 impl Set for Portable {
@@ -158,7 +148,6 @@ impl Set for Portable {
     type Headings = headings::Portable;
     type Cells = cells::Portable;
     type Rays = rays::Portable;
-    type Bytes = bytes::Portable;
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -167,7 +156,6 @@ impl Set for Avx2 {
     type Headings = headings::Avx2Headings;
     type Cells = cells::Avx2Cells;
     type Rays = rays::Avx2Rays;
-    type Bytes = bytes::Avx2Bytes;
 }
 
 /// Work that is compiled for each instruction set.

@@ -1,6 +1,55 @@
 //! Bytes looked up in short tables.
 
-use crate::tables::TABLE;
+use super::Portable;
+pub(crate) use crate::tables::TABLE;
+
+/// Number of bytes that are looked up together.
+pub(crate) const LANES: usize = 32;
+
+/// Look-ups of an instruction set.
+pub(crate) trait Tables: Copy {
+    /// Looks numbers up in a table of which `used` entries are not 0; numbers beyond those
+    /// give 0.
+    fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES];
+}
+
+impl Tables for Portable {
+    #[cfg(not(target_arch = "aarch64"))]
+    #[inline(always)]
+    fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
+        let mut found = [0; LANES];
+        for (found, index) in found.iter_mut().zip(index) {
+            *found = if usize::from(index) < used {
+                table[usize::from(index) % TABLE]
+            } else {
+                0
+            };
+        }
+        found
+    }
+
+    /// Every ARM processor of 64 bits has NEON.
+    #[cfg(target_arch = "aarch64")]
+    #[inline(always)]
+    fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
+        use std::arch::aarch64::*;
+
+        use bytemuck::must_cast;
+
+        let index: [uint8x16_t; LANES / PIECE] = must_cast(index);
+        let pieces: [uint8x16_t; 4] = must_cast(*table);
+        must_cast(index.map(|index| {
+            if used <= PIECE {
+                // SAFETY: every processor of this architecture has NEON.
+                unsafe { vqtbl1q_u8(pieces[0], index) }
+            } else {
+                let [first, second, third, fourth] = pieces;
+                // SAFETY: every processor of this architecture has NEON.
+                unsafe { vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index) }
+            }
+        }))
+    }
+}
 
 /// Number of entries that an instruction of AVX2 and NEON looks up.
 const PIECE: usize = 16;
@@ -16,7 +65,7 @@ mod x86 {
 
     use bytemuck::{must_cast, must_cast_ref};
 
-    use super::{BEYOND, PIECE, TABLE};
+    use super::{BEYOND, LANES, PIECE, TABLE, Tables};
     use crate::simd::{Avx2, avx2};
 
     avx2! {
@@ -57,28 +106,14 @@ mod x86 {
         }
         found
     }
+
+    impl Tables for Avx2 {
+        #[inline(always)]
+        fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
+            must_cast(look_up_avx2(self, table, used, [must_cast(index)]))
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::look_up_avx2;
-
-/// Looks 16 numbers up in a table of which `used` entries are not 0; numbers beyond those
-/// give 0. Every ARM processor of 64 bits has NEON.
-#[cfg(target_arch = "aarch64")]
-#[inline(always)]
-pub(super) fn look_up_neon(table: &[u8; TABLE], used: usize, index: [u8; PIECE]) -> [u8; PIECE] {
-    use std::arch::aarch64::*;
-
-    use bytemuck::must_cast;
-
-    let index: uint8x16_t = must_cast(index);
-    let pieces: [uint8x16_t; 4] = must_cast(*table);
-    must_cast(if used <= PIECE {
-        // SAFETY: every processor of this architecture has NEON.
-        unsafe { vqtbl1q_u8(pieces[0], index) }
-    } else {
-        let [first, second, third, fourth] = pieces;
-        // SAFETY: every processor of this architecture has NEON.
-        unsafe { vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index) }
-    })
-}

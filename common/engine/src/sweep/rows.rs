@@ -1,0 +1,123 @@
+//! The rows of a sweep: steps left in cells, and the votes for them.
+//!
+//! All loops are plain: the compiler vectorizes them for the instruction set of the kernel.
+
+use crate::grid::Cell;
+use crate::simd::Set;
+use crate::simd::table::{LANES, TABLE};
+
+/// Steps left in a row of cells and in the one before, of all beams along a sense of an axis. On
+/// either side of a row lies a cell off the map, which sees nothing.
+#[derive(Debug, Default)]
+pub(super) struct Rows<N>([Vec<N>; 2]);
+
+impl<N: Steps> Rows<N> {
+    /// Starts at cells that see nothing.
+    pub(super) fn start(&mut self, cells: usize) {
+        for row in &mut self.0 {
+            row.clear();
+            row.resize(cells, N::NONE);
+        }
+    }
+
+    /// Moves the row of a beam, which begins at a place in those of all, a step on, where `end`
+    /// steps are left in an obstacle, and adds the beam's votes by a table of so many entries.
+    #[inline(always)]
+    pub(super) fn move_on<S: Set>(
+        &mut self,
+        set: S,
+        (row, step, shift): (usize, usize, i64),
+        (cells, end): (&[Cell], u16),
+        (table, used): (&[u8], usize),
+        votes: &mut [u8],
+    ) {
+        let [here, ahead] = &mut self.0;
+        let (here, ahead) = if step.is_multiple_of(2) {
+            (here, ahead)
+        } else {
+            (ahead, here)
+        };
+        let here = &mut here[row + 1..][..cells.len()];
+        let ahead = &ahead[row.wrapping_add_signed(1 + shift as isize)..][..cells.len()];
+        let end = N::of(end);
+        for ((here, &ahead), &cell) in here.iter_mut().zip(ahead).zip(cells) {
+            *here = ahead.moved_on(cell, end);
+        }
+        match table.first_chunk() {
+            Some(short) if used <= TABLE => vote(set, (short, used), here, votes),
+            _ => {
+                for (vote, &left) in votes.iter_mut().zip(&*here) {
+                    *vote += table[..used].get(left.index()).copied().unwrap_or(0);
+                }
+            }
+        }
+    }
+}
+
+/// Adds the votes for the steps that are left, by a table of which so many entries count.
+#[inline(always)]
+fn vote<S: Set, N: Steps>(
+    set: S,
+    (table, used): (&[u8; TABLE], usize),
+    left: &[N],
+    votes: &mut [u8],
+) {
+    let (left, votes) = (
+        left.as_chunks::<LANES>().0,
+        votes.as_chunks_mut::<LANES>().0,
+    );
+    for (left, votes) in left.iter().zip(votes) {
+        let mut bytes = [0; LANES];
+        for (byte, left) in bytes.iter_mut().zip(left) {
+            *byte = left.byte();
+        }
+        for (vote, found) in votes.iter_mut().zip(set.look_up(table, used, bytes)) {
+            *vote += found;
+        }
+    }
+}
+
+/// A number of steps.
+pub(super) trait Steps: Copy {
+    const NONE: Self;
+
+    fn of(steps: u16) -> Self;
+    /// Returns the steps left in a cell, from those left in the next one on its line.
+    fn moved_on(self, cell: Cell, end: Self) -> Self;
+    /// Returns a byte that is the same up to 254, and 255 for more.
+    fn byte(self) -> u8;
+    fn index(self) -> usize;
+}
+
+macro_rules! steps {
+    ($($number:ty),*) => {
+        $(
+            impl Steps for $number {
+                const NONE: Self = 0;
+
+                #[inline(always)]
+                fn of(steps: u16) -> Self {
+                    steps as $number
+                }
+
+                #[inline(always)]
+                fn moved_on(self, cell: Cell, end: Self) -> Self {
+                    let next = if cell == Cell::Open { self.saturating_sub(1) } else { 0 };
+                    next | if cell == Cell::Occupied { end } else { 0 }
+                }
+
+                #[inline(always)]
+                fn byte(self) -> u8 {
+                    self.min(255) as u8
+                }
+
+                #[inline(always)]
+                fn index(self) -> usize {
+                    self.into()
+                }
+            }
+        )*
+    };
+}
+
+steps!(u8, u16);
