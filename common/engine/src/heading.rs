@@ -12,6 +12,7 @@ use messages::{FrameName, GroundTruth, Odometry, ScanHeader};
 
 pub use config::{HeadingConfig, HeadingFrom};
 
+use crate::joined::MotionConfig;
 use crate::localizer::Prior;
 
 /// Source of the heading of scans.
@@ -71,6 +72,8 @@ pub enum HeadingError {
 pub struct History {
     odometry: Recent<Driven>,
     truths: Recent<Truth>,
+    /// Added to the stamps of odometry, in nanoseconds.
+    delay_ns: i64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -89,17 +92,18 @@ struct Truth {
 impl History {
     /// Creates an empty history that keeps at most this many readings of each kind.
     #[must_use]
-    pub fn keeping(readings: usize) -> Self {
+    pub fn keeping(readings: usize, motion: &MotionConfig) -> Self {
         History {
             odometry: Recent::keeping(readings),
             truths: Recent::keeping(readings),
+            delay_ns: motion.delay_ns(),
         }
     }
 
     /// Adds an odometry sample.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
         self.odometry.push(Driven {
-            measured_ns: odometry.stamp.measured_ns,
+            measured_ns: odometry.stamp.measured_ns.saturating_add(self.delay_ns),
             odom_from_child: odometry.odom_from_child.into(),
             child_frame: odometry.child_frame,
         });

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bytemuck::Zeroable;
 use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
+use engine::joined::MotionConfig;
 use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
 use recording::{Kind, Message, Record, Recording, RecordingError};
 use ros::measurements;
@@ -28,10 +29,11 @@ impl Headings {
     /// The data does not exist, or one of its messages cannot be used.
     pub(crate) fn of(
         config: &HeadingConfig,
+        motion: &MotionConfig,
         recording: &Recording,
     ) -> Result<Self, RecordingError> {
         let source = config.source();
-        let mut history = History::keeping(usize::MAX);
+        let mut history = History::keeping(usize::MAX, motion);
         let mut notes = Vec::new();
         match source {
             HeadingSource::Searched | HeadingSource::Fixed(_) => {}

@@ -105,7 +105,8 @@ impl<'a> Session<'a> {
             other => other,
         };
         let topics = options.topics.scans(recording).map_err(damage)?;
-        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
+        let headings =
+            Headings::of(&options.heading, &options.motion, recording).map_err(damage)?;
         Ok(Session {
             motion: Motion::of(recording, &topics, &options.motion),
             scans: Scans::of(recording, topics, options.every),

@@ -48,7 +48,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let mut node = Node {
         source,
         headings: config.localizer.headings,
-        history: History::keeping(POSES_KEPT),
+        history: History::keeping(POSES_KEPT, &config.join.motion),
         joiner: Joiner::new(join_config(config)),
         pending: None,
         kept: (config.search == Searched::Asked).then(KeptScans::default),

@@ -2,6 +2,7 @@ use bytemuck::Zeroable;
 use messages::{Pose2, Stamp};
 
 use super::*;
+use crate::joined::MotionConfig;
 
 const KEPT: usize = 5;
 const SECOND_NS: i64 = 1_000_000_000;
@@ -52,11 +53,26 @@ const BY_ODOMETRY: HeadingSource = HeadingSource::Odometry {
 };
 
 fn history(readings: &[(i64, f64)]) -> History {
-    let mut history = History::keeping(KEPT);
+    let mut history = History::keeping(KEPT, &MotionConfig::default());
     for &(measured_ns, yaw) in readings {
         history.on_odometry(&odometry(measured_ns, yaw));
     }
     history
+}
+
+#[test]
+fn the_delay_of_odometry_is_added_to_its_stamps() {
+    let motion = MotionConfig {
+        odometry_delay_s: 0.2,
+        ..MotionConfig::default()
+    };
+    let mut history = History::keeping(KEPT, &motion);
+    for (measured_ns, yaw) in [(0, 1.0), (100_000_000, 2.0)] {
+        history.on_odometry(&odometry(measured_ns, yaw));
+    }
+    // The second sample is of 0.3 s.
+    assert_eq!(heading(BY_ODOMETRY, &scan(250_000_000), &history), 1.5);
+    assert_eq!(heading(BY_ODOMETRY, &scan(300_000_000), &history), 2.5);
 }
 
 #[track_caller]
@@ -66,7 +82,7 @@ fn heading(source: HeadingSource, scan: &ScanHeader, history: &History) -> f64 {
 
 #[test]
 fn a_searched_heading_is_none_and_a_fixed_one_needs_no_history() {
-    let nothing = History::keeping(KEPT);
+    let nothing = History::keeping(KEPT, &MotionConfig::default());
     let searched = HeadingSource::Searched.heading_of(&scan(5), &nothing);
     assert_eq!(searched.unwrap(), None);
     assert_eq!(heading(HeadingSource::Fixed(1.5), &scan(5), &nothing), 1.5);
@@ -118,7 +134,7 @@ fn odometry_that_is_too_old_or_too_new_is_refused() {
 
 #[test]
 fn odometry_of_the_base_is_turned_by_the_mount() {
-    let mut history = History::keeping(KEPT);
+    let mut history = History::keeping(KEPT, &MotionConfig::default());
     let of_base = Odometry {
         child_frame: FrameName::new("base_link"),
         ..odometry(10, 0.25)
@@ -144,7 +160,7 @@ fn odometry_of_the_base_is_turned_by_the_mount() {
 
 #[test]
 fn the_laser_sits_on_what_the_odometry_is_about() {
-    let mut history = History::keeping(KEPT);
+    let mut history = History::keeping(KEPT, &MotionConfig::default());
     let of_base = Odometry {
         child_frame: FrameName::new("base_link"),
         ..odometry(10, std::f64::consts::FRAC_PI_2)
@@ -173,7 +189,7 @@ fn the_laser_sits_on_what_the_odometry_is_about() {
 
 #[test]
 fn the_truth_has_exactly_the_time_of_the_scan() {
-    let mut history = History::keeping(KEPT);
+    let mut history = History::keeping(KEPT, &MotionConfig::default());
     history.on_truth(&truth(10, 0.1));
     history.on_truth(&truth(20, 0.2));
     assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);

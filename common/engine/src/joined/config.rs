@@ -44,7 +44,7 @@ pub enum ScanStamp {
 
 impl MotionConfig {
     /// Offset added to odometry stamps, in nanoseconds.
-    pub(super) fn delay_ns(&self) -> i64 {
+    pub(crate) fn delay_ns(&self) -> i64 {
         (self.odometry_delay_s * 1e9).round() as i64
     }
 }
