@@ -1,12 +1,8 @@
 //! Motion of the robot by odometry, between its samples and a little beyond them.
 
-mod delay;
-
 use std::collections::VecDeque;
 
 use geometry::Pose;
-
-pub use delay::Sighting;
 
 /// Largest gap between two samples that tell the motion between them: within half a second a robot
 /// brakes and turns.

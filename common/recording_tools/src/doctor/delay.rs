@@ -1,11 +1,12 @@
 //! Checks that the clocks of odometry and laser agree: scans are located on the map, and the motion
 //! of the laser is compared with the odometry.
 
-use engine::motion::{Motion, Sighting};
+use engine::motion::Motion;
 use geometry::Pose;
 use offline::each_odometry;
 use recording::{Kind, Recording};
 
+use super::delay_of_motion::{Sighting, delay_s};
 use super::finding::Finding;
 use super::located::{Located, LocatedScan};
 use super::survey::{Seen, Survey};
@@ -77,6 +78,6 @@ fn estimate(
         }
         motion.add(odometry.stamp.measured_ns, odometry.odom_from_child.into());
     })?;
-    let delay_s = motion.delay_s(&sightings, child_from_laser);
+    let delay_s = delay_s(&motion, &sightings, child_from_laser);
     Ok(delay_s.filter(|delay_s| delay_s.abs() >= worth_a_note_s))
 }

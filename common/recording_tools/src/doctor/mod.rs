@@ -10,6 +10,7 @@ mod bands;
 mod checks;
 mod command;
 mod delay;
+mod delay_of_motion;
 mod drive;
 mod finding;
 mod located;
