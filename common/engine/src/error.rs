@@ -84,17 +84,6 @@ pub enum EngineError {
     /// The scan has more than 65536 ranges.
     #[error("the scan has {0} ranges: at most 65536 are allowed")]
     TooManyRanges(usize),
-    /// The scan has too many readings for a ring of sonars.
-    #[error(
-        "the scan has {found} readings: a ring of sonars, as which it is to be read, has at most \
-         {allowed}"
-    )]
-    TooManyEchoes {
-        /// Number of readings found.
-        found: usize,
-        /// Largest number accepted.
-        allowed: usize,
-    },
     /// A pose of the odometry is not finite.
     #[error(
         "the odometry is at x {} m, y {} m, yaw {} rad: each must be finite",

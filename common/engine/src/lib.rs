@@ -52,7 +52,6 @@ pub mod particles;
 pub mod peaks;
 pub mod program;
 pub mod reference;
-pub mod regions;
 pub mod scan;
 pub mod scatter;
 pub mod search;

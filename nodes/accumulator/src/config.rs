@@ -6,8 +6,9 @@ use engine::directions::Directions;
 use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
 use engine::localizer::{LocalizerConfig, Prior};
-use engine::regions::SonarConfig;
 use index_cache::IndexCacheConfig;
+
+use crate::sonar::regions::SonarConfig;
 
 /// Largest number of votes in a message, for which readers of `votes` are built.
 const MAX_VOTES: u32 = 65_536;

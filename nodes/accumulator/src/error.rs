@@ -23,6 +23,17 @@ pub enum AccumulatorError {
     Rule(#[from] messages::InvalidRule),
     #[error(transparent)]
     Heading(#[from] HeadingError),
+    /// The scan has too many readings for a ring of sonars.
+    #[error(
+        "the scan has {found} readings: a ring of sonars, as which it is to be read, has at most \
+         {allowed}"
+    )]
+    TooManyEchoes {
+        /// Number of readings found.
+        found: usize,
+        /// Largest number accepted.
+        allowed: usize,
+    },
     #[error("the boundary came with {found} cells instead of {expected}")]
     BoundarySize {
         /// Number according to the header.

@@ -1,11 +1,13 @@
 //! Combines the recent echoes of a ring of sonars into one scan.
 //!
-//! This module looks up the robot's poses; the engine interprets the echoes.
+//! This module looks up the robot's poses; `regions` interprets the echoes.
+
+pub mod regions;
 
 use engine::heading::History;
-use engine::regions::{self, Window};
 use engine::scan::Scan;
 use messages::ScanHeader;
+use regions::Window;
 
 use crate::AccumulatorError;
 

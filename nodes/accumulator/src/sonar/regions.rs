@@ -11,10 +11,9 @@ mod window;
 
 use std::f64::consts::{PI, TAU};
 
+use engine::EngineError;
+use engine::scan::Scan;
 use geometry::{Pose, angle_between};
-
-use crate::EngineError;
-use crate::scan::Scan;
 
 pub use window::{SonarConfig, Window};
 

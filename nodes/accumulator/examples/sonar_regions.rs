@@ -1,7 +1,7 @@
 //! Compares regions of constant depth with the σ_θ of Eq. 1 and with neither, on a simulated drive
 //! of a ring of sonars; the heading is unknown:
 //! ```text
-//! cargo run --release -p benchmarks --example sonar_regions -- --sonar \
+//! cargo run --release -p accumulator --example sonar_regions -- --sonar \
 //!     --map recordings/sonar_ring/map.yaml --path "0.8,4.8 2.2,4.8 2.2,2.7 5.4,2.7"
 //! ```
 
@@ -9,13 +9,13 @@ use std::error::Error;
 use std::fmt;
 use std::path::PathBuf;
 
+use accumulator::sonar::regions::{self, Echo, RegionConfig};
 use benchmarks::distinct;
 use clap::Parser;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior, Workspace};
 use engine::program::VoteConfig;
-use engine::regions::{self, Echo, RegionConfig};
 use engine::scan::Scan;
 use geometry::Pose;
 use map::OccupancyGrid;

@@ -6,11 +6,13 @@
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
+use command_line::number;
+use engine::EngineError;
+use engine::scan::Scan;
 use geometry::Pose;
 
 use super::{Echo, RegionConfig, at_regions, regions};
-use crate::EngineError;
-use crate::scan::Scan;
+use crate::AccumulatorError;
 
 /// Largest number of scans in a window, for the longest path and for turns on the spot.
 const MAX_SCANS: usize = 128;
@@ -22,30 +24,19 @@ const MAX_ECHOES: usize = 64;
 const APART: (f64, f64) = (0.05, PI / 60.0);
 
 /// Settings for the wide beams of sonars.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct SonarConfig {
     /// For a ring of sonars: each scan is read as the regions of constant depth among
     /// the echoes of this distance driven, metres, 0.1..=5, measured by odometry (at
     /// least five times a second). Until it is driven, nothing votes; 2 is a good
     /// value.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", value_parser = way))]
+    #[arg(long, value_name = "METRES", value_parser = number(0.1..=5.0, "metres"))]
     pub sonar_way: Option<f64>,
 
     /// Full width of a sonar's cone, degrees, 1..=90.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = cone))]
-    #[cfg_attr(feature = "clap", arg(requires = "sonar_way"))]
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number(1.0..=90.0, "degrees"))]
+    #[arg(requires = "sonar_way")]
     pub sonar_cone: f64,
-}
-
-#[cfg(feature = "clap")]
-fn way(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.1..=5.0, "metres")
-}
-
-#[cfg(feature = "clap")]
-fn cone(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 1.0..=90.0, "degrees")
 }
 
 impl SonarConfig {
@@ -101,13 +92,13 @@ impl Window {
         scan: &Scan<'_>,
         measured_ns: i64,
         odom_from_laser: Pose,
-    ) -> Result<(), EngineError> {
+    ) -> Result<(), AccumulatorError> {
         if !odom_from_laser.is_finite() {
-            return Err(EngineError::Odometry(odom_from_laser));
+            return Err(EngineError::Odometry(odom_from_laser).into());
         }
         let echoes: Vec<Echo> = Echo::of(scan, Pose::IDENTITY)?.collect();
         if echoes.len() > MAX_ECHOES {
-            return Err(EngineError::TooManyEchoes {
+            return Err(AccumulatorError::TooManyEchoes {
                 found: echoes.len(),
                 allowed: MAX_ECHOES,
             });
@@ -186,8 +177,8 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
+    use super::super::scan_of;
     use super::*;
-    use crate::regions::scan_of;
 
     /// Scan of a sonar that looks left at a wall two metres from the line along x on which the
     /// robot drives.
@@ -276,11 +267,14 @@ mod tests {
         let refused = window.add(&laser, 0, Pose::IDENTITY);
         assert!(matches!(
             refused,
-            Err(EngineError::TooManyEchoes { found: 65, .. })
+            Err(AccumulatorError::TooManyEchoes { found: 65, .. })
         ));
         let lost = Pose::new(f64::NAN, 0.0, 0.0);
         let refused = window.add(&scan_of(&[1.0]), 0, lost);
-        assert!(matches!(refused, Err(EngineError::Odometry(_))));
+        assert!(matches!(
+            refused,
+            Err(AccumulatorError::Engine(EngineError::Odometry(_)))
+        ));
         assert_eq!(window.taken.len(), 0);
     }
 }
