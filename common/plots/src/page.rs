@@ -1,6 +1,6 @@
 //! What surrounds every picture: a title, what it says, and a legend.
 
-use drawing::{Anchor, Color, DrawingError, Path, Rect, Scene, TextStyle};
+use drawing::{Anchor, DrawingError, Path, Rect, Scene, TextStyle};
 use messages::Verdict;
 
 use super::legend::Legend;
@@ -80,7 +80,7 @@ impl Page {
         // Until the legend is known.
         let height = body.bottom().round() as u32;
         let mut page = Page {
-            scene: Scene::new(width, height, title, Color::WHITE)?,
+            scene: Scene::new(width, height, title)?,
             legend: Legend::default(),
             body,
             unit,
