@@ -64,11 +64,7 @@ impl<'a> Votes<'a> {
         Votes {
             ground: Ground { map, rules },
             field,
-            heading: Heading {
-                title,
-                verdict: None,
-                says,
-            },
+            heading: Heading::plain(title, says),
             extent: Ground { map, rules }.known(),
             truth,
             width: page::COMMON_WIDTH,
