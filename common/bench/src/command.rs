@@ -10,7 +10,7 @@ use progress::Progress;
 use super::contest::{Contest, Effort};
 use super::paper;
 use super::row::Row;
-use super::scope::{Cases, Filter, Place, Table, cases};
+use super::scope::{Cases, Filter, Place, Table, cases, name_of};
 use super::text;
 
 /// What stands below the options.
@@ -122,7 +122,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         Measured::Table(table) if config.paper.is_empty() => run_table(config, table),
         Measured::Table(table) => Err(wrong_use(format!(
             "--out, --part and --recording are for `bench paper`, not for {}",
-            table.name()
+            name_of(&table)
         ))),
         Measured::Paper => {
             let has_others =
@@ -170,7 +170,7 @@ fn name(place: &Place) -> String {
         p_over_n,
         ..
     } = place;
-    format!("{} {size} x {size}, p/n {p_over_n} %", kind.name())
+    format!("{} {size} x {size}, p/n {p_over_n} %", name_of(kind))
 }
 
 fn printed(rows: &[Row], as_json: bool) -> String {

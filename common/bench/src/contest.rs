@@ -6,13 +6,12 @@ use benchmarks::timing::median;
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::space::Space;
-use engine::taper::TaperShape;
 
 use super::line_up::{Contestant, LineUp};
 use super::measure::{Task, measure};
 use super::method::{Method, Sizes};
 use super::row::Row;
-use super::scope::{Place, Sight, Table};
+use super::scope::{Place, Sight, Table, name_of};
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,16 +122,16 @@ impl Contest {
     /// What all rows of a case share.
     fn template(&self, sight: &Sight, tasks: &[Task<'_>]) -> anyhow::Result<Row> {
         Ok(Row {
-            table: self.table.name(),
+            table: name_of(&self.table),
             method: "",
             label: "",
-            kind: self.place.kind.name(),
+            kind: name_of(&self.place.kind),
             size: self.place.size,
             beams: sight.beams,
             headings: tasks.first().map_or(0, |task| task.headings.len()),
             p_over_n: self.line_up.world.p_over_n(),
             noise_percent: sight.noise_percent,
-            taper: taper_name(sight),
+            taper: name_of(&sight.taper),
             k: taper_cells(tasks)?,
             cpu_ms: None,
             ratio_to_reverse_projection: None,
@@ -195,15 +194,6 @@ fn taper_cells(tasks: &[Task<'_>]) -> anyhow::Result<f64> {
         cells += (0..program.beams()).map(width).sum::<usize>();
     }
     Ok(cells as f64 / beams.max(1) as f64)
-}
-
-fn taper_name(sight: &Sight) -> &'static str {
-    match sight.taper {
-        TaperShape::Gaussian => "gaussian",
-        TaperShape::Linear => "linear",
-        TaperShape::Trapezoid => "trapezoid",
-        TaperShape::Box => "box",
-    }
 }
 
 /// Fills in the ratios to the fastest reverse projection that finds the best

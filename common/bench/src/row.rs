@@ -8,9 +8,9 @@ use super::measure::Measured;
 /// One line of JSON, and one of the table.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Row {
-    pub(super) table: &'static str,
+    pub(super) table: String,
     pub(super) method: &'static str,
-    pub(super) kind: &'static str,
+    pub(super) kind: String,
     /// Cells a side of the square world, 0.05 m each.
     pub(super) size: u32,
     pub(super) beams: u32,
@@ -19,7 +19,7 @@ pub(super) struct Row {
     /// Boundary cells over free cells, as generated.
     pub(super) p_over_n: f64,
     pub(super) noise_percent: f64,
-    pub(super) taper: &'static str,
+    pub(super) taper: String,
     /// Cells that a reading's votes reach along an axis, on average.
     pub(super) k: f64,
     /// Median for one scan, on one thread; none where it was skipped.

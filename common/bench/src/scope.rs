@@ -2,6 +2,7 @@
 //! options put in their place.
 
 use benchmarks::worlds::Kind;
+use clap::ValueEnum;
 use engine::taper::TaperShape;
 
 /// Longest side of a world, cells.
@@ -18,15 +19,10 @@ pub(super) enum Table {
     Search,
 }
 
-impl Table {
-    /// As it is written on the command line and in reports.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Table::Table1 => "table1",
-            Table::Table2 => "table2",
-            Table::Search => "search",
-        }
-    }
+/// Name of a value on the command line, which reports use as well.
+pub(super) fn name_of(value: &impl ValueEnum) -> String {
+    let name = value.to_possible_value();
+    name.map_or_else(String::new, |name| name.get_name().to_owned())
 }
 
 /// Puts other cases in place of a table's own. Lists are separated by commas.

@@ -135,16 +135,16 @@ mod tests {
 
     fn row() -> Row {
         Row {
-            table: "table2",
+            table: "table2".into(),
             method: "reverse_projection_search",
             label: "Reverse projection, search",
-            kind: "rooms",
+            kind: "rooms".into(),
             size: 1200,
             beams: 180,
             headings: 360,
             p_over_n: 0.0501,
             noise_percent: 10.0,
-            taper: "trapezoid",
+            taper: "trapezoid".into(),
             k: 22.6,
             cpu_ms: Some(12.345),
             ratio_to_reverse_projection: Some(1.0),

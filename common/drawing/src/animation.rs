@@ -3,10 +3,11 @@
 use std::io::Cursor;
 use std::time::Duration;
 
-use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, Filter};
+use png::{BlendOp, ColorType};
+use resvg::tiny_skia::Pixmap;
 
-use crate::raster::pixels;
-use crate::{DrawingError, Image, Scene};
+use crate::raster::{encoder, pixels};
+use crate::{DrawingError, Scene};
 
 /// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.
 pub type Frame = (Scene, Duration);
@@ -23,11 +24,8 @@ pub fn to_animated_png<E: From<DrawingError>>(
     let (scene, shown) = frames.next().ok_or(DrawingError::NoFrame)??;
     let mut before = pixels(&scene)?;
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(Cursor::new(&mut bytes), scene.width(), scene.height());
-    encoder.set_color(ColorType::Rgba);
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::High);
-    encoder.set_filter(Filter::NoFilter);
+    let sides = (scene.width(), scene.height());
+    let mut encoder = encoder(Cursor::new(&mut bytes), sides, ColorType::Rgba);
     let encoding = DrawingError::Encoding;
     let endless = 0;
     let count = u32::try_from(count).unwrap_or(u32::MAX);
@@ -37,7 +35,7 @@ pub fn to_animated_png<E: From<DrawingError>>(
     let milliseconds = |shown: Duration| u16::try_from(shown.as_millis()).unwrap_or(u16::MAX);
     let delay = milliseconds(shown);
     writer.set_frame_delay(delay, 1000).map_err(encoding)?;
-    writer.write_image_data(before.rgba()).map_err(encoding)?;
+    writer.write_image_data(before.data()).map_err(encoding)?;
     for frame in frames {
         let (scene, shown) = frame?;
         let now = pixels(&scene)?;
@@ -68,7 +66,7 @@ struct Part {
 }
 
 impl Part {
-    fn changed(before: &Image, now: &Image) -> Result<Self, DrawingError> {
+    fn changed(before: &Pixmap, now: &Pixmap) -> Result<Self, DrawingError> {
         let (width, height) = (now.width(), now.height());
         if (width, height) != (before.width(), before.height()) {
             return Err(DrawingError::FrameSize { width, height });
@@ -84,9 +82,9 @@ impl Part {
         }
         let end = (end.0.max(corner.0 + 1), end.1.max(corner.1 + 1));
         let inside = (corner.1..end.1).flat_map(|y| (corner.0..end.0).map(move |x| (x, y)));
-        let rgba = inside.flat_map(|(x, y)| match differs(x, y) {
-            true => now.pixel(x, y),
-            false => [0; 4],
+        let rgba = inside.flat_map(|(x, y)| {
+            let changed = now.pixel(x, y).filter(|_| differs(x, y));
+            changed.map_or([0; 4], |p| [p.red(), p.green(), p.blue(), p.alpha()])
         });
         Ok(Part {
             corner,
@@ -105,7 +103,7 @@ mod tests {
 
     /// A scene of 9 x 7 with these pixels red.
     fn scene(red: &[(f64, f64)]) -> Scene {
-        let mut scene = Scene::new(9, 7, "", Color::WHITE).unwrap();
+        let mut scene = Scene::new(9, 7, "").unwrap();
         for &(x, y) in red {
             scene.fill(Path::rect(Rect::new(x, y, 1.0, 1.0)), RED);
         }
@@ -150,7 +148,7 @@ mod tests {
                     shown[4 * (9 * y + x)..][..4].copy_from_slice(pixel);
                 }
             }
-            assert_eq!(shown, pixels(scene).unwrap().rgba(), "{places:?}");
+            assert_eq!(shown, pixels(scene).unwrap().data(), "{places:?}");
             places.push((frame.x_offset, frame.y_offset, frame.width, frame.height));
         }
         let expected = [(0, 0, 9, 7), (2, 2, 3, 4), (8, 6, 1, 1), (0, 0, 9, 7)];
@@ -159,7 +157,7 @@ mod tests {
 
     #[test]
     fn frames_of_one_size_are_needed() {
-        let other = Scene::new(9, 8, "", Color::WHITE).unwrap();
+        let other = Scene::new(9, 8, "").unwrap();
         let error = animated(&[scene(&[]), other]).unwrap_err().to_string();
         assert!(error.contains("9 x 8"), "{error}");
         assert!(matches!(animated(&[]), Err(DrawingError::NoFrame)));

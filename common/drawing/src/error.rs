@@ -7,16 +7,6 @@ pub enum DrawingError {
     /// A side of the picture is 0 or too large.
     #[error("a picture of {width} x {height} pixels; allowed: 1 to {MAX_SIDE} along each side")]
     Size { width: u32, height: u32 },
-    /// The number of bytes does not match the sides of the image.
-    #[error(
-        "an image of {width} x {height} pixels came with {found} bytes; four a pixel are needed"
-    )]
-    Pixels {
-        width: u32,
-        height: u32,
-        /// Number of bytes given.
-        found: usize,
-    },
     #[error("an animation needs at least one picture")]
     NoFrame,
     /// A frame of an animation differs in size from the first one.
@@ -24,4 +14,6 @@ pub enum DrawingError {
     FrameSize { width: u32, height: u32 },
     #[error("the picture cannot be encoded as PNG")]
     Encoding(#[from] png::EncodingError),
+    #[error("the picture cannot be rendered")]
+    Rendering(#[from] resvg::usvg::Error),
 }

@@ -1,22 +1,19 @@
 //! Pictures: a scene of shapes, images and text, written as PNG or as SVG.
 //!
 //! ```text
-//! path, text, image ─ scene ─┬─ to_png
-//!                            ├─ to_animated_png
-//!                            └─ to_svg
+//! path, text ─ scene ─ to_svg ─┬─ to_png
+//!                              └─ to_animated_png
 //! ```
 //!
-//! All outputs come from the same items, so they look the same. Letters are outlines of an embedded
+//! PNG files are rendered from the SVG, so they look the same. Letters are outlines of an embedded
 //! font: nothing has to be installed to create or view a picture, and an SVG contains no text that
 //! could render differently. Coordinates are pixels from the upper left corner, y downwards.
 //!
-//! The crate is independent of maps, robots and files. It draws with `tiny-skia` instead of a whole
-//! SVG renderer, which takes ten times as long to build.
+//! The crate is independent of maps, robots and files.
 
 mod animation;
 mod color;
 mod error;
-mod image;
 mod path;
 mod raster;
 mod scene;
@@ -27,7 +24,6 @@ mod vector;
 pub use animation::{Frame, to_animated_png};
 pub use color::Color;
 pub use error::DrawingError;
-pub use image::Image;
 pub use path::{Path, Rect};
 pub use raster::to_png;
 pub use scene::{Label, Scene, Stroke};

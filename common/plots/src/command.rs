@@ -51,7 +51,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     };
     let bytes = match format {
         Format::Png => drawing::to_png(&scene)?,
-        Format::Svg => drawing::to_svg(&scene)?.into_bytes(),
+        Format::Svg => drawing::to_svg(&scene).into_bytes(),
     };
     write(&config.out, &bytes)?;
     let (width, height) = (scene.width(), scene.height());

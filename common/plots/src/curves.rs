@@ -59,11 +59,7 @@ pub struct Curves {
 /// The picture would be too large.
 pub fn draw(chart: &Curves) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
-    let heading = Heading {
-        title: chart.title.clone(),
-        verdict: None,
-        says: chart.says.clone(),
-    };
+    let heading = Heading::plain(&chart.title, &chart.says);
     let unit = page::unit(width);
     let height = axes::height_for(HEIGHT, page::body_width(width), unit);
     let mut page = Page::new(width, height, &heading)?;

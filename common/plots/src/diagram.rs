@@ -97,11 +97,7 @@ pub fn draw(diagram: &Diagram) -> anyhow::Result<Scene> {
     let ratio = ratios.fold(0.0, f64::max);
     let height = axes::height_for(ratio, side, unit) + CAPTION * unit;
     let rows = diagram.panels.len().div_ceil(2) as f64;
-    let heading = Heading {
-        title: diagram.title.clone(),
-        verdict: None,
-        says: diagram.says.clone(),
-    };
+    let heading = Heading::plain(&diagram.title, &diagram.says);
     let mut page = Page::new(width, height * rows, &heading)?;
     for (i, panel) in diagram.panels.iter().enumerate() {
         let (column, row) = ((i % 2) as f64, (i / 2) as f64);

@@ -25,9 +25,6 @@ pub struct Stop {
     pub truth: Option<Pose>,
 }
 
-/// Pictures are this wide.
-const WIDTH: u32 = 1200;
-
 /// They are as high as the drive asks for, within these shares of their width.
 const HEIGHTS: (f64, f64) = (0.3, 1.2);
 
@@ -56,15 +53,9 @@ pub fn draw(
         around.map(|by| (pose.x + by, pose.y + by))
     });
     let extent = Extent::of(corners).within(Extent::of_map(map));
-    let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let (width, unit) = (page::body_width(WIDTH), page::unit(WIDTH));
-    let heading = Heading {
-        title,
-        verdict: None,
-        says,
-    };
-    let mut page = Page::new(WIDTH, axes::height_for(ratio, width, unit), &heading)?;
-    let view = axes::view_within(extent, page.body, unit);
+    let heading = Heading::plain(title, says);
+    let (mut page, view) = Page::of_map(page::COMMON_WIDTH, extent, HEIGHTS, &heading)?;
+    let unit = page.unit;
     let ground = Ground { map, rules };
     ground.draw(&mut page, &view)?;
     let Page { scene, legend, .. } = &mut page;

@@ -205,15 +205,14 @@ fn heading(judged: &[Judged], bag: &str) -> Heading {
     let wrong = unique.clone().filter(|judged| !judged.is_found()).count();
     let (most_m, most_deg) = SUCCESS;
     let share = 100.0 * found as f64 / judged.len().max(1) as f64;
-    Heading {
-        title: format!("{bag} · errors against /ground_truth"),
-        verdict: None,
-        says: format!(
+    Heading::plain(
+        format!("{bag} · errors against /ground_truth"),
+        format!(
             "{} scans with a true pose: {share:.1} % within {most_m} m and {most_deg}°; {} called Unique, {wrong} of them wrong",
             judged.len(),
             unique.count(),
         ),
-    }
+    )
 }
 
 /// Names the verdicts and the limit.

@@ -9,7 +9,7 @@ use offline::{Field, frame_of, sides_of};
 
 use super::axes::{self, Axis};
 use super::extent::Extent;
-use super::ground::{self, Sampler};
+use super::ground::Sampler;
 use super::legend::Sample;
 use super::marks;
 use super::page::{self, Heading, Page};
@@ -64,11 +64,7 @@ impl<'a> Votes<'a> {
         Votes {
             ground: Ground { map, rules },
             field,
-            heading: Heading {
-                title,
-                verdict: None,
-                says,
-            },
+            heading: Heading::plain(title, says),
             extent: Ground { map, rules }.known(),
             truth,
             width: page::COMMON_WIDTH,
@@ -153,7 +149,7 @@ fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> anyhow::Result<boo
     let under = Sampler::new(view, field.frame, field.sides);
     let most = f64::from(field.outcome.found.best.max(1));
     let mut any_wall = false;
-    ground::fill(scene, view, |column, row| {
+    scene.image(view.area(), |column, row| {
         let mut highest = 0;
         under.each(column, row, |index| {
             let intensity = index.and_then(|index| field.intensities.get(index));

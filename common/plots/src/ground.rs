@@ -3,7 +3,7 @@
 //! A pixel shows all cells that lie under it, or the one cell that it is a part
 //! of: nothing that is thin is lost where many cells meet one pixel.
 
-use drawing::{Color, DrawingError, Image, Rect, Scene};
+use drawing::{Color, DrawingError, Scene};
 use engine::fit::GridPose;
 use engine::grid::{CellRules, GridFrame};
 use map::OccupancyGrid;
@@ -70,18 +70,6 @@ impl Sampler {
     }
 }
 
-/// Fills a view with an image of this many pixels.
-pub(super) fn fill(
-    scene: &mut Scene,
-    view: &View,
-    color: impl FnMut(u32, u32) -> Color,
-) -> Result<(), DrawingError> {
-    let Rect { width, height, .. } = view.area();
-    let image = Image::from_pixels(width as u32, height as u32, color)?;
-    scene.image(image, view.area());
-    Ok(())
-}
-
 /// Cells of a kind, their colour and their name.
 pub(super) type Ink = (Color, &'static str);
 
@@ -96,7 +84,7 @@ pub(super) fn draw(
     let sampler = Sampler::new(view, frame_of(map), sides_of(map));
     let mut inks: Vec<Ink> = Vec::new();
     let mut seen = Pixel::default();
-    fill(scene, view, |column, row| {
+    scene.image(view.area(), |column, row| {
         let mut pixel = Pixel::default();
         sampler.each(column, row, |index| {
             let cell = index.and_then(|index| Some((index, *map.cells.get(index)?)));
@@ -175,6 +163,7 @@ impl Pixel {
 
 #[cfg(test)]
 mod tests {
+    use drawing::Rect;
     use geometry::Pose;
 
     use super::super::extent::Extent;

@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_name_that_is_wider_than_the_picture_is_written_smaller() {
         let legend = legend(&["a name that is much too long for this picture", "other"]);
-        let mut scene = Scene::new(200, 100, "", Color::WHITE).unwrap();
+        let mut scene = Scene::new(200, 100, "").unwrap();
         legend.draw(&mut scene, (10.0, 10.0), 180.0, 1.0);
         let room = Rect::new(10.0, 10.0, 180.0001, 2.0 * ROW);
         let labels = scene.labels();

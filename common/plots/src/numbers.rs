@@ -81,14 +81,12 @@ impl Numbers {
 
 #[cfg(test)]
 mod tests {
-    use drawing::Color;
-
     use super::super::layout;
     use super::*;
 
     #[test]
     fn numbers_of_marks_in_a_heap_are_all_written_beside_each_other() {
-        let mut scene = Scene::new(400, 300, "", Color::WHITE).unwrap();
+        let mut scene = Scene::new(400, 300, "").unwrap();
         let mut numbers = Numbers::new(scene.area());
         // In the corner, where half of the directions lead out of the picture.
         let marks: Vec<_> = (0..9).map(|i| (390.0 - 3.0 * f64::from(i), 8.0)).collect();

@@ -7,13 +7,13 @@ use engine::grid::Grid;
 
 use super::axes;
 use super::ground;
-use super::page::{self, Heading, Page};
+use super::page::{Heading, Page};
 use super::scan::Size;
 use super::subject::Ground;
 use super::theme;
 
-/// The body's height as a share of its width at most.
-const HIGHEST: f64 = 1.3;
+/// Limits of the body's height as a share of its width.
+const HEIGHTS: (f64, f64) = (0.2, 1.3);
 
 /// Draws what is known of the map; `grid` is the same map as rays see it.
 ///
@@ -33,12 +33,8 @@ pub(super) fn draw(
             *mark = true;
         }
     }
-    let extent = ground.known();
-    let ratio = (extent.height() / extent.width()).clamp(0.2, HIGHEST);
-    let (width, unit) = (page::body_width(size.width), page::unit(size.width));
-    let height = axes::height_for(ratio, width, unit);
-    let mut page = Page::new(size.width, height, &heading(ground, grid, name))?;
-    let view = axes::view_within(extent, page.body, unit);
+    let heading = heading(ground, grid, name);
+    let (mut page, view) = Page::of_map(size.width, ground.known(), HEIGHTS, &heading)?;
     let occupied = ground::occupied(ground.map, ground.rules);
     ground::draw(
         (&mut page.scene, &mut page.legend),
@@ -49,7 +45,7 @@ pub(super) fn draw(
             _ => occupied(index).map(|(color, _)| (color, "obstacle behind it")),
         },
     )?;
-    axes::draw_metres(&mut page.scene, &view, unit);
+    axes::draw_metres(&mut page.scene, &view, page.unit);
     Ok(page.finish()?)
 }
 
@@ -58,10 +54,9 @@ fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {
     let boundary = boundary::extract(grid).len();
     let share = 100.0 * boundary as f64 / grid.free_cells().max(1) as f64;
     let metres = |cells: u32| f64::from(cells) * map.resolution_m;
-    Heading {
-        title: name.to_owned(),
-        verdict: None,
-        says: format!(
+    Heading::plain(
+        name,
+        format!(
             "{} × {} cells of {} m, {:.1} × {:.1} m; {} free cells, {boundary} boundary cells ({share:.1} %)",
             map.width,
             map.height,
@@ -70,5 +65,5 @@ fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {
             metres(map.height),
             grid.free_cells(),
         ),
-    }
+    )
 }

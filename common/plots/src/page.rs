@@ -1,10 +1,12 @@
 //! What surrounds every picture: a title, what it says, and a legend.
 
-use drawing::{Anchor, Color, DrawingError, Path, Rect, Scene, TextStyle};
+use drawing::{Anchor, DrawingError, Path, Rect, Scene, TextStyle};
 use messages::Verdict;
 
+use super::extent::Extent;
 use super::legend::Legend;
-use super::theme;
+use super::view::View;
+use super::{axes, theme};
 
 /// Pictures are this wide unless somebody asks for another width.
 pub(super) const COMMON_WIDTH: u32 = 1200;
@@ -23,6 +25,17 @@ pub(super) struct Heading {
     pub(super) verdict: Option<Verdict>,
     /// A sentence about it.
     pub(super) says: String,
+}
+
+impl Heading {
+    /// Lines without a verdict.
+    pub(super) fn plain(title: impl Into<String>, says: impl Into<String>) -> Self {
+        Heading {
+            title: title.into(),
+            verdict: None,
+            says: says.into(),
+        }
+    }
 }
 
 /// A picture in the making. What is drawn is named in the legend, which is written last.
@@ -80,13 +93,28 @@ impl Page {
         // Until the legend is known.
         let height = body.bottom().round() as u32;
         let mut page = Page {
-            scene: Scene::new(width, height, title, Color::WHITE)?,
+            scene: Scene::new(width, height, title)?,
             legend: Legend::default(),
             body,
             unit,
         };
         page.write_heading(heading, &lines);
         Ok(page)
+    }
+
+    /// A picture of a part of the map, and the view of it; the body's height as a share of its width
+    /// is clamped to `lowest..=highest`.
+    pub(super) fn of_map(
+        width: u32,
+        extent: Extent,
+        (lowest, highest): (f64, f64),
+        heading: &Heading,
+    ) -> Result<(Self, View), DrawingError> {
+        let ratio = (extent.height() / extent.width()).clamp(lowest, highest);
+        let height = axes::height_for(ratio, body_width(width), unit(width));
+        let page = Page::new(width, height, heading)?;
+        let view = axes::view_within(extent, page.body, page.unit);
+        Ok((page, view))
     }
 
     fn write_heading(&mut self, heading: &Heading, lines: &[String]) {

@@ -228,7 +228,7 @@ pub(super) mod tests {
         let extent = Extent::of([(0.0, 0.0), (10.0, 8.0)]);
         let view = View::fitting(extent, Rect::new(0.0, 0.0, 500.0, 400.0));
         for pose in [Pose::new(3.0, 2.0, 0.0), Pose::new(6.0, 5.0, 2.5)] {
-            let mut scene = Scene::new(500, 400, "", Color::WHITE).unwrap();
+            let mut scene = Scene::new(500, 400, "").unwrap();
             let names = (&mut scene, &mut Legend::default());
             draw(names, &view, &subject(pose), 1.0);
             // 50 pixels a metre, y from the top.
@@ -252,7 +252,7 @@ pub(super) mod tests {
         let extent = Extent::of([(-5.0, -5.0), (5.0, 5.0)]);
         let view = View::fitting(extent, Rect::new(0.0, 0.0, 500.0, 500.0));
         let names = |subject: &Subject| {
-            let mut scene = Scene::new(500, 500, "", Color::WHITE).unwrap();
+            let mut scene = Scene::new(500, 500, "").unwrap();
             let mut legend = Legend::default();
             draw((&mut scene, &mut legend), &view, subject, 1.0);
             count(&mut legend, subject);

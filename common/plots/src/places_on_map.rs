@@ -26,20 +26,12 @@ pub fn draw(
     places: &[(Pose, Pose)],
     (title, says): (String, String),
 ) -> anyhow::Result<Scene> {
-    let width = page::COMMON_WIDTH;
     let around = path.iter().map(|pose| (pose.x, pose.y));
     let all = Extent::of_map(map);
     let extent = Extent::of(around).with_rim(0.15, 8.0).within(all);
-    let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let unit = page::unit(width);
-    let height = axes::height_for(ratio, page::body_width(width), unit);
-    let heading = Heading {
-        title,
-        verdict: None,
-        says,
-    };
-    let mut page = Page::new(width, height, &heading)?;
-    let view = axes::view_within(extent, page.body, unit);
+    let heading = Heading::plain(title, says);
+    let (mut page, view) = Page::of_map(page::COMMON_WIDTH, extent, HEIGHTS, &heading)?;
+    let unit = page.unit;
     Ground { map, rules }.draw(&mut page, &view)?;
     let way = Stroke::new(theme::CURVES[5], 2.0 * unit);
     page.legend.add(Sample::Line(way), "path");

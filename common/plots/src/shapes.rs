@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn shapes_differ_and_cover_about_the_same_area() {
         let pictures = Shape::ALL.map(|shape| {
-            let mut scene = Scene::new(60, 60, "", Color::WHITE).unwrap();
+            let mut scene = Scene::new(60, 60, "").unwrap();
             scene.fill(shape.at((30.0, 30.0), 15.0), Color::rgb(0));
             let png = to_png(&scene).unwrap();
             image::load_from_memory(&png).unwrap().to_luma8()

@@ -80,11 +80,11 @@ fn the_launcher_alone_links_nothing_of_the_tools() {
         "recording",
         "recording_tools",
         "regression",
+        "resvg",
         "rusqlite",
         "serialport",
         "simulation",
         "soak",
-        "tiny-skia",
         "top",
         "tungstenite",
     ];

@@ -19,7 +19,7 @@ use engine::particles::Candidate;
 use engine::space::Space;
 use engine::taper::TaperShape;
 use geometry::{Covariance, Pose};
-use plots::{Curve, CurvePoint, Curves};
+use plots::{Curve, Curves};
 use statistics::SUCCESS;
 
 use super::folder::{Csv, digits};
@@ -301,9 +301,7 @@ pub(super) fn csv(all: &[Saved]) -> Csv {
                 saved.scans.to_string(),
                 name.to_owned(),
             ];
-            for Interval { value, low, high } in [tally.cpu_ms, tally.found] {
-                row.extend([value, low, high].map(digits));
-            }
+            row.extend([tally.cpu_ms, tally.found].map(Interval::fields).concat());
             let left = [saved.poses, saved.cells, saved.particles];
             row.extend(left.map(|share| digits(share.value)));
             csv.push(row);
@@ -330,14 +328,7 @@ pub(super) fn draw(extent: Extent, all: &[Saved]) -> anyhow::Result<Scene> {
         is_dashed: false,
         points: all
             .iter()
-            .map(|saved| {
-                let time = saved.methods()[i].1.cpu_ms;
-                CurvePoint {
-                    x: f64::from(saved.noise_percent),
-                    y: time.value,
-                    interval: Some((time.low, time.high)),
-                }
-            })
+            .map(|saved| saved.methods()[i].1.cpu_ms.at(saved.noise_percent.into()))
             .collect(),
     };
     plots::draw_curves(&Curves {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use progress::Progress;
 
 use super::super::contest::Effort;
-use super::super::scope::Table;
+use super::super::scope::{Table, name_of};
 use super::folder::Folder;
 use super::{aid, corridor, counts, method, sonar, tables};
 
@@ -199,7 +199,7 @@ fn table_part(
     say: impl Fn(String),
 ) -> anyhow::Result<()> {
     let measured = tables::measure(table, extent, say)?;
-    let name = table.name();
+    let name = name_of(&table);
     folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
     let picture = tables::draw(table, extent, &measured)?;
     folder.picture(&format!("{name}.png"), &picture)

@@ -1,11 +1,31 @@
 //! Figures with the interval that holds the true one with a probability of 95 %. Pure.
 
+use plots::CurvePoint;
+
+use super::folder::digits;
+
 /// A figure and its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Interval {
     pub(super) value: f64,
     pub(super) low: f64,
     pub(super) high: f64,
+}
+
+impl Interval {
+    /// The point of a curve with this height.
+    pub(super) fn at(self, x: f64) -> CurvePoint {
+        CurvePoint {
+            x,
+            y: self.value,
+            interval: Some((self.low, self.high)),
+        }
+    }
+
+    /// The figure and both ends, for a table.
+    pub(super) fn fields(self) -> [String; 3] {
+        [self.value, self.low, self.high].map(digits)
+    }
 }
 
 /// Student's t at 97.5 % for 1, 2, 3 … degrees of freedom; beyond, the normal one is met

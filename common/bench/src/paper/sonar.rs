@@ -17,6 +17,7 @@ use offline::{EngineOptions, Field, World as Searched};
 use plots::{Curve, CurvePoint, Curves, Votes};
 use simulation::TRANSDUCERS_DEG;
 
+use super::super::scope::name_of;
 use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
 use super::ring::{self, Projection};
@@ -222,17 +223,15 @@ pub(super) fn csv(all: &[Judged]) -> Csv {
         let mut row = vec![
             judged.place.figure.to_string(),
             variant.noise_percent.to_string(),
-            format!("{:?}", variant.taper).to_lowercase(),
+            name_of(&variant.taper),
             digits(variant.true_sigma_deg),
             digits(variant.sigma_deg),
             judged.poses.to_string(),
         ];
-        let (mean, found) = (judged.mean_percent, judged.found);
-        let of_found = judged.found_mean_percent;
-        let figures = [mean.value, mean.low, mean.high, judged.median_percent];
-        let shares = [found.value, found.low, found.high];
-        let rest = [of_found.value, of_found.low, of_found.high];
-        row.extend(figures.into_iter().chain(shares).chain(rest).map(digits));
+        row.extend(judged.mean_percent.fields());
+        row.push(digits(judged.median_percent));
+        row.extend(judged.found.fields());
+        row.extend(judged.found_mean_percent.fields());
         csv.push(row);
     }
     csv
@@ -256,14 +255,7 @@ pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
             color,
             is_dashed: false,
             points: plain()
-                .map(|judged| CurvePoint {
-                    x: x(judged),
-                    y: judged.found_mean_percent.value,
-                    interval: Some((
-                        judged.found_mean_percent.low,
-                        judged.found_mean_percent.high,
-                    )),
-                })
+                .map(|judged| judged.found_mean_percent.at(x(judged)))
                 .collect(),
         });
     }

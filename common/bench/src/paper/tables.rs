@@ -11,7 +11,7 @@ use plots::{Curve, CurvePoint, Curves};
 use super::super::contest::{Contest, Effort};
 use super::super::method::Method;
 use super::super::row::Row;
-use super::super::scope::{Place, Sight, Table};
+use super::super::scope::{Place, Sight, Table, name_of};
 use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
 use super::printed::{self, NOISE, P_OVER_N, Printed};
@@ -63,7 +63,7 @@ pub(super) fn measure(
         for world in 0..extent.worlds {
             step(format!(
                 "{}, p/n {p_over_n} %, map {}",
-                table.name(),
+                name_of(&table),
                 world + 1
             ));
             let place = Place {
@@ -171,9 +171,7 @@ pub(super) fn csv(all: &[Measured]) -> Csv {
             digits(row.k),
             row.method.to_owned(),
         ];
-        for Interval { value, low, high } in [row.cpu_ms, row.ratio] {
-            fields.extend([value, low, high].map(digits));
-        }
+        fields.extend([row.cpu_ms, row.ratio].map(Interval::fields).concat());
         fields.push(row.paper_ratio.map_or_else(String::new, digits));
         fields.push(digits(row.found));
         csv.push(fields);
@@ -208,11 +206,7 @@ pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> anyhow::Re
             is_dashed,
             points,
         };
-        let measured = here().map(|row| CurvePoint {
-            x: f64::from(row.p_over_n),
-            y: row.ratio.value,
-            interval: Some((row.ratio.low, row.ratio.high)),
-        });
+        let measured = here().map(|row| row.ratio.at(row.p_over_n.into()));
         curves.push(curve(name.to_owned(), false, measured.collect()));
         let printed = here().filter_map(|row| {
             Some(CurvePoint {

@@ -42,18 +42,6 @@ pub enum Kind {
     Boxes,
 }
 
-impl Kind {
-    /// Name on the command line and in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Rooms => "rooms",
-            Kind::Corridors => "corridors",
-            Kind::Boxes => "boxes",
-        }
-    }
-}
-
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct World {
     /// The cells, surrounded by a wall.
