@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use command_line::number;
-use geometry::Pose;
 use offline::{Options, Scans, no_truth_taken};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -39,23 +38,11 @@ pub(super) struct AnswerOptions {
     answer_gap_s: f64,
 }
 
-/// Options, and groups of them, of searching and tracking.
-const NOT_WITH_ANSWERS: [&str; 16] = [
-    "map",
-    "erase_place",
-    "max_p90_ms",
-    "HeadingConfig",
-    "MotionConfig",
-    "CellRules",
-    "LocalizerConfig",
-    "VoteConfig",
-    "CollectConfig",
-    "LimitsConfig",
-    "PeakConfig",
-    "FitConfig",
-    "IndexCacheConfig",
-    "SequenceOptions",
-    "SequenceLimits",
+/// Options of searching and tracking, and groups of such options.
+#[rustfmt::skip]
+const NOT_WITH_ANSWERS: [&str; 14] = [
+    "map", "erase_place", "max_p90_ms", "sequence", "stress", "headings", "HeadingConfig",
+    "MotionConfig", "CellRules", "CollectConfig", "LimitsConfig", "FitConfig", "IndexCacheConfig",
     "TrackingConfig",
 ];
 
@@ -114,47 +101,39 @@ pub(super) fn evaluate(
     let shown = file.display();
     let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {shown}"))?;
     let given = GivenPoses::parse(&text).map_err(|reason| anyhow!("{shown}:{reason}"))?;
-    let gap_ns = (config.answer_gap_s * 1e9) as i64;
     let (recording, truths) = truths.open(bag, options)?;
     let topics = options.topics.scans(&recording)?;
     let (mut judge, mut pairs) = (Judge::new(), Vec::new());
-    let (mut scans, mut wrong_scans) = (0, 0);
-    let mut span_ns: Option<(i64, i64)> = None;
+    let (mut scans, mut wrong_scans, mut first_ns) = (0, 0, None);
     for scan in Scans::of(&recording, topics, options.every) {
         let scan = scan?;
         scans += 1;
         let Some(truth) = truths.at(scan.stamp_ns) else {
             continue;
         };
-        span_ns = Some((span_ns.map_or(scan.stamp_ns, |span| span.0), scan.stamp_ns));
-        let Some(answer) = given.at(scan.stamp_ns, gap_ns) else {
+        first_ns = first_ns.or(Some(scan.stamp_ns));
+        let Some(answer) = given.at(scan.stamp_ns, (config.answer_gap_s * 1e9) as i64) else {
             judge.refusal(truth, "no answer".to_owned());
             continue;
         };
-        let base_from_laser = scan
+        let mount = scan
             .base_from_laser
             .filter(|_| config.answers_of == Frame::Base);
-        let pose = answer.pose.then(base_from_laser.unwrap_or(Pose::IDENTITY));
-        let off = (pose.distance_to(truth), pose.angle_to(truth).to_degrees());
-        wrong_scans += u64::from(answer.is_unique && (off.0 > WRONG.0 || off.1 > WRONG.1));
+        let pose = mount.map_or(answer.pose, |mount| answer.pose.then(mount));
+        let is_far = !pose.is_within(truth, WRONG.0, WRONG.1.to_radians());
+        wrong_scans += u64::from(answer.is_unique && is_far);
         judge.given(truth, pose, (answer.is_unique, answer.probability));
         pairs.push((pose, truth));
     }
-    let Some((first_ns, last_ns)) = span_ns else {
-        return Err(no_truth_taken(bag, scans, truths.recorded()));
-    };
+    let first_ns = first_ns.ok_or_else(|| no_truth_taken(bag, scans, truths.recorded()))?;
+    let bag = bag.display().to_string();
     if pairs.is_empty() {
-        let [from, to] = given
-            .span()
-            .map_or([0; 2], |(from, to)| [from, to])
-            .map(seconds);
-        let [first, last] = [first_ns, last_ns].map(seconds);
+        let [from, to] = given.span_ns().map(seconds);
+        let first = seconds(first_ns);
         return Err(anyhow!(
-            "{shown}: no pose has the stamp of a scan with a true pose: the poses are from {from} to {to} s, these scans of {} from {first} to {last} s; --answer-gap-s interpolates",
-            bag.display()
+            "{shown}: no pose, from {from} to {to} s, has the stamp of a scan with a true pose, the first of {bag} at {first} s; --answer-gap-s interpolates"
         ));
     }
-    let bag = bag.display().to_string();
     let effort = Effort {
         bag,
         scans,

@@ -14,6 +14,11 @@ const SAME_NS: i64 = 1_000_000;
 /// Latest stamp in seconds, shortly before the nanoseconds overflow.
 const MAX_S: f64 = 9e9;
 
+/// The formats, as errors name them.
+const TUM: &str = "lines of 8 numbers, stamp_s x y z qx qy qz qw";
+const JSON: &str =
+    "lines of JSON with whole stamp_ns, x, y, yaw, and optionally verdict, probability";
+
 /// Pose in the map, and how sure the program is of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct GivenPose {
@@ -55,27 +60,26 @@ impl GivenPoses {
     /// There is no pose, or one cannot be used: the number of its line, and what is allowed.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let lines = (1..).zip(text.lines().map(str::trim));
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-        let mut lines = lines.by_ref().peekable();
-        let is_json = lines.peek().is_some_and(|(_, line)| line.starts_with('{'));
+        let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let mut lines = lines.peekable();
+        let Some((_, first)) = lines.peek() else {
+            return Err(format!(" there is no pose; allowed are {TUM}, and {JSON}"));
+        };
+        let is_json = first.starts_with('{');
         let mut poses = BTreeMap::new();
         for (number, line) in lines {
             let given = if is_json { json(line) } else { tum(line) };
             let (stamp_ns, pose) = given.map_err(|reason| format!("{number}: {reason}"))?;
             let last = poses.last_key_value().map(|(&last_ns, _)| last_ns);
             if let Some(last_ns) = last.filter(|&last_ns| stamp_ns <= last_ns) {
+                let [stamp, last] = [stamp_ns, last_ns].map(seconds);
                 return Err(format!(
-                    "{number}: the stamp {} s is not after {} s of the pose before; allowed are increasing stamps",
-                    seconds(stamp_ns),
-                    seconds(last_ns)
+                    "{number}: the stamp {stamp} s is not after {last} s before; allowed are increasing stamps"
                 ));
             }
             poses.insert(stamp_ns, pose);
         }
-        match poses.is_empty() {
-            true => Err(" there is no pose; allowed are lines `stamp_s x y z qx qy qz qw`, and `{\"stamp_ns\": …, \"x\": …, \"y\": …, \"yaw\": …}`".to_owned()),
-            false => Ok(GivenPoses(poses)),
-        }
+        Ok(GivenPoses(poses))
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -83,8 +87,10 @@ impl GivenPoses {
     }
 
     /// First and last stamp, in nanoseconds.
-    pub(super) fn span(&self) -> Option<(i64, i64)> {
-        Some((*self.0.first_key_value()?.0, *self.0.last_key_value()?.0))
+    pub(super) fn span_ns(&self) -> [i64; 2] {
+        let mut stamps = self.0.keys();
+        let first = stamps.next().copied().unwrap_or_default();
+        [first, stamps.next_back().copied().unwrap_or(first)]
     }
 
     /// Pose of a stamp, else between two that are no more than `gap_ns` apart; then it is as sure
@@ -111,14 +117,14 @@ pub(super) fn seconds(stamp_ns: i64) -> String {
 }
 
 fn json(line: &str) -> Result<(i64, GivenPose), String> {
-    let line: Line = serde_json::from_str(line)
-        .map_err(|error| error.to_string().replace(" at line 1 column", " at column"))?;
+    let line: Line = serde_json::from_str(line).map_err(|error| {
+        let error = error.to_string().replace(" at line 1 column", " at column");
+        format!("{error}; allowed are {JSON}")
+    })?;
     check_stamp(line.stamp_ns as f64 / 1e9)?;
     if line.yaw.abs() > TAU {
-        return Err(format!(
-            "yaw is {}; allowed are radians, -2π to 2π",
-            line.yaw
-        ));
+        let yaw = line.yaw;
+        return Err(format!("yaw is {yaw}; allowed are radians, -2π to 2π"));
     }
     if let Some(p) = line.probability.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(format!("probability is {p}; allowed is 0 to 1"));
@@ -134,31 +140,23 @@ fn json(line: &str) -> Result<(i64, GivenPose), String> {
 fn tum(line: &str) -> Result<(i64, GivenPose), String> {
     let number = |word: &str| {
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| format!("{word:?} is not a finite number"))
+        number.ok_or_else(|| format!("{word:?} is not a finite number; allowed are {TUM}"))
     };
-    let numbers: Vec<f64> = line
-        .split_whitespace()
-        .map(number)
-        .collect::<Result<_, _>>()?;
-    let [stamp_s, x, y, _, qx, qy, qz, qw] = numbers[..] else {
+    let words = line.split_whitespace();
+    let numbers: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
+    let [stamp_s, px, py, _, x, y, z, w] = numbers[..] else {
         return Err(format!(
-            "{} numbers; allowed are 8: stamp_s x y z qx qy qz qw",
+            "there are {} numbers; allowed are {TUM}",
             numbers.len()
         ));
     };
     check_stamp(stamp_s)?;
-    let rotation = Quaternion {
-        x: qx,
-        y: qy,
-        z: qz,
-        w: qw,
-    };
-    if [qx, qy, qz, qw] == [0.0; 4] {
+    if [x, y, z, w] == [0.0; 4] {
         return Err("the quaternion is all zeros; allowed: a length of 1".to_owned());
     }
-    let yaw = rotation.yaw().map_err(|error| error.to_string())?;
+    let yaw = Quaternion { x, y, z, w }.yaw();
     let given = GivenPose {
-        pose: Pose::new(x, y, yaw),
+        pose: Pose::new(px, py, yaw.map_err(|error| error.to_string())?),
         is_unique: true,
         probability: None,
     };
@@ -166,12 +164,9 @@ fn tum(line: &str) -> Result<(i64, GivenPose), String> {
 }
 
 fn check_stamp(stamp_s: f64) -> Result<(), String> {
-    match stamp_s.abs() <= MAX_S {
-        true => Ok(()),
-        false => Err(format!(
-            "the stamp is {stamp_s} s; allowed are seconds since 1970, at most {MAX_S}"
-        )),
-    }
+    let wrong =
+        format!("the stamp is {stamp_s} s; allowed are seconds since 1970, at most {MAX_S}");
+    (stamp_s.abs() <= MAX_S).then_some(()).ok_or(wrong)
 }
 
 #[cfg(test)]
@@ -215,56 +210,37 @@ mod tests {
     #[test]
     fn a_bad_line_is_named_with_what_is_allowed() {
         let json = |rest: &str| format!("{{\"stamp_ns\": 1, \"x\": 1, \"y\": 2, {rest}}}");
-        for (text, expected) in [
+        let twice = "2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1";
+        let quaternion = "1: the quaternion (0, 0, 0, 0.9) is not a rotation";
+        let cases = [
+            ("# nothing\n", " there is no pose; allowed are"),
+            ("1 0 0 0 0 0 0 1\n2 0 0", "2: there are 3 numbers; allowed"),
+            ("1 0 nan 0 0 0 0 1", "1: \"nan\" is not a finite number"),
+            ("#\n1 0 0 0 0 0 0 0", "2: the quaternion is all zeros"),
+            ("1 0 0 0 0 0 0 0.9", quaternion),
+            (twice, "2: the stamp 2.000 s is not after 2.000 s"),
             (
-                "# nothing\n".to_owned(),
-                " there is no pose; allowed are lines `stamp_s",
-            ),
-            (
-                "1 0 0 0 0 0 0 1\n2 0 0".to_owned(),
-                "2: 3 numbers; allowed are 8",
-            ),
-            (
-                "1 0 nan 0 0 0 0 1".to_owned(),
-                "1: \"nan\" is not a finite number",
-            ),
-            (
-                "1,0,0,0,0,0,0,1".to_owned(),
-                "1: \"1,0,0,0,0,0,0,1\" is not",
-            ),
-            (
-                "#\n1 0 0 0 0 0 0 0".to_owned(),
-                "2: the quaternion is all zeros",
-            ),
-            (
-                "1 0 0 0 0 0 0 0.9".to_owned(),
-                "1: the quaternion (0, 0, 0, 0.9) is not a rotation",
-            ),
-            (
-                "2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1".to_owned(),
-                "2: the stamp 2.000 s is not after 2.000 s",
-            ),
-            (
-                "1137772793095 0 0 0 0 0 0 1".to_owned(),
+                "1137772793095 0 0 0 0 0 0 1",
                 "1: the stamp is 1137772793095 s; allowed",
             ),
             (
-                json("\"heading_deg\": 3"),
-                "1: unknown field `heading_deg`, expected one of",
+                &json("\"heading_deg\": 3"),
+                "1: unknown field `heading_deg`, expected",
             ),
-            (json("\"yaw\": 90"), "1: yaw is 90; allowed are radians"),
+            (&json("\"yaw\": 90"), "1: yaw is 90; allowed are radians"),
             (
-                json("\"yaw\": 0, \"probability\": 50"),
-                "1: probability is 50; allowed is 0 to 1",
+                &json("\"yaw\": 0, \"probability\": 50"),
+                "1: probability is 50; allowed",
             ),
             (
-                json("\"yaw\": 0, \"verdict\": \"unique\""),
-                "1: unknown variant `unique`, expected",
+                &json("\"yaw\": 0, \"verdict\": \"unique\""),
+                "1: unknown variant `unique`",
             ),
-            (json("\"yaw\": NaN"), "1: expected value at column"),
-            ("{\"x\": 1}".to_owned(), "1: missing field `stamp_ns`"),
-        ] {
-            let error = GivenPoses::parse(&text).unwrap_err();
+            (&json("\"yaw\": NaN"), "1: expected value at column"),
+            ("{\"x\": 1}", "1: missing field `stamp_ns`"),
+        ];
+        for (text, expected) in cases {
+            let error = GivenPoses::parse(text).unwrap_err();
             assert!(error.starts_with(expected), "{text}: {error}");
         }
     }

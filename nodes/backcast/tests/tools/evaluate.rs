@@ -367,7 +367,11 @@ fn answers_of_the_base_are_carried_to_the_laser() {
     }
     fs::write(&file, pose(7, HERE)).unwrap();
     for (options, code, expected) in [
-        ("a.json m.mcap", 1, "the poses are from 7.000 to 7.000 s"),
+        (
+            "a.json m.mcap",
+            1,
+            "no pose, from 7.000 to 7.000 s, has the stamp",
+        ),
         ("none.json m.mcap", 1, "cannot read none.json"),
         ("m.mcap m.mcap", 1, "cannot read m.mcap"),
         (
@@ -377,7 +381,7 @@ fn answers_of_the_base_are_carried_to_the_laser() {
         ),
         ("a.json --sequence m.mcap", 2, "cannot be used with"),
         ("a.json --headings 360 m.mcap", 2, "cannot be used with"),
-        ("a.json --least-score 0.5 m.mcap", 2, "cannot be used with"),
+        ("a.json --robot-radius 1 m.mcap", 2, "cannot be used with"),
     ] {
         let (found, _, stderr) = evaluate(options);
         assert!(
