@@ -19,6 +19,7 @@ pub fn schemas() -> Vec<json::schema::Named> {
         of_object::<locate::Object>("locate"),
         of_object::<evaluate::Evaluation>("evaluate"),
         of_object::<TotalLine<'_, evaluate::Evaluation>>("evaluate_total"),
+        of_object::<evaluate::AnswerFigures>("evaluate_answers"),
         of_object::<sequence::Figures>("evaluate_sequence"),
         of_object::<TotalLine<'_, sequence::Figures>>("evaluate_sequence_total"),
         of_object::<sequence::StressFigures>("evaluate_stress"),

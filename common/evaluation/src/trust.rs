@@ -66,18 +66,22 @@ impl Trust {
     }
 }
 
-/// Prints a table of the ranges with results, highest probability first.
 impl fmt::Display for Trust {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "probability  answers  mean %  right %")?;
-        for said in self.said().iter().rev().filter(|said| said.answers > 0) {
-            let range = format!("{:.2}..{:.2}", said.from, said.to);
-            let (mean, right) = (percent(said.mean), percent(share(said.right, said.answers)));
-            let answers = said.answers;
-            writeln!(f, "{range:>11}  {answers:>7}  {mean:>6}  {right:>7}")?;
-        }
-        Ok(())
+        f.write_str(&table(&self.said()))
     }
+}
+
+/// Formats a table of the ranges with results, highest probability first.
+pub(crate) fn table(ranges: &[Said]) -> String {
+    let mut lines = "probability  answers  mean %  right %\n".to_owned();
+    for said in ranges.iter().rev().filter(|said| said.answers > 0) {
+        let range = format!("{:.2}..{:.2}", said.from, said.to);
+        let (mean, right) = (percent(said.mean), percent(share(said.right, said.answers)));
+        let answers = said.answers;
+        lines += &format!("{range:>11}  {answers:>7}  {mean:>6}  {right:>7}\n");
+    }
+    lines
 }
 
 #[cfg(test)]

@@ -108,6 +108,8 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("Particles of a scan", &[("common/evaluation/src/locate/particles.rs", "Particles")]),
     ("`backcast evaluate --json`", &[("common/evaluation/src/evaluate/judge.rs", "Evaluation")]),
     ("Probabilities of a file", &[("common/evaluation/src/trust.rs", "Said")]),
+    ("`backcast evaluate --answers --json`", &[("common/evaluation/src/evaluate/answers.rs", "Figures")]),
+    ("Answers of another program", &[("common/evaluation/src/evaluate/given.rs", "Line")]),
     ("`backcast evaluate --sequence --json`", &[("common/evaluation/src/sequence/figures.rs", "Figures")]),
     ("`backcast evaluate --sequence --stress --json`", &[("common/evaluation/src/sequence/stress/figures.rs", "Figures")]),
     ("Of the single scan", &[("common/pose_table/src/line.rs", "Line"), ("common/pose_table/src/pose_line.rs", "Row")]),

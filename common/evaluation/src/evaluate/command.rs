@@ -9,12 +9,14 @@ use map::OccupancyGrid;
 use offline::{Accepted, Options, Session, World, no_truth_taken};
 use progress::{Progress, say};
 
+use super::answers::{self, AnswerOptions};
 use super::judge::{Effort, Evaluation, Judge, Total};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
 use crate::outcomes::{Outcomes, ReportOptions, total_line};
 use crate::sequence::{self, SequenceOptions, Task};
+use crate::trust;
 use crate::truths::{TruthOptions, Truths};
 
 /// Notes below the options in the help text.
@@ -49,6 +51,9 @@ pub struct Config {
     erase_place: Option<f64>,
 
     #[command(flatten)]
+    answers: AnswerOptions,
+
+    #[command(flatten)]
     limits: Limits,
 
     #[command(flatten)]
@@ -76,6 +81,9 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     if bags.is_empty() {
         return Err(wrong_use("--stress needs a recording"));
     }
+    if let Some(file) = &config.answers.answers {
+        return judge_answers(file, config);
+    }
     let map = config.options.load_map(&config.bags)?;
     let mut outcomes = Outcomes::new(&config.report)?;
     if config.sequence.sequence {
@@ -92,12 +100,6 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     }
     let mut printer = Printer::new(config.report.json, &config.bags);
     let mut total = Total::new();
-    let missed = |evaluation: &Evaluation| {
-        let truths = config.truths.missed(evaluation.truths).into_iter();
-        truths
-            .chain(config.limits.missed(evaluation))
-            .collect::<Vec<_>>()
-    };
     for (index, bag) in config.bags.iter().enumerate() {
         let name = bag.display().to_string();
         if let Err(error) = memory::forget_peak()
@@ -117,19 +119,51 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         total.add(&judge, &effort);
         let evaluation = judge.conclude(&effort);
         if !config.report.total {
-            outcomes.judged(&name, None, &missed(&evaluation), say);
+            outcomes.judged(&name, None, &config.missed(&evaluation), say);
         }
         printer.file(&evaluation)?;
     }
     let all = total.conclude();
     if config.report.total {
-        outcomes.judged("total", None, &missed(&all), say);
+        outcomes.judged("total", None, &config.missed(&all), say);
     }
     if total.files > 1 {
         printer.total(&all)?;
     }
     if !config.report.json && total.files > 0 {
-        stdout::print(&format!("\n{}", total.trust()))?;
+        stdout::print(&format!("\n{}", trust::table(&all.probabilities)))?;
+    }
+    outcomes.finish()
+}
+
+impl Config {
+    /// Requirements that these figures miss, one sentence each.
+    fn missed(&self, found: &Evaluation) -> Vec<String> {
+        let truths = self.truths.missed(found.truths).into_iter();
+        truths.chain(self.limits.missed(found)).collect()
+    }
+}
+
+/// Judges the answers of another program to one recording, and prints the figures.
+fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
+    let [bag] = &config.bags[..] else {
+        let files = config.bags.len();
+        return Err(wrong_use(format!(
+            "--answers are those to one recording; {files} are given"
+        )));
+    };
+    let mut outcomes = Outcomes::new(&config.report)?;
+    let options = (&config.answers, &config.truths, &config.options);
+    match answers::evaluate(file, bag, options) {
+        Ok((figures, reached)) => {
+            stdout::print(&match config.report.json {
+                true => format!("{}\n", json::object(&figures)),
+                false => figures.text(),
+            })?;
+            let missed = config.missed(&reached);
+            outcomes.judged(&bag.display().to_string(), None, &missed, say);
+        }
+        Err(error) => outcomes.failed(&bag.display().to_string(), &error, say),
     }
     outcomes.finish()
 }

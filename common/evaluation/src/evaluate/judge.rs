@@ -71,10 +71,6 @@ impl Total {
         self.files += 1;
     }
 
-    pub(super) fn trust(&self) -> &Trust {
-        &self.judge.trust
-    }
-
     pub(super) fn conclude(&self) -> Evaluation {
         self.judge.conclude(&self.effort)
     }
@@ -150,21 +146,48 @@ impl Judge {
             poses: poses.collect(),
             verdict: Some(found.verdict),
         };
-        self.accuracy.add(truth, &judged);
         self.cpu_ms.add(cpu_ms);
-        let Some(place) = found.places.first() else {
+        let place = found.places.first();
+        self.judge(truth, &judged, place.map(|place| place.probability));
+        if let Some(place) = place
+            && found.verdict == Verdict::Unique
+        {
+            let is_held = statistics::holds(place.covariance, place.map_from_laser, truth);
+            self.in_ellipse += u64::from(is_held);
+        }
+    }
+
+    /// Adds the answer of another program.
+    pub(super) fn given(
+        &mut self,
+        truth: Pose,
+        pose: Pose,
+        (is_unique, probability): (bool, Option<f64>),
+    ) {
+        let verdict = match is_unique {
+            true => Verdict::Unique,
+            false => Verdict::Ambiguous,
+        };
+        let judged = statistics::Answer {
+            poses: vec![pose],
+            verdict: Some(verdict),
+        };
+        self.judge(truth, &judged, probability);
+    }
+
+    fn judge(&mut self, truth: Pose, judged: &statistics::Answer, probability: Option<f64>) {
+        self.accuracy.add(truth, judged);
+        let Some(best) = judged.poses.first() else {
             return;
         };
         let (metres, degrees) = SUCCESS;
-        let best = place.map_from_laser;
         let is_right = best.is_within(truth, metres, degrees.to_radians());
         if is_right {
             self.error_m.add(best.distance_to(truth));
             self.error_deg.add(best.angle_to(truth).to_degrees());
         }
-        self.trust.add(place.probability, is_right);
-        if found.verdict == Verdict::Unique {
-            self.in_ellipse += u64::from(statistics::holds(place.covariance, best, truth));
+        if let Some(probability) = probability {
+            self.trust.add(probability, is_right);
         }
     }
 

@@ -5,9 +5,11 @@ use geometry::Pose;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::text::number;
+
 /// Errors of each pose with a known truth, of one drive or of several.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Samples {
+pub(crate) struct Samples {
     absolute_m: Vec<f64>,
     relative_m: Vec<f64>,
     relative_deg: Vec<f64>,
@@ -15,7 +17,7 @@ pub(super) struct Samples {
 
 /// Figures of these errors; `None` for an error without samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub(super) struct Errors {
+pub(crate) struct Errors {
     /// Number of poses compared.
     pub(super) poses: usize,
     /// Absolute pose error, translation (`evo_ape -r trans_part`), in metres.
@@ -38,7 +40,7 @@ pub(super) struct Spread {
 
 impl Samples {
     /// Errors of pairs of found and true pose, in the order of their stamps.
-    pub(super) fn of(pairs: &[(Pose, Pose)]) -> Self {
+    pub(crate) fn of(pairs: &[(Pose, Pose)]) -> Self {
         let absolute = pairs.iter().map(|(found, truth)| found.distance_to(*truth));
         let step = |from: Pose, to: Pose| from.inverse().then(to);
         let relative: Vec<Pose> = pairs
@@ -64,13 +66,32 @@ impl Samples {
         self.relative_deg.extend(&other.relative_deg);
     }
 
-    pub(super) fn figures(&self) -> Errors {
+    pub(crate) fn figures(&self) -> Errors {
         Errors {
             poses: self.absolute_m.len(),
             ape_m: Spread::of(self.absolute_m.clone()),
             rpe_m: Spread::of(self.relative_m.clone()),
             rpe_deg: Spread::of(self.relative_deg.clone()),
         }
+    }
+}
+
+impl Errors {
+    /// Formats the errors as a line for the terminal.
+    pub(crate) fn text(&self) -> String {
+        let spread = |spread: Option<Spread>, decimals| match spread {
+            Some(Spread { rmse, median, max }) => [rmse, median, max]
+                .map(|error| number(Some(error), decimals))
+                .join(" / "),
+            None => "-".to_owned(),
+        };
+        format!(
+            "{} poses, RMSE / median / max: APE {} m; RPE {} m, {}°",
+            self.poses,
+            spread(self.ape_m, 3),
+            spread(self.rpe_m, 3),
+            spread(self.rpe_deg, 2),
+        )
     }
 }
 

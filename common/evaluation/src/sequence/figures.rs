@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Distribution, Spread};
 
-use super::errors::{self, Errors, Samples};
+use super::errors::{Errors, Samples};
 use super::follow::Followed;
 use super::jumps::Jumps;
 use super::limits::Reached;
@@ -134,23 +134,12 @@ impl Figures {
             let shares = after.0.iter().map(|&(_, share)| percent(share));
             shares.map(|p| format!("{p:>6}")).collect::<String>()
         };
-        let spread = |spread: Option<errors::Spread>, digits: usize| {
-            spread.map_or("-".into(), |errors::Spread { rmse, median, max }| {
-                format!("{rmse:.digits$} / {median:.digits$} / {max:.digits$}")
-            })
-        };
-        let Errors {
-            poses,
-            ape_m,
-            rpe_m,
-            rpe_deg,
-        } = self.from_first_scan;
         format!(
             "{}\n  starts {:>4}   after     1     2     5    10    20 m\n    right, %       {}\n    not yet, %     {}\n    wrong at any time  {}\n  \
              followed: losses {}, RMS {} m {}°, farthest {} m; in the ellipse {} %; Unique {} %; false alarms {} an hour\n  \
              put elsewhere {} times: noticed within 2 scans {} %, right after 5 m {} %, wrong {}\n  \
              no data for 0.5 to 4 s {} times: right after 5 m {} %, wrong {}\n  \
-             from the first scan, {poses} poses, RMSE / median / max: APE {} m; RPE {} m, {}°\n  \
+             from the first scan, {}\n  \
              CPU a scan, median / p90: tracking {} / {} ms, searching {} / {} ms; searched {} % of the scans after a start\n",
             self.bag,
             self.starts,
@@ -171,9 +160,7 @@ impl Figures {
             self.outages,
             percent(self.outages_right_after_5_m),
             self.outages_wrong,
-            spread(ape_m, 3),
-            spread(rpe_m, 3),
-            spread(rpe_deg, 2),
+            self.from_first_scan.text(),
             number(self.cpu_ms_tracking.median, 2),
             number(self.cpu_ms_tracking.p90, 2),
             number(self.cpu_ms_searching.median, 1),

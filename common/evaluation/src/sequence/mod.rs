@@ -20,8 +20,10 @@ mod task;
 mod trajectory;
 
 pub(crate) use command::evaluate;
+pub(crate) use errors::{Errors, Samples};
 pub(crate) use figures::Figures;
 pub(crate) use limits::above_zero;
 pub(crate) use options::SequenceOptions;
+pub(crate) use run::WRONG;
 pub(crate) use stress::Figures as StressFigures;
 pub(crate) use task::Task;

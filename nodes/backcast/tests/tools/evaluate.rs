@@ -8,11 +8,15 @@
 use std::fs;
 use std::path::Path;
 
+use geometry::Pose;
 use recording::Message;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::drawn::{HERE, THERE, map_message, record, recordings, run, scan, scan_at, truth_at};
+use crate::drawn::{
+    BASE_FROM_LASER, HERE, SECOND_NS, THERE, map_from_laser, map_message, mount_message, record,
+    recordings, run, scan, scan_at, truth_at,
+};
 
 /// Creates a folder with `r.mcap`: a map and five scans. The second has no ground truth, the third
 /// is empty, and the ground truth of the last is that of another place.
@@ -282,6 +286,109 @@ fn the_corridor_is_found_with_known_headings() {
     assert_eq!(object["success_50cm_10deg"], 1.0, "{object}");
     // The result has the given heading, after a conversion to a quaternion.
     assert!(share(&object["error_deg"], "p90") < 1e-6, "{object}");
+}
+
+#[test]
+fn the_answers_of_another_program_are_judged_as_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = recordings().join("malaga_corridor/recording.mcap");
+    let out = folder.path().display();
+    let ours = real(&bag, &format!("--sequence --starts 1 --trajectories {out}"));
+    let written = |name: &str| format!("--answers {out}/{name} --answers-of laser");
+    let of_tracker = real(&bag, &written("recording.tum"));
+    let errors = (&of_tracker["trajectory"], &ours["from_first_scan"]);
+    assert_eq!(errors.0["poses"], errors.1["poses"]);
+    for error in ["ape_m", "rpe_m", "rpe_deg"] {
+        let [found, expected] = [errors.0, errors.1].map(|all| share(&all[error], "rmse"));
+        // Quaternions are rounded.
+        assert!((found - expected).abs() < 1e-9, "{error}: {errors:?}");
+    }
+    let answered = share(&of_tracker, "answered");
+    assert_eq!(answered, share(&ours["from_first_scan"], "poses"));
+    assert!(answered < 37.0, "the first scans have no pose: {ours}");
+    assert_eq!(share(&of_tracker, "success_50cm_10deg"), answered / 37.0);
+    assert_eq!(of_tracker["wrong_scans"], 0, "{of_tracker}");
+    let truth = real(&bag, &written("recording_truth.tum"));
+    assert_eq!(share(&truth, "success_50cm_10deg"), 1.0, "{truth}");
+    assert!(share(&truth["trajectory"]["ape_m"], "max") < 1e-9);
+}
+
+#[test]
+fn answers_of_the_base_are_carried_to_the_laser() {
+    let folder = folder();
+    let pose = |second: i64, place| {
+        let base = map_from_laser(place).then(BASE_FROM_LASER.inverse());
+        let stamp_ns = second * SECOND_NS;
+        let Pose { x, y, yaw } = base;
+        format!(
+            "{{\"stamp_ns\":{stamp_ns},\"x\":{x},\"y\":{y},\"yaw\":{yaw},\"probability\":0.9}}\n"
+        )
+    };
+    let messages = [
+        map_message(),
+        mount_message(),
+        scan_at(1, HERE),
+        truth_at(1, HERE),
+        scan_at(3, HERE),
+        truth_at(3, HERE),
+        scan_at(4, THERE),
+        truth_at(4, THERE),
+    ];
+    record(&folder.path().join("m.mcap"), &messages);
+    let file = folder.path().join("a.json");
+    fs::write(&file, pose(1, HERE) + &pose(4, HERE)).unwrap();
+    let evaluate = |options: &str| run(folder.path(), &format!("evaluate --answers {options}"));
+    let (code, stdout, stderr) = evaluate("a.json --json m.mcap");
+    assert_eq!(code, 0, "{stderr}");
+    tests::schemas::assert_follows("evaluate_answers", stdout.trim_end());
+    let object = &objects(&stdout)[0];
+    assert_eq!(
+        (&object["answered"], &object["truths"]),
+        (&2.into(), &3.into())
+    );
+    assert_eq!(share(object, "success_50cm_10deg"), 1.0 / 3.0, "{object}");
+    assert_eq!(
+        (&object["unique_wrong"], &object["wrong_scans"]),
+        (&1.into(), &1.into())
+    );
+    assert!(share(&object["error_m"], "median") < 1e-9, "{object}");
+    let (code, stdout, stderr) = evaluate("a.json --answer-gap-s 3 --max-wrong 0 m.mcap");
+    assert_eq!(code, 1, "{stderr}");
+    assert!(
+        stderr.contains("m.mcap: Unique and wrong are 1, --max-wrong 0"),
+        "{stderr}"
+    );
+    for line in [
+        "truths 3, with an answer 3 of the 2",
+        "within 0.5 m and 10° 66.7 %",
+        "0.80..0.90",
+    ] {
+        assert!(stdout.contains(line), "{line}: {stdout}");
+    }
+    fs::write(&file, pose(7, HERE)).unwrap();
+    for (options, code, expected) in [
+        (
+            "a.json m.mcap",
+            1,
+            "no pose, from 7.000 to 7.000 s, has the stamp",
+        ),
+        ("none.json m.mcap", 1, "cannot read none.json"),
+        ("m.mcap m.mcap", 1, "cannot read m.mcap"),
+        (
+            "a.json m.mcap m.mcap",
+            2,
+            "--answers are those to one recording; 2 are given",
+        ),
+        ("a.json --sequence m.mcap", 2, "cannot be used with"),
+        ("a.json --headings 360 m.mcap", 2, "cannot be used with"),
+        ("a.json --robot-radius 1 m.mcap", 2, "cannot be used with"),
+    ] {
+        let (found, _, stderr) = evaluate(options);
+        assert!(
+            found == code && stderr.contains(expected),
+            "{options}: {stderr}"
+        );
+    }
 }
 
 #[test]
