@@ -6,7 +6,8 @@ use std::time::Duration;
 use png::{BlendOp, ColorType};
 use resvg::tiny_skia::Pixmap;
 
-use crate::raster::{encoder, pixels};
+use crate::encoding::encoder;
+use crate::raster::pixels;
 use crate::{DrawingError, Scene};
 
 /// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.

@@ -13,6 +13,7 @@
 
 mod animation;
 mod color;
+mod encoding;
 mod error;
 mod path;
 mod raster;
@@ -26,7 +27,7 @@ pub use color::Color;
 pub use error::DrawingError;
 pub use path::{Path, Rect};
 pub use raster::to_png;
-pub use scene::{Label, Scene, Stroke};
+pub use scene::{Label, Scene, to_svg};
 pub use size::MAX_SIDE;
 pub use text::{Anchor, TextStyle, Weight};
-pub use vector::to_svg;
+pub use vector::Stroke;

@@ -2,34 +2,13 @@
 
 use std::mem;
 
-use svg::Node;
-use svg::node::element::{ClipPath, Group};
+use svg::node::element::{ClipPath, Group, Title};
+use svg::{Document, Node};
 
 use crate::path::rounded;
 use crate::size::check_size;
 use crate::vector::{filled, picture, rectangle, stroked};
-use crate::{Color, DrawingError, Path, Rect, TextStyle, text};
-
-/// Style of a line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
-    pub color: Color,
-    /// In pixels.
-    pub width: f64,
-    /// Length of dashes and of gaps, in pixels; 0 draws a solid line.
-    pub dash: f64,
-}
-
-impl Stroke {
-    #[must_use]
-    pub const fn new(color: Color, width: f64) -> Self {
-        Stroke {
-            color,
-            width,
-            dash: 0.0,
-        }
-    }
-}
+use crate::{Color, DrawingError, Path, Rect, Stroke, TextStyle, text};
 
 /// A line of text in a picture, with its area.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,8 +164,25 @@ impl Scene {
     }
 }
 
+/// Encodes an SVG file without external references.
+#[must_use]
+pub fn to_svg(scene: &Scene) -> String {
+    let (width, height) = (scene.width(), scene.height());
+    let document = Document::new()
+        .set("width", width)
+        .set("height", height)
+        .set("viewBox", (0, 0, width, height))
+        .add(Title::new(scene.title()))
+        .add(filled(Path::rect(scene.area()), Color::WHITE))
+        .add(scene.items().clone());
+    format!("{document}\n")
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
+    use svg::node::element::tag::Type;
+    use svg::parser::Event;
+
     use super::*;
     use crate::{Anchor, MAX_SIDE};
 
@@ -242,5 +238,29 @@ pub(crate) mod tests {
         let off = (turned.area.y - expected.y).abs() + (turned.area.x - expected.x).abs();
         assert!(off < 1e-9, "{turned:?}");
         assert!((turned.area.height - width).abs() < 1e-9 && turned.area.width == 98.0);
+    }
+
+    #[test]
+    fn the_file_holds_each_item_and_reads_back() {
+        let text = to_svg(&everything());
+        let mut names = Vec::new();
+        for event in svg::read(&text).unwrap() {
+            match event {
+                Event::Tag(name, kind, _) if kind != Type::End => names.push(name),
+                Event::Error(error) => panic!("{error}"),
+                _ => {}
+            }
+        }
+        let expected = [
+            "svg", "title", "path", "g", "path", "path", "image", "clipPath", "rect", "g", "path",
+            "path",
+        ];
+        assert_eq!(names, expected);
+        assert!(text.contains("a &lt;title&gt;"), "{text}");
+        assert!(
+            text.contains(r##"fill="#ff0000" fill-opacity="0.5""##),
+            "{text}"
+        );
+        assert_eq!(text, to_svg(&everything()));
     }
 }

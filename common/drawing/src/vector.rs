@@ -2,26 +2,32 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use svg::Document;
-use svg::node::element::{Image, Path as PathElement, Rectangle, Title};
+use svg::node::element::{Image, Path as PathElement, Rectangle};
 
+use crate::encoding::encoded;
 use crate::path::rounded;
-use crate::raster::encoded;
 use crate::size::check_size;
-use crate::{Color, DrawingError, Path, Rect, Scene, Stroke};
+use crate::{Color, DrawingError, Path, Rect};
 
-/// Encodes an SVG file without external references.
-#[must_use]
-pub fn to_svg(scene: &Scene) -> String {
-    let (width, height) = (scene.width(), scene.height());
-    let document = Document::new()
-        .set("width", width)
-        .set("height", height)
-        .set("viewBox", (0, 0, width, height))
-        .add(Title::new(scene.title()))
-        .add(filled(Path::rect(scene.area()), Color::WHITE))
-        .add(scene.items().clone());
-    format!("{document}\n")
+/// Style of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    pub color: Color,
+    /// In pixels.
+    pub width: f64,
+    /// Length of dashes and of gaps, in pixels; 0 draws a solid line.
+    pub dash: f64,
+}
+
+impl Stroke {
+    #[must_use]
+    pub const fn new(color: Color, width: f64) -> Self {
+        Stroke {
+            color,
+            width,
+            dash: 0.0,
+        }
+    }
 }
 
 pub(crate) fn filled(path: Path, color: Color) -> PathElement {
@@ -89,37 +95,4 @@ fn colored(element: PathElement, attribute: &str, color: Color) -> PathElement {
         return element.set(format!("{attribute}-opacity"), rounded(opacity.into()));
     }
     element
-}
-
-#[cfg(test)]
-mod tests {
-    use svg::node::element::tag::Type;
-    use svg::parser::Event;
-
-    use super::*;
-    use crate::scene::tests::everything;
-
-    #[test]
-    fn the_file_holds_each_item_and_reads_back() {
-        let text = to_svg(&everything());
-        let mut names = Vec::new();
-        for event in svg::read(&text).unwrap() {
-            match event {
-                Event::Tag(name, kind, _) if kind != Type::End => names.push(name),
-                Event::Error(error) => panic!("{error}"),
-                _ => {}
-            }
-        }
-        let expected = [
-            "svg", "title", "path", "g", "path", "path", "image", "clipPath", "rect", "g", "path",
-            "path",
-        ];
-        assert_eq!(names, expected);
-        assert!(text.contains("a &lt;title&gt;"), "{text}");
-        assert!(
-            text.contains(r##"fill="#ff0000" fill-opacity="0.5""##),
-            "{text}"
-        );
-        assert_eq!(text, to_svg(&everything()));
-    }
 }
