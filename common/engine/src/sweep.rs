@@ -4,8 +4,8 @@
 //! occupied, else one step more. All cells at one position of the major axis form a row, and the
 //! next row is shifted by the same amount for all of them, so a whole row follows from the row
 //! before at once. A sweep keeps the steps that are *left* until a beam's taper ends: `end` in an
-//! obstacle, one less for each step away from it, 0 where the ray sees nothing. So the votes are a
-//! look-up by what is left.
+//! obstacle, one less for each step away from it, 0 where the ray sees nothing. At the reading as many
+//! are left as the taper's profile is long, so the votes are a look-up by the distance from that.
 
 mod axis;
 mod rows;
@@ -46,8 +46,8 @@ struct Plane {
 #[derive(Debug, Default)]
 pub struct Workspace {
     beams: Vec<SweptBeam>,
-    /// Votes by the steps left, beam after beam.
-    tables: Vec<u8>,
+    /// Votes by the distance from the reading, in steps, beam after beam.
+    profiles: Vec<u8>,
     near: Rows<u8>,
     far: Rows<u16>,
     /// Votes of a batch in a row.
@@ -62,8 +62,8 @@ struct SweptBeam {
     direction: Direction,
     /// Steps left in an obstacle: those from there to the taper's end.
     end: u16,
-    /// Its part of the tables.
-    table: Range<usize>,
+    /// Its part of the profiles.
+    profile: Range<usize>,
 }
 
 impl SweptBeam {
@@ -219,24 +219,22 @@ impl Workspace {
     /// Takes the beams of a scan at a heading, those that are swept together side by side.
     fn take(&mut self, query: Query<'_>) {
         self.beams.clear();
-        self.tables.clear();
+        self.profiles.clear();
         for i in 0..query.program.beams() {
             let (direction, taper) = query.beam(i);
             let reach = taper.profile.len();
             if reach == 0 {
                 continue;
             }
-            let start = self.tables.len();
-            let votes = (0..2 * reach).map(|left| taper.profile.get(left.abs_diff(reach)));
-            self.tables
-                .extend(votes.map(|votes| votes.copied().unwrap_or(0)));
-            // Where short tables are looked up, a whole one is read.
-            let end = self.tables.len();
-            self.tables.resize(end.max(start + TABLE), 0);
+            let start = self.profiles.len();
+            self.profiles.extend(taper.profile);
+            // Where short profiles are looked up, a whole table is read.
+            let end = self.profiles.len();
+            self.profiles.resize(end.max(start + TABLE), 0);
             self.beams.push(SweptBeam {
                 direction: *direction,
                 end: taper.end(),
-                table: start..end,
+                profile: start..end,
             });
         }
         self.beams.sort_unstable_by_key(|beam| {
@@ -244,7 +242,7 @@ impl Workspace {
                 beam.direction.x_major,
                 beam.direction.step,
                 beam.is_far(),
-                beam.table.len(),
+                beam.profile.len(),
             )
         });
     }

@@ -28,7 +28,7 @@ impl Kernel for Axis<'_> {
     fn run<S: Set>(self, set: S) -> Option<()> {
         let Workspace {
             beams,
-            tables,
+            profiles,
             near,
             far,
             votes,
@@ -55,7 +55,7 @@ impl Kernel for Axis<'_> {
                         plane: self.plane,
                         beams,
                         first: number * BEAMS,
-                        tables,
+                        profiles,
                     };
                     let steps = start..(start + TILE_ROWS).min(self.plane.rows);
                     batch.sweep(set, steps, (near, far), votes, sums);
@@ -72,7 +72,7 @@ struct Batch<'a> {
     beams: &'a [SweptBeam],
     /// Number of rows of other beams before theirs.
     first: usize,
-    tables: &'a [u8],
+    profiles: &'a [u8],
 }
 
 impl Batch<'_> {
@@ -95,11 +95,11 @@ impl Batch<'_> {
             for (number, beam) in (self.first..).zip(self.beams) {
                 let minor = |major: i64| beam.direction.minor(major);
                 let shift = minor(major as i64 + beam.direction.step) - minor(major as i64);
-                let table = (&self.tables[beam.table.start..], beam.table.len());
+                let profile = (&self.profiles[beam.profile.start..], beam.profile.len());
                 let place = (number * (stride + 2), step, shift);
                 match beam.is_far() {
-                    false => near.move_on(set, place, (cells, beam.end), table, votes),
-                    true => far.move_on(set, place, (cells, beam.end), table, votes),
+                    false => near.move_on(set, place, (cells, beam.end), profile, votes),
+                    true => far.move_on(set, place, (cells, beam.end), profile, votes),
                 }
             }
             for (sum, &votes) in sums[major * stride..].iter_mut().zip(&*votes) {

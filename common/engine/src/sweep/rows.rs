@@ -20,15 +20,15 @@ impl<N: Steps> Rows<N> {
         }
     }
 
-    /// Moves the row of a beam, which begins at a place in those of all, a step on, where `end`
-    /// steps are left in an obstacle, and adds the beam's votes by a table of so many entries.
+    /// Moves a beam's row a step on and adds the beam's votes. The row begins at `row` in those of all
+    /// beams, `end` steps are left in an obstacle, and `used` entries of the profile count.
     #[inline(always)]
     pub(super) fn move_on<S: Set>(
         &mut self,
         set: S,
         (row, step, shift): (usize, usize, i64),
         (cells, end): (&[Cell], u16),
-        (table, used): (&[u8], usize),
+        (profile, used): (&[u8], usize),
         votes: &mut [u8],
     ) {
         let [here, ahead] = &mut self.0;
@@ -43,23 +43,26 @@ impl<N: Steps> Rows<N> {
         for ((here, &ahead), &cell) in here.iter_mut().zip(ahead).zip(cells) {
             *here = ahead.moved_on(cell, end);
         }
-        match table.first_chunk() {
-            Some(short) if used <= TABLE => vote(set, (short, used), here, votes),
+        let reach = N::of(used as u16);
+        match profile.first_chunk() {
+            Some(short) if used <= TABLE => vote(set, (short, used), (here, reach), votes),
             _ => {
                 for (vote, &left) in votes.iter_mut().zip(&*here) {
-                    *vote += table[..used].get(left.index()).copied().unwrap_or(0);
+                    let off = left.off(reach).index();
+                    *vote += profile[..used].get(off).copied().unwrap_or(0);
                 }
             }
         }
     }
 }
 
-/// Adds the votes for the steps that are left, by a table of which so many entries count.
+/// Adds the votes for the steps that are left where `reach` are left at the reading, by a profile of
+/// which `used` entries count.
 #[inline(always)]
 fn vote<S: Set, N: Steps>(
     set: S,
-    (table, used): (&[u8; TABLE], usize),
-    left: &[N],
+    (profile, used): (&[u8; TABLE], usize),
+    (left, reach): (&[N], N),
     votes: &mut [u8],
 ) {
     let (left, votes) = (
@@ -67,11 +70,11 @@ fn vote<S: Set, N: Steps>(
         votes.as_chunks_mut::<LANES>().0,
     );
     for (left, votes) in left.iter().zip(votes) {
-        let mut bytes = [0; LANES];
-        for (byte, left) in bytes.iter_mut().zip(left) {
-            *byte = left.byte();
+        let mut off = [0; LANES];
+        for (off, left) in off.iter_mut().zip(left) {
+            *off = left.off(reach).byte();
         }
-        for (vote, found) in votes.iter_mut().zip(set.look_up(table, used, bytes)) {
+        for (vote, found) in votes.iter_mut().zip(set.look_up(profile, used, off)) {
             *vote += found;
         }
     }
@@ -84,6 +87,8 @@ pub(super) trait Steps: Copy {
     fn of(steps: u16) -> Self;
     /// Returns the steps left in a cell, from those left in the next one on its line.
     fn moved_on(self, cell: Cell, end: Self) -> Self;
+    /// Returns the distance from another number.
+    fn off(self, other: Self) -> Self;
     /// Returns a byte that is the same up to 254, and 255 for more.
     fn byte(self) -> u8;
     fn index(self) -> usize;
@@ -104,6 +109,11 @@ macro_rules! steps {
                 fn moved_on(self, cell: Cell, end: Self) -> Self {
                     let next = if cell == Cell::Open { self.saturating_sub(1) } else { 0 };
                     next | if cell == Cell::Occupied { end } else { 0 }
+                }
+
+                #[inline(always)]
+                fn off(self, other: Self) -> Self {
+                    self.saturating_sub(other) | other.saturating_sub(self)
                 }
 
                 #[inline(always)]
