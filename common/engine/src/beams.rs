@@ -7,7 +7,7 @@ use crate::scan::Scan;
 use crate::space::Space;
 
 /// Added to every weight, so that near beams still count.
-const MIN_WEIGHT: f64 = 0.05;
+pub(crate) const MIN_WEIGHT: f64 = 0.05;
 
 /// Choice and weights of the beams that vote.
 #[derive(Debug, Clone, Copy, PartialEq)]

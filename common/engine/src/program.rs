@@ -4,7 +4,7 @@
 //! Every accumulator runs the same program, so all of them count the same votes.
 
 use crate::EngineError;
-use crate::beams::{Beam, BeamConfig, Chosen};
+use crate::beams::{Beam, BeamConfig, Chosen, MIN_WEIGHT};
 use crate::observation::Observation;
 use crate::space::Space;
 use crate::taper::TaperShape;
@@ -14,6 +14,9 @@ pub const NO_RANGE: u16 = u16::MAX;
 
 /// Highest vote of a beam with weight 1.
 const FULL_VOTE: u32 = 15;
+
+/// Most votes of any beam: those of one with the highest weight, rounded.
+pub(crate) const MOST_VOTES: usize = (FULL_VOTE as f64 * (1.0 + MIN_WEIGHT) + 0.5) as usize;
 
 /// Widest taper, in cells: with it, no taper reaches [`NO_RANGE`] from a reading as long as the
 /// largest grid's diagonal.

@@ -36,12 +36,11 @@ pub(crate) const CELLS: usize = SIDE * SIDE;
 /// single one, or kernels.
 ///
 /// The first argument of each function is a token of the set, or a value that is only made
-/// with one. Functions after `plain` are not compiled for the set by themselves: they call
-/// functions that are, and are too large to be inlined unless they must be.
+/// with one.
 macro_rules! compiled {
     (
         [$features:literal]
-        impl $trait:ident $(<$parameter:literal>)? for $type:ty {
+        impl $trait:ident for $type:ty {
             $($(#[$about:meta])* type $associated:ident = $associated_type:ty;)*
             $(const $constant:ident: $constant_type:ty = $constant_value:expr;)*
             $(
@@ -49,7 +48,6 @@ macro_rules! compiled {
                     $first:ident $(: $first_type:ty)? $(, $argument:ident: $argument_type:ty)* $(,)?
                 ) $(-> $result:ty)? $body:block
             )*
-            $(plain { $($plain:tt)* })?
         }
     ) => {
         impl $type {
@@ -62,7 +60,7 @@ macro_rules! compiled {
             )*
         }
 
-        impl $trait $(<$parameter>)? for $type {
+        impl $trait for $type {
             $($(#[$about])* type $associated = $associated_type;)*
             $(const $constant: $constant_type = $constant_value;)*
             $(
@@ -75,7 +73,6 @@ macro_rules! compiled {
                     unsafe { <$type>::$name $(::<$($generic),+>)? ($first $(, $argument)*) }
                 }
             )*
-            $($($plain)*)?
         }
     };
     ([$features:literal] kernels for $token:ident) => {

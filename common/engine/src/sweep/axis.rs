@@ -4,11 +4,14 @@ use std::ops::Range;
 
 use super::rows::Rows;
 use super::{Plane, SweptBeam, Workspace};
+use crate::program::MOST_VOTES;
 use crate::simd::{Kernel, Set};
 
-/// Largest number of beams that are swept together: their votes, at most 16 each, fit a byte,
-/// and their rows stay in a near cache.
+/// Largest number of beams that are swept together: their votes fit a byte, and their rows stay in a
+/// near cache.
 const BEAMS: usize = 15;
+
+const _: () = assert!(BEAMS * MOST_VOTES <= u8::MAX as usize);
 
 /// Rows that all batches pass before the next ones, so that their sums stay in a near cache.
 const TILE_ROWS: usize = 32;
@@ -42,8 +45,8 @@ impl Kernel for Axis<'_> {
         };
         sums.clear();
         sums.resize(self.plane.cells.len(), 0);
-        let is_along = |beams: &&[SweptBeam]| beams[0].direction.x_major == self.x_major;
-        for beams in beams.chunk_by(SweptBeam::is_along).filter(is_along) {
+        let is_of_axis = |beams: &&[SweptBeam]| beams[0].direction.x_major == self.x_major;
+        for beams in beams.chunk_by(SweptBeam::is_along).filter(is_of_axis) {
             near.start(beams.len() * (self.plane.stride + 2));
             far.start(beams.len() * (self.plane.stride + 2));
             for start in (0..self.plane.rows).step_by(TILE_ROWS) {

@@ -6,8 +6,8 @@ use crate::grid::Cell;
 use crate::simd::Set;
 use crate::simd::table::{LANES, TABLE};
 
-/// Steps left in a row of cells and in the one before, of all beams along a sense of an axis. On
-/// either side of a row lies a cell off the map, which sees nothing.
+/// Steps left in a row of cells and in the row ahead of it, of all beams along a sense of an axis.
+/// Before and after each row is a cell off the map, which sees nothing.
 #[derive(Debug, Default)]
 pub(super) struct Rows<N>([Vec<N>; 2]);
 

@@ -39,10 +39,20 @@ pub(super) struct AnswerOptions {
 }
 
 /// Options of searching and tracking, and groups of such options.
-#[rustfmt::skip]
 const NOT_WITH_ANSWERS: [&str; 14] = [
-    "map", "erase_place", "max_p90_ms", "sequence", "stress", "headings", "HeadingConfig",
-    "MotionConfig", "CellRules", "CollectConfig", "LimitsConfig", "FitConfig", "IndexCacheConfig",
+    "map",
+    "erase_place",
+    "max_p90_ms",
+    "sequence",
+    "stress",
+    "headings",
+    "HeadingConfig",
+    "MotionConfig",
+    "CellRules",
+    "CollectConfig",
+    "LimitsConfig",
+    "FitConfig",
+    "IndexCacheConfig",
     "TrackingConfig",
 ];
 

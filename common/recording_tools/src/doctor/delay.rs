@@ -6,7 +6,7 @@ use geometry::Pose;
 use offline::each_odometry;
 use recording::{Kind, Recording};
 
-use super::delay_of_motion::{Sighting, delay_s};
+use super::clock_offset::{Sighting, delay_s};
 use super::finding::Finding;
 use super::located::{Located, LocatedScan};
 use super::survey::{Seen, Survey};

@@ -8,9 +8,9 @@
 
 mod bands;
 mod checks;
+mod clock_offset;
 mod command;
 mod delay;
-mod delay_of_motion;
 mod drive;
 mod finding;
 mod located;

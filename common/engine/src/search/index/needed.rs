@@ -12,8 +12,8 @@ use crate::space::Space;
 /// again, and take less.
 const BYTES_A_DIRECTION: usize = 5;
 
-/// Bytes for each cell of the map: its class, the bits that rays and sweeps follow, and the
-/// sets of free and of searched cells.
+/// Bytes for each cell of the map: its class, the bits that rays follow, and the sets of free and
+/// of searched cells.
 const BYTES_A_CELL: usize = 3;
 
 /// Bytes needed for any map.
