@@ -73,10 +73,6 @@ impl VoteTables {
     }
 
     /// True if no table has more than [`TABLE`] entries.
-    #[cfg_attr(
-        not(target_arch = "x86_64"),
-        expect(dead_code, reason = "only vectors of x86-64 need to know")
-    )]
     pub(crate) fn are_short(&self) -> bool {
         self.is_short
     }

@@ -37,6 +37,7 @@ pub(crate) const CELLS: usize = SIDE * SIDE;
 ///
 /// The first argument of each function is a token of the set, or a value that is only made
 /// with one.
+#[cfg(target_arch = "x86_64")]
 macro_rules! compiled {
     (
         [$features:literal]
@@ -120,8 +121,7 @@ macro_rules! avx2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2;
-pub(crate) use compiled;
+pub(crate) use {avx2, compiled};
 
 /// The baseline CPU.
 #[derive(Debug, Clone, Copy, Default)]

@@ -28,27 +28,33 @@ impl Tables for Portable {
         found
     }
 
-    /// Every ARM processor of 64 bits has NEON.
     #[cfg(target_arch = "aarch64")]
     #[inline(always)]
     fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
-        use std::arch::aarch64::*;
-
-        use bytemuck::must_cast;
-
-        let index: [uint8x16_t; LANES / PIECE] = must_cast(index);
-        let pieces: [uint8x16_t; 4] = must_cast(*table);
-        must_cast(index.map(|index| {
-            if used <= PIECE {
-                // SAFETY: every processor of this architecture has NEON.
-                unsafe { vqtbl1q_u8(pieces[0], index) }
-            } else {
-                let [first, second, third, fourth] = pieces;
-                // SAFETY: every processor of this architecture has NEON.
-                unsafe { vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index) }
-            }
-        }))
+        let halves: [[u8; PIECE]; LANES / PIECE] = bytemuck::must_cast(index);
+        bytemuck::must_cast(halves.map(|half| look_up_neon(table, used, half)))
     }
+}
+
+/// Looks 16 numbers up in a table of which `used` entries are not 0; numbers beyond those
+/// give 0. Every ARM processor of 64 bits has NEON.
+#[cfg(target_arch = "aarch64")]
+#[inline(always)]
+pub(super) fn look_up_neon(table: &[u8; TABLE], used: usize, index: [u8; PIECE]) -> [u8; PIECE] {
+    use std::arch::aarch64::*;
+
+    use bytemuck::must_cast;
+
+    let index: uint8x16_t = must_cast(index);
+    let pieces: [uint8x16_t; 4] = must_cast(*table);
+    must_cast(if used <= PIECE {
+        // SAFETY: every processor of this architecture has NEON.
+        unsafe { vqtbl1q_u8(pieces[0], index) }
+    } else {
+        let [first, second, third, fourth] = pieces;
+        // SAFETY: every processor of this architecture has NEON.
+        unsafe { vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index) }
+    })
 }
 
 /// Number of entries that an instruction of AVX2 and NEON looks up.
