@@ -28,7 +28,7 @@ use intervals::{RangeIntervals, SIDE};
 use obstacles::Obstacles;
 use sets::RangeSets;
 use steps::BinSteps;
-use within::Within;
+use within::{Size, Within};
 
 use crate::grid::Grid;
 use crate::limits::Limits;
@@ -92,9 +92,9 @@ impl SearchIndex {
         &self.within.limits
     }
 
-    /// Number of blocks of 8 × 8 cells in which poses are searched, by their quarters.
+    /// Number of coarse blocks in which poses are searched.
     pub(crate) fn blocks(&self) -> usize {
-        self.intervals.ids.count().div_ceil(4)
+        self.within.blocks[Size::Coarse as usize].count()
     }
 
     /// Returns the grid of the index, prepared for counting every pose.

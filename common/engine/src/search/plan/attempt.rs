@@ -28,7 +28,7 @@ impl Attempt<'_> {
             End::Stopped => return None,
             End::Hopeless => self.by_counting(found)?,
         }
-        self.add_candidates(end, found);
+        self.add_candidates(found);
         Some(())
     }
 
@@ -48,10 +48,10 @@ impl Attempt<'_> {
                 _ => parts::finish(map.scratches, found),
             }
         }
-        for ((map, found), end) in maps.iter_mut().zip(ends) {
+        for (map, found) in maps {
             let best = map.task.best();
             found.confine((best, map.task.config.floor(best)), None);
-            map.add_candidates(end, found);
+            map.add_candidates(found);
         }
         Some(())
     }
@@ -71,14 +71,10 @@ impl Attempt<'_> {
         counting::count(what, self.shares, found, self.stop)
     }
 
-    /// Adds the candidates that are wanted below the poses that were found; `end` says how
-    /// bounding the blocks ended.
-    pub(in crate::search) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
+    /// Adds the candidates that are wanted below the poses that were found.
+    pub(in crate::search) fn add_candidates(&mut self, found: &mut VoteSet) {
         let Self {
-            task,
-            scratches,
-            alternatives,
-            ..
+            task, alternatives, ..
         } = self;
         let (wanted, best) = (task.config.candidates as usize, task.best());
         // If another map has the best pose, only candidates close to it are wanted.
@@ -87,14 +83,11 @@ impl Attempt<'_> {
             false => least_close(best),
         };
         if wanted > 0 && best > 0 {
-            let bounded = (end == End::Done).then_some(&**scratches);
             let certain = found.votes.len();
-            // If the search was cut, all blocks that it bounded may hold candidates.
-            let floor = if found.cut { 1 } else { found.certified_floor };
             let most = most_candidates(wanted, task.space.resolution_m);
             for count in [wanted, most] {
                 found.votes.truncate(certain);
-                Alternatives::new(task, alternatives).find(count, (floor, least), bounded);
+                Alternatives::new(task, alternatives).find(count, least);
                 let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
                 let distinct = distinct.and_close(best);
                 alternatives.votes.retain(|vote| vote.intensity >= least);
@@ -140,8 +133,8 @@ mod tests {
             let mut found = VoteSet::default();
             prop_assert_eq!(attempt.by_bounds(&mut found), End::Done);
             let mut given_up = found.clone();
-            attempt.add_candidates(End::Done, &mut found);
-            attempt.add_candidates(End::Hopeless, &mut given_up);
+            attempt.add_candidates(&mut found);
+            attempt.add_candidates(&mut given_up);
             prop_assert_eq!(found, given_up);
         }
 

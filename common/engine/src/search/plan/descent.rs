@@ -3,7 +3,6 @@
 
 mod scratch;
 
-use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
@@ -170,7 +169,6 @@ impl<'a> Descent<'a> {
         let (start, end) = (start as u32, windows.len() as u32);
         if start < end {
             let bound = bounds.greatest(place);
-            self.scratch.fine.push((bound, Reverse(index as u32)));
             self.push(bound, index, Level::Fine { start, end });
         }
     }

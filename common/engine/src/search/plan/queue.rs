@@ -1,7 +1,5 @@
 //! Blocks that wait to be searched, the highest bound first.
 
-use std::cmp::Reverse;
-
 /// A block in the queue. The one with the highest bound comes first, of equal ones the
 /// smallest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -11,9 +9,6 @@ pub(in crate::search) struct Block {
     pub level: Level,
     pub index: u32,
 }
-
-/// The bound of a block, and its index; of equal bounds the lowest index comes first.
-pub(in crate::search) type BoundedBlock = (u16, Reverse<u32>);
 
 /// Size of a block, and the places of the headings known for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

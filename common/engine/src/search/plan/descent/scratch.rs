@@ -7,7 +7,7 @@ use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::intervals::BlockIntervals;
 use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
-use crate::search::plan::queue::{Block, BoundedBlock};
+use crate::search::plan::queue::Block;
 use crate::search::task::Task;
 use crate::search::task::budget::Tally;
 use crate::simd::headings::HEADINGS;
@@ -26,9 +26,6 @@ pub(in crate::search) struct Scratch {
     /// Headings at which blocks of 8 × 8 cells may matter: the first, and a bit for each from
     /// there on.
     pub(super) windows: Vec<(usize, u64)>,
-    /// Bounds of these blocks; once the search is done, of all whose bound is not below the
-    /// floor.
-    pub fine: Vec<BoundedBlock>,
     /// Headings at which blocks of 4 × 4 cells may matter.
     pub(super) candidates: Vec<Candidate>,
     /// Poses that matter.
@@ -56,7 +53,6 @@ impl Scratch {
         self.counts.resize(HEADINGS, Count::default());
         self.queue.clear();
         self.windows.clear();
-        self.fine.clear();
         self.candidates.clear();
         self.collector.start(task.config);
         self.poses_evaluated = 0;
