@@ -31,9 +31,6 @@ pub(crate) struct BinVotes {
 pub(crate) trait HeadingLanes: Copy {
     /// The token of the instruction set.
     type Set: Copy;
-    /// Sums of such numbers.
-    type Sums: Copy;
-
     fn none(set: Self::Set) -> Self;
 
     /// Returns the most votes that a beam has for a range of either interval.
@@ -45,16 +42,6 @@ pub(crate) trait HeadingLanes: Copy {
     fn present(self) -> u64;
 
     fn to_bytes(self) -> [u8; HEADINGS];
-
-    fn no_sums(set: Self::Set) -> Self::Sums;
-
-    fn add_to(self, sums: Self::Sums) -> Self::Sums;
-
-    /// Returns a bit for each heading with a sum of at least `least`.
-    fn at_least(set: Self::Set, sums: Self::Sums, least: u16) -> u64;
-
-    /// Returns the sums by heading.
-    fn votes(set: Self::Set, sums: Self::Sums) -> [u16; HEADINGS];
 }
 
 /// The baseline CPU; on ARM, which always has NEON, tables are looked up by
@@ -64,7 +51,6 @@ pub(crate) struct Portable([u8; HEADINGS]);
 
 impl HeadingLanes for Portable {
     type Set = super::Portable;
-    type Sums = [u16; HEADINGS];
 
     #[inline(always)]
     fn none(_: Self::Set) -> Self {
@@ -94,30 +80,6 @@ impl HeadingLanes for Portable {
     fn to_bytes(self) -> [u8; HEADINGS] {
         self.0
     }
-
-    #[inline(always)]
-    fn no_sums(_: Self::Set) -> Self::Sums {
-        [0; HEADINGS]
-    }
-
-    #[inline(always)]
-    fn add_to(self, mut sums: Self::Sums) -> Self::Sums {
-        for (sum, votes) in sums.iter_mut().zip(self.0) {
-            *sum += u16::from(votes);
-        }
-        sums
-    }
-
-    #[inline(always)]
-    fn at_least(_: Self::Set, sums: Self::Sums, least: u16) -> u64 {
-        let lanes = sums.iter().enumerate();
-        lanes.fold(0, |all, (i, &sum)| all | u64::from(sum >= least) << i)
-    }
-
-    #[inline(always)]
-    fn votes(_: Self::Set, sums: Self::Sums) -> [u16; HEADINGS] {
-        sums
-    }
 }
 
 /// Looks up the votes in the bin of each interval that is nearest to the centre.
@@ -142,30 +104,20 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::simd::{Kernel, Set, Simd};
 
-    /// Kernel that returns the votes of some beams in some rows, their sums, and bits for the
-    /// headings whose sum is at least `least` and for those with any votes.
-    struct Counting<'a> {
-        beams: &'a [(BinVotes, [[u8; HEADINGS]; 4])],
-        times: usize,
-        least: u16,
-    }
+    /// Kernel that returns the votes of some beams in some rows, and bits for the headings with
+    /// any.
+    struct Counting<'a>(&'a [(BinVotes, [[u8; HEADINGS]; 4])]);
 
     impl Kernel for Counting<'_> {
-        type Result = ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]);
+        type Result = ([u8; HEADINGS], u64);
 
         #[inline(always)]
         fn run<S: Set>(self, set: S) -> Self::Result {
             let mut votes = S::Headings::none(set);
-            for (beam, rows) in self.beams {
+            for (beam, rows) in self.0 {
                 votes = votes.add(S::Headings::of_beam(set, beam, rows.each_ref()));
             }
-            let mut sums = S::Headings::no_sums(set);
-            for _ in 0..self.times {
-                sums = votes.add_to(sums);
-            }
-            let at_least = S::Headings::at_least(set, sums, self.least);
-            let all = S::Headings::votes(set, sums);
-            (votes.to_bytes(), all, [at_least, votes.present()])
+            (votes.to_bytes(), votes.present())
         }
     }
 
@@ -188,7 +140,6 @@ mod tests {
         #[test]
         fn votes_are_those_of_the_tables_on_every_instruction_set(
             beams in vec((any_votes(), [any_row(), any_row(), any_row(), any_row()]), 0..16),
-            times in 1usize..270, share in 0.0..1.2f64,
         ) {
             let mut bytes = [0; HEADINGS];
             for (beam, [near_first, near_last, far_first, far_last]) in &beams {
@@ -201,16 +152,11 @@ mod tests {
                         .max(in_bin(far_first[lane], far_last[lane]));
                 }
             }
-            let sums = bytes.map(|votes| times as u16 * u16::from(votes));
-            let most = sums.iter().max().copied().unwrap_or(0);
-            let least = (f64::from(most) * share) as u16;
-            let where_is = |is: &dyn Fn(usize) -> bool| -> u64 {
-                (0..HEADINGS).map(|lane| u64::from(is(lane)) << lane).sum()
-            };
-            let masks = [where_is(&|lane| sums[lane] >= least), where_is(&|lane| bytes[lane] > 0)];
+            let present = bytes.iter().enumerate();
+            let present = present.fold(0, |all, (lane, &votes)| all | u64::from(votes > 0) << lane);
             for set in InstructionSet::available() {
-                let counting = Counting { beams: &beams, times, least };
-                prop_assert_eq!(Simd::new(set).run(counting), (bytes, sums, masks), "{}", set);
+                let found = Simd::new(set).run(Counting(&beams));
+                prop_assert_eq!(found, (bytes, present), "{}", set);
             }
         }
     }

@@ -5,6 +5,7 @@
 //! headings.
 
 use super::interval_program::{IntervalBeam, IntervalProgram};
+use crate::search::index::bits::ones;
 use crate::search::index::intervals::BlockIntervals;
 use crate::simd::headings::{HEADINGS, HeadingLanes};
 use crate::simd::{Kernel, Set};
@@ -30,21 +31,32 @@ impl Default for IntervalBounds {
     }
 }
 
+impl IntervalBounds {
+    /// Returns the headings that a word selects with a bound of at least `least`, as bits, and
+    /// the greatest of these bounds.
+    pub(crate) fn reach(&self, least: u16, among: u64) -> (u64, u16) {
+        let reaching = ones(among).filter(|&lane| self.all[lane] >= least);
+        reaching.fold((0, 0), |(reach, most), lane| {
+            (reach | 1 << lane, most.max(self.all[lane]))
+        })
+    }
+}
+
 impl IntervalProgram {
-    /// Bounds the votes of a block at the 64 headings from a first one on; the bits select
-    /// those that matter. Returns true if any of these may have `least` votes; if not, the
-    /// bounds are left unfinished. `DETAILED` finds the bounds of sectors and beams, too.
+    /// Bounds the votes of a block at the 64 headings from `first` on. Returns true if any of
+    /// these may have `least` votes; if not, the bounds are left unfinished. `DETAILED` finds the
+    /// bounds of sectors and beams, too.
     pub(crate) fn bound<const DETAILED: bool>(
         &self,
         block: &BlockIntervals,
-        headings: (usize, u64),
+        first: usize,
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
         self.simd.run(Bounding::<DETAILED> {
             program: self,
             block,
-            headings,
+            first,
             least,
             bounds,
         })
@@ -65,7 +77,7 @@ impl IntervalProgram {
 struct Bounding<'a, const DETAILED: bool> {
     program: &'a IntervalProgram,
     block: &'a BlockIntervals,
-    headings: (usize, u64),
+    first: usize,
     least: u16,
     bounds: &'a mut IntervalBounds,
 }
@@ -78,13 +90,12 @@ impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
         let Bounding {
             program,
             block,
-            headings: (first, among),
+            first,
             least,
             bounds,
         } = self;
         let rows = block.rows();
-        let mut sums = S::Headings::no_sums(set);
-        let mut alive = false;
+        bounds.all = [0; HEADINGS];
         bounds.sectors.clear();
         bounds.voting.clear();
         for (beams, rest) in program.sectors() {
@@ -97,17 +108,19 @@ impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
                     bounds.voting.push(of_beam.present());
                 }
             }
-            if DETAILED {
-                bounds.sectors.push(votes.to_bytes());
+            let votes = votes.to_bytes();
+            let mut most = 0;
+            for (all, votes) in bounds.all.iter_mut().zip(votes) {
+                *all += u16::from(votes);
+                most = most.max(*all);
             }
-            sums = votes.add_to(sums);
-            let missing = least.saturating_sub(rest);
-            alive = S::Headings::at_least(set, sums, missing) & among != 0;
-            if !alive {
-                break;
+            if DETAILED {
+                bounds.sectors.push(votes);
+            }
+            if most + rest < least {
+                return false;
             }
         }
-        bounds.all = S::Headings::votes(set, sums);
-        alive
+        true
     }
 }

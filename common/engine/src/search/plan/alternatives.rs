@@ -150,7 +150,7 @@ impl<'a> Alternatives<'a> {
             index.intervals.read(small, intervals);
             for (first, among) in bounds.reach(place) {
                 let least = best.map_or(1, |spot| spot.bound);
-                if program.bound::<false>(intervals, (first, among), least, interval_bounds) {
+                if program.bound::<false>(intervals, first, least, interval_bounds) {
                     let spot = |lane| Spot {
                         bound: interval_bounds.all[lane],
                         block: Reverse(small),

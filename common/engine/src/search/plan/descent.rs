@@ -17,8 +17,6 @@ use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
 use crate::search::task::budget::Budget;
 use crate::search::task::{End, Task};
-use crate::simd::headings::HEADINGS;
-use scratch::Candidate;
 pub(in crate::search) use scratch::Scratch;
 
 /// One thread's part of a search.
@@ -79,7 +77,7 @@ impl<'a> Descent<'a> {
             Level::Fine { start, end } => {
                 self.split_fine(index, &(start as usize..end as usize));
             }
-            Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
+            Level::Leaf { first, among } => self.count(index, first.into(), among),
         }
         let cost = self.scratch.tally.take(self.task.programs.beams);
         self.budget.spend(cost);
@@ -173,84 +171,52 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
+    /// Queues the blocks of 4 × 4 cells in one of 8 × 8, at the headings at which they may matter.
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
-        let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
-        let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
-        for block in quarters.filter(|&block| intervals.ids.holds(block)) {
-            self.queue_leaf(block, windows.clone());
-        }
-    }
-
-    /// Queues a block of 4 × 4 cells at the headings at which it may matter.
-    fn queue_leaf(&mut self, index: usize, windows: Range<usize>) {
-        let floor = self.scratch.collector.floor();
-        let start = self.scratch.candidates.len();
-        let Scratch {
-            intervals,
-            interval_bounds: bounds,
-            windows: known,
-            candidates,
-            tally,
-            ..
-        } = &mut *self.scratch;
-        self.task.index.intervals.read(index, intervals);
+        let (fine, whole) = (&self.task.index.fine, &self.task.index.intervals);
+        let quarters = quarters(index, fine.columns, (whole.columns, whole.rows));
         let program = &self.task.programs.interval;
-        for &(first, among) in &known[windows] {
-            tally.windows += 1;
-            if !program.bound::<false>(intervals, (first, among), floor, bounds) {
-                continue;
+        for block in quarters.filter(|&block| whole.ids.holds(block)) {
+            whole.read(block, &mut self.scratch.intervals);
+            for window in windows.clone() {
+                let Scratch {
+                    intervals,
+                    interval_bounds: bounds,
+                    windows,
+                    collector,
+                    tally,
+                    ..
+                } = &mut *self.scratch;
+                let ((first, among), floor) = (windows[window], collector.floor());
+                tally.windows += 1;
+                if program.bound::<false>(intervals, first, floor, bounds) {
+                    let (among, bound) = bounds.reach(floor, among);
+                    let first = first as u16;
+                    self.push(bound, block, Level::Leaf { first, among });
+                }
             }
-            let bounded = bits::ones(among).map(|lane| (lane, bounds.all[lane]));
-            let left = bounded.filter(|&(_, bound)| bound >= floor);
-            candidates.extend(left.map(|(lane, bound)| Candidate {
-                heading: (first + lane) as u16,
-                bound,
-            }));
-        }
-        let left = candidates[start..].iter();
-        if let Some(bound) = left.map(|candidate| candidate.bound).max() {
-            let (start, end) = (start as u32, candidates.len() as u32);
-            self.push(bound, index, Level::Leaf { start, end });
         }
     }
 
-    /// Counts the votes of a block's poses at the candidate headings.
-    fn count(&mut self, index: usize, mut candidates: Range<usize>) {
+    /// Counts the votes of a block's poses at the headings that bits select from a first one on.
+    fn count(&mut self, index: usize, first: usize, among: u64) {
         let SearchIndex {
             intervals, within, ..
         } = self.task.index;
-        let block_ranges = &mut self.scratch.block_ranges;
+        let Scratch {
+            block_ranges,
+            interval_bounds: bounds,
+            collector,
+            tally,
+            ..
+        } = &mut *self.scratch;
         block_ranges.enter((&self.task.view(), &within.limits), intervals, index);
-        while let Some((first, among)) = self.next_headings(&mut candidates) {
-            let floor = self.scratch.collector.floor();
-            let (intervals, bounds) = (
-                self.scratch.block_ranges.intervals(),
-                &mut self.scratch.interval_bounds,
-            );
-            let program = &self.task.programs.interval;
-            self.scratch.tally.windows += 1;
-            if program.bound::<true>(intervals, (first, among), floor, bounds) {
-                self.count_at(first, among);
-            }
+        let (program, floor) = (&self.task.programs.interval, collector.floor());
+        tally.windows += 1;
+        if program.bound::<true>(block_ranges.intervals(), first, floor, bounds) {
+            let (among, _) = bounds.reach(floor, among);
+            self.count_at(first, among);
         }
-    }
-
-    /// Takes candidates less than [`HEADINGS`] after the first. Returns the heading of the
-    /// first, and a bit for each from there on that may still matter.
-    fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
-        let floor = self.scratch.collector.floor();
-        let first = usize::from(self.scratch.candidates[candidates.clone()].first()?.heading);
-        let mut among = 0;
-        for candidate in &self.scratch.candidates[candidates.clone()] {
-            let lane = usize::from(candidate.heading) - first;
-            if lane >= HEADINGS {
-                break;
-            }
-            among |= u64::from(candidate.bound >= floor) << lane;
-            candidates.start += 1;
-        }
-        Some((first, among))
     }
 
     /// Counts sector by sector at headings from `first` on, until no pose can reach the floor

@@ -17,6 +17,6 @@ pub(in crate::search) enum Level {
     Coarse,
     /// 8 × 8 cells, at the headings of these windows.
     Fine { start: u32, end: u32 },
-    /// 4 × 4 cells, at these candidate headings.
-    Leaf { start: u32, end: u32 },
+    /// 4 × 4 cells, at headings from this one on: those of the bits.
+    Leaf { first: u16, among: u64 },
 }

@@ -33,8 +33,6 @@ fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
 avx2! {
     impl HeadingLanes for Avx2Headings {
         type Set = Avx2;
-        /// For each register, the sums of the first and of the second eight headings of each 16.
-        type Sums = [[__m256i; 2]; 2];
 
         fn none(_set: Avx2) -> Avx2Headings {
             Avx2Headings([_mm256_setzero_si256(); 2])
@@ -77,42 +75,6 @@ avx2! {
 
         fn to_bytes(self) -> [u8; HEADINGS] {
             must_cast(self.0)
-        }
-
-        fn no_sums(_set: Avx2) -> [[__m256i; 2]; 2] {
-            [[_mm256_setzero_si256(); 2]; 2]
-        }
-
-        fn add_to(self, sums: [[__m256i; 2]; 2]) -> [[__m256i; 2]; 2] {
-            let (mut sums, zero) = (sums, _mm256_setzero_si256());
-            for (votes, [low, high]) in self.0.into_iter().zip(&mut sums) {
-                *low = _mm256_add_epi16(*low, _mm256_unpacklo_epi8(votes, zero));
-                *high = _mm256_add_epi16(*high, _mm256_unpackhi_epi8(votes, zero));
-            }
-            sums
-        }
-
-        fn at_least(_set: Avx2, sums: [[__m256i; 2]; 2], least: u16) -> u64 {
-            let (least, zero) = (_mm256_set1_epi16(least.cast_signed()), _mm256_setzero_si256());
-            let mut reaching = 0;
-            for (half, [low, high]) in sums.into_iter().enumerate() {
-                let low = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, low), zero);
-                let high = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, high), zero);
-                // Packing puts the headings back in order.
-                let half_reaching = _mm256_movemask_epi8(_mm256_packs_epi16(low, high));
-                reaching |= u64::from(half_reaching.cast_unsigned()) << (HALF * half);
-            }
-            reaching
-        }
-
-        fn votes(_set: Avx2, sums: [[__m256i; 2]; 2]) -> [u16; HEADINGS] {
-            let [first, second] = sums;
-            must_cast([
-                _mm256_permute2x128_si256::<0x20>(first[0], first[1]),
-                _mm256_permute2x128_si256::<0x31>(first[0], first[1]),
-                _mm256_permute2x128_si256::<0x20>(second[0], second[1]),
-                _mm256_permute2x128_si256::<0x31>(second[0], second[1]),
-            ])
         }
     }
 }

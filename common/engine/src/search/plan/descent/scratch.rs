@@ -26,8 +26,6 @@ pub(in crate::search) struct Scratch {
     /// Headings at which blocks of 8 × 8 cells may matter: the first, and a bit for each from
     /// there on.
     pub(super) windows: Vec<(usize, u64)>,
-    /// Headings at which blocks of 4 × 4 cells may matter.
-    pub(super) candidates: Vec<Candidate>,
     /// Poses that matter.
     pub collector: Collector,
     /// Number of poses that were counted.
@@ -35,13 +33,6 @@ pub(in crate::search) struct Scratch {
     /// Most votes of any pose that the search did not reach because it was cut.
     pub left: u16,
     pub(super) tally: Tally,
-}
-
-/// A heading at which a block may still matter, and its bound there.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Candidate {
-    pub(super) heading: u16,
-    pub(super) bound: u16,
 }
 
 impl Scratch {
@@ -53,7 +44,6 @@ impl Scratch {
         self.counts.resize(HEADINGS, Count::default());
         self.queue.clear();
         self.windows.clear();
-        self.candidates.clear();
         self.collector.start(task.config);
         self.poses_evaluated = 0;
         self.left = 0;
