@@ -195,11 +195,7 @@ impl RangeIntervals {
             row.resize(self.directions + READ, 0);
             &mut row[..self.directions]
         });
-        match self.simd {
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx2(set) => unpack::unpack_avx2(set, packed, ends),
-            Simd::Portable(_) => unpack::unpack(packed, ends),
-        }
+        self.simd.run(unpack::Unpacking { packed, ends });
         for row in &mut into.rows {
             let (turn, further) = row.split_at_mut(self.directions);
             if let (Some(turn), Some(further)) =

@@ -28,7 +28,7 @@ use intervals::{RangeIntervals, SIDE};
 use obstacles::Obstacles;
 use sets::RangeSets;
 use steps::BinSteps;
-use within::{Size, Within};
+use within::Within;
 
 use crate::grid::Grid;
 use crate::limits::Limits;
@@ -92,9 +92,9 @@ impl SearchIndex {
         &self.within.limits
     }
 
-    /// Number of coarse blocks in which poses are searched.
+    /// Number of blocks of 8 × 8 cells in which poses are searched, by their quarters.
     pub(crate) fn blocks(&self) -> usize {
-        self.within.blocks[Size::Coarse as usize].count()
+        self.intervals.ids.count().div_ceil(4)
     }
 
     /// Returns the grid of the index, prepared for counting every pose.

@@ -1,14 +1,7 @@
 //! Unpacks the ends of the two intervals, direction by direction.
 
-#[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::*;
-
-#[cfg(target_arch = "x86_64")]
-use bytemuck::{bytes_of, must_cast, pod_read_unaligned};
-
 use super::{ALL, PACKED, STRETCHES};
-#[cfg(target_arch = "x86_64")]
-use crate::simd::{Avx2, avx2};
+use crate::simd::{Kernel, Set};
 
 /// First and last bin of the near interval, then of the far one.
 pub(super) type Ends<'a> = [&'a mut [u8]; 4];
@@ -40,59 +33,26 @@ pub(super) const fn width(nibble: u8) -> u8 {
     width
 }
 
-/// Unpacks the intervals of a block: all rows have a byte for each direction.
-pub(super) fn unpack([nearest, farthest, widths]: [&[u8]; PACKED], ends: Ends<'_>) {
-    let [near_first, near_last, far_first, far_last] = ends;
-    near_first.copy_from_slice(nearest);
-    far_last.copy_from_slice(farthest);
-    let packed = nearest.iter().zip(farthest).zip(widths);
-    let inner = near_last.iter_mut().zip(far_first);
-    for (((&nearest, &farthest), &widths), (near_last, far_first)) in packed.zip(inner) {
-        *near_last = near_end(nearest, farthest, widths);
-        *far_first = far_start(nearest, farthest, widths);
-    }
+/// Kernel that unpacks the intervals of a block: all rows have a byte for each direction.
+pub(super) struct Unpacking<'a> {
+    pub packed: [&'a [u8]; PACKED],
+    pub ends: Ends<'a>,
 }
 
-/// Number of directions unpacked at a time.
-#[cfg(target_arch = "x86_64")]
-const LANES: usize = 32;
+impl Kernel for Unpacking<'_> {
+    type Result = ();
 
-/// Widths that all nibbles stand for, twice.
-#[cfg(target_arch = "x86_64")]
-const WIDTHS: [u8; LANES] = {
-    let mut widths = [0; LANES];
-    let mut i = 0;
-    while i < LANES {
-        widths[i] = width(i as u8 % 16);
-        i += 1;
-    }
-    widths
-};
-
-#[cfg(target_arch = "x86_64")]
-avx2! {
-    /// Does the same as [`unpack`], [`LANES`] directions at a time.
-    pub(super) fn unpack_avx2(_set: Avx2, packed: [&[u8]; PACKED], ends: Ends<'_>) {
-        let directions = packed[0].len();
-        let Some(last) = directions.checked_sub(LANES) else {
-            return unpack(packed, ends);
-        };
-        let [nearest, farthest, widths] = packed.map(|row| &row[..directions]);
-        let mut ends = ends.map(|row| &mut row[..directions]);
-        let (nibble, by_nibble) = (_mm256_set1_epi8(15), must_cast(WIDTHS));
-        for start in (0..directions).step_by(LANES) {
-            // If the directions are no multiple of the lanes, some are unpacked twice.
-            let lanes = start.min(last)..start.min(last) + LANES;
-            let read = |row: &[u8]| -> __m256i { pod_read_unaligned(&row[lanes.clone()]) };
-            let (nearest, farthest, widths) = (read(nearest), read(farthest), read(widths));
-            let near = _mm256_shuffle_epi8(by_nibble, _mm256_and_si256(widths, nibble));
-            let far = _mm256_and_si256(_mm256_srli_epi16::<4>(widths), nibble);
-            let far = _mm256_shuffle_epi8(by_nibble, far);
-            let near_last = _mm256_min_epu8(_mm256_adds_epu8(nearest, near), farthest);
-            let far_first = _mm256_max_epu8(_mm256_subs_epu8(farthest, far), nearest);
-            for (row, unpacked) in ends.iter_mut().zip([nearest, near_last, far_first, farthest]) {
-                row[lanes.clone()].copy_from_slice(bytes_of(&unpacked));
-            }
+    #[inline(always)]
+    fn run<S: Set>(self, _: S) {
+        let directions = self.packed[0].len();
+        let [nearest, farthest, widths] = self.packed.map(|row| &row[..directions]);
+        let [near_first, near_last, far_first, far_last] =
+            self.ends.map(|row| &mut row[..directions]);
+        near_first.copy_from_slice(nearest);
+        far_last.copy_from_slice(farthest);
+        for i in 0..directions {
+            near_last[i] = near_end(nearest[i], farthest[i], widths[i]);
+            far_first[i] = far_start(nearest[i], farthest[i], widths[i]);
         }
     }
 }
