@@ -40,10 +40,6 @@ impl Bins {
     /// Bin of a ray that sees nothing, and of cells in which no robot can stand.
     pub(crate) const NOTHING: u8 = u8::MAX;
 
-    /// Steps up to which the lines of the last two pieces are above the others: these matter
-    /// from 1755 cells on, which along a diagonal are the fewest steps.
-    pub(crate) const NEAR_STEPS: u16 = 1_200;
-
     pub(crate) fn new(directions: &Directions) -> Self {
         let lines = (0..directions.classes()).map(|class| {
             PIECES.map(|(start, cells_per_bin)| {
@@ -70,13 +66,6 @@ impl Bins {
     #[inline(always)]
     pub(crate) fn lines(&self, class: usize) -> &[Line; PIECES.len()] {
         &self.lines[class]
-    }
-
-    /// Returns those of them that suffice up to [`Bins::NEAR_STEPS`].
-    #[inline(always)]
-    pub(crate) fn near_lines(&self, class: usize) -> &[Line; PIECES.len() - 2] {
-        let [near @ .., _, _] = &self.lines[class];
-        near
     }
 }
 

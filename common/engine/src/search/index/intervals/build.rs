@@ -99,7 +99,6 @@ impl Kernel for Sweeping<'_, '_> {
 #[inline(always)]
 fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_>) {
     let (width, height) = (source.grid.width(), source.grid.height());
-    let longest = (width.max(height) - 1) as u16;
     let (majors, minors) = swap_unless(part.x_major, (width, height));
     let row_blocks = width.div_ceil(SIDE);
     let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
@@ -140,23 +139,13 @@ fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_
                 class: direction.class,
                 blocks: &strip_blocks,
             };
-            if longest <= Bins::NEAR_STEPS {
-                pool(
-                    lanes,
-                    rows,
-                    source.bins.near_lines(direction.class),
-                    planes.of(slot),
-                    &mut noting,
-                );
-            } else {
-                pool(
-                    lanes,
-                    rows,
-                    source.bins.lines(direction.class),
-                    planes.of(slot),
-                    &mut noting,
-                );
-            }
+            pool(
+                lanes,
+                rows,
+                source.bins.lines(direction.class),
+                planes.of(slot),
+                &mut noting,
+            );
         }
         planes.write(&strip_blocks, built.packed);
     }
