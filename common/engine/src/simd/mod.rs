@@ -137,14 +137,12 @@ pub(crate) trait Set: numbers::Numbers + table::Tables {
     type Words: words::BitWords<Set = Self>;
     type Headings: headings::HeadingLanes<Set = Self>;
     type Cells: cells::CellLanes<Set = Self>;
-    type Rays: rays::RayLanes<Set = Self>;
 }
 
 impl Set for Portable {
     type Words = words::Words;
     type Headings = headings::Portable;
     type Cells = cells::Portable;
-    type Rays = rays::Portable;
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -152,7 +150,6 @@ impl Set for Avx2 {
     type Words = words::Avx2Words;
     type Headings = headings::Avx2Headings;
     type Cells = cells::Avx2Cells;
-    type Rays = rays::Avx2Rays;
 }
 
 /// Work that is compiled for each instruction set.

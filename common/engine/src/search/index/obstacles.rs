@@ -8,7 +8,7 @@ use super::intervals::SIDE;
 use crate::chessboard;
 use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
-use crate::simd::rays::{BitRows, ROWS, RayLanes};
+use crate::simd::rays::{BitRows, ROWS};
 
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
@@ -244,7 +244,7 @@ impl Rays<'_> {
     /// ends at `position + j`. Returns `None` if all of them have left the map; there must be a
     /// row at `position`.
     #[inline(always)]
-    pub(in crate::search) fn ends<L: RayLanes>(&self, set: L::Set, position: i64) -> Option<u64> {
+    pub(in crate::search) fn ends(&self, position: i64) -> Option<u64> {
         const ENOUGH: &str = "rows go on before the first and behind the last";
         let Rays {
             rows, direction, ..
@@ -272,7 +272,7 @@ impl Rays<'_> {
             bit: before + bit,
             slope,
         };
-        let word = L::word(set, &rows);
+        let word = rows.word();
         Some(if backward { word.swap_bytes() } else { word })
     }
 }

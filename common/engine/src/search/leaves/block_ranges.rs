@@ -13,7 +13,6 @@ use crate::program::NO_RANGE;
 use crate::search::index::intervals::{BlockIntervals, CELLS, RangeIntervals, SIDE};
 use crate::search::index::obstacles::Obstacles;
 use crate::search::index::steps::BinSteps;
-use crate::simd::Set;
 
 /// A map and the tables for following rays in it.
 #[derive(Debug, Clone, Copy)]
@@ -124,11 +123,11 @@ impl BlockRanges {
     /// Computes the ranges in direction `d`, unless that was done for this block. It must be
     /// inlined into code that is compiled for the instruction set.
     #[inline(always)]
-    pub(in crate::search) fn compute<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
+    pub(in crate::search) fn compute(&mut self, view: &View<'_>, d: usize) {
         if self.computed_for[d] != self.number {
             self.computed_for[d] = self.number;
             self.casts += 1;
-            self.cast_rays(set, view, d);
+            self.cast_rays(view, d);
         }
     }
 
@@ -157,7 +156,7 @@ impl BlockRanges {
     }
 
     #[inline(always)]
-    fn cast_rays<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
+    fn cast_rays(&mut self, view: &View<'_>, d: usize) {
         let direction = &view.directions.all()[d];
         let [near, far] = self.spans(view, d);
         let spans = if self.has_blocked {
@@ -167,12 +166,12 @@ impl BlockRanges {
         };
         let bundle = Bundle::new(direction, (self.left, self.bottom));
         let rays = view.obstacles.rays(direction, bundle.start);
-        let mut hits = bundle.follow::<S::Rays>(set, &rays, spans);
+        let mut hits = bundle.follow(&rays, spans);
         if self.has_blocked {
             bundle::drop_blocked(&rays, view.grid, &mut hits);
         }
         self.by_direction[d] = if self.all_open {
-            bundle.ranges::<S::Rays>(set, &hits)
+            bundle.ranges(&hits)
         } else {
             bundle.ranges_among(hits, &self.cells)
         };

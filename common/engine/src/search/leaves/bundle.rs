@@ -9,7 +9,7 @@ use crate::program::NO_RANGE;
 use crate::search::index::intervals::CELLS;
 use crate::search::index::intervals::SIDE;
 use crate::search::index::obstacles::Rays;
-use crate::simd::rays::{Across, RAYS, ROWS, RayLanes};
+use crate::simd::rays::{Across, Hits, RAYS, ROWS};
 
 /// The adjacent rays of a direction through a block. Positions count along the major axis
 /// from the first of the block's columns that a ray meets; a column here is the cells with
@@ -61,13 +61,12 @@ impl Bundle {
     /// Returns the positions at which the rays of the block end. The steps from the block's
     /// cells to there are in one of two spans.
     #[inline(always)]
-    pub(in crate::search) fn follow<L: RayLanes>(
+    pub(in crate::search) fn follow(
         &self,
-        set: L::Set,
         rays: &Rays<'_>,
         spans: [(u16, u16); 2],
-    ) -> [u16; RAYS] {
-        let mut hits = L::none(set);
+    ) -> Hits {
+        let mut hits = Hits([NO_RANGE; RAYS]);
         let mut pending = u8::MAX >> (RAYS as u32 - self.rays);
         let mut mask = self.behind();
         let mut done = 0;
@@ -76,12 +75,11 @@ impl Bundle {
             let mut position = i64::from(first).max(done);
             // As a rule a ray ends at the start of a span, so that is read before any leap.
             while position < end && pending != 0 {
-                let Some(word) = rays.ends::<L>(set, position) else {
-                    return hits.hits();
+                let Some(word) = rays.ends(position) else {
+                    return hits;
                 };
                 let word = word & std::mem::replace(&mut mask, u64::MAX);
-                let ended;
-                (hits, ended) = hits.note(word, position);
+                let ended = hits.note(word, position);
                 pending &= !ended;
                 position += ROWS;
                 while position < end && pending != 0 {
@@ -94,7 +92,7 @@ impl Bundle {
             }
             done = position;
         }
-        hits.hits()
+        hits
     }
 
     /// Returns the order in which rays cross the block's cells.
@@ -106,18 +104,14 @@ impl Bundle {
     /// Returns the ranges of the block's cells if all of them are open: the steps to the ends
     /// of their rays.
     #[inline(always)]
-    pub(in crate::search) fn ranges<L: RayLanes>(
-        &self,
-        set: L::Set,
-        hits: &[u16; RAYS],
-    ) -> [u16; CELLS] {
-        L::ranges(set, hits, &self.first, self.across())
+    pub(in crate::search) fn ranges(&self, hits: &Hits) -> [u16; CELLS] {
+        hits.ranges(&self.first, self.across())
     }
 
     /// Does the same if some cells are not open: the steps to those that are in the way, too.
     pub(in crate::search) fn ranges_among(
         &self,
-        mut hits: [u16; RAYS],
+        Hits(mut hits): Hits,
         cells: &[Cell; CELLS],
     ) -> [u16; CELLS] {
         let Across { column, minor } = self.across();
@@ -140,7 +134,7 @@ impl Bundle {
 }
 
 /// Drops the hits of rays that end in an unknown cell that blocks them: they have no range.
-pub(in crate::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
+pub(in crate::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, Hits(hits): &mut Hits) {
     for (i, hit) in hits.iter_mut().enumerate() {
         if *hit == NO_RANGE {
             continue;

@@ -118,7 +118,7 @@ impl LeafProgram {
     #[inline(always)]
     fn add_with<S: Set, C: CellLanes>(
         &self,
-        set: S,
+        _set: S,
         load: impl Fn(&[u16; CELLS]) -> C,
         adding: Adding<'_, '_>,
     ) {
@@ -131,7 +131,7 @@ impl LeafProgram {
         } = adding;
         for (beam, voting) in (first_beam..).zip(beams) {
             for lane in bits::ones(headings & voting) {
-                block_ranges.compute(set, view, self.direction(beam, first + lane));
+                block_ranges.compute(view, self.direction(beam, first + lane));
             }
         }
         for lane in bits::ones(headings) {
