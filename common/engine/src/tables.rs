@@ -2,6 +2,8 @@
 
 use crate::directions::Directions;
 use crate::program::ScanProgram;
+use crate::simd::CELLS;
+use crate::simd::table::{LANES, Tables};
 
 /// Largest number of entries of a short table, which one instruction can look up.
 pub(crate) const TABLE: usize = 64;
@@ -14,7 +16,6 @@ pub(crate) struct VoteTables {
     /// Entry of beam `i` and class `c` at `i · classes + c`.
     entries: Vec<Entry>,
     votes: Vec<u8>,
-    is_short: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +43,6 @@ impl VoteTables {
         self.classes = classes;
         self.entries.clear();
         self.votes.clear();
-        self.is_short = true;
         for (beam, class) in (0..program.beams()).flat_map(|i| (0..classes).map(move |c| (i, c))) {
             let taper = program.taper(beam, class);
             self.entries.push(Entry {
@@ -52,7 +52,6 @@ impl VoteTables {
             });
             self.votes.extend_from_slice(taper.profile);
             self.votes.push(0);
-            self.is_short &= taper.profile.len() < TABLE;
         }
         self.votes.resize(self.votes.len() + TABLE, 0);
     }
@@ -71,18 +70,13 @@ impl VoteTables {
             votes: &self.votes[start as usize..],
         }
     }
-
-    /// True if no table has more than [`TABLE`] entries.
-    pub(crate) fn are_short(&self) -> bool {
-        self.is_short
-    }
 }
 
 impl<'a> VoteTable<'a> {
     /// Returns the entries, including the last one at [`VoteTable::used`], if there are at most
     /// [`TABLE`].
     #[inline(always)]
-    pub(crate) fn short(&self) -> Option<&'a [u8; TABLE]> {
+    fn short(self) -> Option<&'a [u8; TABLE]> {
         let is_short = usize::from(self.used) < TABLE;
         self.votes.first_chunk().filter(|_| is_short)
     }
@@ -96,10 +90,21 @@ impl<'a> VoteTable<'a> {
 
     /// Adds the votes for poses whose rays have these lengths.
     #[inline(always)]
-    pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
-        for (votes, &range) in votes.iter_mut().zip(ranges) {
-            let distance = range.abs_diff(self.centre).min(self.used);
-            *votes += u16::from(self.votes[usize::from(distance)]);
+    pub(crate) fn add<T: Tables>(self, set: T, ranges: &[u16; CELLS], votes: &mut [u16; CELLS]) {
+        let Some(entries) = self.short() else {
+            for (votes, &range) in votes.iter_mut().zip(ranges) {
+                let distance = range.abs_diff(self.centre).min(self.used);
+                *votes += u16::from(self.votes[usize::from(distance)]);
+            }
+            return;
+        };
+        let mut index = [0; LANES];
+        for (index, range) in index.iter_mut().zip(ranges) {
+            *index = range.abs_diff(self.centre).min(self.used) as u8;
+        }
+        let found = set.look_up(entries, self.used.into(), index);
+        for (votes, found) in votes.iter_mut().zip(found) {
+            *votes += u16::from(found);
         }
     }
 }

@@ -17,7 +17,6 @@
 //! among its portable ones (looking bytes up in tables of 64, sums and carries of three
 //! bits, leading zeros); `docs/engine.md` has the figures.
 
-pub(crate) mod cells;
 pub(crate) mod headings;
 pub(crate) mod numbers;
 pub(crate) mod rays;
@@ -136,20 +135,17 @@ pub(crate) struct Avx2(());
 pub(crate) trait Set: numbers::Numbers + table::Tables {
     type Words: words::BitWords<Set = Self>;
     type Headings: headings::HeadingLanes<Set = Self>;
-    type Cells: cells::CellLanes<Set = Self>;
 }
 
 impl Set for Portable {
     type Words = words::Words;
     type Headings = headings::Portable;
-    type Cells = cells::Portable;
 }
 
 #[cfg(target_arch = "x86_64")]
 impl Set for Avx2 {
     type Words = words::Avx2Words;
     type Headings = headings::Avx2Headings;
-    type Cells = cells::Avx2Cells;
 }
 
 /// Work that is compiled for each instruction set.

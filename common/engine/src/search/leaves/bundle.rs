@@ -61,11 +61,7 @@ impl Bundle {
     /// Returns the positions at which the rays of the block end. The steps from the block's
     /// cells to there are in one of two spans.
     #[inline(always)]
-    pub(in crate::search) fn follow(
-        &self,
-        rays: &Rays<'_>,
-        spans: [(u16, u16); 2],
-    ) -> Hits {
+    pub(in crate::search) fn follow(&self, rays: &Rays<'_>, spans: [(u16, u16); 2]) -> Hits {
         let mut hits = Hits([NO_RANGE; RAYS]);
         let mut pending = u8::MAX >> (RAYS as u32 - self.rays);
         let mut mask = self.behind();

@@ -1,7 +1,7 @@
 //! Counting votes, pose by pose, for the 16 cells of a small block at once.
 //!
 //! The ranges of all cells in a direction are adjacent in memory, so a beam's votes for the
-//! whole block take one table look-up for each cell, all of them at once (`simd/cells.rs`).
+//! whole block take one table look-up for each cell, all of them at once (`tables.rs`).
 
 use super::block_ranges::{BlockRanges, View};
 use crate::directions::Directions;
@@ -9,7 +9,6 @@ use crate::program::ScanProgram;
 use crate::search::bounds::sectors;
 use crate::search::index::bits;
 use crate::search::index::intervals::CELLS;
-use crate::simd::cells::{self, CellLanes};
 use crate::simd::{Kernel, Set, Simd};
 use crate::tables::{VoteTable, VoteTables};
 
@@ -113,41 +112,6 @@ impl LeafProgram {
         });
     }
 
-    /// Adds votes by the given lanes. Only plain code takes tables of any length; the lanes of
-    /// other instruction sets need short ones.
-    #[inline(always)]
-    fn add_with<S: Set, C: CellLanes>(
-        &self,
-        _set: S,
-        load: impl Fn(&[u16; CELLS]) -> C,
-        adding: Adding<'_, '_>,
-    ) {
-        let Adding {
-            rays: (block_ranges, view),
-            beams: (first_beam, beams),
-            headings: (first, headings),
-            counts,
-            ..
-        } = adding;
-        for (beam, voting) in (first_beam..).zip(beams) {
-            for lane in bits::ones(headings & voting) {
-                block_ranges.compute(view, self.direction(beam, first + lane));
-            }
-        }
-        for lane in bits::ones(headings) {
-            let count = &mut counts[lane];
-            let mut sums = load(&count.votes);
-            let voting = beams.iter().enumerate();
-            let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
-            for beam in bits::ones(voting).map(|i| first_beam + i) {
-                let (direction, table) = self.place(beam, first + lane);
-                sums = sums.add(table, block_ranges.ranges(direction));
-            }
-            count.votes = sums.votes();
-            count.most = sums.most(block_ranges.open());
-        }
-    }
-
     #[inline(always)]
     fn direction(&self, beam: usize, heading: usize) -> usize {
         let direction = heading + self.bearings[beam];
@@ -183,11 +147,29 @@ impl Kernel for Adding<'_, '_> {
 
     #[inline(always)]
     fn run<S: Set>(self, set: S) {
-        let program = self.program;
-        if program.tables.are_short() {
-            program.add_with(set, |votes| S::Cells::load(set, votes), self);
-        } else {
-            program.add_with(set, cells::Portable::new, self);
+        let Adding {
+            program,
+            rays: (block_ranges, view),
+            beams: (first_beam, beams),
+            headings: (first, headings),
+            counts,
+        } = self;
+        for (beam, voting) in (first_beam..).zip(beams) {
+            for lane in bits::ones(headings & voting) {
+                block_ranges.compute(view, program.direction(beam, first + lane));
+            }
+        }
+        for lane in bits::ones(headings) {
+            let mut votes = counts[lane].votes;
+            let voting = beams.iter().enumerate();
+            let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
+            for beam in bits::ones(voting).map(|i| first_beam + i) {
+                let (direction, table) = program.place(beam, first + lane);
+                table.add(set, block_ranges.ranges(direction), &mut votes);
+            }
+            let open = votes.iter().zip(block_ranges.open());
+            let most = open.map(|(votes, open)| votes & open).fold(0, u16::max);
+            counts[lane] = Count { votes, most };
         }
     }
 }
