@@ -1,12 +1,7 @@
 //! Votes at 64 adjacent headings.
 
-#[cfg(target_arch = "x86_64")]
-mod x86;
-
 use super::table::{LANES, Tables};
 use crate::tables::TABLE;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use x86::Avx2Headings;
 
 /// Number of headings that are bounded at a time.
 pub(crate) const HEADINGS: usize = 64;
@@ -27,71 +22,53 @@ pub(crate) struct BinVotes {
     pub base: u8,
 }
 
-/// A number of votes for each heading that fits a byte.
-pub(crate) trait HeadingLanes: Copy {
-    /// The token of the instruction set.
-    type Set: Copy;
-    fn none(set: Self::Set) -> Self;
-
-    /// Returns the most votes that a beam has for a range of either interval.
-    fn of_beam(set: Self::Set, votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
-
-    fn add(self, other: Self) -> Self;
-
-    /// Returns a bit for each heading with any votes.
-    fn present(self) -> u64;
-
-    fn to_bytes(self) -> [u8; HEADINGS];
+impl BinVotes {
+    /// Adds the most votes of the beam for a range of either interval to those at each heading.
+    #[inline(always)]
+    pub(crate) fn add<T: Tables>(
+        &self,
+        set: T,
+        rows: IntervalRows<'_>,
+        votes: &mut [u8; HEADINGS],
+    ) -> [u8; HEADINGS] {
+        let [near_first, near_last, far_first, far_last] = rows;
+        let near = look_up(set, self, near_first, near_last);
+        let far = look_up(set, self, far_first, far_last);
+        let mut found = near;
+        for i in 0..HEADINGS {
+            found[i] = near[i].max(far[i]);
+            votes[i] += found[i];
+        }
+        found
+    }
 }
 
-/// The baseline CPU; on ARM, which always has NEON, tables are looked up by
-/// its instructions.
-#[derive(Clone, Copy)]
-pub(crate) struct Portable([u8; HEADINGS]);
-
-impl HeadingLanes for Portable {
-    type Set = super::Portable;
-
-    #[inline(always)]
-    fn none(_: Self::Set) -> Self {
-        Portable([0; HEADINGS])
-    }
-
-    #[inline(always)]
-    fn of_beam(_: Self::Set, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
-        let [near_first, near_last, far_first, far_last] = rows;
-        let near = look_up(votes, near_first, near_last);
-        let far = look_up(votes, far_first, far_last);
-        Portable(std::array::from_fn(|i| near[i].max(far[i])))
-    }
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Portable(std::array::from_fn(|i| self.0[i] + other.0[i]))
-    }
-
-    #[inline(always)]
-    fn present(self) -> u64 {
-        let lanes = self.0.iter().enumerate();
-        lanes.fold(0, |all, (i, &votes)| all | u64::from(votes > 0) << i)
-    }
-
-    #[inline(always)]
-    fn to_bytes(self) -> [u8; HEADINGS] {
-        self.0
-    }
+/// Returns a bit for each heading with any votes.
+#[inline(always)]
+pub(crate) fn present<T: Tables>(set: T, votes: [u8; HEADINGS]) -> u64 {
+    let [low, high]: [[u8; LANES]; HEADINGS / LANES] = bytemuck::must_cast(votes);
+    u64::from(set.present(low)) | u64::from(set.present(high)) << LANES
 }
 
 /// Looks up the votes in the bin of each interval that is nearest to the centre.
 #[inline(always)]
-fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    let index = std::array::from_fn(|i| {
+fn look_up<T: Tables>(
+    set: T,
+    votes: &BinVotes,
+    first: &[u8; HEADINGS],
+    last: &[u8; HEADINGS],
+) -> [u8; HEADINGS] {
+    let mut index = [0; HEADINGS];
+    for i in 0..HEADINGS {
         let bin = votes.centre.min(last[i]).max(first[i]);
-        bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
-    });
-    let halves: [[u8; LANES]; HEADINGS / LANES] = bytemuck::must_cast::<[u8; HEADINGS], _>(index);
-    let [low, high] = halves;
-    let look_up = |index| super::Portable.look_up(&votes.table, votes.used.into(), index);
+        index[i] = bin.saturating_sub(votes.base);
+    }
+    // Otherwise the last entry, which stands for all bins beyond, is 0.
+    if usize::from(votes.used) == TABLE {
+        index = index.map(|index| index.min(TABLE as u8 - 1));
+    }
+    let [low, high]: [[u8; LANES]; HEADINGS / LANES] = bytemuck::must_cast(index);
+    let look_up = |index| set.look_up(&votes.table, votes.used.into(), index);
     bytemuck::must_cast([look_up(low), look_up(high)])
 }
 
@@ -113,11 +90,11 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Set>(self, set: S) -> Self::Result {
-            let mut votes = S::Headings::none(set);
+            let mut votes = [0; HEADINGS];
             for (beam, rows) in self.0 {
-                votes = votes.add(S::Headings::of_beam(set, beam, rows.each_ref()));
+                beam.add(set, rows.each_ref(), &mut votes);
             }
-            (votes.to_bytes(), votes.present())
+            (votes, present(set, votes))
         }
     }
 

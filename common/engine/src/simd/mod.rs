@@ -134,18 +134,15 @@ pub(crate) struct Avx2(());
 /// A token, and the vectors of its instruction set.
 pub(crate) trait Set: numbers::Numbers + table::Tables {
     type Words: words::BitWords<Set = Self>;
-    type Headings: headings::HeadingLanes<Set = Self>;
 }
 
 impl Set for Portable {
     type Words = words::Words;
-    type Headings = headings::Portable;
 }
 
 #[cfg(target_arch = "x86_64")]
 impl Set for Avx2 {
     type Words = words::Avx2Words;
-    type Headings = headings::Avx2Headings;
 }
 
 /// Work that is compiled for each instruction set.

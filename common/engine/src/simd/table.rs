@@ -11,6 +11,9 @@ pub(crate) trait Tables: Copy {
     /// Looks numbers up in a table of which `used` entries are not 0; numbers beyond those
     /// give 0.
     fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES];
+
+    /// Returns a bit for each number that is not 0.
+    fn present(self, numbers: [u8; LANES]) -> u32;
 }
 
 impl Tables for Portable {
@@ -33,6 +36,12 @@ impl Tables for Portable {
     fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
         let halves: [[u8; PIECE]; LANES / PIECE] = bytemuck::must_cast(index);
         bytemuck::must_cast(halves.map(|half| look_up_neon(table, used, half)))
+    }
+
+    #[inline(always)]
+    fn present(self, numbers: [u8; LANES]) -> u32 {
+        let numbers = numbers.iter().enumerate();
+        numbers.fold(0, |bits, (i, &number)| bits | u32::from(number > 0) << i)
     }
 }
 
@@ -91,6 +100,13 @@ mod x86 {
         }
     }
 
+    avx2! {
+        fn present(_set: Avx2, numbers: __m256i) -> u32 {
+            let absent = _mm256_cmpeq_epi8(numbers, _mm256_setzero_si256());
+            !_mm256_movemask_epi8(absent).cast_unsigned()
+        }
+    }
+
     /// Looks 32 numbers in each register up in a table of which `used` entries are not 0;
     /// numbers beyond those give 0.
     #[inline(always)]
@@ -118,8 +134,10 @@ mod x86 {
         fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
             must_cast(look_up_avx2(self, table, used, [must_cast(index)]))
         }
+
+        #[inline(always)]
+        fn present(self, numbers: [u8; LANES]) -> u32 {
+            present(self, must_cast(numbers))
+        }
     }
 }
-
-#[cfg(target_arch = "x86_64")]
-pub(super) use x86::look_up_avx2;

@@ -7,7 +7,7 @@
 use super::interval_program::{IntervalBeam, IntervalProgram};
 use crate::search::index::bits::ones;
 use crate::search::index::intervals::BlockIntervals;
-use crate::simd::headings::{HEADINGS, HeadingLanes};
+use crate::simd::headings::{self, HEADINGS};
 use crate::simd::{Kernel, Set};
 
 /// Upper bounds of a block's votes at adjacent headings.
@@ -99,16 +99,14 @@ impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
         bounds.sectors.clear();
         bounds.voting.clear();
         for (beams, rest) in program.sectors() {
-            let mut votes = S::Headings::none(set);
+            let mut votes = [0; HEADINGS];
             for beam in beams {
                 let direction = program.direction(beam, first);
-                let of_beam = S::Headings::of_beam(set, &beam.votes, rows.from(direction));
-                votes = votes.add(of_beam);
+                let of_beam = beam.votes.add(set, rows.from(direction), &mut votes);
                 if DETAILED {
-                    bounds.voting.push(of_beam.present());
+                    bounds.voting.push(headings::present(set, of_beam));
                 }
             }
-            let votes = votes.to_bytes();
             let mut most = 0;
             for (all, votes) in bounds.all.iter_mut().zip(votes) {
                 *all += u16::from(votes);
