@@ -1,8 +1,7 @@
 //! The sets of a quad of blocks, laid out so that windows of bins are read quickly.
 //!
 //! Each row holds a full turn and one word more, so that a word can be read from any
-//! direction on. Each row is followed by the same row joined with the next one, so that a
-//! window takes half as many reads.
+//! direction on.
 
 use std::ops::Range;
 
@@ -17,16 +16,12 @@ use crate::simd::words::{BYTES, BitWords, QUAD};
 pub(crate) struct RowLayout {
     /// Bytes of a full turn, 8 directions each.
     stride: usize,
-    /// Bytes from a row to its copy joined with the next row, and from there to the next row.
+    /// Bytes from a row to the next one.
     row: usize,
     /// Largest number of rows. A row without bits follows them.
     most: usize,
     /// Range of the rows that are read.
     needed: Range<usize>,
-    /// A bit for each row that is read alone, and for each that is read joined with the next
-    /// one.
-    alone: u64,
-    joined: u64,
     /// Place within a turn of each byte of two turns.
     turns: Vec<u32>,
 }
@@ -82,7 +77,6 @@ impl RowLayout {
         self.row = (turns * self.stride + READ).next_multiple_of(READ);
         self.most = (usize::from(Bins::NOTHING) >> ROW_SHIFT) + 1;
         self.needed = self.most..0;
-        (self.alone, self.joined) = (0, 0);
         let turn = 0..self.stride as u32;
         self.turns.clear();
         self.turns.extend(turn.clone().chain(turn));
@@ -96,29 +90,17 @@ impl RowLayout {
         );
         let needed = &self.needed;
         self.needed = needed.start.min(rows.start)..needed.end.max(rows.end);
-        // Two rows at a time; of an odd number, the last two overlap with those before.
-        let last = rows.end.saturating_sub(2).max(rows.start);
-        let starts = rows.clone().step_by(2).map(|row| row.min(last));
-        let is_joined = rows.len() > 1;
-        let read = if is_joined {
-            &mut self.joined
-        } else {
-            &mut self.alone
-        };
-        *read |= starts.fold(0, |read, row| read | 1 << row);
-        let place = |row: usize| 2 * row + usize::from(is_joined);
-        let (first, last) = (place(rows.start), place(last));
         Window {
-            first: (first * self.row) as u32,
-            last: (last * self.row) as u32,
+            first: (rows.start * self.row) as u32,
+            last: (rows.end.saturating_sub(1).max(rows.start) * self.row) as u32,
             byte: byte as u32,
-            reads: rows.len().div_ceil(2) as u32,
+            reads: rows.len() as u32,
         }
     }
 
     /// Returns a window that sees nothing.
     pub(crate) fn nothing(&self) -> Window {
-        let start = (2 * self.most * self.row) as u32;
+        let start = (self.most * self.row) as u32;
         Window {
             first: start,
             last: start,
@@ -129,7 +111,7 @@ impl RowLayout {
 
     /// Returns the end of all rows, including the one without bits.
     fn end(&self) -> usize {
-        (2 * self.most + 1) * self.row
+        (self.most + 1) * self.row
     }
 }
 
@@ -150,50 +132,21 @@ impl QuadRows {
         rows: &SetRows<'_>,
     ) {
         let (row, stride) = (layout.row, layout.stride);
-        // The row before the first one is joined with it.
-        let first = rows.rows.start.saturating_sub(1).max(layout.needed.start);
-        let taken = first..rows.rows.end.min(layout.needed.end);
+        let (first, end) = (rows.rows.start, rows.rows.end);
+        let taken = first.max(layout.needed.start)..end.min(layout.needed.end);
         let mut kept = rows.kept_before(taken.start);
         for i in taken.clone() {
-            let (earlier, own) = self.bytes.split_at_mut(2 * i * row);
-            let own = &mut own[..row];
-            if !rows.rows.contains(&i) {
-                own.fill([0; QUAD]);
-                continue;
-            }
-            let is_joined = i > taken.start && layout.joined >> (i - 1) & 1 == 1;
-            let before = if is_joined {
-                earlier.len() - 2 * row
-            } else {
-                earlier.len()
-            };
-            let (before, joined) = earlier[before..].split_at_mut(if is_joined { row } else { 0 });
+            let own = &mut self.bytes[i * row..][..row];
             for (start, &mask) in (0..stride).step_by(READ).zip(rows.masks_of(i)) {
                 let words = W::expand(set, mask, bytes(&rows.bytes[kept..]));
                 words.write(bytes_mut(&mut own[start..]));
-                if is_joined {
-                    let both = W::read(set, bytes(&before[start..])).or(words);
-                    both.write(bytes_mut(&mut joined[start..]));
-                }
                 kept += mask.count_ones() as usize;
             }
-            if is_joined {
-                go_round::<W>(set, joined, stride);
-            }
-        }
-        if let Some(last) = taken.clone().next_back() {
-            // The row after the last one has no bits, or no window reads it.
-            let rows = &mut self.bytes[2 * last * row..][..2 * row];
-            let (last, joined) = rows.split_at_mut(row);
-            joined.copy_from_slice(last);
-            go_round::<W>(set, joined, stride);
-        }
-        for i in taken.clone().filter(|&i| layout.alone >> i & 1 == 1) {
-            go_round::<W>(set, &mut self.bytes[2 * i * row..][..row], stride);
+            go_round::<W>(set, own, stride);
         }
         for used in self.used.clone() {
             if !taken.contains(&used) {
-                self.bytes[2 * used * row..][..2 * row].fill([0; QUAD]);
+                self.bytes[used * row..][..row].fill([0; QUAD]);
             }
         }
         self.used = taken;
@@ -278,7 +231,7 @@ impl Windows<'_> {
             let word = unsafe { bytes.get_unchecked(start + place..start + place + READ) };
             let words = W::read(set, self::bytes(word));
             all = if i == 0 { words } else { all.or(words) };
-            start = last.min(start + 4 * layout.row);
+            start = last.min(start + layout.row);
         }
         all
     }
