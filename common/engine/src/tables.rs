@@ -115,24 +115,43 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::program::NO_RANGE;
+    use crate::simd::{Kernel, Set, Simd};
     use crate::testing::any_scan;
+
+    /// Kernel that adds the votes of a beam.
+    struct Adding<'a>(VoteTable<'a>, &'a [u16; CELLS], [u16; CELLS]);
+
+    impl Kernel for Adding<'_> {
+        type Result = [u16; CELLS];
+
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) -> Self::Result {
+            let Adding(table, ranges, mut votes) = self;
+            table.add(set, ranges, &mut votes);
+            votes
+        }
+    }
 
     proptest! {
         #[test]
         fn tables_give_the_votes_of_the_taper(
-            scan in any_scan(), ranges in vec(prop_oneof![9 => 0u16..80, 1 => Just(NO_RANGE)], 0..150),
+            scan in prop_oneof![any_scan(), any_scan().prop_map(|scan| scan.stretched(18.0))],
+            ranges in vec(prop_oneof![9 => 0u16..80, 1 => Just(NO_RANGE)], CELLS),
         ) {
             let space = crate::space::Space::new(16, 0.1, 40, 40).unwrap();
             let program = scan.program(&space);
             let mut tables = VoteTables::default();
             tables.make(&program, &space.directions);
+            let ranges: [u16; CELLS] = ranges.try_into().unwrap();
             for (beam, class) in (0..program.beams()).flat_map(|i| (0..3).map(move |c| (i, c))) {
                 let taper = program.taper(beam, class);
-                let plain: Vec<u16> = ranges.iter().map(|&range| 1 + u16::from(taper.votes(range))).collect();
-                let mut votes = vec![1; ranges.len()];
-                tables.get(beam, class).add(&ranges, &mut votes);
-                prop_assert_eq!(&votes, &plain);
+                let plain = ranges.map(|range| 1 + u16::from(taper.votes(range)));
+                for set in InstructionSet::available() {
+                    let adding = Adding(tables.get(beam, class), &ranges, [1; CELLS]);
+                    prop_assert_eq!(Simd::new(set).run(adding), plain, "{}", set);
+                }
             }
         }
     }

@@ -19,7 +19,6 @@
 
 pub(crate) mod headings;
 pub(crate) mod numbers;
-pub(crate) mod rays;
 pub(crate) mod table;
 pub(crate) mod words;
 

@@ -36,24 +36,20 @@ pub(in crate::search) struct Group {
 #[derive(Debug, Clone, Default)]
 struct Plane {
     windows: Vec<Window>,
-    /// Windows in fours, sorted by how often each is read.
-    fours: Vec<[Window; 4]>,
-    /// The remaining windows in pairs; a window that sees nothing fills up the last pair.
+    /// The same in pairs, sorted by how often each is read; a window that sees nothing fills up
+    /// the last pair.
     pairs: Vec<[Window; 2]>,
 }
 
 impl Plane {
     fn clear(&mut self) {
         self.windows.clear();
-        self.fours.clear();
         self.pairs.clear();
     }
 
     fn lay_out(&mut self, nothing: Window) {
         self.windows.sort_unstable_by_key(|window| window.reads);
-        let (fours, rest) = self.windows.as_chunks();
-        self.fours.extend(fours);
-        let (pairs, rest) = rest.as_chunks();
+        let (pairs, rest) = self.windows.as_chunks();
         self.pairs.extend(pairs);
         self.pairs
             .extend(rest.iter().map(|&window| [nothing, window]));
@@ -158,8 +154,7 @@ impl Aligned {
 }
 
 /// Adder of one plane: `ones` is its sum so far and `twos` that of the next plane. Each
-/// four or pair of rows that is added leaves a row in `carries` for the plane after these
-/// two.
+/// pair of rows that is added leaves a row in `carries` for the plane after these two.
 struct Column<'a, W: BitWords> {
     set: W::Set,
     ones: W,
@@ -186,17 +181,6 @@ impl<'a, W: BitWords> Column<'a, W> {
         // SAFETY: `windows` was made for the extent of the group, which has taken in all windows of
         // its planes and the one that fills up pairs.
         let read = |window: &Window, reads| unsafe { windows.read(set, window, reads) };
-        for four in &plane.fours {
-            let [first, second, third, fourth] = four;
-            // They are sorted by reads, and reading more often changes nothing.
-            let reads = fourth.reads;
-            let (ones, a) = self
-                .ones
-                .full_adder(read(first, reads), read(second, reads));
-            let (ones, b) = ones.full_adder(read(third, reads), read(fourth, reads));
-            self.ones = ones;
-            self.carry(a, b);
-        }
         for pair in &plane.pairs {
             let [a, b] = pair;
             self.add_pair(read(a, b.reads), read(b, b.reads));
@@ -206,14 +190,7 @@ impl<'a, W: BitWords> Column<'a, W> {
     #[inline(always)]
     fn add_rows(&mut self, rows: &[Aligned]) {
         let set = self.set;
-        let (fours, rest) = rows.as_chunks::<4>();
-        for four in fours {
-            let (ones, a) = self.ones.full_adder(four[0].read(set), four[1].read(set));
-            let (ones, b) = ones.full_adder(four[2].read(set), four[3].read(set));
-            self.ones = ones;
-            self.carry(a, b);
-        }
-        let (pairs, rest) = rest.as_chunks();
+        let (pairs, rest) = rows.as_chunks();
         for [a, b] in pairs {
             self.add_pair(a.read(set), b.read(set));
         }
@@ -224,17 +201,10 @@ impl<'a, W: BitWords> Column<'a, W> {
 
     #[inline(always)]
     fn add_pair(&mut self, a: W, b: W) {
-        let carry;
+        let (carry, over);
         (self.ones, carry) = self.ones.full_adder(a, b);
-        self.carry(carry, W::empty(self.set));
-    }
-
-    /// Adds two rows to the next plane, and stores the carry.
-    #[inline(always)]
-    fn carry(&mut self, a: W, b: W) {
-        let carry;
-        (self.twos, carry) = self.twos.full_adder(a, b);
-        self.carries[self.made].0 = carry.to_words();
+        (self.twos, over) = self.twos.full_adder(carry, W::empty(self.set));
+        self.carries[self.made].0 = over.to_words();
         self.made += 1;
     }
 }

@@ -113,17 +113,12 @@ mod tests {
         let bins = Bins::new(&directions);
         let least = |lines: &[Line], steps| lines.iter().map(|line| line.at(steps)).min();
         for class in 0..directions.classes() {
-            let (near, all) = (bins.near_lines(class), bins.lines(class));
+            let all = bins.lines(class);
             for steps in 0..MAX_SIDE as u16 {
                 let bin = Some(u16::from(bins.bin(class, steps)));
                 assert_eq!(least(all, steps), bin, "{class}: {steps}");
-                if steps <= Bins::NEAR_STEPS {
-                    assert_eq!(least(near, steps), bin, "{class}: {steps}");
-                }
             }
-            for lines in [near.as_slice(), all] {
-                assert!(least(lines, u16::MAX) >= Some(u16::from(Bins::NOTHING)));
-            }
+            assert!(least(all, u16::MAX) >= Some(u16::from(Bins::NOTHING)));
         }
     }
 }

@@ -8,7 +8,12 @@ use super::intervals::SIDE;
 use crate::chessboard;
 use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
-use crate::simd::rays::{BitRows, ROWS};
+
+/// Number of rows of a word, and of adjacent rays in each.
+pub(in crate::search) const ROWS: i64 = 8;
+
+/// Largest number of rays in a bundle.
+pub(in crate::search) const RAYS: usize = ROWS as usize;
 
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
@@ -267,12 +272,11 @@ impl Rays<'_> {
             false => (major, bit, slope),
         };
         let start = lowest * rows.stride + (top + ROWS) as usize;
-        let rows = BitRows {
-            rows: rows.bits[start..].first_chunk().expect(ENOUGH),
-            bit: before + bit,
-            slope,
-        };
-        let word = rows.word();
+        let rows: &[u32; RAYS] = rows.bits[start..].first_chunk().expect(ENOUGH);
+        let word = u64::from_le_bytes(std::array::from_fn(|row| {
+            let bit = (before + bit + row as i64 * slope) >> 32;
+            (rows[row] >> (bit & 31)) as u8
+        }));
         Some(if backward { word.swap_bytes() } else { word })
     }
 }
@@ -282,7 +286,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::simd::{self, rays::Portable};
     use crate::testing::{any_grid, any_long_grid, space_of};
 
     proptest! {
@@ -298,7 +301,7 @@ mod tests {
                 if skip >= rays.positions() {
                     continue;
                 }
-                let ends = rays.ends::<Portable>(simd::Portable, skip);
+                let ends = rays.ends(skip);
                 for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
                     let (x, y) = rays.cell(i, skip + j);
                     let expected = grid.get(x, y).is_some_and(|cell| cell != Cell::Open);

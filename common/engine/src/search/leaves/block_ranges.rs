@@ -120,8 +120,7 @@ impl BlockRanges {
         &self.open
     }
 
-    /// Computes the ranges in direction `d`, unless that was done for this block. It must be
-    /// inlined into code that is compiled for the instruction set.
+    /// Computes the ranges in direction `d`, unless that was done for this block.
     #[inline(always)]
     pub(in crate::search) fn compute(&mut self, view: &View<'_>, d: usize) {
         if self.computed_for[d] != self.number {
@@ -183,23 +182,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::instruction_set::InstructionSet;
     use crate::reference;
     use crate::search::index::bins::Bins;
-    use crate::simd::{Kernel, Simd};
     use crate::testing::{any_grid, any_long_grid, space_of};
-
-    /// Kernel that computes the ranges in a direction.
-    struct Computing<'a>(&'a mut BlockRanges, &'a View<'a>, usize);
-
-    impl Kernel for Computing<'_> {
-        type Result = ();
-
-        #[inline(always)]
-        fn run<S: Set>(self, set: S) {
-            self.0.compute(set, self.1, self.2);
-        }
-    }
 
     proptest! {
         #[test]
@@ -215,11 +200,11 @@ mod tests {
             let mut block_ranges = BlockRanges::default();
             block_ranges.prepare(&grid, directions);
             let blocks = 0..intervals.columns * intervals.rows;
-            for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
+            for block in blocks {
                 block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let open = *block_ranges.open();
                 for (d, direction) in directions.all().iter().enumerate() {
-                    Simd::new(set).run(Computing(&mut block_ranges, &view, d));
+                    block_ranges.compute(&view, d);
                     for (i, &open) in open.iter().enumerate() {
                         let (x, y) = block_ranges.cell(i);
                         let (x, y) = (x as i64, y as i64);

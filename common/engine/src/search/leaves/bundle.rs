@@ -8,8 +8,75 @@ use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
 use crate::search::index::intervals::CELLS;
 use crate::search::index::intervals::SIDE;
-use crate::search::index::obstacles::Rays;
-use crate::simd::rays::{Across, Hits, RAYS, ROWS};
+use crate::search::index::obstacles::{RAYS, ROWS, Rays};
+
+/// Order in which rays cross the cells of a block.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) struct Across {
+    /// Number of columns that a ray has met before the cell.
+    pub column: [u16; CELLS],
+    /// Place of the cell in its column.
+    pub minor: [u16; CELLS],
+}
+
+impl Across {
+    /// Orders for rays along y and along x, each forward and backward.
+    pub(in crate::search) const ALL: [[Across; 2]; 2] = [
+        [Across::new(false, false), Across::new(false, true)],
+        [Across::new(true, false), Across::new(true, true)],
+    ];
+
+    const fn new(x_major: bool, backward: bool) -> Self {
+        let (mut column, mut minor) = ([0; CELLS], [0; CELLS]);
+        let mut cell = 0;
+        while cell < CELLS {
+            let (x, y) = ((cell % SIDE) as u16, (cell / SIDE) as u16);
+            let (major, along) = if x_major { (x, y) } else { (y, x) };
+            column[cell] = if backward {
+                SIDE as u16 - 1 - major
+            } else {
+                major
+            };
+            minor[cell] = along;
+            cell += 1;
+        }
+        Across { column, minor }
+    }
+}
+
+/// Position at which each of adjacent rays ends first, or [`NO_RANGE`].
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) struct Hits(pub [u16; RAYS]);
+
+impl Hits {
+    /// Notes the rays that end at one of eight positions, unless they ended before. Bit `i` of
+    /// byte `j` of the word is set if ray `i` ends at `position + j`. Returns a bit for each ray
+    /// that ends in the word.
+    #[inline(always)]
+    pub(in crate::search) fn note(&mut self, word: u64, position: i64) -> u8 {
+        /// The bits of the first ray.
+        const FIRST: u64 = 0x0101_0101_0101_0101;
+        for (i, hit) in self.0.iter_mut().enumerate() {
+            let ends = (word >> i) & FIRST;
+            let at = position + i64::from(ends.trailing_zeros() / 8);
+            let at = if ends == 0 { NO_RANGE } else { at as u16 };
+            *hit = at.min(*hit);
+        }
+        let folded = word | word >> 32;
+        let folded = folded | folded >> 16;
+        (folded | folded >> 8) as u8
+    }
+
+    /// Returns the ranges of the cells of a block, given the ray of each column's first cell.
+    #[inline(always)]
+    pub(in crate::search) fn ranges(&self, first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
+        std::array::from_fn(|i| {
+            let column = across.column[i];
+            let hit = self.0[usize::from(first[usize::from(column)] + across.minor[i]) % RAYS];
+            if hit == NO_RANGE { hit } else { hit - column }
+        })
+    }
+}
 
 /// The adjacent rays of a direction through a block. Positions count along the major axis
 /// from the first of the block's columns that a ray meets; a column here is the cells with
@@ -147,22 +214,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::instruction_set::InstructionSet;
     use crate::search::index::obstacles::Obstacles;
-    use crate::simd::{Kernel, Set, Simd};
     use crate::testing::{any_grid, space_of};
-
-    /// Kernel that follows the rays of a bundle.
-    struct Following<'a>(&'a Bundle, &'a Rays<'a>, [(u16, u16); 2]);
-
-    impl Kernel for Following<'_> {
-        type Result = [u16; RAYS];
-
-        #[inline(always)]
-        fn run<S: Set>(self, set: S) -> Self::Result {
-            self.0.follow::<S::Rays>(set, self.1, self.2)
-        }
-    }
 
     /// Returns the last position of each ray within the block, `None` if it does not meet the
     /// block.
@@ -232,12 +285,10 @@ mod tests {
                 let (from, to) = (gap.0, gap.0 + gap.1);
                 let is_empty = ends.iter().all(|&end| !(from + SIDE as u16 - 1..to + SIDE as u16).contains(&end));
                 let spans = if is_empty { [(1, from), (to, 100)] } else { everywhere };
-                for set in InstructionSet::available() {
-                    for spans in [everywhere, spans] {
-                        let found = Simd::new(set).run(Following(&bundle, &rays, spans));
-                        for ray in (0..RAYS).filter(|&ray| is_on_map(ray)) {
-                            prop_assert_eq!(found[ray], ends[ray], "{} {:?} {:?}", set, direction, spans);
-                        }
+                for spans in [everywhere, spans] {
+                    let Hits(found) = bundle.follow(&rays, spans);
+                    for ray in (0..RAYS).filter(|&ray| is_on_map(ray)) {
+                        prop_assert_eq!(found[ray], ends[ray], "{:?} {:?}", direction, spans);
                     }
                 }
             }
