@@ -82,13 +82,11 @@ impl<'a> Alternatives<'a> {
             ..
         } = &mut *self.scratch;
         let within = &task.index.within;
-        let bound = |block: usize| task.coarse_bounds[block].load(Ordering::Relaxed);
+        let bounded = task.coarse_bounds.iter().enumerate();
+        let searched = bounded.filter(|&(block, _)| within.holds(Size::Coarse, block));
         coarse.clear();
-        coarse.extend(
-            within.blocks[Size::Coarse as usize]
-                .iter()
-                .map(|block| (bound(block), Reverse(block))),
-        );
+        coarse
+            .extend(searched.map(|(block, bound)| (bound.load(Ordering::Relaxed), Reverse(block))));
         keep_greatest(coarse, COARSE_SHARE * wanted);
         fine.clear();
         let mut least = least;
