@@ -135,7 +135,11 @@ mod tests {
 
     use super::super::BlockBounds;
     use super::*;
+    use crate::beams::BeamConfig;
+    use crate::grid::CellRules;
+    use crate::program::VoteConfig;
     use crate::reference;
+    use crate::scan::{MAX_RANGES, Scan};
     use crate::testing::{
         any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
         space_of,
@@ -172,6 +176,17 @@ mod tests {
         ) {
             let space = space_of(&grid, headings * 8);
             let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
+            check(&grid, (&scan.program(&space), &space), config)?;
+        }
+
+        /// Headings of several chunks, and of a chunk and a part.
+        #[test]
+        fn the_search_equals_the_reference_at_all_headings_of_a_turn(
+            grid in any_grid(), scan in any_scan(),
+            headings in prop_oneof![Just(360), Just(128), Just(488)], floor_share in 0.5..=1.0f64,
+        ) {
+            let space = space_of(&grid, headings);
+            let config = CollectConfig { floor_share, ..CollectConfig::exact() };
             check(&grid, (&scan.program(&space), &space), config)?;
         }
 
@@ -337,5 +352,38 @@ mod tests {
             |stop| index.search(&grid, &program, &space, CollectConfig::default(), &|| stop);
         assert!(search(true).is_none());
         assert!(search(false).is_some());
+    }
+
+    /// With as many beams as a scan can have, the votes still fit 16 bits.
+    #[test]
+    fn the_search_equals_the_reference_with_the_most_beams() {
+        let (width, height) = (9, 7);
+        let is_wall = |i: usize| i % width % 8 == 0 || i / width % 6 == 0;
+        let occupancy: Vec<u8> = (0..width * height)
+            .map(|i| if is_wall(i) { 100 } else { 0 })
+            .collect();
+        let grid = Grid::new(width, height, &occupancy, CellRules::default()).unwrap();
+        let space = space_of(&grid, 16);
+        let ranges: Vec<f32> = (0..MAX_RANGES)
+            .map(|i| 0.1 + 0.3 * (i as f32 / 9000.0).sin().abs())
+            .collect();
+        let scan = Scan {
+            angle_min: -3.0,
+            angle_increment: std::f64::consts::TAU / MAX_RANGES as f64,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges: &ranges,
+        };
+        let beams = BeamConfig {
+            max_beams: u16::MAX.into(),
+            beam_arc_m: 0.0,
+        };
+        let config = VoteConfig {
+            beams,
+            ..VoteConfig::default()
+        };
+        let program = ScanProgram::new(&scan, 0.0, &space, &config).unwrap();
+        assert_eq!(program.beams(), usize::from(u16::MAX));
+        check(&grid, (&program, &space), CollectConfig::exact()).unwrap();
     }
 }
