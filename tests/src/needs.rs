@@ -8,6 +8,8 @@
 use std::fs::OpenOptions;
 use std::io::Write;
 
+use transport::testing::OwnFileSystem;
+
 use crate::executables;
 
 /// Something that a test needs.
@@ -75,4 +77,17 @@ impl Need {
         let why = why.lines().next().unwrap_or_default();
         writeln!(file, "{test}: {name}: {why}").unwrap();
     }
+}
+
+/// True if the calling test, named `test`, runs where the file system at `path` is its own, of this
+/// size. Otherwise it has already been run there, or the kernel forbids that, which is reported.
+#[must_use]
+pub fn has_its_own(test: &str, path: &str, size: &str) -> bool {
+    // The executables are built in advance, where there is room.
+    let _ = executables::path("backcast");
+    let place = OwnFileSystem::of_test(test, path, size);
+    if place == OwnFileSystem::Forbidden {
+        Need::Namespaces.is_missing(test, "this kernel lets this user mount nothing");
+    }
+    place == OwnFileSystem::Here
 }

@@ -6,18 +6,15 @@
 )]
 
 use std::collections::BTreeSet;
-use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
 use messages::{HealthHeader, NodeState, topic};
 use nix::sys::signal::{Signal, kill};
 use recording::{Message, Recording};
-use serde_json::{Value, json};
 use tests::live::{Live, files_of};
-use tests::needs::Need;
-use tests::schemas::assert_follows;
-use transport::testing::{OwnFileSystem, wait_for_health};
+use tests::needs::has_its_own;
+use transport::testing::wait_for_health;
 use transport::{Graph, GraphName, monotonic_ns};
 
 fn name(tag: &str) -> String {
@@ -138,36 +135,6 @@ fn full_shared_memory_ends_nothing_and_is_reported() {
 }
 
 #[test]
-fn a_graph_under_faults_meets_its_guarantees() {
-    let test = "a_graph_under_faults_meets_its_guarantees";
-    if !has_its_own(test, "/dev/shm", "256m") {
-        return;
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let descriptor = folder.path().join("dataflow.yaml");
-    std::fs::write(&descriptor, tests::live::descriptor("")).unwrap();
-    let output = tests::executables::backcast()
-        .arg("soak")
-        .arg(&descriptor)
-        .args(["--minutes", "1.5", "--seed", "7", "--json"])
-        .args(["--faults", "kill,pair,stop,map,launcher,tmp,shm"])
-        .stderr(Stdio::inherit())
-        .output()
-        .unwrap();
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_follows("soak", &report.to_string());
-    assert_eq!(report["failures"], json!([]), "{report}");
-    assert_eq!(report["leftovers"], json!([]), "{report}");
-    assert_eq!(report["wrong"], 0, "{report}");
-    assert!(output.status.success(), "{report}");
-    // A round holds seventeen faults, twelve of which kill nodes.
-    let faults = report["faults"].as_array().unwrap();
-    let killed = faults.iter().filter_map(|effect| effect["killed"].as_u64());
-    assert!(killed.sum::<u64>() > 5, "{report}");
-    assert!(report["judged"].as_u64() > Some(50), "{report}");
-}
-
-#[test]
 fn a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording() {
     let test = "a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording";
     if !has_its_own(test, "/mnt", "16m") {
@@ -235,16 +202,4 @@ fn fill(path: &str) {
     for size in [1 << 16, 1] {
         while std::io::Write::write_all(&mut file, &vec![0; size]).is_ok() {}
     }
-}
-
-/// True if the calling test, named `test`, runs where the file system at `path` is its own, of this
-/// size. Otherwise it has already been run there, or the kernel forbids that, which is reported.
-fn has_its_own(test: &str, path: &str, size: &str) -> bool {
-    // The executables are built in advance, where there is room.
-    let _ = tests::executables::path("backcast");
-    let place = OwnFileSystem::of_test(test, path, size);
-    if place == OwnFileSystem::Forbidden {
-        Need::Namespaces.is_missing(test, "this kernel lets this user mount nothing");
-    }
-    place == OwnFileSystem::Here
 }

@@ -140,9 +140,8 @@ impl Course {
             };
             self.suffer(fault)?;
             if self.watch(TIMEOUT, Tally::has_recovered) == Watched::Late {
-                let name = fault.name();
                 self.failures
-                    .push(format!("no pose within {TIMEOUT:?} after {name}"));
+                    .push(format!("no pose within {TIMEOUT:?} after {fault:?}"));
             }
             let gap_s = self.tally.last_gap_s();
             if gap_s > LONG_GAP_S {
@@ -234,7 +233,7 @@ impl Course {
         let seconds = self.begin.elapsed().as_secs();
         say(
             "soak",
-            &format!("{seconds} s: {} {}", fault.name(), words.join(" ")),
+            &format!("{seconds} s: {fault:?} {}", words.join(" ")),
         );
         let mut over_ns = monotonic_ns();
         let mut killed = 0;

@@ -5,13 +5,10 @@ use std::time::Duration;
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::seq::{IndexedRandom, SliceRandom};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A fault of a running graph.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, clap::ValueEnum, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Fault {
     /// A node is killed
@@ -33,20 +30,6 @@ pub(crate) enum Fault {
 }
 
 impl Fault {
-    /// Name on the command line and in the report.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Fault::Kill => "kill",
-            Fault::Pair => "pair",
-            Fault::Stop => "stop",
-            Fault::Map => "map",
-            Fault::Launcher => "launcher",
-            Fault::Tmp => "tmp",
-            Fault::Shm => "shm",
-            Fault::Disk => "disk",
-        }
-    }
-
     /// Duration; the time to the next pose counts from its end.
     pub(crate) fn lasts(self) -> Duration {
         Duration::from_secs(match self {

@@ -4,8 +4,7 @@ use std::fs::{File, remove_file};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-use command_line::wrong_use;
+use anyhow::{Context, bail};
 use nix::sys::statvfs::statvfs;
 
 /// Largest free space that may be filled, in bytes: a larger file system is shared with others, who
@@ -28,13 +27,11 @@ pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
     if free <= MAX_FREE {
         return Ok(());
     }
-    let folder = folder.display();
-    let (free, allowed) = (free >> 20, MAX_FREE >> 20);
-    Err(wrong_use(format!(
-        "{folder} has {free} MiB free and is not filled: allowed are {allowed} MiB, since others may \
-         need the room; give it its own: unshare --mount sh -c \
-         'mount -t tmpfs -o size=256m tmpfs {folder} && backcast soak …'"
-    )))
+    bail!(
+        "{} has {} MiB free, which others may need",
+        folder.display(),
+        free >> 20
+    );
 }
 
 impl Filler {

@@ -2,7 +2,6 @@
 
 use std::io::{self, BufRead, BufReader};
 use std::os::unix::process::CommandExt;
-use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -11,8 +10,7 @@ use geometry::Pose;
 use messages::Pose2;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A line of the launcher's output.
 #[derive(Debug, Deserialize)]
@@ -38,7 +36,7 @@ pub(super) struct SentPose {
 }
 
 /// Counts of the summary.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, serde::Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub(super) struct Losses {
     pub(super) scans: u64,
     pub(super) answered: u64,
@@ -65,17 +63,13 @@ pub(super) struct Launched {
 }
 
 impl Launched {
-    /// Starts this executable with `run` and the arguments.
+    /// Starts the launcher next to this executable with `run` and the arguments.
     ///
     /// # Errors
     /// It cannot be started.
     pub(super) fn start(arguments: &[String]) -> anyhow::Result<Self> {
-        let executable = std::env::current_exe().map_err(not_started)?;
-        Self::start_program(&executable, arguments)
-    }
-
-    fn start_program(executable: &Path, arguments: &[String]) -> anyhow::Result<Self> {
-        let mut child = Command::new(executable)
+        let own = std::env::current_exe().map_err(not_started)?;
+        let mut child = Command::new(own.with_file_name("backcast"))
             .arg("run")
             .args(arguments)
             .stdin(Stdio::null())

@@ -4,11 +4,10 @@ use std::path::Path;
 
 use command_line::output;
 use recording::Recording;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Figures of all parts that could be read.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub(super) struct Recorded {
     pub(super) parts: u64,
     /// Number of parts whose recorder was killed, which are read up to their last whole chunk.

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use geometry::Pose;
 use messages::TrackState;
-use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Distribution, SUCCESS, Tail};
 
@@ -26,11 +25,8 @@ pub(super) struct Tally {
     truths: BTreeMap<i64, Pose>,
     begin_ns: i64,
     planned: Duration,
-    poses: u64,
-    judged: u64,
-    unique: u64,
-    wrong: u64,
-    first_wrong: Vec<Wrong>,
+    /// Without the latency.
+    figures: PoseFigures,
     latency_ms: Vec<Distribution>,
     /// Faults from which the graph has not fully recovered.
     open: Vec<Open>,
@@ -40,7 +36,7 @@ pub(super) struct Tally {
 }
 
 /// A Unique pose that is wrong.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Wrong {
     /// Stamp of its scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
@@ -67,7 +63,7 @@ struct FaultEffect {
 }
 
 /// Effect of one kind of fault.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,
     pub(super) times: u64,
@@ -80,14 +76,14 @@ pub(super) struct FaultFigures {
 }
 
 /// Duration in seconds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub(super) struct Gap {
     pub(super) median: Option<f64>,
     pub(super) max: Option<f64>,
 }
 
 /// Figures about poses.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct PoseFigures {
     /// Number of poses of scans, in any state.
     pub(super) poses: u64,
@@ -111,11 +107,7 @@ impl Tally {
             truths,
             begin_ns: now_ns,
             planned,
-            poses: 0,
-            judged: 0,
-            unique: 0,
-            wrong: 0,
-            first_wrong: Vec::new(),
+            figures: PoseFigures::default(),
             latency_ms: vec![Distribution::new(WINDOW); PARTS],
             open: Vec::new(),
             faults: BTreeMap::new(),
@@ -142,7 +134,7 @@ impl Tally {
 
     /// Adds the tracker's pose of a scan.
     pub(super) fn pose(&mut self, pose: &SentPose) {
-        self.poses += 1;
+        self.figures.poses += 1;
         let since_s = self.since_s(pose.sent_ns);
         let part = since_s / self.planned.as_secs_f64() * PARTS as f64;
         // Poses after the planned end belong to the last part.
@@ -158,18 +150,18 @@ impl Tally {
         let (Some(truth), Some(found)) = (truth, pose.pose()) else {
             return;
         };
-        self.judged += 1;
+        self.figures.judged += 1;
         if !is_unique {
             return;
         }
-        self.unique += 1;
+        self.figures.unique += 1;
         let (metres, degrees) = SUCCESS;
         if truth.is_within(found, metres, degrees.to_radians()) {
             return;
         }
-        self.wrong += 1;
-        if self.first_wrong.len() < MAX_WRONG_LISTED {
-            self.first_wrong.push(Wrong {
+        self.figures.wrong += 1;
+        if self.figures.first_wrong.len() < MAX_WRONG_LISTED {
+            self.figures.first_wrong.push(Wrong {
                 stamp_ns: pose.stamp_ns,
                 after_s: self.since_s(pose.sent_ns),
                 off_m: truth.distance_to(found),
@@ -211,7 +203,7 @@ impl Tally {
 
     /// True if a Unique pose came since every fault.
     pub(super) fn is_sure(&self) -> bool {
-        self.unique > 0 && self.open.is_empty()
+        self.figures.unique > 0 && self.open.is_empty()
     }
 
     /// Faults without a Unique pose since.
@@ -221,12 +213,8 @@ impl Tally {
 
     pub(super) fn figures(&self) -> (PoseFigures, Vec<FaultFigures>) {
         let poses = PoseFigures {
-            poses: self.poses,
-            judged: self.judged,
-            unique: self.unique,
-            wrong: self.wrong,
-            first_wrong: self.first_wrong.clone(),
             latency_ms: self.latency_ms.iter().map(Distribution::tail).collect(),
+            ..self.figures.clone()
         };
         let faults = self.faults.iter().map(|(fault, effect)| FaultFigures {
             fault: *fault,

@@ -5,11 +5,10 @@ use std::fs::{read_dir, read_to_string};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// First, last and highest value of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Span {
     pub(super) start: f64,
     pub(super) end: f64,
@@ -29,7 +28,7 @@ impl Span {
 }
 
 /// Usage of one node, over all its processes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Taken {
     /// Private memory, without shared memory, MB of 10⁶ bytes.
     pub(super) memory_mb: Option<Span>,
@@ -37,7 +36,7 @@ pub(super) struct Taken {
     pub(super) descriptors: Option<Span>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Usage {
     /// By node; the launcher counts as one.
     pub(super) nodes: BTreeMap<String, Taken>,

@@ -150,9 +150,6 @@ mod tests {
             "backcast bench table1 --p-over-n 0",
             "backcast bench table1 --noise 26",
             "backcast bench table2 --headings 361",
-            "backcast soak --minutes 0",
-            "backcast soak --minutes 1 --hours 1",
-            "backcast soak --faults kill,quake",
             "backcast simulate --map m.yaml --path 0,0 --out r.mcap",
             "backcast simulate --map m.yaml --path 0,0,1,1 --out r.mcap --beams 1",
         ]);

@@ -122,7 +122,6 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`backcast logs --json`", &[("common/launcher/src/control/logs.rs", "LogLine")]),
     ("`backcast info --json`", &[("common/recording_tools/src/info/contents.rs", "Contents")]),
     ("`backcast doctor --json`", &[("common/recording_tools/src/doctor/command.rs", "Report")]),
-    ("`backcast soak --json`", &[("common/soak/src/report.rs", "Report"), ("common/soak/src/tally.rs", "PoseFigures"), ("common/soak/src/launched.rs", "Losses")]),
     ("`backcast bench --json`", &[("common/bench/src/row.rs", "Row")]),
     ("The last pose", &[("nodes/tracker/src/memory.rs", "Remembered")]),
     ("VDA 5050", &[("nodes/ros2_gateway/src/vda5050.rs", "Position")]),

@@ -84,7 +84,6 @@ fn the_launcher_alone_links_nothing_of_the_tools() {
         "rusqlite",
         "serialport",
         "simulation",
-        "soak",
         "top",
         "tungstenite",
     ];

@@ -38,9 +38,6 @@ pub(crate) enum OnRecordings {
 /// Commands for running graphs, lasers and generated worlds.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OnTheSide {
-    /// Runs a graph for a long time under faults and checks that it recovers
-    #[command(after_help = soak::NOTES)]
-    Soak(soak::Config),
     /// Shows a running graph in the terminal
     #[command(after_help = EXIT_CODES)]
     Top(top::Config),
@@ -91,7 +88,6 @@ fn doctor(config: &doctor::Config) -> ExitCode {
 impl OnTheSide {
     pub(crate) fn run(&self) -> ExitCode {
         match self {
-            Self::Soak(config) => end(soak::run(config)),
             Self::Top(config) => end(top::run(config)),
             Self::Probe(config) => end(probe::run(config)),
             Self::Bench(config) => end(bench::run(config)),

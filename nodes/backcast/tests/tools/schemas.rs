@@ -26,7 +26,6 @@ fn the_schemas_are_those_of_the_types() {
         launcher::schemas(),
         recording_tools::schemas(),
         regression::schemas(),
-        soak::schemas(),
     ];
     let made = made.concat().into_iter();
     let made: BTreeMap<String, Value> = made

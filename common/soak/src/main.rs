@@ -1,12 +1,32 @@
-//! Options and entry point of `backcast soak`.
+//! Runs a graph for hours, injects random faults, and reports whether it met its guarantees.
+//!
+//! A recording is played again and again, and every pose that the tracker is sure of is compared
+//! with the recording's `/ground_truth`. The output of the graph is on standard error, the report as
+//! JSON on standard output. The exit code is 0 if all guarantees were met. The executables of the
+//! graph must be next to this one.
+//!
+//! `fault` defines the faults and draws the next one, `tally` counts the poses and the effect of
+//! each fault: these are pure. `launched` is the launcher as a child process, `usage` measures its
+//! processes, `maps` and `filler` implement two of the faults, `course` runs everything.
+
+mod course;
+mod fault;
+mod filler;
+mod launched;
+mod maps;
+mod recorded;
+mod report;
+mod tally;
+mod usage;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
-use command_line::{output, stdout::print, wrong_use};
+use anyhow::{Context, ensure};
+use clap::Parser;
+use command_line::{output, stdout::print};
 use dataflow::RestartPolicy;
 use geometry::Pose;
 use launcher::descriptor::{self, Builds, DEFAULT_FILE, Descriptor};
@@ -15,44 +35,24 @@ use launcher::run::arguments::{MAP_SERVER, PLAYERS, value};
 use recording::Recording;
 use transport::GraphName;
 
-use super::course::{Course, Plan};
-use super::fault::Fault;
-use super::filler;
-use super::maps::Maps;
-
-/// Notes below the options in the help text.
-pub const NOTES: &str = "\
-A recording is played again and again, and every pose that the tracker is sure of is
-compared with the recording's /ground_truth. What the graph itself says goes to standard
-error, the report to standard output.
-
-shm and disk fill a file system, and are refused where more than 1 GiB is free: give the
-graph its own, as root, or with --user --map-root-user:
-
-    unshare --mount sh -c 'mount -t tmpfs -o size=256m tmpfs /dev/shm && backcast soak …'
-
-Exit codes: 0 all guarantees were met, 1 a pose was wrong, something did not recover or was left
-behind, 2 wrong use";
+use course::{Course, Plan};
+use fault::Fault;
+use maps::Maps;
 
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
 /// Duration of a part of the recording.
 const PART: &str = "5m";
-const DEFAULT_MINUTES: f64 = 60.0;
 
-/// Options of `backcast soak`.
-#[derive(Debug, clap::Args)]
-pub struct Config {
+/// Runs a graph for a long time under faults and checks that it recovers.
+#[derive(Debug, Parser)]
+struct Config {
     /// Descriptor of the graph
     #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// Duration in hours [default: 1]
-    #[arg(long, value_name = "H", value_parser = positive, conflicts_with = "minutes")]
-    hours: Option<f64>,
-
     /// Duration in minutes
-    #[arg(long, value_name = "M", value_parser = positive)]
-    minutes: Option<f64>,
+    #[arg(long, value_name = "M", value_parser = positive, default_value_t = 60.0)]
+    minutes: f64,
 
     /// Recording to replay, which must contain the ground truth [default: that of the descriptor]
     #[arg(long, value_name = "FILE")]
@@ -82,27 +82,17 @@ pub struct Config {
     /// Name of the graph [default: a generated name]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     graph: Option<GraphName>,
-
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
 }
 
-/// Runs a graph, injects faults, and prints a report.
-///
-/// # Errors
-/// The graph cannot be set up, or a fault cannot be injected.
-pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
-    transport::node::start_logging().map_err(wrong_use)?;
+fn main() -> anyhow::Result<ExitCode> {
+    let config = Config::parse();
+    transport::node::start_logging().map_err(anyhow::Error::msg)?;
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
-    let recording = config.recording(&descriptor)?;
-    let truths = truths(&recording)?;
-    check_room(config)?;
-    let folder = tempfile::tempdir().with_context(|| {
-        let folder = std::env::temp_dir();
-        format!("cannot create a folder in {}", folder.display())
-    })?;
-    let maps = Maps::new(&config.map(&descriptor)?, folder.path())?;
+    let truths = truths(&file(&descriptor, &config.replay, &PLAYERS, "--recording")?)?;
+    check_room(&config)?;
+    let folder = tempfile::tempdir().context("cannot create a temporary folder")?;
+    let map = file(&descriptor, &config.map, &[MAP_SERVER], "--map")?;
+    let maps = Maps::new(&map, folder.path())?;
     let graph = match &config.graph {
         Some(graph) => graph.clone(),
         None => Options::default().graph_name()?,
@@ -111,17 +101,14 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         arguments: config.arguments(&graph, &maps),
         victims: victims(&descriptor),
         graph,
-        lasts: config.lasts(),
+        lasts: Duration::from_secs_f64(60.0 * config.minutes),
         pause: Duration::from_secs_f64(config.pause),
-        faults: config.faults.clone(),
+        faults: config.faults,
         seed: config.seed,
-        record: config.record.clone(),
+        record: config.record,
     };
     let report = Course::start(plan, maps, truths)?.run()?;
-    print(&match config.json {
-        true => report.json(),
-        false => report.text(),
-    })?;
+    print(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     Ok(match report.is_good() {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,
@@ -129,11 +116,6 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
 }
 
 impl Config {
-    fn lasts(&self) -> Duration {
-        let minutes = self.hours.map(|hours| 60.0 * hours).or(self.minutes);
-        Duration::from_secs_f64(60.0 * minutes.unwrap_or(DEFAULT_MINUTES))
-    }
-
     /// Arguments for the launcher, after `run`.
     fn arguments(&self, graph: &GraphName, maps: &Maps) -> Vec<String> {
         let text = |path: &Path| path.display().to_string();
@@ -151,39 +133,23 @@ impl Config {
         }
         arguments
     }
-
-    fn recording(&self, descriptor: &Descriptor) -> anyhow::Result<PathBuf> {
-        match &self.replay {
-            Some(file) => Ok(file.clone()),
-            None => named(descriptor, &PLAYERS, "--recording", "--replay"),
-        }
-    }
-
-    fn map(&self, descriptor: &Descriptor) -> anyhow::Result<PathBuf> {
-        match &self.map {
-            Some(file) => Ok(file.clone()),
-            None => named(descriptor, &[MAP_SERVER], "--map", "--map"),
-        }
-    }
 }
 
-/// File that the descriptor gives to one of these nodes; the error asks for option `instead`.
-fn named(
+/// Returns the file given, or else the one that the descriptor gives to one of these nodes.
+fn file(
     descriptor: &Descriptor,
+    given: &Option<PathBuf>,
     executables: &[&str],
     option: &str,
-    instead: &str,
 ) -> anyhow::Result<PathBuf> {
+    if let Some(file) = given {
+        return Ok(file.clone());
+    }
     let mut nodes = descriptor.dataflow.nodes.iter();
     let node = nodes.find(|node| executables.contains(&node.executable()));
-    match node.and_then(|node| value(node, option)) {
-        Some(file) => Ok(descriptor.folder.join(file)),
-        None => Err(wrong_use(format!(
-            "{} has no {} with {option}: say which one with {instead}",
-            descriptor.file.display(),
-            executables.join(" or "),
-        ))),
-    }
+    let file = node.and_then(|node| value(node, option));
+    let file = file.with_context(|| format!("the descriptor has no {executables:?} {option}"))?;
+    Ok(descriptor.folder.join(file))
 }
 
 /// Nodes that can be killed and stopped: those that are restarted.
@@ -195,10 +161,8 @@ fn victims(descriptor: &Descriptor) -> Vec<String> {
 
 fn truths(recording: &Path) -> anyhow::Result<BTreeMap<i64, Pose>> {
     let truths = Recording::open(recording)?.ground_truths()?;
-    if truths.is_empty() {
-        let file = recording.display();
-        bail!("{file} has no true poses on /ground_truth: nothing to compare with");
-    }
+    let file = recording.display();
+    ensure!(!truths.is_empty(), "{file} has no poses on /ground_truth");
     let pose = |(stamp_ns, truth): (i64, recording::GroundTruth)| (stamp_ns, truth.pose);
     Ok(truths.into_iter().map(pose).collect())
 }
@@ -209,10 +173,8 @@ fn check_room(config: &Config) -> anyhow::Result<()> {
         filler::check(Path::new("/dev/shm"))?;
     }
     if config.faults.contains(&Fault::Disk) {
-        let Some(record) = &config.record else {
-            let needed = "--faults disk fills the disk of --record, which is not given";
-            return Err(wrong_use(needed));
-        };
+        let record = config.record.as_ref();
+        let record = record.context("--faults disk fills the disk of --record")?;
         filler::check(output::folder_of(record))?;
     }
     Ok(())
@@ -220,7 +182,7 @@ fn check_room(config: &Config) -> anyhow::Result<()> {
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
-        // More than a year, but no overflow of any clock.
+        // More than a week, but no overflow of any clock.
         Ok(value) if value > 0.0 && value <= 1e4 => Ok(value),
         _ => Err("allowed is a number above 0, up to 10000".to_owned()),
     }
