@@ -33,9 +33,6 @@ impl DrawnMap {
     }
 
     pub fn send(&self, maps: &Publisher<topic::Map>) {
-        let mut loan = maps.loan(self.cells.len()).unwrap();
-        *loan.header_mut() = self.header;
-        loan.items_mut().copy_from_slice(&self.cells);
-        loan.send().unwrap();
+        maps.send(self.header, &self.cells).unwrap();
     }
 }

@@ -28,12 +28,10 @@ impl Poses {
     /// # Errors
     /// If the graph fails.
     pub fn send_odometry(&mut self, mut odometry: Odometry) -> Result<(), TransportError> {
-        let mut loan = self.odometry.loan(0)?;
         odometry.stamp.counter = self.odometry_sent;
         odometry.stamp.entered_ns = monotonic_ns();
-        *loan.header_mut() = odometry;
         self.odometry_sent += 1;
-        loan.send()
+        self.odometry.send(odometry, &[])
     }
 
     /// Publishes a true pose now, with the next counter.
@@ -41,11 +39,9 @@ impl Poses {
     /// # Errors
     /// If the graph fails.
     pub fn send_truth(&mut self, mut truth: GroundTruth) -> Result<(), TransportError> {
-        let mut loan = self.truths.loan(0)?;
         truth.stamp.counter = self.truths_sent;
         truth.stamp.entered_ns = monotonic_ns();
-        *loan.header_mut() = truth;
         self.truths_sent += 1;
-        loan.send()
+        self.truths.send(truth, &[])
     }
 }

@@ -61,8 +61,7 @@ impl LogSender {
     fn send(&mut self, line: &Line, dropped: u64) -> Result<(), TransportError> {
         let end = line.text.floor_char_boundary(LogHeader::TEXT_CAPACITY);
         let text = &line.text.as_bytes()[..end];
-        let mut loan = self.publisher.loan(text.len())?;
-        *loan.header_mut() = LogHeader {
+        let header = LogHeader {
             node: self.node,
             written_ns: line.written_ns,
             wall_ns: line.wall_ns,
@@ -71,8 +70,7 @@ impl LogSender {
             level: line.level as u32,
             pid: std::process::id(),
         };
-        loan.items_mut().copy_from_slice(text);
-        loan.send()?;
+        self.publisher.send(header, text)?;
         self.sent += 1;
         Ok(())
     }

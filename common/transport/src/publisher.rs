@@ -108,6 +108,17 @@ impl<T: Topic> Publisher<T> {
         Loan::of(self, items)
     }
 
+    /// Sends a sample with copies of these items.
+    ///
+    /// # Errors
+    /// See [`Publisher::loan`] and [`Loan::send`].
+    pub fn send(&self, header: T::Header, items: &[T::Item]) -> Result<(), TransportError> {
+        let mut loan = self.loan(items.len())?;
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(items);
+        loan.send()
+    }
+
     /// True if the topic has subscribers. A killed subscriber counts until it has been cleaned up.
     #[must_use]
     pub fn has_subscribers(&self) -> bool {

@@ -40,10 +40,7 @@ fn serve(
     boundaries: &Publisher<topic::Boundary>,
     health: &mut Health,
 ) -> Result<(), TransportError> {
-    let mut loan = boundaries.loan(cells.len())?;
-    *loan.header_mut() = *header;
-    loan.items_mut().copy_from_slice(cells);
-    loan.send()?;
+    boundaries.send(*header, cells)?;
     health.count_sent(1);
     tracing::info!(
         map = format_args!("{:016x}", header.map_id),

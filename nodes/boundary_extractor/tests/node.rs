@@ -7,7 +7,7 @@
 use engine::boundary;
 use engine::grid::{CellRules, Grid};
 use messages::{BoundaryCell, MapHeader, NodeState, Pose2, Stamp, topic};
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_for_next};
 use transport::{Graph, Publisher};
 
 /// A room with a pillar; `#` occupied, `.` free.
@@ -25,7 +25,6 @@ fn occupancy(rows: &[&str]) -> Vec<u8> {
 /// Publishes the map of a drawing and returns its id.
 fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
     let cells = occupancy(rows);
-    let mut loan = maps.loan(cells.len()).unwrap();
     let mut header = MapHeader {
         stamp: Stamp {
             counter,
@@ -43,9 +42,7 @@ fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
         ..MapHeader::default()
     };
     header.map_id = header.id_of(&cells);
-    *loan.header_mut() = header;
-    loan.items_mut().copy_from_slice(&cells);
-    loan.send().unwrap();
+    maps.send(header, &cells).unwrap();
     header.map_id
 }
 
@@ -72,9 +69,7 @@ fn each_map_is_answered_with_its_boundary() {
     let smaller = &ROOM[..4];
     for (counter, rows) in [(5, &ROOM[..]), (6, smaller)] {
         let map_id = publish(&maps, counter, rows);
-        let (header, cells) = wait_for(&graph, &boundaries, |header, cells| {
-            Some((*header, cells.to_vec()))
-        });
+        let (header, cells) = wait_for_next(&graph, &boundaries);
         assert_eq!((header.map_id, header.stamp.counter), (map_id, counter));
         assert_eq!(header.boundary_cells, cells.len() as u64);
         assert_eq!(cells, expected(rows));

@@ -131,10 +131,7 @@ fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
         };
         map.map_id = map.id_of(&cells);
         let start = Instant::now();
-        let mut loan = publisher.loan(cells.len()).unwrap();
-        *loan.header_mut() = map;
-        loan.items_mut().copy_from_slice(&cells);
-        loan.send().unwrap();
+        publisher.send(map, &cells).unwrap();
         wait_until(&to.graph, &received, |header, _| {
             header.map_id == map.map_id
         });
@@ -169,14 +166,12 @@ fn scans(laser: &Machine<'_>, world: &World) -> Times {
     for (counter, scan) in (0..ROUNDS).flat_map(|_| &recorded).enumerate() {
         let counter = counter as u64;
         let start = Instant::now();
-        let mut loan = publisher.loan(scan.ranges.len()).unwrap();
-        *loan.header_mut() = ScanHeader {
+        let header = ScanHeader {
             // The recording is played several times, but stamps must increase.
             stamp: stamp(counter),
             ..as_the_graph_has_it(scan, counter)
         };
-        loan.items_mut().copy_from_slice(&scan.ranges);
-        loan.send().unwrap();
+        publisher.send(header, &scan.ranges).unwrap();
         let computing_ns = wait_for(&laser.graph, &answers, |header, _| {
             let computing_ns = header.search_ns + header.extract_ns;
             (header.stamp.counter == counter).then_some(computing_ns)

@@ -86,10 +86,7 @@ impl<T: Wire> Incoming<T> {
         }
         self.last = Some(message.header);
         message.rebase(monotonic_ns());
-        let mut loan = self.publisher.loan(message.items.len())?;
-        *loan.header_mut() = message.header;
-        loan.items_mut().copy_from_slice(&message.items);
-        loan.send()?;
+        self.publisher.send(message.header, &message.items)?;
         report.sent();
         if T::NAME == topic::Map::NAME {
             // A map that was refused before is superseded.

@@ -74,8 +74,7 @@ impl World {
     }
 
     fn send_scan(&self, counter: u64) {
-        let mut loan = self.scans.loan(2).unwrap();
-        *loan.header_mut() = ScanHeader {
+        let header = ScanHeader {
             stamp: Self::stamp(counter),
             angle_increment: 0.5,
             range_max_m: 30.0,
@@ -83,20 +82,18 @@ impl World {
             frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(&[1.5, counter as f32]);
-        loan.send().unwrap();
+        self.scans.send(header, &[1.5, counter as f32]).unwrap();
     }
 
     fn answer(&self, counter: u64, x: f64) {
-        let mut loan = self.hypotheses.loan(1).unwrap();
-        *loan.header_mut() = HypothesesHeader {
+        let header = HypothesesHeader {
             stamp: Self::stamp(counter),
             map_id: DrawnMap::small().header.map_id,
             verdict: Verdict::Unique as u32,
             mount_known: 1,
             ..HypothesesHeader::zeroed()
         };
-        loan.items_mut()[0] = Hypothesis {
+        let place = Hypothesis {
             map_from_base: Pose2 {
                 x,
                 y: 2.0,
@@ -104,12 +101,11 @@ impl World {
             },
             ..Hypothesis::zeroed()
         };
-        loan.send().unwrap();
+        self.hypotheses.send(header, &[place]).unwrap();
     }
 
     fn send_field(&self) {
-        let mut loan = self.fields.loan(2).unwrap();
-        *loan.header_mut() = FieldHeader {
+        let header = FieldHeader {
             stamp: Self::stamp(0),
             map_id: DrawnMap::small().header.map_id,
             width: 2,
@@ -118,8 +114,7 @@ impl World {
             highest_possible: 200,
             ..FieldHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(&[0, 100]);
-        loan.send().unwrap();
+        self.fields.send(header, &[0, 100]).unwrap();
     }
 
     /// Runs the graph, so that latched messages are delivered, until the condition holds.
@@ -337,10 +332,9 @@ fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
         .unwrap();
     drop(stranger);
     // A scan whose time does not fit into ROS is refused and counted.
-    let mut loan = world.scans.loan(0).unwrap();
-    *loan.header_mut() = ScanHeader::zeroed();
-    loan.header_mut().stamp.measured_ns = -1;
-    loan.send().unwrap();
+    let mut header = ScanHeader::zeroed();
+    header.stamp.measured_ns = -1;
+    world.scans.send(header, &[]).unwrap();
     let (_, error) = wait_for_health(&world.graph, &health, |report| {
         report.node.as_str() == "foxglove_server" && report.refused == 1
     });

@@ -214,17 +214,11 @@ impl Node {
                 return self.refuse(answer.header.stamp.counter, &error.into());
             }
         };
-        let mut loan = publisher.loan(particles.len())?;
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&particles);
-        loan.send()
+        publisher.send(header, &particles)
     }
 
     fn send_beams(&self, answer: &Answer<'_>) -> Result<(), TransportError> {
-        let mut loan = self.beams.loan(answer.beams.len())?;
-        *loan.header_mut() = answer.beams_header;
-        loan.items_mut().copy_from_slice(answer.beams);
-        loan.send()
+        self.beams.send(answer.beams_header, answer.beams)
     }
 
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {

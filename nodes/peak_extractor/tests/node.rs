@@ -21,7 +21,7 @@ use messages::{
     BeamFate, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome,
     Stamp, Verdict, Vote, VotesHeader, topic,
 };
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
 /// A room with a pillar, in which no two poses look alike.
@@ -133,10 +133,7 @@ impl World {
     }
 
     fn publish_map(&self, resolution_m: f64) {
-        let mut loan = self.maps.loan(16 * 9).unwrap();
-        *loan.header_mut() = map_header(resolution_m);
-        loan.items_mut().copy_from_slice(&cells());
-        loan.send().unwrap();
+        self.maps.send(map_header(resolution_m), &cells()).unwrap();
     }
 
     /// Publishes a scan and its votes and waits for the hypotheses; fails if those of other votes
@@ -154,23 +151,18 @@ impl World {
             counter,
         };
         let scan = scan(ranges);
-        let mut loan = self.scans.loan(ranges.len()).unwrap();
-        *loan.header_mut() = ScanHeader {
+        let scan_header = ScanHeader {
             stamp,
             angle_min: scan.angle_min,
             angle_increment: scan.angle_increment,
             range_max_m: scan.range_max_m,
             ..Zeroable::zeroed()
         };
-        loan.items_mut().copy_from_slice(ranges);
-        loan.send().unwrap();
-        let mut loan = self.votes.loan(votes.len()).unwrap();
-        *loan.header_mut() = VotesHeader { stamp, ..header };
-        loan.items_mut().copy_from_slice(votes);
-        loan.send().unwrap();
-        let answer = wait_for(&self.graph, &self.hypotheses, |header, items| {
-            Some((*header, items.to_vec()))
-        });
+        self.scans.send(scan_header, ranges).unwrap();
+        self.votes
+            .send(VotesHeader { stamp, ..header }, votes)
+            .unwrap();
+        let answer = wait_for_next(&self.graph, &self.hypotheses);
         assert_eq!(answer.0.stamp, stamp);
         assert!(answer.0.sent_ns >= stamp.entered_ns);
         answer
@@ -230,9 +222,7 @@ fn particles_lie_around_the_places_of_the_base() {
     let (said, hypotheses) = world.ask(header(id(), &outcome), &ranges, &outcome.found.votes);
     assert_eq!(said.verdict, Verdict::Unique as u32);
     let best = Pose::from(hypotheses[0].map_from_base);
-    let (start, drawn) = wait_for(&world.graph, &particles, |header, items| {
-        Some((*header, items.to_vec()))
-    });
+    let (start, drawn) = wait_for_next(&world.graph, &particles);
     assert_eq!((start.stamp, start.map_id), (said.stamp, id()));
     assert_eq!((start.mount_known, drawn.len()), (1, 30));
     for particle in drawn {
@@ -278,9 +268,7 @@ fn hypotheses_are_those_of_the_engine() {
             assert!(laser.is_within(place.map_from_laser, 1e-12, 1e-12));
         }
 
-        let (header, beams) = wait_for(&world.graph, &world.beams, |header, beams| {
-            Some((*header, beams.to_vec()))
-        });
+        let (header, beams) = wait_for_next(&world.graph, &world.beams);
         assert_eq!((header.stamp, header.map_id), (said.stamp, id()));
         assert_eq!(header.map_from_laser, hypotheses[0].map_from_laser);
         let count = |fate: BeamFate| beams.iter().filter(|beam| beam.fate == fate as u32).count();

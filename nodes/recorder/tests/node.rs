@@ -71,7 +71,6 @@ impl World {
     }
 
     fn send_map(&self) {
-        let mut loan = self.maps.loan(2).unwrap();
         let mut header = MapHeader {
             width: 2,
             height: 1,
@@ -79,15 +78,12 @@ impl World {
             ..MapHeader::default()
         };
         header.map_id = header.id_of(&[0, 100]);
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&[0, 100]);
-        loan.send().unwrap();
+        self.maps.send(header, &[0, 100]).unwrap();
     }
 
     /// Sends a scan and waits until it is taken, because the topic's queue is short.
     fn send_scan(&mut self) {
-        let mut loan = self.scans.loan(3).unwrap();
-        *loan.header_mut() = ScanHeader {
+        let header = ScanHeader {
             stamp: self.stamp(),
             angle_min: -1.0,
             angle_increment: 1.0,
@@ -95,8 +91,7 @@ impl World {
             frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(&[1.0, 2.5, f32::INFINITY]);
-        loan.send().unwrap();
+        self.scans.send(header, &[1.0, 2.5, f32::INFINITY]).unwrap();
         self.sent += 1;
         while !self.scans.is_settled().unwrap() {
             std::thread::yield_now();
@@ -104,14 +99,13 @@ impl World {
     }
 
     fn send_hypothesis(&mut self, verdict: Verdict) {
-        let mut loan = self.hypotheses.loan(1).unwrap();
-        *loan.header_mut() = HypothesesHeader {
+        let header = HypothesesHeader {
             stamp: self.stamp(),
             verdict: verdict as u32,
             ..HypothesesHeader::zeroed()
         };
-        loan.items_mut()[0] = Hypothesis::zeroed();
-        loan.send().unwrap();
+        let items = [Hypothesis::zeroed()];
+        self.hypotheses.send(header, &items).unwrap();
         self.sent += 1;
         while !self.hypotheses.is_settled().unwrap() {
             std::thread::yield_now();

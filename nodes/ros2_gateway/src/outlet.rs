@@ -132,10 +132,7 @@ impl Outlet {
                 .map_or(header.range_max_m, |most| header.range_max_m.min(most)),
             ..header
         };
-        let mut loan = publisher.loan(message.ranges.len())?;
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&message.ranges);
-        loan.send()?;
+        publisher.send(header, &message.ranges)?;
         of.sent += 1;
         of.last.note(stamp_ns);
         report.sent();
@@ -151,9 +148,7 @@ impl Outlet {
             return Ok(());
         };
         odometry.stamp = entering(odometry.stamp, self.odometry_sent);
-        let mut loan = publisher.loan(0)?;
-        *loan.header_mut() = odometry;
-        loan.send()?;
+        publisher.send(odometry, &[])?;
         self.odometry_sent += 1;
         report.sent();
         Ok(())
@@ -188,8 +183,7 @@ impl Outlet {
             measured_ns,
             ..Stamp::default()
         };
-        let mut loan = publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = self.cells.header(MapHeader {
+        let header = self.cells.header(MapHeader {
             stamp: entering(stamp, self.maps_sent),
             map_id,
             width: grid.width,
@@ -198,8 +192,7 @@ impl Outlet {
             map_from_grid: grid.map_from_grid.into(),
             ..MapHeader::default()
         });
-        loan.items_mut().copy_from_slice(&grid.cells);
-        loan.send()?;
+        publisher.send(header, &grid.cells)?;
         self.map_id = Some(map_id);
         self.maps_sent += 1;
         report.sent();

@@ -129,14 +129,13 @@ transitions:
         let (_folder, file) = maps(&at(&at(&text, "X", start.x + 0.5), "Y", start.y));
         let robot = Robot::start_on(&isolated, Some(file));
         let said = robot.graph.publisher::<topic::InitialPoseTopic>().unwrap();
-        let mut loan = said.loan(0).unwrap();
-        *loan.header_mut() = InitialPose {
+        let header = InitialPose {
             kind: InitialPoseKind::Believed as u64,
             map_from_base: start.into(),
             covariance: Covariance::from_deviations(0.05, 0.05, 0.02).to_rows(),
             stamp: Stamp::default(),
         };
-        loan.send().unwrap();
+        said.send(header, &[]).unwrap();
         let mut last = None;
         // For later scans there is no odometry: they may be on either floor.
         let scans = [3, 1][number];

@@ -79,10 +79,7 @@ impl Robot {
     pub(super) fn send(&self, counter: u64) -> ScanHeader {
         let scan = &self.world.scans()[counter as usize];
         let header = as_the_graph_has_it(scan, counter);
-        let mut loan = self.scans.loan(scan.ranges.len()).unwrap();
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&scan.ranges);
-        loan.send().unwrap();
+        self.scans.send(header, &scan.ranges).unwrap();
         header
     }
 

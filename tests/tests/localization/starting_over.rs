@@ -33,14 +33,13 @@ pub(super) fn truth_of(world: &World, counter: u64) -> Pose {
 }
 
 fn say(to: &Publisher<topic::InitialPoseTopic>, kind: InitialPoseKind, pose: Pose) {
-    let mut loan = to.loan(0).unwrap();
-    *loan.header_mut() = InitialPose {
+    let header = InitialPose {
         kind: kind as u64,
         map_from_base: pose.into(),
         covariance: Covariance::from_deviations(0.1, 0.1, 0.05).to_rows(),
         stamp: Stamp::default(),
     };
-    loan.send().unwrap();
+    to.send(header, &[]).unwrap();
 }
 
 /// Sends scans from this one on until one is Unique, at the true pose; returns the next number.

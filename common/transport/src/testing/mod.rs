@@ -19,5 +19,5 @@ mod watch;
 pub use isolated::Isolated;
 pub use node_process::NodeProcess;
 pub use own_file_system::OwnFileSystem;
-pub use waiting::{wait_for, wait_for_health, wait_until, wait_until_ready};
+pub use waiting::{wait_for, wait_for_health, wait_for_next, wait_until, wait_until_ready};
 pub use watch::allow_long;

@@ -34,6 +34,19 @@ pub fn wait_for<T: Topic, R>(
     taken.unwrap()
 }
 
+/// Waits for the next message and returns copies of its header and items.
+///
+/// # Panics
+/// See [`wait_for`].
+pub fn wait_for_next<T: Topic>(
+    graph: &Graph,
+    subscriber: &Subscriber<T>,
+) -> (T::Header, Vec<T::Item>) {
+    wait_for(graph, subscriber, |header, items| {
+        Some((*header, items.to_vec()))
+    })
+}
+
 /// Waits for a message for which `is_awaited` is true.
 ///
 /// # Panics

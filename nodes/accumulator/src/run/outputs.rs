@@ -60,10 +60,7 @@ impl Outputs {
     }
 
     pub(super) fn votes(&self, header: &VotesHeader, votes: &[Vote]) -> Result<(), TransportError> {
-        let mut loan = self.votes.loan(votes.len())?;
-        *loan.header_mut() = *header;
-        loan.items_mut().copy_from_slice(votes);
-        loan.send()
+        self.votes.send(*header, votes)
     }
 
     pub(super) fn readings(
@@ -71,10 +68,7 @@ impl Outputs {
         stamp: Stamp,
         readings: &[Reading],
     ) -> Result<(), TransportError> {
-        let mut loan = self.readings.loan(readings.len())?;
-        *loan.header_mut() = ReadingsHeader { stamp };
-        loan.items_mut().copy_from_slice(readings);
-        loan.send()
+        self.readings.send(ReadingsHeader { stamp }, readings)
     }
 
     /// Returns true if `field` has a subscriber and an image is due, and counts it as sent.
@@ -87,9 +81,6 @@ impl Outputs {
         header: &FieldHeader,
         intensities: &[u16],
     ) -> Result<(), TransportError> {
-        let mut loan = self.field.loan(intensities.len())?;
-        *loan.header_mut() = *header;
-        loan.items_mut().copy_from_slice(intensities);
-        loan.send()
+        self.field.send(*header, intensities)
     }
 }

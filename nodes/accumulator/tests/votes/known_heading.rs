@@ -11,7 +11,7 @@ use engine::localizer::Prior;
 use messages::{
     FieldHeader, FieldKind, FrameName, NodeState, Odometry, Pose2, SearchOutcome, Stamp, topic,
 };
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 
 use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
 
@@ -79,9 +79,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
         highest_possible: votes.highest_possible,
         heading,
     };
-    let (header, intensities) = wait_for(&world.graph, &fields, |header, intensities| {
-        Some((*header, intensities.to_vec()))
-    });
+    let (header, intensities) = wait_for_next(&world.graph, &fields);
     assert_eq!((header, intensities), (expected, image));
 
     // The next image is due in ten seconds, but each scan is answered. An image would be sent
@@ -122,14 +120,13 @@ fn headings_come_from_odometry_of_the_base() {
     );
 
     let report = |measured_ns, yaw| {
-        let mut loan = odometry.loan(0).unwrap();
-        *loan.header_mut() = Odometry {
+        let header = Odometry {
             stamp: at(measured_ns),
             odom_from_child: turned(yaw),
             child_frame: FrameName::new("base_link"),
             ..Zeroable::zeroed()
         };
-        loan.send().unwrap();
+        odometry.send(header, &[]).unwrap();
     };
     // Scan 1 is measured at 1 s, between these two.
     let yaw = map_heading() - FRAC_PI_2 - MOUNT.yaw;

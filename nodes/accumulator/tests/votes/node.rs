@@ -6,11 +6,11 @@
 
 use engine::localizer::{Outcome, Prior};
 use messages::{
-    BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, SearchOutcome, Vote,
-    VotesHeader, topic,
+    BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, RegionHeader,
+    SearchOutcome, Stamp, Vote, VotesHeader, topic,
 };
 use transport::Publisher;
-use transport::testing::{Isolated, wait_for, wait_for_health};
+use transport::testing::{Isolated, wait_for_health, wait_for_next};
 
 use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
 
@@ -116,9 +116,7 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
     world.wait_until(NodeState::Ready);
     let ranges = ranges(&HALL, 35, 4, 211);
     let (votes, poses) = world.ask(&ranges);
-    let (header, bounds) = wait_for(&world.graph, &fields, |header, bounds| {
-        Some((*header, bounds.to_vec()))
-    });
+    let (header, bounds) = wait_for_next(&world.graph, &fields);
 
     let expected = FieldHeader {
         stamp: votes.stamp,
@@ -256,10 +254,10 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     world.wait_until(NodeState::Ready);
 
     // A wrong id would let data of one map be used for another one.
-    let mut loan = world.maps.loan(occupancy(&CHANGED).len()).unwrap();
-    *loan.header_mut() = map_header(&ROOM);
-    loan.items_mut().copy_from_slice(&occupancy(&CHANGED));
-    loan.send().unwrap();
+    world
+        .maps
+        .send(map_header(&ROOM), &occupancy(&CHANGED))
+        .unwrap();
     let (report, error) = world.wait_until(NodeState::Degraded);
     assert_eq!(report.refused, 1);
     assert!(error.contains("is not that of its cells"), "{error}");
@@ -313,11 +311,15 @@ pub(crate) fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]
         let (x, y) = FRAME.map_from_grid.transform(x * side, y * side);
         Corner { x, y }
     };
-    let mut loan = regions.loan(corners.len()).unwrap();
-    for (item, corner) in loan.items_mut().iter_mut().zip(corners.iter().map(corner)) {
-        *item = corner;
-    }
-    loan.send().unwrap();
+    let corners: Vec<Corner> = corners.iter().map(corner).collect();
+    regions
+        .send(
+            RegionHeader {
+                stamp: Stamp::default(),
+            },
+            &corners,
+        )
+        .unwrap();
 }
 
 #[test]

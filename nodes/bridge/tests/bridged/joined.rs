@@ -105,10 +105,7 @@ fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
 }
 
 fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
-    let mut loan = maps.loan(cells.len()).unwrap();
-    *loan.header_mut() = *header;
-    loan.items_mut().copy_from_slice(cells);
-    loan.send().unwrap();
+    maps.send(*header, cells).unwrap();
 }
 
 /// Sends scans until `stop` is set, on a thread of its own, because a member of a graph stays on
@@ -123,10 +120,7 @@ fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinH
         let period = Duration::from_millis(20);
         let outcome = graph.run(&[], period, |_| {
             let ranges = ranges(counter);
-            let mut loan = scans.loan(ranges.len())?;
-            *loan.header_mut() = scan(counter);
-            loan.items_mut().copy_from_slice(&ranges);
-            loan.send()?;
+            scans.send(scan(counter), &ranges)?;
             counter += 1;
             let stop = stop.load(Ordering::Relaxed);
             Ok::<_, TransportError>(if stop { Flow::Stop } else { Flow::Continue })
@@ -386,8 +380,7 @@ fn ten_lines_of_python_print_where_the_robot_is() {
     let words = "at one place".as_bytes();
     let mut printed = None;
     let outcome = robot.graph.run(&[], Duration::from_millis(20), |_| {
-        let mut loan = poses.loan(words.len())?;
-        *loan.header_mut() = PoseHeader {
+        let header = PoseHeader {
             state: TrackState::Unique as u32,
             pose_known: 1,
             mount_known: 1,
@@ -396,8 +389,7 @@ fn ten_lines_of_python_print_where_the_robot_is() {
             probability: 0.99,
             ..PoseHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(words);
-        loan.send()?;
+        poses.send(header, words)?;
         printed = line.try_recv().ok();
         let is_over = printed.is_some();
         Ok::<_, TransportError>(if is_over { Flow::Stop } else { Flow::Continue })

@@ -175,13 +175,11 @@ impl Server {
 
     fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
         let map_id = grid.id();
-        let mut loan = self.publisher.loan(grid.cells.len())?;
-        *loan.header_mut() = MapHeader {
+        let header = MapHeader {
             stamp: now(self.served),
             ..header(grid, self.cells, "")
         };
-        loan.items_mut().copy_from_slice(&grid.cells);
-        loan.send()?;
+        self.publisher.send(header, &grid.cells)?;
         self.map_id = map_id;
         self.served += 1;
         self.health.count_sent(1);

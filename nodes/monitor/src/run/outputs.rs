@@ -35,27 +35,19 @@ impl Outputs {
     /// Publishes a search region with these corners, metres in the map; none for everywhere.
     pub(super) fn region(&mut self, corners: &[[f64; 2]]) -> Result<(), TransportError> {
         let stamp = self.stamp();
-        let mut loan = self.regions.loan(corners.len())?;
-        *loan.header_mut() = RegionHeader { stamp };
-        for (item, &[x, y]) in loan.items_mut().iter_mut().zip(corners) {
-            *item = Corner { x, y };
-        }
-        loan.send()
+        let corners: Vec<Corner> = corners.iter().map(|&[x, y]| Corner { x, y }).collect();
+        self.regions.send(RegionHeader { stamp }, &corners)
     }
 
     pub(super) fn save(&mut self) -> Result<(), TransportError> {
         let stamp = self.stamp();
-        let mut loan = self.saves.loan(0)?;
-        *loan.header_mut() = SaveHeader { stamp };
-        loan.send()
+        self.saves.send(SaveHeader { stamp }, &[])
     }
 
     /// Publishes a pose of the robot's base at which the tracker looks first.
     pub(super) fn hint(&mut self, map_from_base: Pose2) -> Result<(), TransportError> {
         let stamp = self.stamp();
-        let mut loan = self.hints.loan(0)?;
-        *loan.header_mut() = dashboard::hint(map_from_base, stamp);
-        loan.send()
+        self.hints.send(dashboard::hint(map_from_base, stamp), &[])
     }
 
     /// Returns a stamp of the current time, without a time of measurement.

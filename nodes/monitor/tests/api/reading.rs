@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use bytemuck::Zeroable;
-use messages::{BeamsHeader, FieldHeader, topic};
+use messages::{Beam, BeamsHeader, FieldHeader, topic};
 use serde_json::{Value, json};
 use tests::drawn_map::DrawnMap;
 use transport::{Flow, TransportError};
@@ -24,9 +24,10 @@ fn what_flows_in_the_graph_is_reported() {
     let answer = next_of(&mut socket, "answer");
     assert_eq!(answer["verdict"], "Unique");
     assert_eq!(answer["hypotheses"][0]["laser"]["x"], 1.5);
-    let mut loan = world.beams.loan(1).unwrap();
-    *loan.header_mut() = BeamsHeader::zeroed();
-    loan.send().unwrap();
+    world
+        .beams
+        .send(BeamsHeader::zeroed(), &[Beam::zeroed()])
+        .unwrap();
     assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
     // A later viewer gets the same state at once.
     let known = world.site.get("/api/v1/robots/r");
@@ -90,15 +91,13 @@ fn the_field_flows_while_somebody_looks() {
             .unwrap();
     };
     wait(true);
-    let mut loan = fields.loan(2).unwrap();
-    *loan.header_mut() = FieldHeader {
+    let header = FieldHeader {
         width: 2,
         height: 1,
         best: 10,
         ..FieldHeader::zeroed()
     };
-    loan.items_mut().copy_from_slice(&[10, 0]);
-    loan.send().unwrap();
+    fields.send(header, &[10, 0]).unwrap();
     let image = loop {
         if let Message::Binary(image) = socket.read().unwrap() {
             break image;

@@ -63,15 +63,13 @@ impl World {
     }
 
     pub(crate) fn answer(&self, counter: u64, x: f64) {
-        let mut loan = self.hypotheses.loan(1).unwrap();
-        let header = loan.header_mut();
-        *header = HypothesesHeader {
+        let mut header = HypothesesHeader {
             map_id: DrawnMap::small().header.map_id,
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
         };
         header.stamp.counter = counter;
-        loan.items_mut()[0] = Hypothesis {
+        let place = Hypothesis {
             map_from_laser: Pose2 {
                 x,
                 y: 2.0,
@@ -79,15 +77,12 @@ impl World {
             },
             ..Hypothesis::zeroed()
         };
-        loan.send().unwrap();
+        self.hypotheses.send(header, &[place]).unwrap();
     }
 
     /// Publishes a pose of the tracker, from a scan that arrived `age_s` seconds ago.
     pub(crate) fn track(&self, counter: u64, state: TrackState, x: f64, age_s: i64) {
-        let words = b"one place is left";
-        let mut loan = self.poses.loan(words.len()).unwrap();
-        let header = loan.header_mut();
-        *header = PoseHeader {
+        let mut header = PoseHeader {
             map_id: DrawnMap::small().header.map_id,
             sent_ns: transport::monotonic_ns(),
             map_from_laser: Pose2 {
@@ -104,8 +99,7 @@ impl World {
         header.stamp.entered_ns = header.sent_ns - age_s * 1_000_000_000;
         // A message is not sent before its measurement.
         header.sent_ns = header.sent_ns.max(header.stamp.entered_ns);
-        loan.items_mut().copy_from_slice(words);
-        loan.send().unwrap();
+        self.poses.send(header, b"one place is left").unwrap();
     }
 
     /// Repeats the request until the answer satisfies `is_awaited`; the graph keeps running.

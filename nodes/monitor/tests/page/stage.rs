@@ -167,9 +167,8 @@ impl Source {
     }
 
     fn answer(&self, stamp: Stamp, verdict: Verdict) -> Result<(), TransportError> {
-        let mut loan = self.hypotheses.loan(PLACES.len())?;
         let is_unique = verdict == Verdict::Unique;
-        *loan.header_mut() = HypothesesHeader {
+        let header = HypothesesHeader {
             stamp,
             map_id: self.map_id,
             sent_ns: monotonic_ns(),
@@ -182,18 +181,15 @@ impl Source {
             true => [0.98, 0.005, 0.005],
             false => [0.5, 0.3, 0.15],
         };
-        for ((item, at), probability) in loan.items_mut().iter_mut().zip(PLACES).zip(probabilities)
-        {
-            *item = Hypothesis {
-                map_from_laser: at,
-                map_from_base: behind(at),
-                covariance: COVARIANCE,
-                score: 0.9,
-                probability,
-                ..Hypothesis::zeroed()
-            };
-        }
-        loan.send()
+        let place = |i: usize| Hypothesis {
+            map_from_laser: PLACES[i],
+            map_from_base: behind(PLACES[i]),
+            covariance: COVARIANCE,
+            score: 0.9,
+            probability: probabilities[i],
+            ..Hypothesis::zeroed()
+        };
+        self.hypotheses.send(header, &[0, 1, 2].map(place))
     }
 
     fn track(&self, stamp: Stamp, state: TrackState) -> Result<(), TransportError> {
@@ -201,8 +197,7 @@ impl Source {
             TrackState::Unique => b"one place, fit 0.90, since 3 m",
             _ => b"only fit 0.14: drive a few metres, or mark a region",
         };
-        let mut loan = self.poses.loan(words.len())?;
-        *loan.header_mut() = PoseHeader {
+        let header = PoseHeader {
             stamp,
             map_id: self.map_id,
             sent_ns: monotonic_ns(),
@@ -218,28 +213,24 @@ impl Source {
             mount_known: 1,
             ..PoseHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(words);
-        loan.send()
+        self.poses.send(header, words)
     }
 
     /// Publishes the beams of two walls, four metres away.
     fn reflect(&self, stamp: Stamp) -> Result<(), TransportError> {
         let bearings = [std::f32::consts::FRAC_PI_2, -std::f32::consts::FRAC_PI_2];
-        let mut loan = self.beams.loan(bearings.len())?;
-        *loan.header_mut() = BeamsHeader {
+        let header = BeamsHeader {
             stamp,
             map_id: self.map_id,
             map_from_laser: PLACES[0],
         };
-        for (item, bearing) in loan.items_mut().iter_mut().zip(bearings) {
-            *item = Beam {
-                bearing,
-                range_m: 4.0,
-                weight: 1.0,
-                fate: BeamFate::Hit as u32,
-            };
-        }
-        loan.send()
+        let beam = |bearing| Beam {
+            bearing,
+            range_m: 4.0,
+            weight: 1.0,
+            fate: BeamFate::Hit as u32,
+        };
+        self.beams.send(header, &bearings.map(beam))
     }
 }
 

@@ -102,9 +102,7 @@ impl Hints {
         };
         said.stamp.entered_ns = monotonic_ns();
         said.stamp.counter = self.sent;
-        let mut loan = self.publisher.loan(0)?;
-        *loan.header_mut() = said;
-        loan.send()?;
+        self.publisher.send(said, &[])?;
         self.sent += 1;
         Ok(InitialPoseKind::from_code(said.kind))
     }

@@ -79,8 +79,7 @@ fn nodes_on_cyclone_dds_feed_the_graph_and_get_the_pose() {
     }
     let mut seen = std::collections::BTreeMap::new();
     for counter in 0.. {
-        let mut loan = poses.loan(0).unwrap();
-        *loan.header_mut() = PoseHeader {
+        let header = PoseHeader {
             stamp: Stamp {
                 measured_ns: next + counter,
                 ..stamp(counter as u64)
@@ -90,7 +89,7 @@ fn nodes_on_cyclone_dds_feed_the_graph_and_get_the_pose() {
             map_from_odom: pose2(1.5, 1.0, 0.0),
             ..tracked()
         };
-        loan.send().unwrap();
+        poses.send(header, &[]).unwrap();
         let said = cyclone.receive();
         let event = said["event"].as_str().unwrap().to_owned();
         let message = said["message"].clone();

@@ -263,10 +263,7 @@ fn what_the_graph_says_reaches_the_robot() {
             map_from_laser: pose2(1.2, 2.0, 0.0),
             ..Hypothesis::zeroed()
         };
-        let mut loan = publisher.loan(1).unwrap();
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(&[item]);
-        loan.send().unwrap();
+        publisher.send(header, &[item]).unwrap();
         let said = joined.robot.receive();
         if said["event"] == "initialpose" {
             seed = Some(said);
@@ -338,9 +335,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
         .graph
         .publisher_for::<topic::Tracked>(PoseHeader::WORDS_CAPACITY)
         .unwrap();
-    let mut loan = poses.loan(0).unwrap();
-    *loan.header_mut() = tracked();
-    loan.send().unwrap();
+    poses.send(tracked(), &[]).unwrap();
     // Kept for late subscribers.
     joined
         .robot

@@ -28,7 +28,9 @@ use serde_json::{Value, json};
 use tests::executables;
 use tests::robot::Robot;
 use tests::world::World;
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_until_ready};
+use transport::testing::{
+    Isolated, NodeProcess, wait_for, wait_for_health, wait_for_next, wait_until_ready,
+};
 use transport::{Graph, Publisher, Subscriber};
 
 /// A graph with a gateway, and a robot that has joined it.
@@ -129,9 +131,7 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
     let odometry_in = graph.subscriber::<topic::OdometryTopic>().unwrap();
     joined.robot.order("arrive", json!({}));
     // The map is kept for late subscribers, such as the gateway.
-    let map: (MapHeader, Vec<u8>) = wait_for(graph, &maps, |header, cells| {
-        Some((*header, cells.to_vec()))
-    });
+    let map: (MapHeader, Vec<u8>) = wait_for_next(graph, &maps);
     let Message::Map(expected) = recorded(Kind::Map).remove(0) else {
         panic!("no map");
     };
@@ -144,10 +144,7 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
     assert_eq!(map.1, expected.cells);
     for (index, expected) in scans().iter().take(5).enumerate() {
         joined.robot.order("scan", json!({ "index": index }));
-        let (header, ranges): (ScanHeader, Vec<f32>) =
-            wait_for(graph, &scans_in, |header, items| {
-                Some((*header, items.to_vec()))
-            });
+        let (header, ranges): (ScanHeader, Vec<f32>) = wait_for_next(graph, &scans_in);
         assert_eq!(ranges, expected.ranges);
         assert_eq!(header.stamp.measured_ns, expected.header.stamp.as_ns());
         assert_eq!(header.stamp.counter, index as u64);
@@ -195,10 +192,7 @@ fn several_lasers_enter_by_their_names_and_mounts() {
         for (laser, mount, upside_down) in expected {
             let order = json!({ "laser": laser, "index": index });
             joined.robot.order("scan_of", order);
-            let (header, ranges): (ScanHeader, Vec<f32>) =
-                wait_for(graph, &scans_in, |header, items| {
-                    Some((*header, items.to_vec()))
-                });
+            let (header, ranges): (ScanHeader, Vec<f32>) = wait_for_next(graph, &scans_in);
             assert_eq!(header.laser.as_str(), laser);
             assert_eq!(header.frame.as_str(), format!("{laser}_laser"));
             // Each laser counts its own scans.
@@ -237,10 +231,7 @@ fn send(
     publisher: &Publisher<topic::Hypotheses>,
     (header, items): &(HypothesesHeader, Vec<Hypothesis>),
 ) {
-    let mut loan = publisher.loan(items.len()).unwrap();
-    *loan.header_mut() = *header;
-    loan.items_mut().copy_from_slice(items);
-    loan.send().unwrap();
+    publisher.send(*header, items).unwrap();
 }
 
 #[test]

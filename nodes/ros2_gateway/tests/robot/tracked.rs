@@ -30,10 +30,7 @@ pub(super) fn poses_of(graph: &Graph) -> Publisher<topic::Tracked> {
 
 pub(super) fn send_pose(publisher: &Publisher<topic::Tracked>, header: &PoseHeader) {
     let words = b"one place";
-    let mut loan = publisher.loan(words.len()).unwrap();
-    *loan.header_mut() = *header;
-    loan.items_mut().copy_from_slice(words);
-    loan.send().unwrap();
+    publisher.send(*header, words).unwrap();
 }
 
 #[test]

@@ -29,9 +29,7 @@ impl Outputs {
 
     /// Requests a search of a scan.
     pub(super) fn ask(&self, stamp: Stamp) -> Result<(), TransportError> {
-        let mut loan = self.attention.loan(0)?;
-        *loan.header_mut() = AttentionHeader { stamp };
-        loan.send()
+        self.attention.send(AttentionHeader { stamp }, &[])
     }
 
     /// Returns true if an extrapolated pose may be sent now.

@@ -135,10 +135,7 @@ impl World {
 
     pub(crate) fn serve_map(&self, map: &Drawn) {
         let cells = map.cells();
-        let mut loan = self.maps.loan(cells.len()).unwrap();
-        *loan.header_mut() = map.header();
-        loan.items_mut().copy_from_slice(&cells);
-        loan.send().unwrap();
+        self.maps.send(map.header(), &cells).unwrap();
     }
 
     pub(crate) fn serve_set(&self, maps: &[Drawn]) {
@@ -168,14 +165,13 @@ impl World {
 
     /// Publishes an initial pose in this column.
     pub(crate) fn say(&self, kind: InitialPoseKind, x: usize) {
-        let mut loan = self.initial_poses.loan(0).unwrap();
-        *loan.header_mut() = InitialPose {
+        let header = InitialPose {
             kind: kind as u64,
             map_from_base: self.pose_at(x).into(),
             covariance: Covariance::from_deviations(0.1, 0.1, 0.05).to_rows(),
             ..InitialPose::zeroed()
         };
-        loan.send().unwrap();
+        self.initial_poses.send(header, &[]).unwrap();
     }
 
     /// Returns a stamp this long after the last scan; the next scan is a second later.
@@ -189,22 +185,20 @@ impl World {
 
     /// Publishes odometry with the robot in this column, this long after the last scan.
     pub(crate) fn send_odometry(&self, x: usize, later_ns: i64) {
-        let mut loan = self.odometry.loan(0).unwrap();
-        *loan.header_mut() = Odometry {
+        let header = Odometry {
             stamp: self.stamp(later_ns),
             odom_from_child: self.pose_at(x).into(),
             frame: FrameName::new("odom"),
             child_frame: FrameName::new("base_link"),
             ..Odometry::zeroed()
         };
-        loan.send().unwrap();
+        self.odometry.send(header, &[]).unwrap();
     }
 
     fn send_scan(&self, x: usize) -> Stamp {
         let ranges = ranges(x);
         let stamp = self.stamp(0);
-        let mut loan = self.scans.loan(ranges.len()).unwrap();
-        *loan.header_mut() = ScanHeader {
+        let header = ScanHeader {
             stamp,
             angle_min: -PI,
             angle_increment: 1f64.to_radians(),
@@ -212,8 +206,7 @@ impl World {
             frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
-        loan.items_mut().copy_from_slice(&ranges);
-        loan.send().unwrap();
+        self.scans.send(header, &ranges).unwrap();
         stamp
     }
 
@@ -266,17 +259,13 @@ impl World {
             map_id,
             ..Hypothesis::zeroed()
         });
-        let mut loan = self.hypotheses.loan(found.iter().len())?;
-        *loan.header_mut() = HypothesesHeader {
+        let header = HypothesesHeader {
             stamp,
             searched,
             map_id: found.map_or(0, |found| found.map_id),
             ..HypothesesHeader::zeroed()
         };
-        for (item, found) in loan.items_mut().iter_mut().zip(found) {
-            *item = found;
-        }
-        loan.send()
+        self.hypotheses.send(header, found.as_slice())
     }
 }
 

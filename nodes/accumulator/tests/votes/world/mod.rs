@@ -22,7 +22,7 @@ use messages::{
 };
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 
 /// A room with a pillar, in which no two poses look alike.
 pub(crate) const ROOM: [&str; 9] = [
@@ -138,25 +138,20 @@ impl World {
 
     pub(crate) fn publish_map(&self, rows: &[&str]) {
         let cells = occupancy(rows);
-        let mut loan = self.maps.loan(cells.len()).unwrap();
-        *loan.header_mut() = map_header(rows);
-        loan.items_mut().copy_from_slice(&cells);
-        loan.send().unwrap();
+        self.maps.send(map_header(rows), &cells).unwrap();
     }
 
     pub(crate) fn publish_boundary(&self, map_id: u64, rows: &[&str]) {
         let grid = grid(rows);
         let cells = boundary::extract(&grid);
-        let mut loan = self.boundaries.loan(cells.len()).unwrap();
-        *loan.header_mut() = BoundaryHeader {
+        let header = BoundaryHeader {
             map_id,
             free_cells: grid.free_cells() as u64,
             boundary_cells: cells.len() as u64,
             occupied_cells: grid.occupied_cells() as u64,
             ..Zeroable::zeroed()
         };
-        loan.items_mut().copy_from_slice(&cells);
-        loan.send().unwrap();
+        self.boundaries.send(header, &cells).unwrap();
     }
 
     /// Publishes a scan and waits for its votes; fails if votes of another scan arrive.
@@ -188,13 +183,8 @@ impl World {
             ..Zeroable::zeroed()
         };
         change(&mut header);
-        let mut loan = self.scans.loan(ranges.len()).unwrap();
-        *loan.header_mut() = header;
-        loan.items_mut().copy_from_slice(ranges);
-        loan.send().unwrap();
-        let answer = wait_for(&self.graph, &self.votes, |votes, poses| {
-            Some((*votes, poses.to_vec()))
-        });
+        self.scans.send(header, ranges).unwrap();
+        let answer = wait_for_next(&self.graph, &self.votes);
         assert_eq!(answer.0.stamp, header.stamp);
         answer
     }
