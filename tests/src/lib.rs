@@ -7,6 +7,7 @@ pub mod axe;
 pub mod browser;
 pub mod building;
 pub mod drawn_map;
+pub mod drawn_room;
 pub mod executables;
 pub mod help;
 pub mod http;

@@ -5,51 +5,22 @@
 )]
 
 use std::cell::Cell;
-use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
 use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, DistanceField, Ends};
-use engine::grid::{CellRules, Grid, GridFrame};
+use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places};
-use engine::reference;
-use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
     BeamFate, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome,
     Stamp, Verdict, Vote, VotesHeader, topic,
 };
+use tests::drawn_room::{FRAME, MOUNT, ROOM, grid, map_header, occupancy, ranges, scan};
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
-
-/// A room with a pillar, in which no two poses look alike.
-const ROOM: [&str; 9] = [
-    "################",
-    "#..............#",
-    "#..............#",
-    "#..........##..#",
-    "#..............#",
-    "#.....##########",
-    "#.....#.........",
-    "#..#..#.........",
-    "#######.........",
-];
-const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.25,
-    map_from_grid: Pose::new(3.0, -1.0, 0.5),
-};
-const MOUNT: Pose2 = Pose2 {
-    x: 0.78,
-    y: 0.0,
-    yaw: 0.125,
-};
-
-fn cells() -> Vec<u8> {
-    let cells = ROOM.iter().rev().flat_map(|row| row.bytes());
-    cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
-}
 
 /// Scan of the room and the engine's result for it.
 struct Searched {
@@ -57,30 +28,11 @@ struct Searched {
     outcome: Outcome,
 }
 
-/// Returns a scan with one beam per degree.
-fn scan(ranges: &[f32]) -> Scan<'_> {
-    Scan {
-        angle_min: -PI,
-        angle_increment: 1f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 30.0,
-        ranges,
-    }
-}
-
 /// Scans the room from the given pose.
 fn searched(x: i64, y: i64, heading: usize) -> Searched {
-    let grid = Grid::new(16, 9, &cells(), CellRules::default()).unwrap();
-    let space = Space::new(360, FRAME.resolution_m, 16, 9).unwrap();
-    let beams = (0..360).map(|beam| {
-        let direction = space.directions.get(heading + 180 + beam);
-        reference::range(&grid, x, y, direction).map_or(f32::INFINITY, |steps| {
-            (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m) as f32
-        })
-    });
-    let ranges: Vec<f32> = beams.collect();
+    let ranges = ranges(&ROOM, x, y, heading);
     let config = LocalizerConfig::default();
-    let localizer = Localizer::new(FRAME, grid, config, Prior::None).unwrap();
+    let localizer = Localizer::new(FRAME, grid(&ROOM), config, Prior::None).unwrap();
     let outcome = localizer.search(&scan(&ranges), &|| false);
     Searched {
         outcome: outcome.unwrap().unwrap(),
@@ -91,7 +43,7 @@ fn searched(x: i64, y: i64, heading: usize) -> Searched {
 /// Returns the engine's places on a map with this frame.
 fn expected(searched: &Searched, frame: GridFrame) -> Places {
     let distance_field =
-        DistanceField::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
+        DistanceField::new(frame, (16, 9), &occupancy(&ROOM), CellRules::default()).unwrap();
     let space = Space::new(360, frame.resolution_m, 16, 9).unwrap();
     let (scan, beams) = (scan(&searched.ranges), BeamConfig::default());
     let find = |ends: &mut Ends| ends.find(&scan, &space, &beams);
@@ -133,7 +85,9 @@ impl World {
     }
 
     fn publish_map(&self, resolution_m: f64) {
-        self.maps.send(map_header(resolution_m), &cells()).unwrap();
+        self.maps
+            .send(map_at(resolution_m), &occupancy(&ROOM))
+            .unwrap();
     }
 
     /// Publishes a scan and its votes and waits for the hypotheses; fails if those of other votes
@@ -175,21 +129,18 @@ impl World {
     }
 }
 
-fn map_header(resolution_m: f64) -> MapHeader {
+fn map_at(resolution_m: f64) -> MapHeader {
     let mut header = MapHeader {
-        width: 16,
-        height: 9,
         resolution_m,
-        map_from_grid: FRAME.map_from_grid.into(),
-        ..MapHeader::default()
+        ..map_header(&ROOM)
     };
-    header.map_id = header.id_of(&cells());
+    header.map_id = header.id_of(&occupancy(&ROOM));
     header
 }
 
 /// Returns the id of the map with the frame's resolution.
 fn id() -> u64 {
-    map_header(FRAME.resolution_m).map_id
+    map_header(&ROOM).map_id
 }
 
 fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
@@ -364,7 +315,7 @@ fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
     let searched = searched(3, 3, 40);
     let Searched { ranges, outcome } = &searched;
     for scale in [1.0, 2.0] {
-        let map_id = map_header(scale * FRAME.resolution_m).map_id;
+        let map_id = map_at(scale * FRAME.resolution_m).map_id;
         let header = header(map_id, outcome);
         let (_, hypotheses) = world.ask(header, ranges, &outcome.found.votes);
         let frame = GridFrame {

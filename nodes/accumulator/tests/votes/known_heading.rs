@@ -13,7 +13,9 @@ use messages::{
 };
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 
-use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
+use tests::drawn_room::{FRAME, MOUNT, ROOM, ranges, scan};
+
+use crate::world::{World, id, localizer};
 
 /// Heading in the grid's frame, as in the drawn scans, degrees.
 const HEADING: usize = 40;

@@ -12,7 +12,9 @@ use messages::{
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for_health, wait_for_next};
 
-use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
+use tests::drawn_room::{FRAME, MOUNT, ROOM, map_header, occupancy, ranges, scan};
+
+use crate::world::{World, id, localizer};
 
 /// The same room with the pillar moved and a door opened.
 pub(crate) const CHANGED: [&str; 9] = [

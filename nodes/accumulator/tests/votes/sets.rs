@@ -13,7 +13,9 @@ use transport::Publisher;
 use transport::testing::{Isolated, NodeProcess, wait_for_health};
 
 use crate::node::{CHANGED, request};
-use crate::world::{FRAME, ROOM, World, id, map_header, occupancy, ranges};
+use tests::drawn_room::{FRAME, ROOM, map_header, occupancy, ranges};
+
+use crate::world::{World, id};
 
 /// Name of a map, offset of its frame along x in metres, and its drawing.
 type Floor<'a> = (&'a str, f64, &'a [&'a str]);

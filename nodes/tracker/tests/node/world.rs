@@ -5,14 +5,12 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use bytemuck::Zeroable;
-use engine::grid::{CellRules, Grid};
-use engine::reference;
-use engine::space::Space;
 use geometry::{Covariance, Pose};
 use messages::{
     FrameName, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, MapHeader, MapName,
     MapSet, Odometry, PoseHeader, ScanHeader, Stamp, searched_id, topic,
 };
+use tests::drawn_room::{self, FRAME, occupancy};
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, Publisher, Subscriber, TransportError, monotonic_ns};
 
@@ -33,7 +31,7 @@ pub(crate) const HALL: [&str; 14] = [
     "#......................................#",
     "########################################",
 ];
-const CELL_M: f64 = 0.25;
+const CELL_M: f64 = FRAME.resolution_m;
 /// Row along which the robot drives, counted from below.
 const ROW: usize = 6;
 
@@ -52,8 +50,7 @@ pub(crate) fn with_a_box(rows: &[&'static str]) -> Vec<&'static str> {
 
 impl Drawn {
     fn cells(&self) -> Vec<u8> {
-        let cells = self.rows.iter().rev().flat_map(|row| row.bytes());
-        cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
+        occupancy(&self.rows)
     }
 
     pub(crate) fn header(&self) -> MapHeader {
@@ -196,7 +193,7 @@ impl World {
     }
 
     fn send_scan(&self, x: usize) -> Stamp {
-        let ranges = ranges(x);
+        let ranges = drawn_room::ranges(&HALL, x as i64, ROW as i64, 0);
         let stamp = self.stamp(0);
         let header = ScanHeader {
             stamp,
@@ -267,22 +264,4 @@ impl World {
         };
         self.hypotheses.send(header, found.as_slice())
     }
-}
-
-/// Returns the ranges of a laser with one beam per degree all around, in the hall.
-fn ranges(x: usize) -> Vec<f32> {
-    let hall = Drawn {
-        name: "",
-        rows: HALL.into(),
-    };
-    let (width, height) = (HALL[0].len(), HALL.len());
-    let grid = Grid::new(width, height, &hall.cells(), CellRules::default()).unwrap();
-    let space = Space::new(360, CELL_M, width, height).unwrap();
-    let beams = (0..360).map(|beam| {
-        let direction = space.directions.get((180 + beam) % 360);
-        reference::range(&grid, x as i64, ROW as i64, direction).map_or(f32::INFINITY, |steps| {
-            (f64::from(steps) / direction.steps_per_cell * CELL_M) as f32
-        })
-    });
-    beams.collect()
 }

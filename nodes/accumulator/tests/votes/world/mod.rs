@@ -6,104 +6,26 @@
 )]
 
 use std::cell::Cell;
-use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
 use engine::boundary;
-use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
-use engine::reference;
-use engine::scan::Scan;
-use engine::space::Space;
-use geometry::Pose;
 use messages::{
-    BoundaryHeader, FrameName, HealthHeader, MapHeader, NodeState, Pose2, ScanHeader, Stamp, Vote,
-    VotesHeader, topic,
+    BoundaryHeader, FrameName, HealthHeader, NodeState, ScanHeader, Stamp, Vote, VotesHeader, topic,
 };
+use tests::drawn_room::{FRAME, MOUNT, grid, map_header, occupancy, scan};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 
-/// A room with a pillar, in which no two poses look alike.
-pub(crate) const ROOM: [&str; 9] = [
-    "################",
-    "#..............#",
-    "#..............#",
-    "#..........##..#",
-    "#..............#",
-    "#.....##########",
-    "#.....#.........",
-    "#..#..#.........",
-    "#######.........",
-];
-
-/// Rotated, so that a confusion of grid and map frames would show.
-pub(crate) const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.25,
-    map_from_grid: Pose::new(3.0, -1.0, 0.5),
-};
-
-pub(crate) const MOUNT: Pose2 = Pose2 {
-    x: 0.78,
-    y: 0.0,
-    yaw: 0.125,
-};
-
-pub(crate) fn occupancy(rows: &[&str]) -> Vec<u8> {
-    let cells = rows.iter().rev().flat_map(|row| row.bytes());
-    cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
-}
-
-/// Returns the header of the map in this drawing.
-pub(crate) fn map_header(rows: &[&str]) -> MapHeader {
-    let mut header = MapHeader {
-        width: rows[0].len() as u32,
-        height: rows.len() as u32,
-        resolution_m: FRAME.resolution_m,
-        map_from_grid: FRAME.map_from_grid.into(),
-        ..MapHeader::default()
-    };
-    header.map_id = header.id_of(&occupancy(rows));
-    header
-}
-
 pub(crate) fn id(rows: &[&str]) -> u64 {
     map_header(rows).map_id
-}
-
-pub(crate) fn grid(rows: &[&str]) -> Grid {
-    let cells = occupancy(rows);
-    Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap()
 }
 
 /// Returns the engine's localizer for comparison.
 pub(crate) fn localizer(rows: &[&str], prior: Prior) -> Localizer {
     let grid = grid(rows);
     Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
-}
-
-/// Returns the ranges of a laser with one beam per degree all around, at a pose of the grid.
-pub(crate) fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> {
-    let grid = grid(rows);
-    let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
-    let beams = (0..360).map(|beam| {
-        let direction = space.directions.get(heading + 180 + beam);
-        reference::range(&grid, x, y, direction).map_or(f32::INFINITY, |steps| {
-            (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m) as f32
-        })
-    });
-    beams.collect()
-}
-
-/// Returns the scan of [`World::ask`] in the engine's type.
-pub(crate) fn scan(ranges: &[f32]) -> Scan<'_> {
-    Scan {
-        angle_min: -PI,
-        angle_increment: 1f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 30.0,
-        ranges,
-    }
 }
 
 /// Neighbours of the node.
