@@ -1,22 +1,30 @@
-//! Tests that files with absurd claimed lengths make this process allocate next to nothing, and
+//! Tests that files with absurd claimed lengths make the reader allocate next to nothing, and
 //! never more than the limit for a chunk.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
 
 use mcap::MAGIC;
 use mcap::records::op;
 use recording::{MAX_CHUNK_BYTES, Recording};
 
-/// The system's allocator, recording the largest request.
+/// The system's allocator, recording the largest request of each thread: other tests run at the
+/// same time.
 struct Noting;
 
-static LARGEST: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    static LARGEST: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Records a request.
+fn note(size: usize) {
+    LARGEST.set(LARGEST.get().max(size));
+}
 
 // SAFETY: every call is passed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Noting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        note(layout.size());
         // SAFETY: the caller upholds the contract, which is the same.
         unsafe { System.alloc(layout) }
     }
@@ -27,7 +35,7 @@ unsafe impl GlobalAlloc for Noting {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        LARGEST.fetch_max(size, Ordering::Relaxed);
+        note(size);
         // SAFETY: as above.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -61,14 +69,13 @@ fn chunk(claimed: u64, checksum: u32, packing: &str, packed: &[u8]) -> Vec<u8> {
 fn largest(record: &[u8]) -> usize {
     let header = whole(op::HEADER, &[0; 8]);
     let file = [MAGIC, &header, record].concat();
-    LARGEST.store(0, Ordering::Relaxed);
+    LARGEST.set(0);
     let recording = Recording::from_bytes("r.mcap", file).expect("it starts as one");
     let damage = recording.records().last();
     assert!(matches!(damage, Some(Err(_))), "{damage:?}");
-    LARGEST.load(Ordering::Relaxed)
+    LARGEST.get()
 }
 
-/// One test, because the record is global to the process.
 #[test]
 fn claims_reserve_nothing_that_is_not_there() {
     // Room for the small file itself, the decompressors and the error's text.
