@@ -90,18 +90,18 @@ macro_rules! compiled {
     (
         [$features:literal]
         $(#[$attribute:meta])*
-        $visibility:vis fn $name:ident $(<$lifetime:lifetime>)? (
+        $visibility:vis fn $name:ident (
             $token:ident: $token_type:ty $(, $argument:ident: $argument_type:ty)* $(,)?
         ) $(-> $result:ty)? $body:block
     ) => {
         $(#[$attribute])*
         #[inline(always)]
-        $visibility fn $name $(<$lifetime>)? (
+        $visibility fn $name (
             $token: $token_type $(, $argument: $argument_type)*
         ) $(-> $result)? {
             #[inline]
             #[target_feature(enable = $features)]
-            fn compiled $(<$lifetime>)? (
+            fn compiled (
                 $token: $token_type $(, $argument: $argument_type)*
             ) $(-> $result)? $body
             // SAFETY: the token proves that the processor has the instructions.
