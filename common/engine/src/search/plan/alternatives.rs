@@ -211,6 +211,9 @@ impl Spot {
 
 /// Keeps the `count` greatest, in descending order.
 fn keep_greatest(all: &mut Vec<Bounded>, count: usize) {
+    if count < all.len() {
+        all.select_nth_unstable_by(count, |a, b| b.cmp(a));
+        all.truncate(count);
+    }
     all.sort_unstable_by(|a, b| b.cmp(a));
-    all.truncate(count);
 }
