@@ -36,7 +36,7 @@ pub(in crate::search) struct Group {
 #[derive(Debug, Clone, Default)]
 struct Plane {
     windows: Vec<Window>,
-    /// The same in pairs, sorted by how often each is read; a window that sees nothing fills up
+    /// Windows in pairs, sorted by how often each is read; a window that sees nothing fills up
     /// the last pair.
     pairs: Vec<[Window; 2]>,
 }

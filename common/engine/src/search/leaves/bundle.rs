@@ -66,16 +66,6 @@ impl Hits {
         let folded = folded | folded >> 16;
         (folded | folded >> 8) as u8
     }
-
-    /// Returns the ranges of the cells of a block, given the ray of each column's first cell.
-    #[inline(always)]
-    pub(in crate::search) fn ranges(&self, first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
-        std::array::from_fn(|i| {
-            let column = across.column[i];
-            let hit = self.0[usize::from(first[usize::from(column)] + across.minor[i]) % RAYS];
-            if hit == NO_RANGE { hit } else { hit - column }
-        })
-    }
 }
 
 /// The adjacent rays of a direction through a block. Positions count along the major axis
@@ -167,8 +157,17 @@ impl Bundle {
     /// Returns the ranges of the block's cells if all of them are open: the steps to the ends
     /// of their rays.
     #[inline(always)]
-    pub(in crate::search) fn ranges(&self, hits: &Hits) -> [u16; CELLS] {
-        hits.ranges(&self.first, self.across())
+    pub(in crate::search) fn ranges(&self, Hits(hits): &Hits) -> [u16; CELLS] {
+        let Across { column, minor } = self.across();
+        std::array::from_fn(|i| {
+            let ray = self.first[usize::from(column[i])] + minor[i];
+            let hit = hits[usize::from(ray) % RAYS];
+            if hit == NO_RANGE {
+                hit
+            } else {
+                hit - column[i]
+            }
+        })
     }
 
     /// Does the same if some cells are not open: the steps to those that are in the way, too.
