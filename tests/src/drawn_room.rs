@@ -42,7 +42,7 @@ pub fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-/// Returns the header of the map in this drawing, which lies as [`FRAME`] says.
+/// Returns the header of the map in this drawing, placed by [`FRAME`].
 #[must_use]
 pub fn map_header(rows: &[&str]) -> MapHeader {
     let mut header = MapHeader {

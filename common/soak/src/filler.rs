@@ -28,9 +28,10 @@ pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
         return Ok(());
     }
     bail!(
-        "{} has {} MiB free, which others may need",
+        "{} has {} MiB free, which others may need: at most {} MiB are filled",
         folder.display(),
-        free >> 20
+        free >> 20,
+        MAX_FREE >> 20
     );
 }
 
