@@ -3,15 +3,14 @@
 use std::cmp::Reverse;
 use std::time::Instant;
 
+use benchmarks::scatter::Scatter;
 use benchmarks::worlds::World;
 use engine::accumulator::{Accumulator, Query};
-use engine::exhaustive;
 use engine::instruction_set::InstructionSet;
-use engine::limits::Limits;
 use engine::program::ScanProgram;
-use engine::scatter::Scatter;
 use engine::search::{SearchIndex, Workspace};
-use engine::sweep::FieldSweep;
+use engine::space::Space;
+use engine::sweep::{FieldSweep, Sweep};
 use engine::votes::{CollectConfig, VoteSet, distinct};
 use messages::Vote;
 
@@ -113,26 +112,68 @@ pub(super) fn top_sixteen<'a>(
         let program = program(task)?;
         let start = Instant::now();
         let is_late = || start.elapsed().as_secs_f64() > patience_s;
-        let (limits, scan) = (Limits::none(world.grid.width()), (&program, task.space));
-        let mut accumulators = [sweeps.accumulator()];
+        let (mut accumulator, scan) = (sweeps.accumulator(), (&program, task.space));
         let mut floor_share = 0.5;
         loop {
-            let collect = CollectConfig {
-                floor_share,
-                max_votes: 1_000_000,
-                candidates: 0,
-                work_limit: None,
-            };
-            let found = exhaustive::search(&mut accumulators, &limits, scan, collect, &is_late);
-            let Some(found) = found.filter(|found| !found.truncated) else {
+            let width = world.grid.width();
+            let Some(found) = count_all(&mut accumulator, width, scan, floor_share, &is_late)
+            else {
                 return Ok(Answer::GaveUp);
             };
-            let poses = distinct(&found.votes, task.space, COUNT);
+            let poses = distinct(&found, task.space, COUNT);
+            let best = found.first().map_or(0, |best| best.intensity);
             // At 1 or below, all poses that have votes were collected.
-            if poses.len() == COUNT || found.certified_floor <= 1 {
+            if poses.len() == COUNT || floor_of(best, floor_share) <= 1 {
                 return Ok(Answer::Best(poses.first().map(pose)));
             }
             floor_share /= 2.0;
         }
     })
+}
+
+/// Counts the votes of every pose, heading by heading. Returns those with at least this share of the
+/// most votes, best first; `None` if `stop` returned true, or they are more than a million.
+fn count_all(
+    accumulator: &mut Sweep<'_>,
+    width: usize,
+    (program, space): (&ScanProgram, &Space),
+    floor_share: f64,
+    stop: &dyn Fn() -> bool,
+) -> Option<Vec<Vote>> {
+    const MOST: usize = 1_000_000;
+    let (mut field, mut found, mut floor) = (Vec::new(), Vec::new(), 1);
+    for heading in 0..space.directions.count() {
+        let query = Query {
+            program,
+            space,
+            heading,
+        };
+        accumulator.fill(query, &mut field, stop)?;
+        for (y, row) in (0..).zip(field.chunks_exact(width)) {
+            // A maximum is quick to compute, and few rows contain a pose that matters.
+            let most = row.iter().copied().fold(0, u16::max);
+            floor = floor.max(floor_of(most, floor_share));
+            if most < floor {
+                continue;
+            }
+            let votes = (0..).zip(row).filter(|&(_, &votes)| votes >= floor);
+            found.extend(votes.map(|(x, &intensity)| Vote {
+                x,
+                y,
+                heading: heading as u16,
+                intensity,
+            }));
+        }
+        found.retain(|vote: &Vote| vote.intensity >= floor);
+        if found.len() > MOST {
+            return None;
+        }
+    }
+    found.sort_unstable_by_key(|vote| (Reverse(vote.intensity), vote.heading, vote.y, vote.x));
+    Some(found)
+}
+
+/// Smallest number of votes that is at least this share of the most votes, and 1.
+fn floor_of(most: u16, share: f64) -> u16 {
+    ((f64::from(most) * share).ceil() as u16).max(1)
 }

@@ -13,12 +13,12 @@ use benchmarks::baselines::{
     RayCasting, Readings,
 };
 use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
+use benchmarks::scatter::Scatter;
 use benchmarks::worlds::{Kind, World};
 use criterion::Criterion;
 use engine::accumulator::{Accumulator, Query};
 use engine::boundary;
 use engine::program::{ScanProgram, VoteConfig};
-use engine::scatter::Scatter;
 use engine::search::SearchIndex;
 use engine::space::Space;
 use engine::sweep::FieldSweep;

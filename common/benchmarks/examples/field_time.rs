@@ -1,26 +1,21 @@
-//! Times the field of one heading, and the exhaustive search over all headings, with each
-//! instruction set:
+//! Times the field of one heading, with each instruction set, and by the paper's method as written:
 //!
 //! ```text
 //! cargo run --release -p benchmarks --example field_time -- rooms 1200 10 10 --beams 180
 //! ```
 
-use std::time::Instant;
-
 use benchmarks::scans::{ScanConfig, simulate};
+use benchmarks::scatter::Scatter;
 use benchmarks::timing::{cpu_ms, median};
 use benchmarks::worlds::{Kind, World};
 use clap::Parser;
 use engine::accumulator::{Accumulator, Query};
-use engine::exhaustive;
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
-use engine::scatter::Scatter;
 use engine::sweep::FieldSweep;
 use engine::taper::TaperShape;
-use engine::votes::CollectConfig;
 
-/// Times the field of one heading, and the exhaustive search over all headings.
+/// Times the field of one heading.
 #[derive(Debug, Parser)]
 struct Options {
     kind: Kind,
@@ -34,9 +29,6 @@ struct Options {
     beams: usize,
     #[arg(long, default_value_t = 21)]
     runs: usize,
-    /// Threads of the exhaustive search; 0 skips it
-    #[arg(long, default_value_t = 1)]
-    threads: usize,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -67,33 +59,6 @@ fn main() -> anyhow::Result<()> {
     }
     let cost = time(&mut Scatter::new(&world.grid, &world.boundary), query, 3);
     println!("scatter: {cost:.2} ms");
-    if options.threads > 0 {
-        let mut all: Vec<_> = (0..options.threads).map(|_| sweeps.accumulator()).collect();
-        let config = CollectConfig {
-            floor_share: 1.0,
-            candidates: 0,
-            ..CollectConfig::default()
-        };
-        let start = Instant::now();
-        let width = world.grid.width();
-        let found = exhaustive::search(
-            &mut all,
-            &engine::limits::Limits::none(width),
-            (&program, &space),
-            config,
-            &|| false,
-        );
-        let (seconds, poses) = (
-            start.elapsed().as_secs_f64(),
-            found.map_or(0, |found| found.poses_evaluated),
-        );
-        println!(
-            "exhaustive on {} threads: {:.0} ms, {:.1} G poses and beams a second",
-            options.threads,
-            1e3 * seconds,
-            poses as f64 * options.beams as f64 / seconds / 1e9
-        );
-    }
     Ok(())
 }
 

@@ -107,7 +107,7 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
 }
 
 /// Reverse projection at one heading: returns the intensity of each cell, row by row from the
-/// lowest y, equal to that of [`engine::scatter`]; and the operations.
+/// lowest y, equal to that of [`Scatter`](crate::scatter::Scatter); and the operations.
 #[must_use]
 pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
     let mut field = vec![0u16; world.grid.cells().len()];
@@ -171,11 +171,11 @@ fn see_back(world: &World, from: (i64, i64), back: &Direction, end: u16, visible
 mod tests {
     use engine::accumulator::Accumulator;
     use engine::program::ScanProgram;
-    use engine::scatter::Scatter;
     use engine::taper::TaperShape;
 
     use super::*;
     use crate::scans::{ScanConfig, simulate};
+    use crate::scatter::Scatter;
     use crate::worlds::Kind;
 
     const CONFIG: ScanConfig = ScanConfig {

@@ -8,6 +8,7 @@ pub mod counted;
 mod distinct;
 pub mod particles;
 pub mod scans;
+pub mod scatter;
 pub mod timing;
 pub mod worlds;
 

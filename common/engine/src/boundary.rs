@@ -24,9 +24,15 @@ pub fn extract(grid: &Grid) -> Vec<BoundaryCell> {
 
 #[cfg(test)]
 mod tests {
+    use messages::CellRules;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
     use super::*;
-    use crate::grid::CellRules;
+    use crate::EngineError;
     use crate::grid::drawn::{grid, grid_with};
+    use crate::reference;
+    use crate::testing::{any_grid, space_of};
 
     fn drawn(cells: &[BoundaryCell], width: usize, height: usize) -> Vec<String> {
         let at = |x, y| {
@@ -68,6 +74,40 @@ mod tests {
         };
         assert_eq!(extract(&grid_with(&["#??", "?.#"], rules)).len(), 2);
         assert_eq!(extract(&grid_with(&["#??.", "#??."], rules)).len(), 0);
+    }
+
+    proptest! {
+        #[test]
+        fn rays_hit_the_cells_of_the_boundary_alone(
+            grid in any_grid(), kept in vec(any::<bool>(), 64), heading in 0usize..16,
+        ) {
+            let all = extract(&grid);
+            prop_assert_eq!(&grid.clone().with_boundary(&all, 1).unwrap(), &grid);
+            let kept = |i: usize| kept[i % kept.len()];
+            let some: Vec<_> = (0..all.len()).filter(|&i| kept(i)).map(|i| all[i]).collect();
+            let with_some = grid.clone().with_boundary(&some, 1).unwrap();
+            let space = space_of(&grid, 16);
+            let direction = space.directions.get(heading);
+            for (x, y) in grid.places(|cell| cell == Cell::Open) {
+                let (x, y) = (x as i64, y as i64);
+                let hit = reference::range(&grid, x, y, direction);
+                let end = |steps| {
+                    let (x, y) = (0..steps).fold((x, y), |(x, y), _| direction.advance(x, y));
+                    BoundaryCell { x: x as u16, y: y as u16 }
+                };
+                let expected = hit.filter(|&steps| some.contains(&end(steps)));
+                prop_assert_eq!(reference::range(&with_some, x, y, direction), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_that_is_no_obstacle_is_refused() {
+        let refused = |x, y| grid(&["#.", "##"]).with_boundary(&[BoundaryCell { x, y }], 1);
+        assert!(refused(1, 0).is_ok());
+        for (x, y) in [(1, 1), (2, 0), (0, 2)] {
+            assert_eq!(refused(x, y), Err(EngineError::BoundaryCell { x, y }));
+        }
     }
 
     #[test]

@@ -51,6 +51,14 @@ pub enum EngineError {
     /// The map has no free cell in which the robot could be.
     #[error("the map has no free cell: there is nowhere that the robot could be")]
     NoFreeCell,
+    /// A cell of a boundary is not an obstacle.
+    #[error("cell {x}, {y} of the boundary is not an occupied cell of the map")]
+    BoundaryCell {
+        /// Column of the cell.
+        x: u16,
+        /// Row of the cell.
+        y: u16,
+    },
     /// The limits exclude every cell.
     #[error(
         "no open cell of the map lies in the region that is searched, near enough to a free cell \

@@ -7,6 +7,8 @@ mod cell_set;
 mod frame;
 mod pooling;
 
+use messages::BoundaryCell;
+
 use crate::EngineError;
 pub use messages::CellRules;
 
@@ -41,7 +43,8 @@ pub enum Cell {
     Open,
     /// An obstacle: a ray ends here.
     Occupied,
-    /// An unknown cell that blocks rays without a hit; the robot cannot stand here.
+    /// Rays end here without a hit, and the robot cannot stand here: an unknown cell if these block,
+    /// or an obstacle that is missing from the boundary.
     Blocked,
 }
 
@@ -54,7 +57,7 @@ pub struct Grid {
     free: CellSet,
     free_cells: usize,
     occupied: usize,
-    has_blocked: bool,
+    blocked: usize,
 }
 
 impl Grid {
@@ -90,9 +93,44 @@ impl Grid {
             free_cells: free.count(),
             free,
             occupied: count(Cell::Occupied),
-            has_blocked: count(Cell::Blocked) > 0,
+            blocked: count(Cell::Blocked),
             cells,
         })
+    }
+
+    /// Takes the cells in which rays end with a hit from a boundary, given in cells of which
+    /// `pooling` lie along the side of one of these. Any other occupied cell that touches an open one
+    /// blocks rays without a hit; those behind stay obstacles, as no ray reaches them. With all cells
+    /// of [`boundary::extract`](crate::boundary::extract) the grid stays equal.
+    ///
+    /// # Errors
+    /// If a cell is not an occupied cell of the grid.
+    pub fn with_boundary(
+        mut self,
+        boundary: &[BoundaryCell],
+        pooling: usize,
+    ) -> Result<Self, EngineError> {
+        let mut hit = CellSet::none(self.cells.len());
+        for &BoundaryCell { x, y } in boundary {
+            let (column, row) = (usize::from(x) / pooling, usize::from(y) / pooling);
+            if self.get(column as i64, row as i64) != Some(Cell::Occupied) {
+                return Err(EngineError::BoundaryCell { x, y });
+            }
+            hit.insert(row * self.width + column);
+        }
+        let is_missing = |&(x, y): &(usize, usize)| {
+            !hit.holds(y * self.width + x) && self.touches_open(x as i64, y as i64)
+        };
+        let missing: Vec<_> = self
+            .places(|cell| cell == Cell::Occupied)
+            .filter(is_missing)
+            .collect();
+        for &(x, y) in &missing {
+            self.cells[y * self.width + x] = Cell::Blocked;
+        }
+        self.occupied -= missing.len();
+        self.blocked += missing.len();
+        Ok(self)
     }
 
     /// Number of cells along x.
@@ -132,7 +170,7 @@ impl Grid {
 
     /// True if some open cell is unknown rather than free.
     pub(crate) fn has_unknown(&self) -> bool {
-        !self.has_blocked && self.free_cells + self.occupied < self.cells.len()
+        self.free_cells + self.occupied + self.blocked < self.cells.len()
     }
 
     /// Number of occupied cells.
@@ -144,7 +182,7 @@ impl Grid {
     /// True if any cell blocks rays without a hit.
     #[must_use]
     pub fn has_blocked(&self) -> bool {
-        self.has_blocked
+        self.blocked > 0
     }
 
     /// Returns the cell at column `x` of row `y`; `None` off the grid.

@@ -11,9 +11,8 @@
 //!
 //! ```text
 //! occupancy ─ grid ─┬─ search: index (prepared once) ─┐
-//!                   ├─ boundary ─ scatter ──┐         │
-//!                   └─ sweep ───────────────┤         │
-//! scan ─ beams ─ program (taper) ───────────┴─────────┴─ votes ─ peaks
+//!     boundary ─────┴─ sweep ─────────────────┐       │
+//! scan ─ beams ─ program (taper) ─────────────┴───────┴─ votes ─ peaks
 //!                                     known heading   all headings
 //! ```
 //!
@@ -36,7 +35,6 @@ pub mod chessboard;
 mod config;
 pub mod directions;
 mod error;
-pub mod exhaustive;
 pub mod fit;
 pub mod grid;
 pub mod heading;
@@ -53,7 +51,6 @@ pub mod peaks;
 pub mod program;
 pub mod reference;
 pub mod scan;
-pub mod scatter;
 pub mod search;
 mod simd;
 pub mod space;

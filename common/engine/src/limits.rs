@@ -128,11 +128,6 @@ impl Limits {
         }
     }
 
-    /// Number of cells along x.
-    pub(crate) fn width(&self) -> usize {
-        self.width
-    }
-
     /// Returns, for blocks of `side` cells a side, row by row, true if poses are searched in any
     /// cell. An index contains only these blocks.
     pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {

@@ -1,7 +1,6 @@
 //! A map and its settings, ready for searches.
 
 mod config;
-mod field;
 mod preparation;
 mod together;
 
@@ -15,11 +14,11 @@ use crate::limits::Limits;
 use crate::observation::Observation;
 use crate::program::ScanProgram;
 use crate::search::{self, BlockBounds, SearchIndex};
+use crate::simd::Simd;
 use crate::space::Space;
-use crate::sweep;
+use crate::sweep::{self, FieldSweep};
 use crate::votes::{FieldVotes, VoteSet, VoteShare};
 pub use config::LocalizerConfig;
-use field::Fields;
 pub use preparation::Preparation;
 
 /// Prior knowledge of the heading.
@@ -45,7 +44,7 @@ pub struct Localizer {
 #[derive(Debug, Clone)]
 enum Method {
     Search(Arc<SearchIndex>),
-    Field(Box<Fields>, Limits),
+    Field(Box<FieldSweep>, Limits),
 }
 
 /// Buffers for searches, and the last outcome. Kept from scan to scan: once the buffers are large
@@ -181,7 +180,7 @@ impl Localizer {
     pub fn index_bytes(&self) -> usize {
         match &self.method {
             Method::Search(index) => index.bytes(),
-            Method::Field(fields, _) => fields.bytes(),
+            Method::Field(sweeps, _) => sweeps.bytes(),
         }
     }
 
@@ -319,7 +318,7 @@ impl Localizer {
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
-        let Method::Field(fields, limits) = &self.method else {
+        let Method::Field(sweeps, limits) = &self.method else {
             panic!("this localizer was prepared for unknown headings");
         };
         if !heading.is_finite() {
@@ -344,8 +343,8 @@ impl Localizer {
             space: &self.space,
             heading: index,
         };
-        let scratch = (sweep, &mut *field);
-        if fields.fill(&self.grid, query, scratch, stop).is_none() {
+        let simd = Simd::new(InstructionSet::best());
+        if sweeps.fill(simd, query, sweep, field, stop).is_none() {
             return Ok(None);
         }
         limits.clear(field, index);

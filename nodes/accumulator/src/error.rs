@@ -2,7 +2,6 @@
 
 use engine::EngineError;
 use engine::heading::HeadingError;
-use messages::BoundaryCell;
 use transport::TransportError;
 
 /// Rejected scan or map, or failure of the node.
@@ -40,19 +39,6 @@ pub enum AccumulatorError {
         expected: u64,
         /// Number received.
         found: usize,
-    },
-    #[error("cell {}, {} of the boundary is not an occupied cell of the map", cell.x, cell.y)]
-    BoundaryCell {
-        /// Cell in the boundary.
-        cell: BoundaryCell,
-    },
-    #[error(
-        "cell {}, {} of the boundary follows {}, {}: they must rise by (y, x)",
-        cell.x, cell.y, previous.x, previous.y
-    )]
-    BoundaryOrder {
-        previous: BoundaryCell,
-        cell: BoundaryCell,
     },
     #[error("cannot start a thread to prepare map {map_id:016x}")]
     Thread {

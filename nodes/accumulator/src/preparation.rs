@@ -1,7 +1,6 @@
 //! Prepares a localizer from a map and its boundary, or from each map of a set.
 //!
-//! Both come from other processes, so everything in them is checked first. Only the completeness of
-//! a boundary is left to its sender, since checking it would mean extracting it again.
+//! Rays end in the cells of the boundary. The map says where poses may be and what is unknown.
 
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Preparation, Prior};
@@ -139,10 +138,7 @@ impl Job {
         let preparation = Preparation::of_map(frame, (width, height), cells, rules, config, prior)?;
         let preparation = match self.boundary {
             None => preparation,
-            Some(boundary) => {
-                check_boundary(&self.map, (&self.occupancy, self.rules), &boundary)?;
-                preparation.with_boundary(boundary)
-            }
+            Some(boundary) => preparation.with_boundary(&boundary)?,
         };
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
@@ -154,33 +150,11 @@ impl Job {
     }
 }
 
-/// Checks that each boundary cell is occupied and occurs once, since the engine relies on it.
-fn check_boundary(
-    map: &MapHeader,
-    (occupancy, rules): (&[u8], CellRules),
-    boundary: &[BoundaryCell],
-) -> Result<(), AccumulatorError> {
-    let (width, height) = (map.width, map.height);
-    let is_occupied = |cell: BoundaryCell| {
-        let (x, y) = (u32::from(cell.x), u32::from(cell.y));
-        let occupancy = occupancy.get(y as usize * width as usize + x as usize);
-        x < width && y < height && occupancy.is_some_and(|&cell| rules.is_occupied(cell))
-    };
-    if let Some(&cell) = boundary.iter().find(|&&cell| !is_occupied(cell)) {
-        return Err(AccumulatorError::BoundaryCell { cell });
-    }
-    let mut neighbours = boundary.iter().zip(boundary.iter().skip(1));
-    match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
-        Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
-        None => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
     use engine::boundary;
-    use engine::grid::Grid;
+    use engine::grid::{Cell, Grid};
 
     use super::*;
 
@@ -241,6 +215,19 @@ mod tests {
         assert_eq!(prepared.map_id, 77);
         assert_eq!(prepared.localizer.frame().map_from_grid.x, 3.0);
         assert_eq!(prepared.localizer.grid().free_cells(), 8);
+    }
+
+    #[test]
+    fn rays_hit_nothing_where_the_boundary_lacks_a_cell() {
+        let prepared = prepare(|pair| {
+            assert_eq!((pair.cells[3].x, pair.cells[3].y), (3, 0));
+            pair.cells.remove(3);
+            pair.header.boundary_cells -= 1;
+        });
+        let grid = prepared.unwrap();
+        let grid = grid.localizer.grid();
+        assert_eq!(grid.get(3, 0), Some(Cell::Blocked));
+        assert_eq!((grid.occupied_cells(), grid.free_cells()), (15, 8));
     }
 
     #[test]
@@ -310,12 +297,6 @@ mod tests {
         });
         refused("cell 6, 0 of the boundary", |pair| {
             pair.cells[3] = BoundaryCell { x: 6, y: 0 };
-        });
-        refused("cell 1, 0 of the boundary follows 2, 0", |pair| {
-            pair.cells.swap(1, 2);
-        });
-        refused("cell 0, 0 of the boundary follows 0, 0", |pair| {
-            pair.cells[1] = pair.cells[0];
         });
     }
 }

@@ -1,6 +1,7 @@
-//! Figures 1 to 3: the method step by step on small maps, each step computed by the
-//! engine's own projection from the boundary cells.
+//! Figures 1 to 3: the method step by step on small maps, each step computed by
+//! projection from the boundary cells.
 
+use benchmarks::scatter::Scatter;
 use drawing::Scene;
 use engine::EngineError;
 use engine::accumulator::{Accumulator, Query};
@@ -9,7 +10,6 @@ use engine::directions::Direction;
 use engine::grid::{self, CellRules, Grid};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::scan::Scan;
-use engine::scatter::Scatter;
 use engine::space::Space;
 use engine::taper::TaperShape;
 use messages::BoundaryCell;

@@ -2,11 +2,11 @@
 //! by projection from the boundary cells, its Gaussian over the bearing included where
 //! one is asked for.
 
+use benchmarks::scatter::Scatter;
 use benchmarks::worlds::World;
 use engine::accumulator::{Accumulator, Query};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::scan::Scan;
-use engine::scatter::Scatter;
 use engine::space::Space;
 
 /// Beyond this many deviations the Gaussian over the bearing is left out.

@@ -59,6 +59,10 @@ impl CellSet {
         }
     }
 
+    pub(crate) fn insert(&mut self, cell: usize) {
+        self.words[cell / WORD] |= 1 << (cell % WORD);
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.words
             .iter()

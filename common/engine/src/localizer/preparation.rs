@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use messages::BoundaryCell;
 
-use super::field::Fields;
 use super::{Localizer, LocalizerConfig, Method, Prior};
 use crate::EngineError;
+use crate::boundary;
 use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
 use crate::limits::Limits;
 use crate::search::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
 use crate::space::Space;
+use crate::sweep::FieldSweep;
 
 const MEGABYTE: u64 = 1_000_000;
 
@@ -27,7 +28,6 @@ pub struct Preparation {
     space: Space,
     config: LocalizerConfig,
     prior: Prior,
-    boundary: Option<Vec<BoundaryCell>>,
 }
 
 impl Preparation {
@@ -38,7 +38,7 @@ impl Preparation {
     /// See [`Grid::new`] and [`Preparation::new`].
     pub fn of_map(
         frame: GridFrame,
-        (width, height): (usize, usize),
+        sides: (usize, usize),
         occupancy: &[u8],
         rules: CellRules,
         config: LocalizerConfig,
@@ -46,12 +46,17 @@ impl Preparation {
     ) -> Result<Self, EngineError> {
         let pooling = grid::pooling(frame.resolution_m, config.search_cell);
         if pooling == 1 {
-            let grid = Grid::new(width, height, occupancy, rules)?;
+            let grid = Grid::new(sides.0, sides.1, occupancy, rules)?;
             return Preparation::new(frame, grid, config, prior);
         }
-        let pooled = Pooled::new(frame, (width, height), occupancy, rules, pooling)?;
+        let pooled = Pooled::new(frame, sides, occupancy, rules, pooling)?;
         let (width, height) = pooled.sides;
-        let grid = Grid::new(width, height, &pooled.occupancy, rules)?;
+        let mut grid = Grid::new(width, height, &pooled.occupancy, rules)?;
+        if rules.unknown_blocks {
+            // A free cell may contain unknown ones, behind which the map's own rays hit nothing.
+            let boundary = boundary::extract(&Grid::new(sides.0, sides.1, occupancy, rules)?);
+            grid = grid.with_boundary(&boundary, pooling)?;
+        }
         let preparation = Preparation::new(pooled.frame, grid, config, prior)?;
         Ok(Preparation {
             pooling,
@@ -88,17 +93,18 @@ impl Preparation {
             space,
             config,
             prior,
-            boundary: None,
         })
     }
 
-    /// Adds the boundary of the map's obstacles, all cells of [`crate::boundary::extract`], which
-    /// is extracted on demand otherwise. It is ignored if the map is searched in larger cells,
-    /// whose boundary differs.
-    #[must_use]
-    pub fn with_boundary(mut self, boundary: Vec<BoundaryCell>) -> Self {
-        self.boundary = (self.pooling == 1).then_some(boundary);
-        self
+    /// Takes the cells in which rays end with a hit from the boundary of the map's obstacles, see
+    /// [`Grid::with_boundary`]. Where the map is searched in larger cells, a ray hits those that
+    /// contain one.
+    ///
+    /// # Errors
+    /// If a cell of the boundary is not occupied on the map.
+    pub fn with_boundary(self, boundary: &[BoundaryCell]) -> Result<Self, EngineError> {
+        let grid = self.grid.with_boundary(boundary, self.pooling)?;
+        Ok(Preparation { grid, ..self })
     }
 
     /// Returns the key of the index that would be built; `None` for known headings, which need no
@@ -143,8 +149,7 @@ impl Preparation {
     ///
     /// # Errors
     /// If the limits exclude every pose, or more memory would be needed than is allowed.
-    pub fn finish(mut self) -> Result<Localizer, EngineError> {
-        let boundary = self.boundary.take();
+    pub fn finish(self) -> Result<Localizer, EngineError> {
         let Preparation {
             frame,
             grid,
@@ -158,7 +163,7 @@ impl Preparation {
                 self.check_memory(&limits)?;
                 Method::Search(Arc::new(SearchIndex::within(grid, space, limits)))
             }
-            Prior::Heading => Method::Field(Box::new(Fields::new(grid, boundary)), limits),
+            Prior::Heading => Method::Field(Box::new(FieldSweep::new(grid)), limits),
         };
         Ok(self.localizer(method))
     }

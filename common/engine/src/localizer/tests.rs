@@ -6,6 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::boundary;
 use crate::fit::{DistanceField, Ends};
 use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
@@ -175,6 +176,26 @@ proptest! {
         for (grid, scan, heading) in &worlds {
             let fresh = said(&mut All::default(), grid, scan, *heading);
             prop_assert_eq!(said(&mut all, grid, scan, *heading), fresh);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_boundary_of_a_map_changes_nothing(grid in any_grid(), pooling in 1usize..6) {
+        let rules = CellRules { unknown_blocks: grid.has_blocked(), ..CellRules::default() };
+        let frame = GridFrame { resolution_m: RESOLUTION_M, map_from_grid: Pose::IDENTITY };
+        let config = LocalizerConfig {
+            search_cell: RESOLUTION_M * pooling as f64,
+            ..LocalizerConfig::default()
+        };
+        let sides = (grid.width(), grid.height());
+        let cells = occupancy_of(&grid);
+        let prepare = || Preparation::of_map(frame, sides, &cells, rules, config.clone(), Prior::None);
+        // A map may have no obstacle or no free cell.
+        if let Ok(extracted) = prepare() {
+            let given = prepare().unwrap().with_boundary(&boundary::extract(&grid)).unwrap();
+            prop_assert_eq!(given.key(), extracted.key());
         }
     }
 }
