@@ -25,8 +25,10 @@ impl Browser {
         if !chromium.is_ok_and(|outcome| outcome.status.success()) {
             return None;
         }
+        let log = tempfile::NamedTempFile::new().unwrap();
         let mut driver = Command::new("chromedriver")
-            .arg("--port=0")
+            .args(["--port=0", "--verbose", "--log-path"])
+            .arg(log.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -61,7 +63,10 @@ impl Browser {
                 .capabilities(capabilities)
                 .connect(&format!("http://127.0.0.1:{port}"))
                 .await
-                .unwrap()
+                .unwrap_or_else(|error| {
+                    let log = std::fs::read_to_string(log.path()).unwrap_or_default();
+                    panic!("no browser: {error}\n{log}")
+                })
         });
         let browser = Browser {
             client,

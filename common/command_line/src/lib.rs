@@ -4,6 +4,7 @@
 pub mod names;
 mod number;
 pub mod output;
+pub mod settings;
 pub mod stdout;
 
 pub use number::{number, within};

@@ -52,6 +52,7 @@ pub mod program;
 pub mod reference;
 pub mod scan;
 pub mod search;
+pub mod settings;
 mod simd;
 pub mod space;
 pub mod sweep;

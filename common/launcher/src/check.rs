@@ -16,7 +16,7 @@ use transport::node::CHECK_ARGUMENTS_VARIABLE;
 use crate::{
     descriptor::{self, Builds, Descriptor},
     installed::is_ours,
-    run::{arguments::value, executable, not_started},
+    run::{arguments::value, executable, lasers, not_started, shared},
 };
 
 /// Node that reads a laser, and node that takes scans of a ROS 2 robot.
@@ -54,6 +54,9 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         .collect::<Result<_, _>>()?;
     refused.extend(tildes(&dataflow));
     refused.extend(unset_mount(&dataflow));
+    let mut named = dataflow.clone();
+    let alike = lasers::name(&mut named, &folder).and_then(|()| shared::check(&named, &folder));
+    refused.extend(alike.err().map(|error| format!("{error:#}")));
     let picture = picture(&dataflow);
     if refused.is_empty() && !unbuilt.is_empty() {
         let ids: Vec<&str> = unbuilt.iter().map(|node| node.id.as_str()).collect();

@@ -12,7 +12,7 @@ use crate::{Pose2, Stamp};
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("HypothesesHeader/v4")
+    type_name("HypothesesHeader/v5")
 )]
 #[repr(C)]
 pub struct HypothesesHeader {
@@ -44,6 +44,8 @@ pub struct HypothesesHeader {
     /// an id of all its maps; 0 without a search. It tells a search without a result from no
     /// search.
     pub searched: u64,
+    /// Id of the settings by which scans are read and compared with the map.
+    pub settings: u64,
 }
 
 impl HypothesesHeader {

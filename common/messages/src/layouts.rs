@@ -34,10 +34,10 @@ pin! {
     HealthHeader, size 80, align 8 {
         node: 0, sent_ns: 32, received: 40, sent: 48, dropped: 56, refused: 64, pid: 72, state: 76
     }
-    HypothesesHeader, size 96, align 8 {
+    HypothesesHeader, size 104, align 8 {
         stamp: 0, map_id: 24, sent_ns: 32, search_ns: 40, extract_ns: 48, verdict: 56,
         alternatives: 60, confidence: 64, inlier_share: 68, best: 72, highest_possible: 76,
-        mount_known: 80, searched: 88
+        mount_known: 80, searched: 88, settings: 96
     }
     Hypothesis, size 152, align 8 {
         map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120, probability: 124,
@@ -76,12 +76,13 @@ pin! {
         places: 312, from_scan: 316, pose_known: 320, mount_known: 324, odom_known: 328,
         odom_frame: 336
     }
-    VotesHeader, size 184, align 8 {
+    VotesHeader, size 192, align 8 {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76, truncated: 80,
         beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136, max_beams: 144, pooling: 148,
-        beam_arc_m: 152, has_readings: 160, lasers_used: 164, maps: 168, searched: 176
+        beam_arc_m: 152, has_readings: 160, lasers_used: 164, maps: 168, searched: 176,
+        settings: 184
     }
     VotesByMapHeader, size 24, align 8 { stamp: 0 }
     Vote, size 8, align 2 { x: 0, y: 2, heading: 4, intensity: 6 }

@@ -14,7 +14,7 @@ use crate::{Pose2, Stamp};
 #[cfg_attr(
     feature = "iceoryx2",
     derive(ZeroCopySend),
-    type_name("VotesHeader/v6")
+    type_name("VotesHeader/v7")
 )]
 #[repr(C)]
 pub struct VotesHeader {
@@ -76,6 +76,8 @@ pub struct VotesHeader {
     /// Id of what was searched, see [`searched_id`](crate::searched_id): the map's id, or for a set
     /// an id of all its maps; 0 without a search.
     pub searched: u64,
+    /// Id of the settings by which scans are joined, deskewed and thinned.
+    pub settings: u64,
 }
 
 /// Header of topic `votes_by_map`: assigns the votes of a scan to maps. The items are the headers

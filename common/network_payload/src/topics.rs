@@ -82,10 +82,10 @@ wire! {
     Boundary = "Boundary/v2", 32 * MIB, boundary, [stamp.entered_ns], COMPRESSED, KEPT;
     Maps = "Maps/v1", 64 * MIB, maps, [stamp.entered_ns], COMPRESSED, KEPT;
     VotesByMap = "VotesByMap/v1", MIB, votes_by_map, [stamp.entered_ns];
-    Votes = "Votes/v6", 16 * MIB, votes, [stamp.entered_ns];
+    Votes = "Votes/v7", 16 * MIB, votes, [stamp.entered_ns];
     Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
     Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], COMPRESSED, ON_DEMAND;
-    Hypotheses = "Hypotheses/v4", MIB, hypotheses, [stamp.entered_ns, sent_ns];
+    Hypotheses = "Hypotheses/v5", MIB, hypotheses, [stamp.entered_ns, sent_ns];
     Particles = "Particles/v1", 32 * MIB, particles, [stamp.entered_ns];
     Tracked = "Pose/v1", 4 * KIB, tracked, [stamp.entered_ns, sent_ns];
     Attention = "Attention/v1", 4 * KIB, attention, [stamp.entered_ns];

@@ -259,6 +259,7 @@ mod tests {
         let expected = VotesHeader {
             maps: 0,
             searched: 0,
+            settings: 0,
             stamp: header().stamp,
             map_id: 77,
             total: 1,

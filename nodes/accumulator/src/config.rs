@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use command_line::number;
+use command_line::settings::{self, SettingsFile};
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
@@ -22,6 +23,9 @@ const WORK_LIMIT: f64 = 5_000.0;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "accumulator", version)]
 pub struct Config {
+    #[command(flatten)]
+    pub file: SettingsFile,
+
     #[command(flatten)]
     pub localizer: LocalizerConfig,
 
@@ -64,7 +68,7 @@ impl Config {
     /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
-        command_line::parse(Config::check)
+        settings::parse(|config: &Config| &config.file, Config::check)
     }
 
     /// Returns the settings of the localizer, with a default work limit so that even clutter does

@@ -130,7 +130,7 @@ mod tests {
     fn the_forms_are_those_of_the_wire() {
         assert_eq!(ENCODINGS[0], network_payload::encoding::<topic::Scan>());
         let answer = network_payload::encoding::<topic::Hypotheses>();
-        assert!(answer.ends_with("backcast.Hypotheses/v4"), "{answer}");
+        assert!(answer.ends_with("backcast.Hypotheses/v5"), "{answer}");
         // The keys of the JSON form are still those of version 2.
         assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
     }

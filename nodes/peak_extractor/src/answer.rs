@@ -315,6 +315,7 @@ mod tests {
             highest_possible: 125,
             mount_known: 1,
             searched: 9,
+            settings: 0,
         };
         assert_eq!(answer.header, expected);
     }

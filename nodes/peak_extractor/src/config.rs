@@ -1,6 +1,7 @@
 //! Command-line options.
 
 use clap::Parser;
+use command_line::settings::{self, SettingsFile};
 use engine::peaks::PeakConfig;
 
 use crate::ParticlesConfig;
@@ -10,11 +11,21 @@ use crate::ParticlesConfig;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "peak_extractor", version)]
 pub struct Config {
+    #[command(flatten)]
+    pub file: SettingsFile,
     /// Rules for combining votes into places, and for the verdict.
     #[command(flatten)]
     pub peaks: PeakConfig,
     #[command(flatten)]
     pub particles: ParticlesConfig,
+}
+
+impl Config {
+    /// Parses the command line; exits with code 2 if it is invalid.
+    #[must_use]
+    pub fn from_command_line() -> Self {
+        settings::parse(|config: &Config| &config.file, |_| Ok(()))
+    }
 }
 
 #[cfg(test)]

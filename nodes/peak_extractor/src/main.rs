@@ -2,11 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use peak_extractor::Config;
 
 fn main() -> ExitCode {
-    let config = Config::parse();
+    let config = Config::from_command_line();
     transport::node::main("peak_extractor", |graph| {
         peak_extractor::run(graph, &config)
     })

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use engine::beams::BeamConfig;
-use messages::{MapSet, NodeState, SearchOutcome, topic};
+use engine::settings::fit_id;
+use messages::{MapSet, NodeState, SearchOutcome, VotesHeader, topic};
 use transport::{
     Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
     with_causes,
@@ -173,17 +174,22 @@ impl Node {
         let done = match answered {
             Ok(answer) => {
                 self.last_refusal.clear();
-                self.send(&answer, extract_ns)
+                self.send(header, &answer, extract_ns)
             }
             Err(error) => self
-                .send(&nothing(header), extract_ns)
+                .send(header, &nothing(header), extract_ns)
                 .and_then(|()| self.refuse(header.stamp.counter, &error)),
         };
         self.workspace = workspace;
         done
     }
 
-    fn send(&mut self, answer: &Answer<'_>, extract_ns: u64) -> Result<(), TransportError> {
+    fn send(
+        &mut self,
+        votes: &VotesHeader,
+        answer: &Answer<'_>,
+        extract_ns: u64,
+    ) -> Result<(), TransportError> {
         let hypotheses = answer.hypotheses();
         let mut loan = self.hypotheses.loan(hypotheses.len())?;
         for (item, hypothesis) in loan.items_mut().iter_mut().zip(hypotheses) {
@@ -191,6 +197,7 @@ impl Node {
         }
         let header = loan.header_mut();
         *header = answer.header;
+        header.settings = fit_id(votes.settings, &self.config.peaks.fit);
         header.extract_ns = extract_ns;
         header.sent_ns = monotonic_ns();
         loan.send()?;

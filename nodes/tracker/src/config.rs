@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use command_line::number;
+use command_line::settings::{self, SettingsFile};
 use engine::beams::BeamConfig;
 use engine::fit::FitConfig;
 use engine::joined::JoinConfig;
+use engine::settings::{fit_id, reading_id};
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
 
@@ -14,6 +16,9 @@ use geometry::Pose;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "tracker", version)]
 pub struct Config {
+    #[command(flatten)]
+    pub file: SettingsFile,
+
     #[command(flatten)]
     pub tracking: TrackingConfig,
 
@@ -43,6 +48,19 @@ pub struct Config {
     /// Settings of the fit between beams and map.
     #[command(flatten)]
     pub fit: FitConfig,
+}
+
+impl Config {
+    /// Parses the command line; exits with code 2 if it is invalid.
+    #[must_use]
+    pub fn from_command_line() -> Self {
+        settings::parse(|config: &Config| &config.file, |_| Ok(()))
+    }
+
+    /// Id of the settings by which this node reads scans and compares them with the map.
+    pub(crate) fn settings(&self) -> u64 {
+        fit_id(reading_id(&self.join, &self.beams), &self.fit)
+    }
 }
 
 fn pose(text: &str) -> Result<Pose, String> {

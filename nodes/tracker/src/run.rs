@@ -34,6 +34,9 @@ const TICK: Duration = Duration::from_millis(50);
 /// Interval for saving the last pose.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
+const OTHER_SETTINGS: &str = "accumulator and peak_extractor read scans by other settings than this \
+    tracker, so what they find is left out: start all three with the same --settings FILE";
+
 /// Tracks the robot until the stop flag is set.
 ///
 /// # Errors
@@ -48,6 +51,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     };
     let mut node = Node {
         config: config.clone(),
+        settings: config.settings(),
         joiner: Joiner::new(config.join.clone()),
         worlds: Worlds::default(),
         served: None,
@@ -85,6 +89,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
 
 struct Node {
     config: Config,
+    /// Id of the settings that the node shares with those that search.
+    settings: u64,
     /// Newest scans, and the motion of the robot.
     joiner: Joiner,
     /// Maps, with the current scan on each of them.
@@ -158,8 +164,13 @@ impl Node {
         }
         while let Some(found) = inputs.hypotheses.receive()? {
             self.health.count_received(1);
-            self.answers.push(found.header(), found.items());
-            self.is_silent = false;
+            match found.header().settings == self.settings {
+                true => {
+                    self.answers.push(found.header(), found.items());
+                    self.is_silent = false;
+                }
+                false => self.refuse(OTHER_SETTINGS)?,
+            }
         }
         while let Some(initial) = inputs.initial_poses.receive()? {
             self.health.count_received(1);

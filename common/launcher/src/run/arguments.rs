@@ -13,6 +13,7 @@ pub const EMULATOR: &str = "emulator";
 pub const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
 /// Node that searches each scan.
 pub const ACCUMULATOR: &str = "accumulator";
+pub const TRACKER: &str = "tracker";
 pub const MAP_SERVER: &str = "map_server";
 
 const MONITOR: &str = "monitor";

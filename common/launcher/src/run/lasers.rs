@@ -1,57 +1,76 @@
-//! Several lasers in one graph: names the senders of scans and tells the accumulator which to join.
+//! Several lasers in one graph: names the senders of scans and tells the nodes that search and track
+//! which to join.
 //!
-//! Each `lms_reader` gets its name, and the accumulator the lasers in the order of its inputs.
-//! Arguments in the descriptor have priority.
+//! Each `lms_reader` gets its name, and the accumulator and the tracker the lasers in the order of the
+//! accumulator's inputs. What the descriptor and the settings say has priority.
 
-use dataflow::{Dataflow, Input};
+use std::path::Path;
+
+use dataflow::{Dataflow, Input, Node};
 use messages::{Topic, topic};
 
-use super::arguments::{ACCUMULATOR, set, value};
+use super::arguments::{ACCUMULATOR, TRACKER, set, value};
+use super::shared;
 
 const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
 
-/// Names readers and configures accumulators if a graph has several lasers.
-pub(crate) fn name(dataflow: &mut Dataflow) {
+/// Names readers and tells the nodes that join scans if a graph has several lasers. `folder` is that of
+/// the descriptor.
+///
+/// # Errors
+/// If a file of settings cannot be used.
+pub(crate) fn name(dataflow: &mut Dataflow, folder: &Path) -> anyhow::Result<()> {
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);
     let lasers: usize = senders.map(|node| node.streams.len().max(1)).sum();
-    if lasers < 2 {
-        return;
-    }
+    let mut order = None;
     for node in &mut dataflow.nodes {
-        if node.executable() == LMS_READER && value(node, LASER).is_none() {
+        if node.executable() == LMS_READER && lasers > 1 && value(node, LASER).is_none() {
             let id = node.id.clone();
             set(node, LASER, Some(&id));
         }
-        if node.executable() == ACCUMULATOR && value(node, SCANS).is_none() {
+        if node.executable() == ACCUMULATOR && order.is_none() {
             let scans = node.inputs.iter().filter(|i| i.topic == topic::Scan::NAME);
             let wired: Vec<&str> = scans.map(laser).collect();
-            let wired = wired.join(",");
-            set(
-                node,
-                SCANS,
-                Some(&wired).filter(|w| !w.is_empty()).map(|w| &**w),
-            );
+            let wired = (lasers > 1).then(|| wired.join(","));
+            order = shared::given(node, "scans", folder)?.or(wired);
         }
     }
+    let order = order.filter(|order| !order.is_empty());
+    for node in joining(dataflow) {
+        if let (Some(order), None) = (&order, shared::given(node, "scans", folder)?) {
+            set(node, SCANS, Some(order));
+        }
+    }
+    Ok(())
 }
 
-/// Makes the accumulators join these lasers, regardless of their inputs.
-pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
+/// Nodes that join scans.
+fn joining(dataflow: &mut Dataflow) -> impl Iterator<Item = &mut Node> {
     let nodes = dataflow.nodes.iter_mut();
-    for node in nodes.filter(|node| node.executable() == ACCUMULATOR) {
+    nodes.filter(|node| [ACCUMULATOR, TRACKER].contains(&node.executable()))
+}
+
+/// Makes the nodes join these lasers, regardless of their inputs and settings.
+pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
+    for node in joining(dataflow) {
         set(node, SCANS, Some(&lasers.join(",")));
     }
 }
 
 /// Returns the laser whose scans trigger answers, if the graph has several lasers.
-pub(crate) fn first(dataflow: &Dataflow) -> Option<String> {
+///
+/// # Errors
+/// If a file of settings cannot be used.
+pub(crate) fn first(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<Option<String>> {
     let mut nodes = dataflow.nodes.iter();
-    let accumulator = nodes.find(|node| node.executable() == ACCUMULATOR)?;
-    let first = value(accumulator, SCANS)?.split(',').next()?;
-    Some(first.to_owned())
+    let Some(accumulator) = nodes.find(|node| node.executable() == ACCUMULATOR) else {
+        return Ok(None);
+    };
+    let scans = shared::given(accumulator, "scans", folder)?;
+    Ok(scans.and_then(|scans| Some(scans.split(',').next()?.to_owned())))
 }
 
 fn laser(input: &Input) -> &str {
@@ -72,7 +91,7 @@ mod tests {
             ..dataflow::Topics::default()
         };
         let mut dataflow = dataflow::parse(text, &topics).unwrap();
-        name(&mut dataflow);
+        name(&mut dataflow, Path::new("/")).unwrap();
         dataflow.nodes.into_iter().map(|node| node.args).collect()
     }
 
@@ -85,6 +104,7 @@ mod tests {
   - {id: bag, path: bin/replayer, outputs: [scan_left, scan_right]}
   - {id: a, path: bin/accumulator, inputs: {scan_front: front/scan, scan_rear: rear/scan, l: bag/scan_left}}
   - {id: b, path: bin/accumulator, args: --scans nose, inputs: {scan: front/scan}}
+  - {id: t, path: bin/tracker, inputs: {scan: front/scan}}
 ",
         );
         assert_eq!(args[0], ["--laser=rear"]);
@@ -92,6 +112,7 @@ mod tests {
         assert!(args[2].is_empty());
         assert_eq!(args[3], ["--scans=front,rear,left"]);
         assert_eq!(args[4], ["--scans", "nose"]);
+        assert_eq!(args[5], ["--scans=front,rear,left"]);
     }
 
     #[test]

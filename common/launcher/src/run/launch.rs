@@ -38,7 +38,7 @@ use super::{
     output::{Output, Reader},
     record::{self, RECORDER},
     recording::Recorder,
-    replay, tracker,
+    replay, shared, tracker,
     watch::Watch,
 };
 use crate::descriptor::{self, Builds, Descriptor};
@@ -94,7 +94,8 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         ));
     }
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
-    lasers::name(&mut descriptor.dataflow);
+    lasers::name(&mut descriptor.dataflow, &descriptor.folder)?;
+    shared::check(&descriptor.dataflow, &descriptor.folder)?;
     tracker::settle(&mut descriptor.dataflow);
     record::add(
         &config.options.record,
@@ -163,7 +164,7 @@ fn launch(
     journal: &mut Journal,
 ) -> anyhow::Result<Course> {
     let graph = Graph::join_named(LAUNCHER, name)?;
-    let first_laser = lasers::first(&descriptor.dataflow);
+    let first_laser = lasers::first(&descriptor.dataflow, &descriptor.folder)?;
     let watch = Watch::new(&graph, first_laser, journal.has_logs())?;
     note(&format!("graph {name} is starting; Ctrl-C stops it"));
     let nodes = descriptor.dataflow.nodes.clone();

@@ -14,7 +14,7 @@ pub mod crew;
 mod forward;
 mod foxglove;
 mod journal;
-mod lasers;
+pub(crate) mod lasers;
 mod launch;
 mod log_files;
 mod options;
@@ -25,6 +25,7 @@ mod record;
 mod recording;
 pub mod replay;
 mod report;
+pub(crate) mod shared;
 mod summary;
 pub mod supervision;
 #[cfg(test)]

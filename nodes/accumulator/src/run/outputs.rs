@@ -1,6 +1,7 @@
 //! Publishers of the node.
 
 use engine::beams::BeamConfig;
+use engine::settings::reading_id;
 use messages::{
     FieldHeader, Reading, ReadingsHeader, Stamp, Vote, VotesByMapHeader, VotesHeader, topic,
 };
@@ -15,6 +16,8 @@ pub(super) struct Outputs {
     readings: Publisher<topic::Readings>,
     field: Publisher<topic::Field>,
     field_pace: Pace,
+    /// Id of the settings by which scans are read.
+    settings: u64,
 }
 
 impl Outputs {
@@ -26,6 +29,7 @@ impl Outputs {
             readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
+            settings: reading_id(&config.join, &config.localizer.votes.beams),
         })
     }
 
@@ -48,6 +52,7 @@ impl Outputs {
         *loan.header_mut() = VotesHeader {
             total: total as u64,
             maps: by_map.len() as u64,
+            settings: self.settings,
             ..*leading
         };
         let mut rest = loan.items_mut();
@@ -60,7 +65,14 @@ impl Outputs {
     }
 
     pub(super) fn votes(&self, header: &VotesHeader, votes: &[Vote]) -> Result<(), TransportError> {
-        self.votes.send(*header, votes)
+        let settings = self.settings;
+        self.votes.send(
+            VotesHeader {
+                settings,
+                ..*header
+            },
+            votes,
+        )
     }
 
     pub(super) fn readings(

@@ -41,6 +41,29 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
 }
 
 #[test]
+fn what_was_found_by_other_settings_is_left_out_and_the_settings_are_named() {
+    let isolated = Isolated::new("settings");
+    let drawn = hall("");
+    let world = World::of_map(&isolated, &drawn);
+    let health = isolated.join("watcher");
+    let reports = health.subscriber::<topic::Health>().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("localization.yaml");
+    std::fs::write(&file, "max_beams: 90\n").unwrap();
+    let node = world.start(&["--settings", file.to_str().unwrap()]);
+    let id = drawn.header().map_id;
+    for x in [6, 8, 10, 12, 14] {
+        let pose = world.step(x, id, Some(id)).pose;
+        assert_eq!(pose.state, TrackState::Searching as u32, "{pose:?}");
+    }
+    wait_until(&health, &reports, |_, error| {
+        let error = String::from_utf8_lossy(error);
+        error.contains("read scans by other settings") && error.contains("--settings FILE")
+    });
+    node.stop();
+}
+
+#[test]
 fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searched() {
     let isolated = Isolated::new("remember");
     let drawn = hall("");

@@ -5,6 +5,10 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use bytemuck::Zeroable;
+use engine::beams::BeamConfig;
+use engine::fit::FitConfig;
+use engine::joined::JoinConfig;
+use engine::settings::{fit_id, reading_id};
 use geometry::{Covariance, Pose};
 use messages::{
     FrameName, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, MapHeader, MapName,
@@ -260,6 +264,10 @@ impl World {
             stamp,
             searched,
             map_id: found.map_or(0, |found| found.map_id),
+            settings: fit_id(
+                reading_id(&JoinConfig::default(), &BeamConfig::default()),
+                &FitConfig::default(),
+            ),
             ..HypothesesHeader::zeroed()
         };
         self.hypotheses.send(header, found.as_slice())

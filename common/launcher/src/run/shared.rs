@@ -1,0 +1,165 @@
+//! Settings that nodes share: the tracker reads scans as the accumulator does, and compares them with
+//! the map as the peak_extractor does. They come from one file, `--settings`, or from options.
+
+use std::path::Path;
+
+use anyhow::bail;
+use clap::Parser as _;
+use command_line::settings::{self, FIT_KEYS, READING_KEYS};
+use dataflow::{Dataflow, Node};
+use engine::beams::BeamConfig;
+use engine::fit::FitConfig;
+use engine::joined::JoinConfig;
+
+use super::arguments::{ACCUMULATOR, TRACKER, value};
+
+const PEAK_EXTRACTOR: &str = "peak_extractor";
+
+/// Returns the value that a node is given for a setting; `None` if it has its default. `folder` is
+/// that of the descriptor.
+///
+/// # Errors
+/// If the node's file of settings cannot be used.
+pub(crate) fn given(node: &Node, key: &str, folder: &Path) -> anyhow::Result<Option<String>> {
+    let option = format!("--{}", key.replace('_', "-"));
+    if let Some(value) = value(node, &option) {
+        return Ok(Some(value.to_owned()));
+    }
+    let Some(file) = value(node, "--settings") else {
+        return Ok(None);
+    };
+    Ok(settings::read(&folder.join(file))?.remove(key))
+}
+
+/// Settings that nodes share, as each of them parses its own.
+#[derive(Debug, PartialEq, clap::Parser)]
+struct Shared {
+    #[command(flatten)]
+    join: JoinConfig,
+    #[command(flatten)]
+    beams: BeamConfig,
+    #[command(flatten)]
+    fit: FitConfig,
+}
+
+/// Checks that the tracker has the settings of the nodes before it.
+///
+/// # Errors
+/// Names the nodes and a setting that differs, or a file of settings that cannot be used.
+pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
+    let find = |executable| {
+        let mut nodes = dataflow.nodes.iter();
+        nodes.find(|node| node.executable() == executable)
+    };
+    let Some(tracker) = find(TRACKER) else {
+        return Ok(());
+    };
+    for (executable, keys) in [
+        (ACCUMULATOR, &READING_KEYS[..]),
+        (PEAK_EXTRACTOR, &FIT_KEYS),
+    ] {
+        let Some(node) = find(executable) else {
+            continue;
+        };
+        for key in keys {
+            let values = [given(node, key, folder)?, given(tracker, key, folder)?];
+            let [here, there] = values.each_ref().map(|value| parsed(key, value.as_ref()));
+            // A value that is wrong is refused by its node.
+            if here.zip(there).is_some_and(|(here, there)| here != there) {
+                let said = |value: &Option<String>| match value {
+                    Some(value) => format!("`{value}`"),
+                    None => "the default".to_owned(),
+                };
+                bail!(
+                    "nodes {} and {} have to read scans alike, but {key} is {} at the one and {} at \
+                     the other: write it into a file, and give both --settings FILE",
+                    node.id,
+                    tracker.id,
+                    said(&values[0]),
+                    said(&values[1])
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Returns the settings of a node that is given this value alone; `None` if the value is wrong.
+fn parsed(key: &str, value: Option<&String>) -> Option<Shared> {
+    let option = value.map(|value| format!("--{}={value}", key.replace('_', "-")));
+    Shared::try_parse_from(std::iter::once("node".to_owned()).chain(option)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::testing;
+
+    fn checked(accumulator: &str, peaks: &str, tracker: &str) -> Result<(), String> {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(
+            folder.path().join("s.yaml"),
+            "max_beams: 90\nfit_sigma_m: 0.2\n",
+        )
+        .unwrap();
+        let text = format!(
+            "nodes:
+  - {{id: p, path: bin/peak_extractor, args: \"{peaks}\"}}
+  - {{id: a, path: bin/accumulator, args: \"{accumulator}\"}}
+  - {{id: t, path: bin/tracker, args: \"{tracker}\"}}
+"
+        );
+        check(&testing::parsed(&text), folder.path()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn nodes_with_other_settings_than_the_tracker_are_refused_by_name() {
+        let same = [
+            ("", "", ""),
+            (
+                "--max-beams 90 --headings 360",
+                "--particles 9",
+                "--max-beams=90 --rate 5",
+            ),
+            (
+                "--settings s.yaml",
+                "--settings=s.yaml",
+                "--settings s.yaml",
+            ),
+            (
+                "--settings s.yaml",
+                "--fit-sigma-m 0.2",
+                "--settings s.yaml",
+            ),
+            ("--max-beams 180 --deskew true", "--drawn-doubt 0.15", ""),
+            ("--max-beams many", "", ""),
+        ];
+        for (accumulator, peaks, tracker) in same {
+            assert_eq!(checked(accumulator, peaks, tracker), Ok(()), "{tracker}");
+        }
+        for (accumulator, peaks, tracker, expected) in [
+            (
+                "--max-beams 90",
+                "",
+                "",
+                "nodes a and t have to read scans alike, but max_beams is `90` at the one and the default at the other",
+            ),
+            (
+                "--settings s.yaml",
+                "--settings s.yaml",
+                "",
+                "max_beams is `90`",
+            ),
+            (
+                "--settings s.yaml",
+                "",
+                "--settings s.yaml",
+                "nodes p and t have to read scans alike, but fit_sigma_m is the default",
+            ),
+            ("--settings none.yaml", "", "", "none.yaml"),
+        ] {
+            let error = checked(accumulator, peaks, tracker).unwrap_err();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+}
