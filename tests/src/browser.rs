@@ -27,10 +27,9 @@ impl Browser {
         }
         let log = tempfile::NamedTempFile::new().unwrap();
         let mut driver = Command::new("chromedriver")
-            .args(["--port=0", "--verbose", "--log-path"])
-            .arg(log.path())
+            .args(["--port=0", "--verbose"])
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
+            .stderr(log.reopen().unwrap())
             .spawn()
             .ok()?;
         let lines = BufReader::new(driver.stdout.take().unwrap()).lines();
