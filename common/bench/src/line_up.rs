@@ -1,8 +1,8 @@
 //! Who takes part in a table, prepared for one place.
 
 use benchmarks::baselines::{
-    Baseline, FieldCorrelation, MonteCarlo, MonteCarloConfig, PatchCorrelation, RangeTable,
-    RayCasting,
+    Baseline, FieldCorrelation, MonteCarlo, MonteCarloConfig, PatchCorrelation, PlainCorrelation,
+    RangeTable, RayCasting,
 };
 use benchmarks::timing::cpu_ms;
 use benchmarks::worlds::World;
@@ -23,6 +23,7 @@ pub(super) struct LineUp {
     table: Table,
     pub(super) world: World,
     pub(super) space: Space,
+    ray_stepping: Option<Prepared<RayCasting>>,
     ray_casting: Option<Prepared<RayCasting>>,
     range_table: Option<Prepared<RangeTable>>,
     patch: Option<Prepared<PatchCorrelation>>,
@@ -65,6 +66,8 @@ impl LineUp {
         let all = 0..space.directions.count();
         Ok(LineUp {
             table,
+            ray_stepping: with_baselines
+                .then(|| Prepared::new(|| RayCasting::new(&world, &space).with_single_steps())),
             ray_casting: with_baselines.then(|| Prepared::new(|| RayCasting::new(&world, &space))),
             range_table: has_table.then(|| Prepared::new(|| RangeTable::new(&world, &space, all))),
             patch: with_baselines.then(|| Prepared::new(|| PatchCorrelation::new(&world, &space))),
@@ -86,6 +89,9 @@ impl LineUp {
     pub(super) fn contestants(&mut self, sigma_cells: f64, patience_s: f64) -> Vec<Contestant<'_>> {
         let (world, space, table) = (&self.world, &self.space, self.table);
         let mut all = Vec::new();
+        if let Some(it) = &mut self.ray_stepping {
+            all.push(baseline(Method::RayStepping, it.cpu_ms, &mut it.value));
+        }
         if let Some(it) = &mut self.ray_casting {
             all.push(baseline(Method::RayCasting, it.cpu_ms, &mut it.value));
         }
@@ -93,6 +99,8 @@ impl LineUp {
             all.push(baseline(Method::RangeTable, it.cpu_ms, &mut it.value));
         }
         if let Some(it) = &mut self.patch {
+            let plain = Prepared::new(|| PlainCorrelation::new(world, space));
+            all.push(baseline(Method::PlainPatch, plain.cpu_ms, plain.value));
             all.push(baseline(Method::Patch, it.cpu_ms, &mut it.value));
             let field = Prepared::new(|| FieldCorrelation::new(world, space, sigma_cells));
             all.push(baseline(Method::Field, field.cpu_ms, field.value));

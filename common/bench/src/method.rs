@@ -3,8 +3,10 @@
 /// A method of global localization.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Method {
+    RayStepping,
     RayCasting,
     RangeTable,
+    PlainPatch,
     Patch,
     Field,
     MonteCarlo,
@@ -42,8 +44,10 @@ impl Method {
     /// As reports name it.
     pub(super) fn name(self) -> &'static str {
         match self {
+            Method::RayStepping => "markov_ray_stepping",
             Method::RayCasting => "markov_ray_casting",
             Method::RangeTable => "markov_range_table",
+            Method::PlainPatch => "correlation_patch_plain",
             Method::Patch => "correlation_patch",
             Method::Field => "correlation_likelihood_field",
             Method::MonteCarlo => "monte_carlo",
@@ -59,8 +63,10 @@ impl Method {
     /// As tables name it.
     pub(super) fn label(self) -> &'static str {
         match self {
+            Method::RayStepping => "Markov, rays cell by cell",
             Method::RayCasting => "Markov, ray casting",
             Method::RangeTable => "Markov, range table",
+            Method::PlainPatch => "Correlation, patch, pose by pose",
             Method::Patch => "Correlation, patch",
             Method::Field => "Correlation, likelihood field",
             Method::MonteCarlo => "Monte Carlo",
@@ -96,10 +102,12 @@ impl Method {
             headings,
         } = *sizes;
         let (operations, additions) = match self {
-            Method::RayCasting | Method::RangeTable => (n * (2.0 * m + 1.0), 2.0 * m * n),
+            Method::RayStepping | Method::RayCasting | Method::RangeTable => {
+                (n * (2.0 * m + 1.0), 2.0 * m * n)
+            }
             // A product and a sum for each cell of the patch; a look-up and a
             // sum for each end point.
-            Method::Patch => (2.0 * k * m * n, k * m * n),
+            Method::PlainPatch | Method::Patch => (2.0 * k * m * n, k * m * n),
             Method::Field => (2.0 * m * n, m * n),
             Method::Scatter | Method::Sweep | Method::Exhaustive => (2.0 * m * p, k * m * p),
             _ => return None,

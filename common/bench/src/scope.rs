@@ -34,7 +34,7 @@ pub(super) struct Filter {
     /// Sides of the square worlds in cells of 0.05 m, 32..=5000
     #[arg(long, value_delimiter = ',', value_name = "CELLS", value_parser = clap::value_parser!(u32).range(32..=i64::from(MAX_SIDE)))]
     pub(super) size: Vec<u32>,
-    /// Boundary cells over free cells, per cent, 1..=150
+    /// Boundary cells over free cells, per cent, 1..=300
     #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = parse_ratio)]
     pub(super) p_over_n: Vec<f64>,
     /// Standard deviation of a reading, per cent of its range, 0..=25
@@ -52,7 +52,7 @@ pub(super) struct Filter {
 }
 
 fn parse_ratio(text: &str) -> Result<f64, String> {
-    parse(text, 1.0..=150.0)
+    parse(text, 1.0..=300.0)
 }
 
 fn parse_noise(text: &str) -> Result<f64, String> {

@@ -54,9 +54,11 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         .collect::<Result<_, _>>()?;
     refused.extend(tildes(&dataflow));
     refused.extend(unset_mount(&dataflow));
-    let mut named = dataflow.clone();
-    let alike = lasers::name(&mut named, &folder).and_then(|()| shared::check(&named, &folder));
-    refused.extend(alike.err().map(|error| format!("{error:#}")));
+    if refused.is_empty() {
+        let mut named = dataflow.clone();
+        let alike = lasers::name(&mut named, &folder).and_then(|()| shared::check(&named, &folder));
+        refused.extend(alike.err().map(|error| format!("{error:#}")));
+    }
     let picture = picture(&dataflow);
     if refused.is_empty() && !unbuilt.is_empty() {
         let ids: Vec<&str> = unbuilt.iter().map(|node| node.id.as_str()).collect();

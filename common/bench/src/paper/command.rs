@@ -45,7 +45,7 @@ const ALL: [Part; 7] = [
 #[group(skip)]
 #[command(next_help_heading = "Table paper")]
 pub(in super::super) struct Config {
-    /// Folder for tables and pictures [default: docs/paper]
+    /// Folder for tables and pictures [default: bench-paper]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 
@@ -137,7 +137,7 @@ pub(in super::super) fn run(
     is_quick: bool,
     seed: u64,
 ) -> anyhow::Result<ExitCode> {
-    let out = config.out.clone().unwrap_or_else(|| "docs/paper".into());
+    let out = config.out.clone().unwrap_or_else(|| "bench-paper".into());
     let folder = Folder::open(&out)?;
     let parts = match &config.part[..] {
         [] => &ALL,

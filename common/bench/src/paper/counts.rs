@@ -13,8 +13,8 @@ use plots::{Curve, CurvePoint, Curves};
 
 use super::folder::{Csv, digits};
 
-/// Boundary cells over free cells, per cent; in the last two there are more of them.
-const P_OVER_N: [u32; 7] = [5, 10, 25, 50, 100, 120, 150];
+/// Boundary cells over free cells, per cent; from 120 on there are more of them.
+const P_OVER_N: [u32; 10] = [5, 10, 25, 50, 100, 120, 150, 200, 250, 300];
 
 /// As many beams as the robot of section IV has sonars.
 const BEAMS: ScanConfig = ScanConfig {

@@ -59,6 +59,15 @@ pub(super) fn of_mean(values: &[f64]) -> Interval {
     }
 }
 
+/// The mean of values that are never below 0.
+pub(super) fn of_errors(values: &[f64]) -> Interval {
+    let mean = of_mean(values);
+    Interval {
+        low: mean.low.max(0.0),
+        ..mean
+    }
+}
+
 /// The geometric mean of ratios or times above 0, whose logarithms are taken as normal.
 pub(super) fn of_ratio(ratios: &[f64]) -> Interval {
     let logs: Vec<f64> = ratios.iter().map(|ratio| ratio.ln()).collect();
@@ -97,6 +106,7 @@ mod tests {
         assert!((low + high - 4.0).abs() < 1e-9);
         assert_eq!(of_mean(&[5.0]).high, 5.0);
         assert!(of_mean(&[]).value.is_nan());
+        assert_eq!(of_errors(&[0.0, 9.0]).low, 0.0);
     }
 
     #[test]

@@ -177,8 +177,8 @@ fn judge_one(
         place,
         variant,
         poses: percents.len(),
-        mean_percent: interval::of_mean(&percents),
-        found_mean_percent: interval::of_mean(&of_found),
+        mean_percent: interval::of_errors(&percents),
+        found_mean_percent: interval::of_errors(&of_found),
         found: interval::of_share(of_found.len(), percents.len()),
         median_percent: median(percents),
     })
@@ -250,14 +250,20 @@ pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
         };
         let name = |what: &str| format!("map like figure {}: {what}", place.figure);
         let x = |judged: &Judged| f64::from(judged.variant.noise_percent);
-        curves.push(Curve {
-            name: name("mean of those found within 0.5 m"),
-            color,
-            is_dashed: false,
-            points: plain()
-                .map(|judged| judged.found_mean_percent.at(x(judged)))
-                .collect(),
-        });
+        let mut mean = |what, color, of: fn(&Judged) -> Interval| {
+            curves.push(Curve {
+                name: name(what),
+                color,
+                is_dashed: false,
+                points: plain().map(|judged| of(judged).at(x(judged))).collect(),
+            });
+        };
+        mean("mean of all poses", color, |judged| judged.mean_percent);
+        mean(
+            "mean of those found within 0.5 m",
+            color + PLACES.len(),
+            |judged| judged.found_mean_percent,
+        );
     }
     let equal = NOISE.map(|noise| CurvePoint {
         x: f64::from(noise),

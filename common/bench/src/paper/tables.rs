@@ -18,6 +18,8 @@ use super::printed::{self, NOISE, P_OVER_N, Printed};
 
 /// As many beams as the robot of the section has sonars.
 const BEAMS: u32 = 8;
+/// Boundary cells over free cells beyond the paper's tables, at the common noise, per cent.
+const BEYOND: [u32; 4] = [135, 150, 200, 300];
 /// The noise of table 2, and that at which table 1 is drawn, per cent.
 pub(super) const COMMON_NOISE: u32 = 10;
 
@@ -59,7 +61,7 @@ pub(super) fn measure(
     mut step: impl FnMut(String),
 ) -> anyhow::Result<Vec<Measured>> {
     let mut rows: BTreeMap<(u32, u32), Vec<Vec<Row>>> = BTreeMap::new();
-    for p_over_n in P_OVER_N {
+    for p_over_n in P_OVER_N.into_iter().chain(BEYOND) {
         for world in 0..extent.worlds {
             step(format!(
                 "{}, p/n {p_over_n} %, map {}",
@@ -77,7 +79,11 @@ pub(super) fn measure(
                 ..extent.effort
             };
             let mut contest = Contest::new(table, place, effort.seed)?;
-            for &noise in noises(table) {
+            let noises = match table {
+                Table::Table1 if !BEYOND.contains(&p_over_n) => &NOISE[..],
+                _ => &[COMMON_NOISE],
+            };
+            for &noise in noises {
                 let sight = Sight {
                     beams: BEAMS,
                     noise_percent: f64::from(noise),
@@ -92,13 +98,6 @@ pub(super) fn measure(
     Ok(cases
         .flat_map(|(&case, worlds)| summarized(table, case, worlds))
         .collect())
-}
-
-fn noises(table: Table) -> &'static [u32] {
-    match table {
-        Table::Table1 => &NOISE,
-        _ => &[COMMON_NOISE],
-    }
 }
 
 /// All methods of a case.
@@ -139,10 +138,10 @@ fn summarized(table: Table, (p_over_n, noise): (u32, u32), worlds: &[Vec<Row>]) 
 /// What the paper has for a method, as a ratio to its own.
 fn paper_ratio(method: &str, printed: Printed) -> Option<f64> {
     let is = |other: Method| method == other.name();
-    if is(Method::RayCasting) {
+    if is(Method::RayStepping) {
         return Some(printed.markov / printed.current);
     }
-    if is(Method::Patch) {
+    if is(Method::PlainPatch) {
         return Some(printed.correlation / printed.current);
     }
     is(Method::Scatter).then_some(1.0)
@@ -189,8 +188,10 @@ pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> anyhow::Re
         _ => Method::Search,
     };
     let shown = [
-        (Method::RayCasting, "Markov, ray casting"),
-        (Method::Patch, "Correlation, patch"),
+        (Method::RayStepping, "Markov, rays cell by cell"),
+        (Method::RangeTable, "Markov, range table"),
+        (Method::PlainPatch, "Correlation, pose by pose"),
+        (Method::Field, "Correlation, likelihood field"),
         (Method::MonteCarlo, "Monte Carlo"),
         (ours, ours.label()),
     ];

@@ -34,6 +34,14 @@ impl Clearance {
         clearance
     }
 
+    /// Makes rays take single steps, with the same results.
+    pub(super) fn with_single_steps(mut self) -> Self {
+        self.cells
+            .iter_mut()
+            .for_each(|cell| *cell = (*cell).min(1));
+        self
+    }
+
     fn at(&self, x: usize, y: usize) -> usize {
         (y + 1) * self.stride + x + 1
     }
@@ -88,6 +96,7 @@ mod tests {
             let world = World::generate(kind, (70, 50), percent / 100.0, 2).unwrap();
             let space = world.space(40).unwrap();
             let clearance = Clearance::new(&world);
+            let single = clearance.clone().with_single_steps();
             for (x, y) in (0..50).flat_map(|y| (0..70).map(move |x| (x, y))) {
                 for direction in space.directions.all() {
                     let plain = reference::range(&world.grid, x as i64, y as i64, direction);
@@ -95,6 +104,7 @@ mod tests {
                     assert_eq!(clearance.range(x, y, direction, 100), plain);
                     let near = plain.filter(|&steps| steps <= 7);
                     assert_eq!(clearance.range(x, y, direction, 7), near);
+                    assert_eq!(single.range(x, y, direction, 100), plain);
                 }
             }
         }

@@ -6,6 +6,7 @@
 //! | [`RayCasting`] | Markov localization: rays cast from each pose | no |
 //! | [`RangeTable`] | the same, with all ranges in a table | no |
 //! | [`PatchCorrelation`] | the scan drawn as a patch, correlated with the map | yes |
+//! | [`PlainCorrelation`] | the same pose by pose | yes |
 //! | [`FieldCorrelation`] | end points looked up in a likelihood field | yes |
 //! | [`MonteCarlo`] | particles in the engine's distance field, uniform at the start | yes |
 //!
@@ -27,7 +28,7 @@ mod row_sums;
 pub use best::Estimate;
 pub use field_correlation::FieldCorrelation;
 pub use monte_carlo::{MonteCarlo, MonteCarloConfig};
-pub use patch_correlation::PatchCorrelation;
+pub use patch_correlation::{PatchCorrelation, PlainCorrelation};
 pub use range_table::RangeTable;
 pub use ray_casting::RayCasting;
 pub use reading::{Reading, Readings};

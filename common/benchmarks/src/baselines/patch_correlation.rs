@@ -59,6 +59,57 @@ impl PatchCorrelation {
     }
 }
 
+/// Correlation of a patch with the map pose by pose, as the paper describes it: without rows that are
+/// added by vector instructions.
+#[derive(Debug, Clone)]
+pub struct PlainCorrelation(PatchCorrelation);
+
+impl PlainCorrelation {
+    /// Prepares a map, see [`PatchCorrelation::new`].
+    #[must_use]
+    pub fn new(world: &World, space: &Space) -> Self {
+        PlainCorrelation(PatchCorrelation::new(world, space))
+    }
+}
+
+impl Baseline for PlainCorrelation {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        let PatchCorrelation {
+            space,
+            boundary,
+            open,
+            ..
+        } = &self.0;
+        let mut best = Best::default();
+        for &heading in headings {
+            let patch = patch(readings, space, heading);
+            for y in 0..boundary.height {
+                let shifted = |cell: &PatchCell| {
+                    Some((boundary.shifted(y, (cell.dx, cell.dy))?, cell.weight))
+                };
+                let cells: Vec<(usize, u16)> = patch.iter().filter_map(shifted).collect();
+                let row = &open[y * boundary.width..][..boundary.width];
+                for (x, _) in row.iter().enumerate().filter(|&(_, &open)| open) {
+                    let votes =
+                        |&(at, weight): &(usize, u16)| weight * u16::from(boundary.bytes()[at + x]);
+                    let sum: u16 = cells.iter().map(votes).sum();
+                    best.take(Estimate {
+                        x,
+                        y,
+                        heading,
+                        score: f32::from(sum),
+                    });
+                }
+            }
+        }
+        best.get()
+    }
+
+    fn bytes(&self) -> usize {
+        self.0.bytes()
+    }
+}
+
 impl Baseline for PatchCorrelation {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
         let mut best = Best::default();
@@ -181,6 +232,8 @@ mod tests {
                     }
                 }
             }
+            let found = PlainCorrelation(correlation.clone()).locate(&readings, &headings);
+            assert_eq!(found, plain.get());
             for set in InstructionSet::available() {
                 correlation.instructions = set;
                 assert_eq!(
