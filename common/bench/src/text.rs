@@ -7,8 +7,8 @@ use super::scope::Table;
 
 /// The columns behind the method's name, and how wide each is.
 const COLUMNS: [(&str, usize); 7] = [
-    ("CPU ms", 11),
-    ("ratio", 9),
+    ("CPU ms", 12),
+    ("ratio", 12),
     ("found", 7),
     ("operations", 12),
     ("additions", 12),
@@ -17,7 +17,7 @@ const COLUMNS: [(&str, usize); 7] = [
 ];
 
 /// Width of the method's name.
-const NAME: usize = 31;
+const NAME: usize = 32;
 
 /// What the table is about, above it.
 pub(super) fn title(table: Table, instruction_set: &str) -> String {
@@ -177,10 +177,10 @@ mod tests {
             block(&[row(), scaled, skipped]),
             "
 rooms, 1200 x 1200 cells, p/n 5 %, noise 10 %, 180 beams, 360 headings, trapezoid taper, k 23
-  method                              CPU ms    ratio  found  operations   additions  prepare ms   map MB
-  Reverse projection, search           12.35   1.00 x    4/5           -       4.2 G         512     83.7
-  Reverse projection, search          ~25000   2025 x      -           -       4.2 G         512     83.7
-  Reverse projection, search       left out: its table would take 18.0 GB
+  method                                CPU ms       ratio  found  operations   additions  prepare ms   map MB
+  Reverse projection, search             12.35      1.00 x    4/5           -       4.2 G         512     83.7
+  Reverse projection, search            ~25000      2025 x      -           -       4.2 G         512     83.7
+  Reverse projection, search        left out: its table would take 18.0 GB
 "
         );
     }

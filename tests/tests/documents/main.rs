@@ -1,13 +1,14 @@
 //! Comparison of the documents with the code: links, table of contents, options, exit codes,
-//! messages and JSON.
+//! messages, JSON and figures of the shipped recordings.
 //!
-//! Tables of options and exit codes are written from `--help`:
+//! Tables of options and exit codes are written from `--help`, and the figures by `evaluate`:
 //! `BACKCAST_ACCEPT=1 cargo test --release -p tests --test documents`.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod figures;
 mod links;
 mod options;
 mod structs;
