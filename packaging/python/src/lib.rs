@@ -4,6 +4,7 @@
 //! computations run without Python's lock. The module knows neither recordings nor graphs.
 
 mod error;
+mod kept;
 mod localizer;
 mod map;
 mod numbers;

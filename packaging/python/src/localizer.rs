@@ -54,8 +54,8 @@ impl Localizer {
     /// Finds the places at which a scan may have been taken.
     ///
     /// ranges are metres, in the order in which they were measured; NaN, infinite, zero and
-    /// negative ones are no returns, as are those below range_min and those at or above
-    /// range_max (metres). Range i has the bearing angle_min + i · angle_increment, radians
+    /// negative ones, and masked ones, are no returns, as are those below range_min and those at
+    /// or above range_max (metres; None for no limit). Range i has the bearing angle_min + i · angle_increment, radians
     /// counter-clockwise from the laser's x axis; the increment is negative if the laser
     /// turns clockwise.
     ///
@@ -69,7 +69,7 @@ impl Localizer {
     /// Raises ValueError if the scan is invalid, with the value found and the values
     /// allowed.
     #[pyo3(signature = (
-        ranges, angle_min, angle_increment, *, range_min=0.0, range_max=f64::INFINITY,
+        ranges, angle_min, angle_increment, *, range_min=0.0, range_max=None,
         mount=None, upside_down=false, heading=None
     ))]
     #[allow(clippy::too_many_arguments)]
@@ -80,7 +80,7 @@ impl Localizer {
         angle_min: f64,
         angle_increment: f64,
         range_min: f64,
-        range_max: f64,
+        range_max: Option<f64>,
         mount: Option<&Bound<'_, PyAny>>,
         upside_down: bool,
         heading: Option<f64>,
@@ -88,7 +88,7 @@ impl Localizer {
         let scan = GivenScan::new(
             ranges,
             (angle_min, angle_increment),
-            (range_min, range_max),
+            (range_min, range_max.unwrap_or(f64::INFINITY)),
             (mount, upside_down),
         )?;
         let heading = self.of_laser(heading, &scan)?;

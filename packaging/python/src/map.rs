@@ -18,6 +18,9 @@ use pyo3::prelude::*;
 use crate::error::{detached, of_map, value};
 use crate::numbers::{self, PoseTuple};
 
+/// Arguments that make a map: cells, resolution and origin.
+type Reduced<'py> = (Bound<'py, PyArray2<i8>>, f64, PoseTuple);
+
 /// An occupancy grid: a map of square cells.
 ///
 /// Made by `Map.from_yaml` or `Map.from_array`; it does not change.
@@ -124,6 +127,12 @@ impl Map {
         self.grid == other.grid
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Reduced<'py>)> {
+        let map = slf.get();
+        let fields = (map.cells(slf.py())?, map.resolution(), map.origin());
+        Ok((slf.get_type().getattr("from_array")?, fields))
+    }
+
     fn __hash__(&self) -> u64 {
         self.grid.id()
     }
@@ -133,6 +142,20 @@ impl Map {
     fn of(grid: OccupancyGrid) -> Self {
         Map {
             grid: Arc::new(grid),
+        }
+    }
+
+    /// Refuses a pose that is off the map.
+    pub(crate) fn check_holds(&self, name: &str, pose: Pose) -> PyResult<()> {
+        let grid = &self.grid;
+        let Pose { x, y, .. } = grid.map_from_grid.inverse().then(pose);
+        let side = |cells: u32| f64::from(cells) * grid.resolution_m;
+        match (0.0..=side(grid.width)).contains(&x) && (0.0..=side(grid.height)).contains(&y) {
+            true => Ok(()),
+            false => Err(value(format!(
+                "{name} is {:?}, off the map; allowed: poses on the {self}",
+                numbers::tuple(pose)
+            ))),
         }
     }
 

@@ -26,6 +26,22 @@ pub(crate) fn pose(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Pose> {
     }
 }
 
+/// Reads where a laser is mounted on the robot.
+pub(crate) fn mount(given: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    /// Farthest that a laser is from the base, metres, as for the command.
+    const FARTHEST_M: f64 = 10.0;
+    let mount = pose("mount", given)?;
+    let is_near = mount.x.abs().max(mount.y.abs()) <= FARTHEST_M;
+    match is_near && mount.yaw.abs() <= std::f64::consts::TAU {
+        true => Ok(mount),
+        false => Err(value(format!(
+            "mount is {:?}; allowed: (x, y, yaw) within {FARTHEST_M} m and a turn, in metres and \
+             radians",
+            tuple(mount)
+        ))),
+    }
+}
+
 /// Reads the numbers of a tuple, a list or an array of one dimension.
 pub(crate) fn row(name: &str, given: &Bound<'_, PyAny>, allowed: &str) -> PyResult<Vec<f64>> {
     let numbers = given.try_iter().and_then(|items| {
@@ -65,6 +81,13 @@ pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covar
 
 pub(crate) fn tuple(pose: Pose) -> PoseTuple {
     (pose.x, pose.y, pose.yaw)
+}
+
+/// Makes the homogeneous matrix of a pose, 3 × 3.
+pub(crate) fn homogeneous(py: Python<'_>, (x, y, yaw): PoseTuple) -> PyResult<Py<PyArray2<f64>>> {
+    let (sin, cos) = yaw.sin_cos();
+    let rows = vec![cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0];
+    Ok(PyArray1::from_vec(py, rows).reshape([3, 3])?.unbind())
 }
 
 /// Makes an array of N × 3.

@@ -5,8 +5,10 @@ use engine::peaks::{Place, Target};
 use geometry::{Covariance, Pose};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::numbers::{self, PoseTuple, covariances, matrix, poses};
+use crate::kept::{self, Reduced, by_fields};
+use crate::numbers::{self, PoseTuple, covariances, homogeneous, matrix, poses};
 
 /// Places at which a scan may have been taken, best first, with a verdict.
 #[pyclass(frozen, get_all, module = "backcast", name = "Result")]
@@ -14,7 +16,7 @@ pub(crate) struct LocateResult {
     /// Verdict on the places: "Unique", one place fits and no other comes near it;
     /// "Ambiguous", several fit about as well; "PoorFit", even the best fits badly, perhaps
     /// because it is another map; "NoScan", the scan has no usable information.
-    verdict: &'static str,
+    verdict: String,
     /// Explanation of the verdict.
     why: String,
     /// Probability of the best place, 0 to 1.
@@ -22,7 +24,7 @@ pub(crate) struct LocateResult {
     /// Number of other places that fit about as well as the best.
     alternatives: u32,
     /// Frame of the poses: "base" if a mount was given, otherwise "laser".
-    frame: &'static str,
+    frame: String,
     /// Pose of the best place, (x, y, yaw) in the map, metres and radians; None if there is
     /// no place. It is the base's pose if a mount was given, otherwise the laser's.
     pose: Option<PoseTuple>,
@@ -101,14 +103,15 @@ impl Found {
         let votes = self.places.iter().map(|place| place.intensity);
         let best = base_covariances.first();
         Ok(LocateResult {
-            verdict: self.verdict,
+            verdict: self.verdict.to_owned(),
             why: self.why,
             confidence: self.confidence,
             alternatives: self.alternatives,
             frame: match base_from_laser {
                 Some(_) => "base",
                 None => "laser",
-            },
+            }
+            .to_owned(),
             pose: bases.first().map(|&best| numbers::tuple(best)),
             covariance: best.map(|&best| matrix(py, best)).transpose()?,
             poses: poses(py, &bases)?,
@@ -123,8 +126,45 @@ impl Found {
     }
 }
 
+by_fields!(LocateResult {
+    verdict,
+    why,
+    confidence,
+    alternatives,
+    frame,
+    pose,
+    covariance,
+    poses,
+    covariances,
+    probabilities,
+    scores,
+    votes,
+    laser_poses,
+    laser_covariances,
+    beams_used
+});
+
 #[pymethods]
 impl LocateResult {
+    /// Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
+    /// of the pose; None if there is no pose.
+    fn matrix(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
+        self.pose.map(|pose| homogeneous(py, pose)).transpose()
+    }
+
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        kept::are_equal(slf, other, Self::FIELDS)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        kept::reduce(slf, Self::FIELDS)
+    }
+
+    #[staticmethod]
+    fn _restore(fields: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::of_fields(fields)
+    }
+
     fn __repr__(&self) -> String {
         match self.pose {
             Some((x, y, yaw)) => format!(

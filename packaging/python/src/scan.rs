@@ -45,13 +45,30 @@ impl GivenScan {
             angle_increment,
             range_min_m: range_min as f32,
             range_max_m: range_max as f32,
-            base_from_laser: mount
-                .map(|given| numbers::pose("mount", given))
-                .transpose()?,
+            base_from_laser: mount.map(numbers::mount).transpose()?,
             upside_down,
         };
+        scan.check_unit()?;
         scan.above().check().map_err(|error| of_engine(&error))?;
         Ok(scan)
+    }
+
+    /// Refuses ranges that cannot be metres: no scan has returns from beyond 100 m alone.
+    fn check_unit(&self) -> PyResult<()> {
+        const FAR_M: f32 = 100.0;
+        let returns = self
+            .ranges
+            .iter()
+            .copied()
+            .filter(|range| range.is_finite() && *range > 0.0);
+        let nearest = returns.fold(f32::INFINITY, f32::min);
+        match nearest.is_finite() && nearest > FAR_M {
+            true => Err(value(format!(
+                "the nearest of the ranges is {nearest}; allowed: metres, at least one within \
+                 {FAR_M}: are they millimetres?"
+            ))),
+            false => Ok(()),
+        }
     }
 
     /// Returns the ranges, metres, in the order in which they were measured.
@@ -75,7 +92,14 @@ impl GivenScan {
 /// Converts ranges to 32 bits, like those of messages; NaN and infinite ones stay what they are.
 fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
     let allowed = "allowed: numbers in a row, metres, best a 1-D numpy array of float32";
-    let array = get_array_module(given.py())?.call_method1("asarray", (given,));
+    let numpy = get_array_module(given.py())?;
+    let array = match given.hasattr("mask")? {
+        // Masked readings are no returns.
+        true => given
+            .call_method1("astype", ("float64",))
+            .and_then(|array| array.call_method1("filled", (f64::NAN,))),
+        false => numpy.call_method1("asarray", (given,)),
+    };
     let array = array.map_err(|error| value(format!("ranges is no array ({error}); {allowed}")))?;
     let array = array.cast::<PyUntypedArray>()?;
     if array.ndim() != 1 {

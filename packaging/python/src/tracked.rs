@@ -5,8 +5,10 @@ use engine::tracking::Report;
 use geometry::{Covariance, Pose};
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::numbers::{self, PoseTuple, matrix};
+use crate::kept::{self, Reduced, by_fields};
+use crate::numbers::{self, PoseTuple, homogeneous, matrix};
 
 /// Pose of the robot, its certainty, and the reason.
 #[pyclass(frozen, get_all, module = "backcast")]
@@ -16,14 +18,14 @@ pub(crate) struct TrackedPose {
     /// State of the tracker: "Searching", the robot has not been found yet; "Unique", one
     /// place is left, and the scans fit there; "Doubtful", the pose is kept, but there is
     /// evidence against it; "Lost", the robot is not there any more.
-    state: &'static str,
+    state: String,
     /// Reason for the state: "NoScan", "OnePlace", "SeveralPlaces", "TooEarly", "PoorFit",
     /// "OdometryJump", "AnotherPlace", "NoPlace" or "NoSearch".
     reason: String,
     /// Explanation of the reason, with what to do.
     why: String,
     /// Frame of the pose: "base" if a mount was given, otherwise "laser".
-    frame: &'static str,
+    frame: String,
     /// Pose in the map, (x, y, yaw) in metres and radians: the believed place, otherwise
     /// the leading one; None if there is no place.
     pose: Option<PoseTuple>,
@@ -83,13 +85,14 @@ impl Followed {
             .map(|(laser, odom)| laser.then(odom.inverse()));
         Ok(TrackedPose {
             stamp_ns: self.stamp_ns,
-            state: report.state.as_str(),
+            state: report.state.as_str().to_owned(),
             reason: format!("{:?}", report.reason),
             why: report.words(),
             frame: match self.base_from_laser {
                 Some(_) => "base",
                 None => "laser",
-            },
+            }
+            .to_owned(),
             pose: pose.map(numbers::tuple),
             covariance: covariance.map(|of| matrix(py, of)).transpose()?,
             laser_pose: laser.map(numbers::tuple),
@@ -106,8 +109,47 @@ impl Followed {
     }
 }
 
+by_fields!(TrackedPose {
+    stamp_ns,
+    state,
+    reason,
+    why,
+    frame,
+    pose,
+    covariance,
+    laser_pose,
+    laser_covariance,
+    map_from_odom,
+    probability,
+    score,
+    lead,
+    places,
+    since_ns,
+    since_m,
+    searched
+});
+
 #[pymethods]
 impl TrackedPose {
+    /// Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
+    /// of the pose; None if there is no pose.
+    fn matrix(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
+        self.pose.map(|pose| homogeneous(py, pose)).transpose()
+    }
+
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        kept::are_equal(slf, other, Self::FIELDS)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        kept::reduce(slf, Self::FIELDS)
+    }
+
+    #[staticmethod]
+    fn _restore(fields: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::of_fields(fields)
+    }
+
     fn __repr__(&self) -> String {
         match self.pose {
             Some((x, y, yaw)) => format!(

@@ -52,6 +52,8 @@ struct State {
     asked: Option<Kept>,
     /// Pose of the laser by odometry at the previous scan.
     before: Option<ByOdometry>,
+    /// Stamp of the last scan.
+    newest_ns: Option<i64>,
     /// Expected pose of the base, and its covariance.
     expected: Option<(Pose, Covariance)>,
 }
@@ -63,6 +65,7 @@ impl State {
             joiner: Joiner::new(join),
             asked: None,
             before: None,
+            newest_ns: None,
             expected: None,
         }
     }
@@ -110,7 +113,8 @@ impl Tracker {
 
     /// Follows the robot to a scan.
     ///
-    /// stamp_ns is the time of the first range, nanoseconds, and time_increment the seconds
+    /// stamp_ns is the time of the first range, nanoseconds, at least a millisecond after that
+    /// of the last scan, and time_increment the seconds
     /// from one range to the next: if odometry covers the scan, the motion between them is
     /// removed. odometry is the base's pose at that time, in the form of add_odometry; it
     /// is not needed if that is called. Without any odometry, scans are matched to each
@@ -122,7 +126,7 @@ impl Tracker {
     /// Raises ValueError if the scan is invalid; the tracker then stays as it was.
     #[pyo3(signature = (
         ranges, angle_min, angle_increment, stamp_ns, *, odometry=None, range_min=0.0,
-        range_max=f64::INFINITY, mount=None, upside_down=false, time_increment=0.0
+        range_max=None, mount=None, upside_down=false, time_increment=0.0
     ))]
     #[allow(clippy::too_many_arguments)]
     fn update(
@@ -134,7 +138,7 @@ impl Tracker {
         stamp_ns: i64,
         odometry: Option<&Bound<'_, PyAny>>,
         range_min: f64,
-        range_max: f64,
+        range_max: Option<f64>,
         mount: Option<&Bound<'_, PyAny>>,
         upside_down: bool,
         time_increment: f64,
@@ -142,7 +146,7 @@ impl Tracker {
         let scan = GivenScan::new(
             ranges,
             (angle_min, angle_increment),
-            (range_min, range_max),
+            (range_min, range_max.unwrap_or(f64::INFINITY)),
             (mount, upside_down),
         )?;
         if !time_increment.is_finite() {
@@ -155,19 +159,23 @@ impl Tracker {
             .transpose()?;
         let header = header(&scan, stamp_ns, time_increment);
         let followed = self.with_state(py, |state| {
+            check_stamp(state.newest_ns, stamp_ns)?;
             if let Some(odom_from_base) = odom_from_base {
                 state
                     .joiner
                     .on_odometry(&self::odometry(stamp_ns, odom_from_base));
             }
-            self.follow(state, &scan, &header)
+            let followed = self.follow(state, &scan, &header)?;
+            state.newest_ns = Some(stamp_ns);
+            Ok(followed)
         })?;
         followed.read(py)
     }
 
     /// Forgets everything, and expects the robot at this pose at the next scan: the base's
     /// pose, or the laser's without a mount, (x, y, yaw) in the map, metres and radians. It
-    /// is tried first, and not believed before scans confirm it.
+    /// is tried first, and not believed before scans confirm it. Raises ValueError if it is
+    /// off the map.
     ///
     /// covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; the default is that of
     /// standard deviations of 0.5 m and 0.26 rad.
@@ -179,6 +187,7 @@ impl Tracker {
         covariance: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let pose = numbers::pose("pose", pose)?;
+        self.map.get().check_holds("pose", pose)?;
         let (metres, radians) = EXPECTED_ERROR;
         let covariance = match covariance {
             Some(given) => numbers::covariance("covariance", given)?,
@@ -234,6 +243,7 @@ impl Tracker {
             asked,
             before,
             expected,
+            ..
         } = state;
         let locator = self.search.locator();
         joiner.on_scan(header, scan.ranges());
@@ -305,6 +315,21 @@ impl Tracker {
             of_laser,
         );
         Ok(candidates)
+    }
+}
+
+/// Checks that a scan is later than the one before, by what nanoseconds allow.
+fn check_stamp(newest_ns: Option<i64>, stamp_ns: i64) -> PyResult<()> {
+    const LEAST_NS: i64 = 1_000_000;
+    let Some(later_ns) = newest_ns.map(|newest| stamp_ns.saturating_sub(newest)) else {
+        return Ok(());
+    };
+    match later_ns >= LEAST_NS {
+        true => Ok(()),
+        false => Err(value(format!(
+            "stamp_ns is {stamp_ns}, {later_ns} after that of the last scan; allowed: at least \
+             {LEAST_NS} nanoseconds after it, or reset() for another drive"
+        ))),
     }
 }
 

@@ -1,6 +1,8 @@
 """Locating scans of a drawn hall, and what is refused."""
 
+import copy
 import math
+import pickle
 import signal
 import threading
 import time
@@ -270,3 +272,40 @@ def test_a_signal_ends_a_search(clutter):
     again = localizer.locate(ranges, *ANGLES)
     other = backcast.Localizer(map).locate(ranges, *ANGLES)
     assert again.poses.tolist() == other.poses.tolist()
+
+
+def test_masked_ranges_are_no_returns(localizer, ranges):
+    hidden = np.arange(len(ranges)) % 3 == 0
+    masked = np.ma.masked_array(ranges, hidden)
+    found = localizer.locate(masked, *ANGLES)
+    assert found == localizer.locate(np.where(hidden, np.nan, ranges), *ANGLES)
+    assert found != localizer.locate(ranges, *ANGLES)
+    masked = np.ma.masked_array(np.full(360, 2), np.ones(360, bool))
+    assert localizer.locate(masked, *ANGLES).verdict == "NoScan"
+
+
+@pytest.mark.parametrize("mount", [(780.0, 0.0, 0.0), (0.78, 0.0, 90.0)])
+def test_a_mount_in_other_units_is_refused(localizer, ranges, mount):
+    with pytest.raises(ValueError, match="within 10 m and a turn, in metres and radians"):
+        localizer.locate(ranges, *ANGLES, mount=mount)
+
+
+def test_ranges_in_millimetres_are_refused(localizer, ranges):
+    with pytest.raises(ValueError, match="allowed: metres.*are they millimetres"):
+        localizer.locate(1000 * ranges, *ANGLES)
+
+
+def test_a_result_can_be_pickled_copied_and_compared(localizer, ranges):
+    result = localizer.locate(ranges, *ANGLES, mount=(0.2, 0.0, 0.0))
+    for same in (pickle.loads(pickle.dumps(result)), copy.copy(result), copy.deepcopy(result)):
+        assert same == result and same.why == result.why
+        assert (same.covariances == result.covariances).all()
+    assert result != localizer.locate(ranges, *ANGLES) and result != result.verdict
+
+
+def test_the_matrix_takes_points_of_the_laser_into_the_map(localizer, ranges):
+    result = localizer.locate(ranges, *ANGLES)
+    ahead = result.matrix() @ [2.0, 0.0, 1.0]
+    x, y, yaw = result.pose
+    assert np.allclose(ahead, [x + 2 * math.cos(yaw), y + 2 * math.sin(yaw), 1.0])
+    assert localizer.locate(np.full(360, np.inf), *ANGLES).matrix() is None

@@ -1,6 +1,8 @@
 """Maps from files and arrays."""
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -97,3 +99,9 @@ def test_places_that_are_none():
             backcast.Map.from_array(CELLS, 0.05, origin)
     with pytest.raises(TypeError):
         backcast.Map.from_array(CELLS, "wide")
+
+
+def test_a_map_can_be_pickled_and_copied():
+    map = backcast.Map.from_array(CELLS, 0.5, origin=(1.0, 2.0, 0.3))
+    for same in (pickle.loads(pickle.dumps(map)), copy.copy(map), copy.deepcopy(map)):
+        assert same == map and same.origin == map.origin

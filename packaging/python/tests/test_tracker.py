@@ -2,6 +2,7 @@
 
 import functools
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -208,3 +209,27 @@ def test_settings_of_the_tracker_are_read():
         backcast.Tracker(hall_map(), deskew=1)
     with pytest.raises(ValueError, match="scan-stamp"):
         backcast.Tracker(hall_map(), scan_stamp="none")
+
+
+@pytest.mark.parametrize("later", [0, -100_000_000, 1, 100_000])
+def test_stamps_that_do_not_rise_by_nanoseconds_are_refused(later):
+    tracker = backcast.Tracker(hall_map())
+    at, odometry, before = drive(tracker, 12)
+    with pytest.raises(ValueError, match=f"{later} after that of the last scan; allowed: at least"):
+        tracker.update(ranges_at(*at), *ANGLES, before.stamp_ns + later, odometry=odometry)
+    tracker.reset()
+    tracker.update(ranges_at(*at), *ANGLES, before.stamp_ns + later, odometry=odometry)
+
+
+def test_an_expected_pose_off_the_map_is_refused():
+    tracker = backcast.Tracker(hall_map())
+    for pose in ((-0.1, 2.5, 0.0), (2.0, 8.1, 0.0), (2000.0, 2500.0, 0.0)):
+        with pytest.raises(ValueError, match="off the map; allowed: poses on the Map of 120 x 80"):
+            tracker.expect(pose)
+
+
+def test_a_tracked_pose_can_be_pickled_and_compared():
+    _, _, tracked = drive(backcast.Tracker(hall_map()), 12)
+    same = pickle.loads(pickle.dumps(tracked))
+    assert same == tracked and same.why == tracked.why
+    assert np.allclose(tracked.matrix()[:2, 2], tracked.pose[:2])

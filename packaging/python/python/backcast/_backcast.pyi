@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Literal, final
+from typing import ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -92,7 +92,7 @@ class Localizer:
         angle_increment: float,
         *,
         range_min: float = 0.0,
-        range_max: float = ...,
+        range_max: float | None = None,
         mount: ArrayLike | None = None,
         upside_down: bool = False,
         heading: float | None = None,
@@ -100,8 +100,8 @@ class Localizer:
         """Finds the places at which a scan may have been taken.
 
         ranges are metres, in the order in which they were measured; NaN, infinite, zero and
-        negative ones are no returns, as are those below range_min and those at or above
-        range_max (metres). Range i has the bearing angle_min + i · angle_increment, radians
+        negative ones, and masked ones, are no returns, as are those below range_min and those at
+        or above range_max (metres; None for no limit). Range i has the bearing angle_min + i · angle_increment, radians
         counter-clockwise from the laser's x axis; the increment is negative if the laser
         turns clockwise.
 
@@ -185,6 +185,13 @@ class Result:
     @property
     def beams_used(self) -> int:
         """Number of beams that voted."""
+    def matrix(self) -> NDArray[np.float64] | None:
+        """Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
+        of the pose; None if there is no pose.
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Tracker:
@@ -215,14 +222,15 @@ class Tracker:
         *,
         odometry: ArrayLike | None = None,
         range_min: float = 0.0,
-        range_max: float = ...,
+        range_max: float | None = None,
         mount: ArrayLike | None = None,
         upside_down: bool = False,
         time_increment: float = 0.0,
     ) -> TrackedPose:
         """Follows the robot to a scan.
 
-        stamp_ns is the time of the first range, nanoseconds, and time_increment the seconds
+        stamp_ns is the time of the first range, nanoseconds, at least a millisecond after that
+        of the last scan, and time_increment the seconds
         from one range to the next: if odometry covers the scan, the motion between them is
         removed. odometry is the base's pose at that time, in the form of add_odometry; it
         is not needed if that is called. Without any odometry, scans are matched to each
@@ -236,7 +244,8 @@ class Tracker:
     def expect(self, pose: ArrayLike, covariance: ArrayLike | None = None) -> None:
         """Forgets everything, and expects the robot at this pose at the next scan: the base's
         pose, or the laser's without a mount, (x, y, yaw) in the map, metres and radians. It
-        is tried first, and not believed before scans confirm it.
+        is tried first, and not believed before scans confirm it. Raises ValueError if it is
+        off the map.
 
         covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; the default is that of
         standard deviations of 0.5 m and 0.26 rad.
@@ -325,3 +334,10 @@ class TrackedPose:
     @property
     def searched(self) -> bool:
         """True if the whole map was searched for this scan, which takes longer."""
+    def matrix(self) -> NDArray[np.float64] | None:
+        """Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
+        of the pose; None if there is no pose.
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]

@@ -1,0 +1,31 @@
+"""The examples of the README run as they stand."""
+
+import re
+
+from conftest import RECORDINGS, ROOT
+from recorded import read
+
+
+def test_the_examples_run(monkeypatch, capsys):
+    monkeypatch.chdir(RECORDINGS / "malaga_corridor")
+    text = (ROOT / "packaging/python/README.md").read_text()
+    examples = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    assert len(examples) == 2
+    recorded = read("malaga_corridor")
+    odometry = dict(recorded.odometry)
+    scans = [Scan(scan) for scan in recorded.scans]
+    drive = [(scan.stamp_ns, scan, odometry[scan.stamp_ns]) for scan in scans]
+    names = {"scan": scans[4], "drive": drive}
+    for example in examples:
+        exec(example, names)
+    assert names["result"].verdict == "Unique"
+    assert names["tracked"].state == "Unique" and "Unique" in capsys.readouterr().out
+
+
+class Scan:
+    """A scan with the fields of sensor_msgs/LaserScan."""
+
+    def __init__(self, recorded):
+        self.ranges, self.stamp_ns = recorded.ranges, recorded.stamp_ns
+        self.angle_min, self.angle_increment = recorded.angles
+        self.range_min, self.range_max = recorded.limits.values()
