@@ -6,8 +6,9 @@ use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use engine::EngineError;
+use index_cache::CacheError;
 use map::MapError;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 /// Makes a `ValueError`.
@@ -42,6 +43,11 @@ pub(crate) fn of_map(error: &MapError) -> PyErr {
 /// Makes an `OSError` of the class that fits the cause, such as `FileNotFoundError`.
 fn of_file(error: &MapError, cause: &io::Error) -> PyErr {
     io::Error::new(cause.kind(), with_causes(error)).into()
+}
+
+/// Converts an error of the index cache, which is about files.
+pub(crate) fn of_cache(error: &CacheError) -> PyErr {
+    PyOSError::new_err(with_causes(error))
 }
 
 fn with_causes(error: &dyn Error) -> String {

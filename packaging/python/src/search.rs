@@ -4,12 +4,13 @@ use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use engine::localizer::Prior;
-use engine::locator::{Located, Locator, LocatorConfig, Workspace};
+use engine::localizer::{Preparation, Prior};
+use engine::locator::{Located, Locator, OccupancyView, Workspace};
 use engine::observation::Observation;
+use index_cache::{CachePlace, Prepared};
 use pyo3::prelude::*;
 
-use crate::error::of_engine;
+use crate::error::{of_cache, of_engine};
 use crate::map::Map;
 use crate::settings::EngineSettings;
 
@@ -30,11 +31,29 @@ impl Search {
             cells,
             localizer,
             peaks,
+            index_cache,
         } = settings;
-        let config = LocatorConfig { localizer, peaks };
-        let locator = Locator::new(map.view(cells), config, prior);
+        let cache = index_cache
+            .open(CachePlace::Off)
+            .map_err(|error| of_cache(&error))?;
+        let view = map.view(cells);
+        let OccupancyView {
+            frame,
+            sides,
+            occupancy,
+            rules,
+        } = view;
+        let preparation = Preparation::of_map(frame, sides, occupancy, rules, localizer, prior);
+        let prepared = preparation.and_then(|preparation| {
+            let Prepared { localizer, kept } = Prepared::new(cache.as_ref(), preparation)?;
+            Ok((Locator::with(localizer, view, peaks)?, kept))
+        });
+        let (locator, kept) = prepared.map_err(|error| of_engine(&error))?;
+        if let Some(unsaved) = kept.unsaved {
+            unsaved.save().map_err(|error| of_cache(&error))?;
+        }
         Ok(Search {
-            locator: locator.map_err(|error| of_engine(&error))?,
+            locator,
             workspaces: Mutex::new(Vec::new()),
         })
     }

@@ -12,6 +12,7 @@ use engine::limits::{HeadingInterval, Region};
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use engine::tracking::TrackingConfig;
+use index_cache::IndexCacheConfig;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
@@ -29,6 +30,8 @@ pub(crate) struct EngineSettings {
     pub(crate) localizer: LocalizerConfig,
     #[command(flatten)]
     pub(crate) peaks: PeakConfig,
+    #[command(flatten)]
+    pub(crate) index_cache: IndexCacheConfig,
 }
 
 /// Settings for locating a scan, and for tracking the robot.

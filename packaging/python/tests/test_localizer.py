@@ -309,3 +309,15 @@ def test_the_matrix_takes_points_of_the_laser_into_the_map(localizer, ranges):
     x, y, yaw = result.pose
     assert np.allclose(ahead, [x + 2 * math.cos(yaw), y + 2 * math.sin(yaw), 1.0])
     assert localizer.locate(np.full(360, np.inf), *ANGLES).matrix() is None
+
+
+def test_a_prepared_map_is_kept_and_read(tmp_path, ranges):
+    folder = tmp_path / "maps"
+    first = backcast.Localizer(hall_map(), index_cache=str(folder))
+    (kept,) = folder.iterdir()
+    written = kept.stat().st_ino
+    again = backcast.Localizer(hall_map(), index_cache=str(folder))
+    assert [file.stat().st_ino for file in folder.iterdir()] == [written], "it was read"
+    assert first.locate(ranges, *ANGLES) == again.locate(ranges, *ANGLES)
+    with pytest.raises(OSError, match="maps"):
+        backcast.Localizer(hall_map(), index_cache=str(kept))

@@ -20,8 +20,6 @@ except ModuleNotFoundError:  # Python 3.10
 
 STUBS = Path(backcast.__file__).parent / "_backcast.pyi"
 
-# Options of the command that are no settings of the engine.
-OTHERS = {"index-cache", "index-cache-limit"}
 
 
 def run(*arguments, **others):
@@ -95,7 +93,7 @@ def check_doc(node, there):
 def test_each_option_of_the_command_is_a_setting(command):
     text = command("locate", "--help")
     engine = text[text.index("\nEngine:\n") :]
-    options = set(re.findall(r"^ +--([a-z0-9-]+)", engine, re.MULTILINE)) - OTHERS
+    options = set(re.findall(r"^ +--([a-z0-9-]+)", engine, re.MULTILINE))
     settings = {key.replace("_", "-") for key in backcast.Settings.__annotations__}
     assert settings == options
 

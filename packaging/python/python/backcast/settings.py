@@ -95,6 +95,14 @@ class Settings(TypedDict, total=False):
     # than this, about, megabytes of 10⁶ bytes, 1..=1000000; by default none is.
     memory_limit: int | None
 
+    # Folder that keeps prepared maps, so that the same map with the same settings is read the next
+    # time: one that only this user can use; "user" for ~/.cache/backcast. Default: "off".
+    index_cache: str
+
+    # Size of that folder, megabytes of 10⁶ bytes, 1..=1000000; what was used least lately goes.
+    # Default: 2000.
+    index_cache_limit: int
+
     # Poses within this distance and same_place_deg are one place, metres, 0..=2. Default: 0.5.
     same_place_m: float
 
