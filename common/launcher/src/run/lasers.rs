@@ -25,37 +25,45 @@ pub(crate) fn name(dataflow: &mut Dataflow, folder: &Path) -> anyhow::Result<()>
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);
     let lasers: usize = senders.map(|node| node.streams.len().max(1)).sum();
-    let mut order = None;
+    let mut order: Option<String> = None;
     for node in &mut dataflow.nodes {
         if node.executable() == LMS_READER && lasers > 1 && value(node, LASER).is_none() {
             let id = node.id.clone();
             set(node, LASER, Some(&id));
         }
-        if node.executable() == ACCUMULATOR && order.is_none() {
+        if node.executable() == ACCUMULATOR {
             let scans = node.inputs.iter().filter(|i| i.topic == topic::Scan::NAME);
             let wired: Vec<&str> = scans.map(laser).collect();
-            let wired = (lasers > 1).then(|| wired.join(","));
-            order = shared::given(node, "scans", folder)?.or(wired);
+            let wired = Some(wired.join(",")).filter(|wired| lasers > 1 && !wired.is_empty());
+            let scans = name_scans(node, wired, folder)?;
+            order = order.or(scans);
         }
     }
-    let order = order.filter(|order| !order.is_empty());
-    for node in joining(dataflow) {
-        if let (Some(order), None) = (&order, shared::given(node, "scans", folder)?) {
-            set(node, SCANS, Some(order));
+    for node in &mut dataflow.nodes {
+        if node.executable() == TRACKER {
+            name_scans(node, order.clone(), folder)?;
         }
     }
     Ok(())
 }
 
-/// Nodes that join scans.
-fn joining(dataflow: &mut Dataflow) -> impl Iterator<Item = &mut Node> {
-    let nodes = dataflow.nodes.iter_mut();
-    nodes.filter(|node| [ACCUMULATOR, TRACKER].contains(&node.executable()))
+/// Makes a node join these lasers unless it is given others. Returns those that it joins.
+fn name_scans(
+    node: &mut Node,
+    scans: Option<String>,
+    folder: &Path,
+) -> anyhow::Result<Option<String>> {
+    let given = shared::given(node, "scans", folder)?;
+    if let (None, Some(scans)) = (&given, &scans) {
+        set(node, SCANS, Some(scans));
+    }
+    Ok(given.or(scans))
 }
 
 /// Makes the nodes join these lasers, regardless of their inputs and settings.
 pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
-    for node in joining(dataflow) {
+    let nodes = dataflow.nodes.iter_mut();
+    for node in nodes.filter(|node| [ACCUMULATOR, TRACKER].contains(&node.executable())) {
         set(node, SCANS, Some(&lasers.join(",")));
     }
 }
@@ -104,6 +112,7 @@ mod tests {
   - {id: bag, path: bin/replayer, outputs: [scan_left, scan_right]}
   - {id: a, path: bin/accumulator, inputs: {scan_front: front/scan, scan_rear: rear/scan, l: bag/scan_left}}
   - {id: b, path: bin/accumulator, args: --scans nose, inputs: {scan: front/scan}}
+  - {id: c, path: bin/accumulator, inputs: {scan: rear/scan}}
   - {id: t, path: bin/tracker, inputs: {scan: front/scan}}
 ",
         );
@@ -112,7 +121,8 @@ mod tests {
         assert!(args[2].is_empty());
         assert_eq!(args[3], ["--scans=front,rear,left"]);
         assert_eq!(args[4], ["--scans", "nose"]);
-        assert_eq!(args[5], ["--scans=front,rear,left"]);
+        assert_eq!(args[5], ["--scans=rear"]);
+        assert_eq!(args[6], ["--scans=front,rear,left"]);
     }
 
     #[test]
