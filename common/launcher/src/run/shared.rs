@@ -1,6 +1,7 @@
 //! Settings that nodes share: the tracker reads scans as the accumulator does, and compares them with
 //! the map as the peak_extractor does. They come from one file, `--settings`, or from options.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::bail;
@@ -21,14 +22,23 @@ const PEAK_EXTRACTOR: &str = "peak_extractor";
 /// # Errors
 /// If the node's file of settings cannot be used.
 pub(crate) fn given(node: &Node, key: &str, folder: &Path) -> anyhow::Result<Option<String>> {
-    let option = format!("--{}", key.replace('_', "-"));
-    if let Some(value) = value(node, &option) {
-        return Ok(Some(value.to_owned()));
-    }
-    let Some(file) = value(node, "--settings") else {
-        return Ok(None);
+    Ok(all_given(node, folder)?.remove(key))
+}
+
+/// Returns the settings that a node is given, by key: those of its file, and those of its options,
+/// which win.
+fn all_given(node: &Node, folder: &Path) -> anyhow::Result<BTreeMap<String, String>> {
+    let mut given = match value(node, "--settings") {
+        Some(file) => settings::read(&folder.join(file))?,
+        None => BTreeMap::new(),
     };
-    Ok(settings::read(&folder.join(file))?.remove(key))
+    for key in READING_KEYS.into_iter().chain(FIT_KEYS) {
+        let option = format!("--{}", key.replace('_', "-"));
+        if let Some(value) = value(node, &option) {
+            given.insert(key.to_owned(), value.to_owned());
+        }
+    }
+    Ok(given)
 }
 
 /// Settings that nodes share, as each of them parses its own.
@@ -54,6 +64,7 @@ pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let Some(tracker) = find(TRACKER) else {
         return Ok(());
     };
+    let of_tracker = all_given(tracker, folder)?;
     for (executable, keys) in [
         (ACCUMULATOR, &READING_KEYS[..]),
         (PEAK_EXTRACTOR, &FIT_KEYS),
@@ -61,12 +72,13 @@ pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
         let Some(node) = find(executable) else {
             continue;
         };
-        for key in keys {
-            let values = [given(node, key, folder)?, given(tracker, key, folder)?];
-            let [here, there] = values.each_ref().map(|value| parsed(key, value.as_ref()));
+        let of_node = all_given(node, folder)?;
+        for &key in keys {
+            let values = [of_node.get(key), of_tracker.get(key)];
+            let [here, there] = values.map(|value| parsed(key, value));
             // A value that is wrong is refused by its node.
             if here.zip(there).is_some_and(|(here, there)| here != there) {
-                let said = |value: &Option<String>| match value {
+                let said = |value: Option<&String>| match value {
                     Some(value) => format!("`{value}`"),
                     None => "the default".to_owned(),
                 };
@@ -75,8 +87,8 @@ pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
                      the other: write it into a file, and give both --settings FILE",
                     node.id,
                     tracker.id,
-                    said(&values[0]),
-                    said(&values[1])
+                    said(values[0]),
+                    said(values[1])
                 );
             }
         }
