@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use engine::EngineError;
-use engine::localizer::{Localizer, Preparation};
+use engine::localizer::{Localizer, Preparation, Prior};
+use engine::locator::{Locator, LocatorConfig, OccupancyView};
 use engine::search::{IndexKey, SearchIndex};
 
 use crate::error::{FileError, failed};
@@ -76,6 +77,28 @@ impl Prepared {
         kept.unsaved = localizer.search_index().map(unsaved);
         Ok(Prepared { localizer, kept })
     }
+}
+
+/// Prepares a map for locating scans, with the cached index or by computing it.
+///
+/// # Errors
+/// The map cannot be searched, or a setting is out of range.
+pub fn locator(
+    cache: Option<&IndexCache>,
+    map: OccupancyView<'_>,
+    config: LocatorConfig,
+    prior: Prior,
+) -> Result<(Locator, Kept), EngineError> {
+    let OccupancyView {
+        frame,
+        sides,
+        occupancy,
+        rules,
+    } = map;
+    let LocatorConfig { localizer, peaks } = config;
+    let preparation = Preparation::of_map(frame, sides, occupancy, rules, localizer, prior)?;
+    let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+    Ok((Locator::with(localizer, map, peaks)?, kept))
 }
 
 impl Unsaved {

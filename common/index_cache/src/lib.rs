@@ -17,6 +17,6 @@ mod folder;
 #[cfg(test)]
 mod testing;
 
-pub use cache::{IndexCache, Kept, Prepared, Unsaved};
+pub use cache::{IndexCache, Kept, Prepared, Unsaved, locator};
 pub use config::{CachePlace, IndexCacheConfig};
 pub use error::{CacheError, FileError};

@@ -4,14 +4,14 @@ use anyhow::Context;
 use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
-use engine::localizer::{Outcome, Preparation, Prior};
-use engine::locator::{Locator, OccupancyView};
+use engine::localizer::{Outcome, Prior};
+use engine::locator::{Locator, LocatorConfig, OccupancyView};
 use engine::map_set::{self, MapSet};
 use engine::observation::Observation;
 use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;
 use geometry::Pose;
-use index_cache::{IndexCache, Kept, Prepared};
+use index_cache::{IndexCache, Kept};
 use map::OccupancyGrid;
 
 use super::layout::{frame_of, sides_of};
@@ -317,17 +317,11 @@ fn locator_of(
         occupancy: &map.cells,
         rules: options.cells,
     };
-    let config = options.localizer.clone();
-    let preparation = Preparation::of_map(
-        view.frame,
-        view.sides,
-        view.occupancy,
-        view.rules,
-        config,
-        prior,
-    )?;
-    let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
-    Ok((Locator::with(localizer, view, options.peaks)?, kept))
+    let config = LocatorConfig {
+        localizer: options.localizer.clone(),
+        peaks: options.peaks,
+    };
+    index_cache::locator(cache, view, config, prior)
 }
 
 /// End point of a beam in the map, in metres, if the scan was taken at this pose.

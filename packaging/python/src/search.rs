@@ -4,10 +4,10 @@ use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use engine::localizer::{Preparation, Prior};
-use engine::locator::{Located, Locator, OccupancyView, Workspace};
+use engine::localizer::Prior;
+use engine::locator::{Located, Locator, LocatorConfig, Workspace};
 use engine::observation::Observation;
-use index_cache::{CachePlace, Prepared};
+use index_cache::CachePlace;
 use pyo3::prelude::*;
 
 use crate::error::{of_cache, of_engine};
@@ -36,18 +36,8 @@ impl Search {
         let cache = index_cache
             .open(CachePlace::Off)
             .map_err(|error| of_cache(&error))?;
-        let view = map.view(cells);
-        let OccupancyView {
-            frame,
-            sides,
-            occupancy,
-            rules,
-        } = view;
-        let preparation = Preparation::of_map(frame, sides, occupancy, rules, localizer, prior);
-        let prepared = preparation.and_then(|preparation| {
-            let Prepared { localizer, kept } = Prepared::new(cache.as_ref(), preparation)?;
-            Ok((Locator::with(localizer, view, peaks)?, kept))
-        });
+        let config = LocatorConfig { localizer, peaks };
+        let prepared = index_cache::locator(cache.as_ref(), map.view(cells), config, prior);
         let (locator, kept) = prepared.map_err(|error| of_engine(&error))?;
         if let Some(unsaved) = kept.unsaved {
             unsaved.save().map_err(|error| of_cache(&error))?;
