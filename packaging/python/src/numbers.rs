@@ -31,7 +31,7 @@ pub(crate) fn mount(given: &Bound<'_, PyAny>) -> PyResult<Pose> {
     /// Farthest that a laser is from the base, metres, as for the command.
     const FARTHEST_M: f64 = 10.0;
     let mount = pose("mount", given)?;
-    let is_near = mount.x.abs().max(mount.y.abs()) <= FARTHEST_M;
+    let is_near = mount.x.hypot(mount.y) <= FARTHEST_M;
     match is_near && mount.yaw.abs() <= std::f64::consts::TAU {
         true => Ok(mount),
         false => Err(value(format!(

@@ -48,20 +48,17 @@ impl GivenScan {
             base_from_laser: mount.map(numbers::mount).transpose()?,
             upside_down,
         };
-        scan.check_unit()?;
         scan.above().check().map_err(|error| of_engine(&error))?;
+        scan.check_unit()?;
         Ok(scan)
     }
 
     /// Refuses ranges that cannot be metres: no scan has returns from beyond 100 m alone.
     fn check_unit(&self) -> PyResult<()> {
-        const FAR_M: f32 = 100.0;
-        let returns = self
-            .ranges
-            .iter()
-            .copied()
-            .filter(|range| range.is_finite() && *range > 0.0);
-        let nearest = returns.fold(f32::INFINITY, f32::min);
+        const FAR_M: f64 = 100.0;
+        let scan = self.above();
+        let returns = (0..scan.beams()).filter_map(|beam| scan.reading(beam));
+        let nearest = returns.fold(f64::INFINITY, f64::min);
         match nearest.is_finite() && nearest > FAR_M {
             true => Err(value(format!(
                 "the nearest of the ranges is {nearest}; allowed: metres, at least one within \

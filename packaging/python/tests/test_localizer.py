@@ -284,7 +284,7 @@ def test_masked_ranges_are_no_returns(localizer, ranges):
     assert localizer.locate(masked, *ANGLES).verdict == "NoScan"
 
 
-@pytest.mark.parametrize("mount", [(780.0, 0.0, 0.0), (0.78, 0.0, 90.0)])
+@pytest.mark.parametrize("mount", [(780.0, 0.0, 0.0), (9.0, 9.0, 0.0), (0.78, 0.0, 90.0)])
 def test_a_mount_in_other_units_is_refused(localizer, ranges, mount):
     with pytest.raises(ValueError, match="within 10 m and a turn, in metres and radians"):
         localizer.locate(ranges, *ANGLES, mount=mount)
@@ -293,6 +293,8 @@ def test_a_mount_in_other_units_is_refused(localizer, ranges, mount):
 def test_ranges_in_millimetres_are_refused(localizer, ranges):
     with pytest.raises(ValueError, match="allowed: metres.*are they millimetres"):
         localizer.locate(1000 * ranges, *ANGLES)
+    nothing = localizer.locate(np.full(360, 120.0), *ANGLES, range_max=100.0)
+    assert nothing.verdict == "NoScan", "readings at range_max are no returns, however long"
 
 
 def test_a_result_can_be_pickled_copied_and_compared(localizer, ranges):
