@@ -4,18 +4,38 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What Python calls to restore an object, and its arguments.
+/// A callable that restores an object, and its arguments.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyDict>,));
 
-/// Names the fields of a result and restores it from them.
+/// Defines the methods that all results have, from the names of the fields. Other methods follow.
 macro_rules! by_fields {
-    ($class:ident { $($field:ident),+ $(,)? }) => {
+    ($class:ident { $($field:ident),+ $(,)? } $($other:tt)*) => {
         impl $class {
             const FIELDS: &[&str] = &[$(stringify!($field)),+];
+        }
 
-            fn of_fields(fields: &pyo3::Bound<'_, pyo3::types::PyDict>) -> pyo3::PyResult<Self> {
-                Ok($class { $($field: crate::kept::field(fields, stringify!($field))?.extract()?),+ })
+        #[pymethods]
+        impl $class {
+            /// Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
+            /// of the pose; None if there is no pose.
+            fn matrix(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
+                self.pose.map(|pose| numbers::homogeneous(py, pose)).transpose()
             }
+
+            fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+                kept::are_equal(slf, other, Self::FIELDS)
+            }
+
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<kept::Reduced<'py>> {
+                kept::reduce(slf, Self::FIELDS)
+            }
+
+            #[staticmethod]
+            fn _restore(fields: &Bound<'_, PyDict>) -> PyResult<Self> {
+                Ok($class { $($field: kept::field(fields, stringify!($field))?.extract()?),+ })
+            }
+
+            $($other)*
         }
     };
 }

@@ -55,9 +55,9 @@ impl Localizer {
     ///
     /// ranges are metres, in the order in which they were measured; NaN, infinite, zero and
     /// negative ones, and masked ones, are no returns, as are those below range_min and those at
-    /// or above range_max (metres; None for no limit). Range i has the bearing angle_min + i · angle_increment, radians
-    /// counter-clockwise from the laser's x axis; the increment is negative if the laser
-    /// turns clockwise.
+    /// or above range_max (metres; None for no limit). Range i has the bearing
+    /// angle_min + i · angle_increment, radians counter-clockwise from the laser's x axis; the
+    /// increment is negative if the laser turns clockwise.
     ///
     /// mount is the pose of the laser on the robot, (x, y, yaw) in the base's frame, metres
     /// and radians. With it the poses of the result are the base's, otherwise the laser's.

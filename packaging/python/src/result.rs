@@ -7,8 +7,8 @@ use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::kept::{self, Reduced, by_fields};
-use crate::numbers::{self, PoseTuple, covariances, homogeneous, matrix, poses};
+use crate::kept::{self, by_fields};
+use crate::numbers::{self, PoseTuple, covariances, matrix, poses};
 
 /// Places at which a scan may have been taken, best first, with a verdict.
 #[pyclass(frozen, get_all, module = "backcast", name = "Result")]
@@ -126,43 +126,23 @@ impl Found {
     }
 }
 
-by_fields!(LocateResult {
-    verdict,
-    why,
-    confidence,
-    alternatives,
-    frame,
-    pose,
-    covariance,
-    poses,
-    covariances,
-    probabilities,
-    scores,
-    votes,
-    laser_poses,
-    laser_covariances,
-    beams_used
-});
-
-#[pymethods]
-impl LocateResult {
-    /// Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
-    /// of the pose; None if there is no pose.
-    fn matrix(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
-        self.pose.map(|pose| homogeneous(py, pose)).transpose()
-    }
-
-    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
-        kept::are_equal(slf, other, Self::FIELDS)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        kept::reduce(slf, Self::FIELDS)
-    }
-
-    #[staticmethod]
-    fn _restore(fields: &Bound<'_, PyDict>) -> PyResult<Self> {
-        Self::of_fields(fields)
+by_fields! {
+    LocateResult {
+        verdict,
+        why,
+        confidence,
+        alternatives,
+        frame,
+        pose,
+        covariance,
+        poses,
+        covariances,
+        probabilities,
+        scores,
+        votes,
+        laser_poses,
+        laser_covariances,
+        beams_used,
     }
 
     fn __repr__(&self) -> String {

@@ -7,8 +7,8 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::kept::{self, Reduced, by_fields};
-use crate::numbers::{self, PoseTuple, homogeneous, matrix};
+use crate::kept::{self, by_fields};
+use crate::numbers::{self, PoseTuple, matrix};
 
 /// Pose of the robot, its certainty, and the reason.
 #[pyclass(frozen, get_all, module = "backcast")]
@@ -109,45 +109,25 @@ impl Followed {
     }
 }
 
-by_fields!(TrackedPose {
-    stamp_ns,
-    state,
-    reason,
-    why,
-    frame,
-    pose,
-    covariance,
-    laser_pose,
-    laser_covariance,
-    map_from_odom,
-    probability,
-    score,
-    lead,
-    places,
-    since_ns,
-    since_m,
-    searched
-});
-
-#[pymethods]
-impl TrackedPose {
-    /// Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
-    /// of the pose; None if there is no pose.
-    fn matrix(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
-        self.pose.map(|pose| homogeneous(py, pose)).transpose()
-    }
-
-    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
-        kept::are_equal(slf, other, Self::FIELDS)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        kept::reduce(slf, Self::FIELDS)
-    }
-
-    #[staticmethod]
-    fn _restore(fields: &Bound<'_, PyDict>) -> PyResult<Self> {
-        Self::of_fields(fields)
+by_fields! {
+    TrackedPose {
+        stamp_ns,
+        state,
+        reason,
+        why,
+        frame,
+        pose,
+        covariance,
+        laser_pose,
+        laser_covariance,
+        map_from_odom,
+        probability,
+        score,
+        lead,
+        places,
+        since_ns,
+        since_m,
+        searched,
     }
 
     fn __repr__(&self) -> String {
