@@ -1,8 +1,8 @@
 //! One case: every method that takes part is measured on the same scans.
 
-use benchmarks::baselines::Readings;
-use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
-use benchmarks::timing::median;
+use crate::baselines::Readings;
+use crate::scans::{ScanConfig, SimulatedScan, simulate};
+use crate::timing::median;
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::space::Space;

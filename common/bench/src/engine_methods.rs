@@ -3,8 +3,8 @@
 use std::cmp::Reverse;
 use std::time::Instant;
 
-use benchmarks::scatter::Scatter;
-use benchmarks::worlds::World;
+use crate::scatter::Scatter;
+use crate::worlds::World;
 use engine::accumulator::{Accumulator, Query};
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;

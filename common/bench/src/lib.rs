@@ -1,19 +1,34 @@
 //! `backcast bench`: the paper's tables and the search, every method on the
 //! same generated worlds with the same scans, in one run and on one thread; and, in
 //! `paper`, all claims of the paper.
+//!
+//! `worlds` and `scans` are generated from seeds: the same numbers give the same world, scan and
+//! result. `baselines`, `particles` and `scatter` are the methods that the engine is compared with.
 
+pub mod baselines;
 mod command;
 mod contest;
+pub mod counted;
+mod distinct;
 mod engine_methods;
 mod line_up;
 mod measure;
 mod method;
 mod paper;
+pub mod particles;
 mod row;
+pub mod scans;
+pub mod scatter;
 mod scope;
 mod text;
+pub mod timing;
+pub mod worlds;
 
 pub use command::{Config, NOTES, run};
+pub use distinct::distinct;
+
+/// Side of a cell of every generated world, in metres.
+pub const RESOLUTION_M: f64 = 0.05;
 
 /// Schemas of what the command prints.
 #[must_use]

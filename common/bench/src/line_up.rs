@@ -1,11 +1,11 @@
 //! Who takes part in a table, prepared for one place.
 
-use benchmarks::baselines::{
+use crate::baselines::{
     Baseline, FieldCorrelation, MonteCarlo, MonteCarloConfig, PatchCorrelation, PlainCorrelation,
     RangeTable, RayCasting,
 };
-use benchmarks::timing::cpu_ms;
-use benchmarks::worlds::World;
+use crate::timing::cpu_ms;
+use crate::worlds::World;
 use engine::search::SearchIndex;
 use engine::space::Space;
 use engine::sweep::FieldSweep;

@@ -1,8 +1,8 @@
 //! Takes the time of a method on the scans of a case.
 
-use benchmarks::baselines::Readings;
-use benchmarks::scans::SimulatedScan;
-use benchmarks::timing::{cpu_ms, median};
+use crate::baselines::Readings;
+use crate::scans::SimulatedScan;
+use crate::timing::{cpu_ms, median};
 use engine::program::VoteConfig;
 use engine::space::Space;
 
@@ -104,8 +104,8 @@ fn is_near(pose: Pose, task: &Task<'_>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use benchmarks::scans::{ScanConfig, simulate};
-    use benchmarks::worlds::{Kind, World};
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::{Kind, World};
     use engine::taper::TaperShape;
 
     use super::*;

@@ -1,7 +1,7 @@
 //! Which cases a table has: the full lists, the quick ones, and what the
 //! options put in their place.
 
-use benchmarks::worlds::Kind;
+use crate::worlds::Kind;
 use clap::ValueEnum;
 use engine::taper::TaperShape;
 

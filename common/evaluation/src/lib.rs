@@ -1,9 +1,11 @@
 //! Evaluation of recordings without a graph: `locate` finds the pose of each scan, `evaluate`
-//! compares the poses with the ground truth, and `sequence` runs the tracker over a drive.
+//! compares the poses with the ground truth, `sequence` runs the tracker over a drive, and
+//! `regression` replays recordings through a graph and compares them with expected results.
 
 pub mod evaluate;
 pub mod locate;
 mod outcomes;
+pub mod regression;
 mod sequence;
 mod text;
 mod trust;
@@ -23,5 +25,7 @@ pub fn schemas() -> Vec<json::schema::Named> {
         of_object::<sequence::Figures>("evaluate_sequence"),
         of_object::<TotalLine<'_, sequence::Figures>>("evaluate_sequence_total"),
         of_object::<sequence::StressFigures>("evaluate_stress"),
+        of_object::<regression::Object<'_>>("regress"),
+        json::schema::of_file::<regression::Expectation>("expected"),
     ]
 }

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use drawing::{DrawingError, Frame, Path, Scene, Stroke};
+use crate::drawing::{DrawingError, Frame, Path, Scene, Stroke};
 use geometry::Pose;
 use messages::Verdict;
 

@@ -1,7 +1,7 @@
 //! Axes around a part of a picture, and the bar that says what colours mean. Numbers are
 //! left out where they would stand over one another.
 
-use drawing::{Anchor, Color, Path, Rect, Scene, Stroke};
+use crate::drawing::{Anchor, Color, Path, Rect, Scene, Stroke};
 
 use super::extent::Extent;
 use super::scale::Scale;

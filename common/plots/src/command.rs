@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::drawing::Scene;
 use anyhow::{Context, anyhow, bail};
 use command_line::{output, stdout, wrong_use};
-use drawing::Scene;
 use engine::EngineError;
 use engine::grid::Grid;
 use engine::heading::HeadingError;
@@ -50,8 +50,8 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         }
     };
     let bytes = match format {
-        Format::Png => drawing::to_png(&scene)?,
-        Format::Svg => drawing::to_svg(&scene).into_bytes(),
+        Format::Png => crate::drawing::to_png(&scene)?,
+        Format::Svg => crate::drawing::to_svg(&scene).into_bytes(),
     };
     write(&config.out, &bytes)?;
     let (width, height) = (scene.width(), scene.height());
@@ -66,7 +66,7 @@ fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> anyhow::Result<E
     let subjects = plot.subjects()?;
     let (ground, name) = (config.ground(plot.session.map()?), plot.name());
     let frames = animation::frames(&ground, &subjects, &name, config.size());
-    let bytes = drawing::to_animated_png(frames)?;
+    let bytes = crate::drawing::to_animated_png(frames)?;
     write(&config.out, &bytes)?;
     let (file, scans, kilobytes) = (config.out.display(), subjects.len(), bytes.len() / 1000);
     stdout::print(&format!("{file}: {scans} scans, {kilobytes} kB\n"))?;
@@ -78,7 +78,7 @@ fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> anyhow::Result<E
 /// # Errors
 /// The picture cannot be encoded, or the file not be written.
 pub fn save_png(scene: &Scene, file: &Path) -> anyhow::Result<()> {
-    write(file, &drawing::to_png(scene)?)
+    write(file, &crate::drawing::to_png(scene)?)
 }
 
 fn write(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {

@@ -1,6 +1,6 @@
 //! Curves over a common axis, with the interval of each point: tables as a picture.
 
-use drawing::{Path, Rect, Scene, Stroke};
+use crate::drawing::{Path, Rect, Scene, Stroke};
 
 use super::axes::{self, Axis};
 use super::legend::Sample;

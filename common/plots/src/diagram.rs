@@ -1,6 +1,6 @@
 //! Panels of cells and arrows: a method drawn step by step on a small map.
 
-use drawing::{Color, Path, Rect, Scene, Stroke};
+use crate::drawing::{Color, Path, Rect, Scene, Stroke};
 
 use super::axes::{self, Axis};
 use super::legend::{Legend, Sample};

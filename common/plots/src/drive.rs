@@ -1,7 +1,7 @@
 //! A drive from above: the map, where the tracker had the robot, and where it was not
 //! sure.
 
-use drawing::{Color, Path, Scene, Stroke};
+use crate::drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;

@@ -1,7 +1,7 @@
 //! The picture of a drive: how far off the best place of each scan is, and what
 //! the verdict says.
 
-use drawing::{Path, Rect, Scene, Stroke};
+use crate::drawing::{Path, Rect, Scene, Stroke};
 use messages::Verdict;
 use statistics::SUCCESS;
 

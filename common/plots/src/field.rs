@@ -1,7 +1,7 @@
 //! The picture of the votes: how many each position has at the best heading,
 //! over the map, as in figures 4b, 5b and 6e to 6g of the paper.
 
-use drawing::{Color, Path, Scene, Stroke};
+use crate::drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::{OccupancyGrid, UNKNOWN};

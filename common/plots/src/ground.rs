@@ -3,7 +3,7 @@
 //! A pixel shows all cells that lie under it, or the one cell that it is a part
 //! of: nothing that is thin is lost where many cells meet one pixel.
 
-use drawing::{Color, DrawingError, Scene};
+use crate::drawing::{Color, DrawingError, Scene};
 use engine::fit::GridPose;
 use engine::grid::{CellRules, GridFrame};
 use map::OccupancyGrid;
@@ -163,7 +163,7 @@ impl Pixel {
 
 #[cfg(test)]
 mod tests {
-    use drawing::Rect;
+    use crate::drawing::Rect;
     use geometry::Pose;
 
     use super::super::extent::Extent;

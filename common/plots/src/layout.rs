@@ -1,6 +1,6 @@
 //! What holds for the text of every picture; for tests.
 
-use drawing::Scene;
+use crate::drawing::Scene;
 
 /// Fails if a label lies over another or reaches beyond the picture, or if text is too
 /// small to read.

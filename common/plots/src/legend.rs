@@ -1,6 +1,6 @@
 //! The legend of a picture: whatever is drawn is named when it is drawn.
 
-use drawing::{Color, Path, Rect, Scene, Stroke, TextStyle};
+use crate::drawing::{Color, Path, Rect, Scene, Stroke, TextStyle};
 
 use super::marks;
 use super::shapes::Shape;

@@ -22,6 +22,7 @@ mod command;
 mod config;
 mod curves;
 mod diagram;
+pub mod drawing;
 mod drive;
 mod errors;
 mod extent;

@@ -1,6 +1,6 @@
 //! Marks of more than one piece: robots, the truth, ellipses, bars and arrows.
 
-use drawing::{Color, Path, Scene, Stroke};
+use crate::drawing::{Color, Path, Scene, Stroke};
 use geometry::{Covariance, ELLIPSE_95, Pose};
 
 use super::shapes::Shape;

@@ -1,7 +1,7 @@
 //! Numbers beside marks: each where it covers neither a mark nor another number, with a
 //! line to its mark where it stands away from it.
 
-use drawing::{Anchor, Path, Rect, Scene, Stroke, TextStyle};
+use crate::drawing::{Anchor, Path, Rect, Scene, Stroke, TextStyle};
 
 use super::theme;
 

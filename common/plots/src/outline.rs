@@ -1,7 +1,7 @@
 //! The picture of a map: its boundary cells, from which readings are projected
 //! back, and how many there are.
 
-use drawing::Scene;
+use crate::drawing::Scene;
 use engine::boundary;
 use engine::grid::Grid;
 

@@ -1,6 +1,6 @@
 //! What surrounds every picture: a title, what it says, and a legend.
 
-use drawing::{Anchor, DrawingError, Path, Rect, Scene, TextStyle};
+use crate::drawing::{Anchor, DrawingError, Path, Rect, Scene, TextStyle};
 use messages::Verdict;
 
 use super::extent::Extent;

@@ -1,6 +1,6 @@
 //! A scan at its places, drawn over the map.
 
-use drawing::{Color, Path, Scene, Stroke, TextStyle};
+use crate::drawing::{Color, Path, Scene, Stroke, TextStyle};
 use engine::fit::BeamClass;
 use geometry::Pose;
 use offline::{BeamEnd, ScanAt};
@@ -154,7 +154,7 @@ fn of_class(scan: &ScanAt, class: BeamClass) -> impl Iterator<Item = &BeamEnd> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use drawing::Rect;
+    use crate::drawing::Rect;
     use engine::peaks::{Place, Places};
     use geometry::Covariance;
     use messages::Verdict;
@@ -210,7 +210,7 @@ pub(super) mod tests {
 
     /// The middle of all pixels of a colour.
     fn middle_of(scene: &Scene, color: Color) -> (f64, f64) {
-        let png = drawing::to_png(scene).unwrap();
+        let png = crate::drawing::to_png(scene).unwrap();
         let picture = image::load_from_memory(&png).unwrap().to_rgb8();
         let wanted = image::Rgb([color.red, color.green, color.blue]);
         let pixels = picture.enumerate_pixels();

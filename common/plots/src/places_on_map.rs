@@ -1,6 +1,6 @@
 //! A map with numbered places: where each was found, where it truly was, and the way.
 
-use drawing::{Color, Path, Scene, Stroke};
+use crate::drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
 use geometry::Pose;
 use map::OccupancyGrid;

@@ -1,7 +1,7 @@
 //! The picture of one scan: the map with the scan at its places, and where they
 //! are worth comparing, each of them from near.
 
-use drawing::{Rect, Scene};
+use crate::drawing::{Rect, Scene};
 use geometry::Pose;
 use offline::ScanAt;
 

@@ -1,7 +1,7 @@
 //! Shapes of marks: each kind has its own, so that none differs from another by its
 //! colour alone.
 
-use drawing::Path;
+use crate::drawing::Path;
 
 /// The shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +77,7 @@ const PLUS: [(f64, f64); 12] = [
 
 #[cfg(test)]
 mod tests {
-    use drawing::{Color, Scene, to_png};
+    use crate::drawing::{Color, Scene, to_png};
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! What a picture is about: a scan, where it could have been taken, and where
 //! it was.
 
-use drawing::DrawingError;
+use crate::drawing::DrawingError;
 use engine::EngineError;
 use engine::grid::CellRules;
 use engine::peaks::{Place, Places};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use drawing::{Color, Path, Rect, Scene, Stroke};
+use crate::drawing::{Color, Path, Rect, Scene, Stroke};
 use offline::{frame_of, sides_of};
 
 use super::axes::{self, Axis};

@@ -1,7 +1,7 @@
 //! What holds for all pictures of a map: labels stand beside each other within the picture,
 //! and the legend names whatever is drawn.
 
-use drawing::{Color, Scene};
+use crate::drawing::{Color, Scene};
 use engine::boundary;
 use engine::fit::BeamClass;
 use engine::grid::{CellRules, Grid};
@@ -71,7 +71,7 @@ fn check_legend(scene: &Scene) {
     // Below all axes.
     let axes = scene.labels().iter().filter(|label| label.text == "x, m");
     let top = axes.map(|label| label.area.bottom()).fold(0.0, f64::max) as u32;
-    let png = drawing::to_png(scene).unwrap();
+    let png = crate::drawing::to_png(scene).unwrap();
     let picture = image::load_from_memory(&png).unwrap().to_rgb8();
     let classes = theme::CLASSES.map(|class: BeamClass| theme::of_class(class).0);
     let of_maps = [

@@ -2,7 +2,7 @@
 //! kinds are those of Okabe and Ito ("Color Universal Design", 2008), which the colour-blind
 //! can distinguish; marks have a shape of their own besides.
 
-use drawing::{Color, TextStyle};
+use crate::drawing::{Color, TextStyle};
 use engine::fit::BeamClass;
 use messages::{TrackState, Verdict};
 

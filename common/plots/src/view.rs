@@ -1,6 +1,6 @@
 //! Where the map's metres lie in the picture.
 
-use drawing::Rect;
+use crate::drawing::Rect;
 use geometry::Pose;
 
 use super::extent::Extent;

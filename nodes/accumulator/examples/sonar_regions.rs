@@ -10,7 +10,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use accumulator::sonar::regions::{self, Echo, RegionConfig};
-use benchmarks::distinct;
+use bench::distinct;
 use clap::Parser;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};

@@ -115,7 +115,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("Of the single scan", &[("common/pose_table/src/line.rs", "Line"), ("common/pose_table/src/pose_line.rs", "Row")]),
     ("Of the tracker", &[("common/pose_table/src/pose_line.rs", "PoseLine")]),
     ("Of the run", &[("common/launcher/src/run/summary.rs", "Summary"), ("common/statistics/src/lib.rs", "Figures")]),
-    ("`backcast regress --json`", &[("common/regression/src/object.rs", "Object")]),
+    ("`backcast regress --json`", &[("common/evaluation/src/regression/object.rs", "Object")]),
     ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
     ("The recording of a graph", &[("common/launcher/src/run/control.rs", "Recording")]),

@@ -68,23 +68,18 @@ fn the_launcher_alone_links_nothing_of_the_tools() {
     };
     let of_tools = [
         "bench",
-        "benchmarks",
-        "drawing",
         "evaluation",
         "indicatif",
         "offline",
         "plots",
-        "probe",
         "quick-junit",
         "ratatui",
         "recording",
         "recording_tools",
-        "regression",
         "resvg",
         "rusqlite",
         "serialport",
         "simulation",
-        "top",
         "tungstenite",
     ];
     let of_tools = BTreeSet::from(of_tools.map(str::to_owned));

@@ -31,16 +31,6 @@ fn foxglove_is_linked_by_its_server_alone() {
 }
 
 #[test]
-fn drawing_knows_no_other_crate_of_the_project() {
-    let dependencies = dependencies();
-    let known: Vec<_> = dependencies["drawing"]
-        .iter()
-        .filter(|name| dependencies.contains_key(*name))
-        .collect();
-    assert!(known.is_empty(), "drawing depends on {known:?}");
-}
-
-#[test]
 fn each_crate_has_the_name_of_its_folder() {
     let names: BTreeSet<String> = dependencies().into_keys().collect();
     let folders: BTreeSet<String> = folders("nodes")

@@ -5,20 +5,18 @@
 
 use std::collections::HashSet;
 
-use benchmarks::baselines::{
-    Baseline, Estimate, MonteCarlo, MonteCarloConfig, RayCasting, Readings,
-};
-use benchmarks::distinct;
-use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
-use benchmarks::timing::cpu_ms;
-use benchmarks::worlds::{Kind, World};
-use drawing::Scene;
+use crate::baselines::{Baseline, Estimate, MonteCarlo, MonteCarloConfig, RayCasting, Readings};
+use crate::distinct;
+use crate::scans::{ScanConfig, SimulatedScan, simulate};
+use crate::timing::cpu_ms;
+use crate::worlds::{Kind, World};
 use engine::grid::GridFrame;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::particles::Candidate;
 use engine::space::Space;
 use engine::taper::TaperShape;
 use geometry::{Covariance, Pose};
+use plots::drawing::Scene;
 use plots::{Curve, Curves};
 use statistics::SUCCESS;
 

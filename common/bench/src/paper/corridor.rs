@@ -3,15 +3,15 @@
 
 use std::path::Path;
 
-use benchmarks::distinct;
+use crate::distinct;
 use clap::Parser;
 use command_line::wrong_use;
-use drawing::Scene;
 use engine::grid::CellRules;
 use engine::localizer::Prior;
 use geometry::Pose;
 use offline::{Field, Options, Session, TakenScan, World, no_truths};
 use plots::Votes;
+use plots::drawing::Scene;
 use recording::Recording;
 
 use super::folder::{Csv, digits};

@@ -1,14 +1,14 @@
 //! Section II B: the operations of Markov localization and of reverse projection, counted
 //! while both run, against the paper's formulas.
 
-use benchmarks::baselines::Readings;
-use benchmarks::counted::{self, MarkovCounts, ReverseCounts};
-use benchmarks::scans::{ScanConfig, simulate};
-use benchmarks::worlds::{Kind, World};
-use drawing::Scene;
+use crate::baselines::Readings;
+use crate::counted::{self, MarkovCounts, ReverseCounts};
+use crate::scans::{ScanConfig, simulate};
+use crate::worlds::{Kind, World};
 use engine::accumulator::Query;
 use engine::program::ScanProgram;
 use engine::taper::TaperShape;
+use plots::drawing::Scene;
 use plots::{Curve, CurvePoint, Curves};
 
 use super::folder::{Csv, digits};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use command_line::output;
-use drawing::Scene;
+use plots::drawing::Scene;
 
 /// A folder that can be written into.
 #[derive(Debug)]

@@ -1,8 +1,7 @@
 //! Figures 1 to 3: the method step by step on small maps, each step computed by
 //! projection from the boundary cells.
 
-use benchmarks::scatter::Scatter;
-use drawing::Scene;
+use crate::scatter::Scatter;
 use engine::EngineError;
 use engine::accumulator::{Accumulator, Query};
 use engine::boundary;
@@ -13,6 +12,7 @@ use engine::scan::Scan;
 use engine::space::Space;
 use engine::taper::TaperShape;
 use messages::BoundaryCell;
+use plots::drawing::Scene;
 use plots::{Arrow, Cell, Diagram, Panel, Role};
 
 /// Beams of all figures, over a turn; cells are of one metre.

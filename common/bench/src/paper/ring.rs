@@ -2,8 +2,8 @@
 //! by projection from the boundary cells, its Gaussian over the bearing included where
 //! one is asked for.
 
-use benchmarks::scatter::Scatter;
-use benchmarks::worlds::World;
+use crate::scatter::Scatter;
+use crate::worlds::World;
 use engine::accumulator::{Accumulator, Query};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::scan::Scan;
@@ -68,8 +68,8 @@ pub(super) fn best_cell(intensities: &[f64], width: usize) -> Option<(usize, usi
 
 #[cfg(test)]
 mod tests {
-    use benchmarks::scans::{RingConfig, simulate_ring};
-    use benchmarks::worlds::Kind;
+    use crate::scans::{RingConfig, simulate_ring};
+    use crate::worlds::Kind;
     use engine::taper::TaperShape;
 
     use super::*;

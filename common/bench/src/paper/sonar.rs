@@ -2,10 +2,9 @@
 //! by the paper's method as written, at a known heading and unless said otherwise with
 //! the Gaussian of Eq. 1 over the range alone.
 
-use benchmarks::scans::{RingConfig, SimulatedScan, simulate_ring};
-use benchmarks::timing::median;
-use benchmarks::worlds::{Kind, World};
-use drawing::Scene;
+use crate::scans::{RingConfig, SimulatedScan, simulate_ring};
+use crate::timing::median;
+use crate::worlds::{Kind, World};
 use engine::grid::{Cell, CellRules};
 use engine::localizer::{LocalizerConfig, Prior};
 use engine::peaks::PeakConfig;
@@ -14,6 +13,7 @@ use engine::taper::TaperShape;
 use geometry::Pose;
 use map::OccupancyGrid;
 use offline::{EngineOptions, Field, World as Searched};
+use plots::drawing::Scene;
 use plots::{Curve, CurvePoint, Curves, Votes};
 use simulation::TRANSDUCERS_DEG;
 

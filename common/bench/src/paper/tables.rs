@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use benchmarks::worlds::Kind;
-use drawing::Scene;
+use crate::worlds::Kind;
 use engine::taper::TaperShape;
+use plots::drawing::Scene;
 use plots::{Curve, CurvePoint, Curves};
 
 use super::super::contest::{Contest, Effort};

@@ -3,7 +3,7 @@
 
 use std::iter;
 
-use drawing::{Path, Rect, Scene, Stroke};
+use crate::drawing::{Path, Rect, Scene, Stroke};
 
 use super::super::axes::Axis;
 use super::super::extent::Extent;
@@ -191,7 +191,7 @@ impl Edge<'_> {
 
     /// Writes a text at a distance from the axis, unless it would lie over another.
     fn write(&self, scene: &mut Scene, text: &str, (share, away): (f64, f64), unit: f64) {
-        let style = theme::text(unit).anchored(drawing::Anchor::Middle);
+        let style = theme::text(unit).anchored(crate::drawing::Anchor::Middle);
         let away = away + self.depth(text, unit) / 2.0;
         let (x, y) = self.at(share);
         let (out_x, out_y) = self.outwards;

@@ -4,10 +4,11 @@
 use std::process::ExitCode;
 
 use clap::Subcommand;
-use evaluation::{evaluate, locate};
+use evaluation::{evaluate, locate, regression};
 use recording_tools::{convert, doctor, info, simulate};
 
 use super::{EXIT_CODES, end, shell};
+use crate::{init, probe, top};
 
 /// Commands that work with recordings.
 #[derive(Debug, Subcommand)]

@@ -25,7 +25,6 @@ fn the_schemas_are_those_of_the_types() {
         evaluation::schemas(),
         launcher::schemas(),
         recording_tools::schemas(),
-        regression::schemas(),
     ];
     let made = made.concat().into_iter();
     let made: BTreeMap<String, Value> = made

@@ -1,0 +1,188 @@
+//! Records a live ROS 2 robot for a while, with the messages that a graph receives.
+
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::anyhow;
+use messages::topic;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use progress::say;
+use serde::Deserialize;
+use transport::node::LOG_FORMAT_VARIABLE;
+use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_causes};
+
+use crate::init::descriptor::quoted;
+use crate::init::robot::{self, Lasers};
+
+/// A recording in a temporary folder, which is removed when this is dropped.
+pub(crate) struct Recorded {
+    /// Path of the recording.
+    pub(crate) file: PathBuf,
+    /// Warnings of the gateway about the robot.
+    pub(crate) warnings: BTreeSet<String>,
+    _folder: tempfile::TempDir,
+}
+
+/// A line of a node's log.
+#[derive(Deserialize)]
+struct Line {
+    level: String,
+    target: String,
+    fields: Fields,
+}
+
+#[derive(Deserialize)]
+struct Fields {
+    message: String,
+}
+
+/// Longest wait for the first scan from the start of the recording graph.
+const FIRST_SCAN: Duration = Duration::from_secs(30);
+
+/// Polling interval.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Records scans, odometry and map of the robot with this router, or of the one in the network, for
+/// `length` from its first scan.
+///
+/// # Errors
+/// No robot is found, or the recording graph cannot be started.
+pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
+    let failed = |reason: String| anyhow!("the robot cannot be recorded: {reason}");
+    say("looking for the robot's nodes");
+    let seen = robot::look(router, Lasers::First)?;
+    seen.said.iter().for_each(|said| say(said));
+    if seen.lacks_map {
+        say(robot::NO_MAP);
+    }
+    if seen.options.is_empty() {
+        return Err(failed("none of its nodes publishes laser scans".to_owned()));
+    }
+    let folder = tempfile::tempdir().map_err(|error| failed(error.to_string()))?;
+    let (descriptor, file) = (
+        folder.path().join("graph.yaml"),
+        folder.path().join("r.mcap"),
+    );
+    let connect = router.map(|router| ["--connect".to_owned(), router.to_owned()]);
+    let options = seen
+        .options
+        .into_iter()
+        .chain(connect.into_iter().flatten());
+    let args = options.collect::<Vec<_>>();
+    let text = format!(
+        "nodes:
+  - id: ros2_gateway
+    path: ros2_gateway
+    args: {gateway}
+    outputs: [scan, odometry, map]
+  - id: recorder
+    path: recorder
+    args: {recorder}
+    inputs: {{scan: ros2_gateway/scan, odometry: ros2_gateway/odometry, map: ros2_gateway/map}}
+",
+        gateway = quoted(&shlex::try_join(args.iter().map(String::as_str)).unwrap_or_default()),
+        recorder = quoted(&format!("--output {}", file.display())),
+    );
+    std::fs::write(&descriptor, text).map_err(|error| failed(error.to_string()))?;
+    say(&format!(
+        "recording the robot for {} s",
+        length.as_secs_f64()
+    ));
+    let name = GraphName::new(&format!("doctor_{}", std::process::id()));
+    let name = name.map_err(|error| failed(error.to_string()))?;
+    let command = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
+    let mut graph = Command::new(command)
+        .arg("run")
+        .arg(&descriptor)
+        .args(["--no-build", "--no-monitor", "--graph"])
+        .arg(name.as_str())
+        .env(LOG_FORMAT_VARIABLE, "json")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| failed(error.to_string()))?;
+    let log = graph.stderr.take().map(BufReader::new);
+    let reading = std::thread::spawn(move || {
+        let lines = log.into_iter().flat_map(BufRead::lines);
+        lines.map_while(Result::ok).collect::<Vec<String>>()
+    });
+    if let Err(error) = wait_for_scan(&name, &mut graph) {
+        say(&with_causes(&error));
+    }
+    std::thread::sleep(length);
+    let pid = Pid::from_raw(graph.id().cast_signed());
+    kill(pid, Signal::SIGTERM).map_err(|error| failed(error.to_string()))?;
+    graph.wait().map_err(|error| failed(error.to_string()))?;
+    let lines = reading.join().unwrap_or_default();
+    if !file.is_file() {
+        let last = lines.last().map_or("", String::as_str);
+        return Err(failed(format!(
+            "nothing was recorded; the graph's last words: {last}"
+        )));
+    }
+    Ok(Recorded {
+        file,
+        warnings: lines.iter().filter_map(|line| warning(line)).collect(),
+        _folder: folder,
+    })
+}
+
+/// Waits until a scan has entered a graph that is starting, at most for [`FIRST_SCAN`], or until
+/// its launcher has ended.
+fn wait_for_scan(name: &GraphName, launcher: &mut Child) -> Result<(), TransportError> {
+    let begin = Instant::now();
+    let mut is_over =
+        || begin.elapsed() >= FIRST_SCAN || launcher.try_wait().is_ok_and(|end| end.is_some());
+    // Joining before the launcher would keep it from starting.
+    while !control_socket(name).exists() {
+        if is_over() {
+            return Ok(());
+        }
+        std::thread::sleep(TICK);
+    }
+    let graph = Graph::join_named("doctor", name)?;
+    let scans = graph.subscriber::<topic::Scan>()?;
+    graph.run(&[&scans], TICK, |_| {
+        let is_enough = scans.newest()?.is_some() || is_over();
+        Ok(if is_enough {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
+    })
+}
+
+/// Returns the message if the line is a warning of the gateway.
+fn warning(line: &str) -> Option<String> {
+    let object = line.get(line.find('{')?..)?;
+    let line: Line = serde_json::from_str(object).ok()?;
+    let is_serious = line.level == "WARN" || line.level == "ERROR";
+    let is_waiting = line.fields.message.starts_with("waiting for");
+    let is_its =
+        line.target.starts_with("ros2_gateway") || line.target.starts_with("zenoh_session");
+    (is_serious && is_its && !is_waiting).then_some(line.fields.message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_of_the_gateway_are_taken() {
+        let line = |level: &str, target: &str, message: &str| {
+            format!(
+                r#"ros2_gateway: {{"level":"{level}","fields":{{"message":"{message}"}},"target":"{target}"}}"#
+            )
+        };
+        let found = warning(&line("WARN", "ros2_gateway::frames", "two of them"));
+        assert_eq!(found.as_deref(), Some("two of them"));
+        assert_eq!(warning(&line("INFO", "ros2_gateway::run", "joined")), None);
+        assert_eq!(warning(&line("WARN", "recorder", "slow")), None);
+        assert_eq!(warning("no JSON"), None);
+    }
+}
