@@ -4,10 +4,10 @@
 use std::f64::consts::TAU;
 
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{LocalizerConfig, Prior};
-use engine::locator::{Locator, LocatorConfig, OccupancyView, Workspace};
-use engine::peaks::{PeakConfig, Places};
+use engine::localizer::{Localizer, Map, Settings, Workspace};
+use engine::peaks::Places;
 use engine::scan::Scan;
+use engine::vote_search::VoteSearchConfig;
 use geometry::Pose;
 
 /// Left, bottom, right and top, metres.
@@ -154,25 +154,28 @@ pub struct BuildingMap {
 
 impl BuildingMap {
     #[must_use]
-    pub fn locator(&self, config: LocalizerConfig) -> Locator {
-        let view = OccupancyView {
+    pub fn localizer(&self, config: VoteSearchConfig) -> Localizer {
+        let view = Map {
             frame: self.frame,
             sides: self.sides,
             occupancy: &self.occupancy,
             rules: CellRules::default(),
         };
-        let peaks = PeakConfig::default();
-        let config = LocatorConfig {
-            localizer: config,
-            peaks,
+        let settings = Settings {
+            vote_search: config,
+            ..Settings::default()
         };
-        Locator::new(view, config, Prior::None).unwrap()
+        Localizer::new(view, settings).unwrap()
     }
 }
 
 /// Returns the places at which a scan may have been taken.
 #[must_use]
-pub fn places(locator: &Locator, scan: &Scan<'_>) -> Places {
+pub fn places(localizer: &Localizer, scan: &Scan<'_>) -> Places {
     let mut workspace = Workspace::default();
-    locator.locate(&mut workspace, scan).unwrap().places.clone()
+    localizer
+        .locate(&mut workspace, scan)
+        .unwrap()
+        .places
+        .clone()
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use engine::grid::{CellRules, Grid, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
+use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 use messages::{FrameName, ScanHeader};
 use recording::{GroundTruth, Kind, Message, Recording};
 use ros::LaserScan;
@@ -37,7 +37,7 @@ impl World {
 
     /// Returns the engine with its default settings, on this map.
     #[must_use]
-    pub fn localizer(&self, prior: Prior) -> Localizer {
+    pub fn vote_search(&self, prior: Prior) -> VoteSearch {
         let map = map::load(self.map()).unwrap();
         let frame = GridFrame {
             resolution_m: map.resolution_m,
@@ -45,7 +45,7 @@ impl World {
         };
         let (width, height) = (map.width as usize, map.height as usize);
         let grid = Grid::new(width, height, &map.cells, CellRules::default()).unwrap();
-        Localizer::new(frame, grid, LocalizerConfig::default(), prior).unwrap()
+        VoteSearch::new(frame, grid, VoteSearchConfig::default(), prior).unwrap()
     }
 
     /// Returns all scans, by time.

@@ -15,7 +15,7 @@ use bench::timing::{cpu_ms, median};
 use bench::worlds::{World, city};
 use clap::Parser;
 use engine::grid::{CellRules, Grid, GridFrame};
-use engine::localizer::{LocalizerConfig, Preparation, Prior, Workspace};
+use engine::vote_search::{Preparation, Prior, VoteSearchConfig, Workspace};
 use geometry::Pose;
 use index_cache::{CachePlace, IndexCacheConfig, Prepared};
 
@@ -34,7 +34,7 @@ struct Options {
     #[arg(long, default_value_t = 30.0)]
     reach: f32,
     #[command(flatten)]
-    localizer: LocalizerConfig,
+    vote_search: VoteSearchConfig,
     #[command(flatten)]
     cache: IndexCacheConfig,
 }
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cells = city(sides, options.seed);
     let cache = options.cache.open(CachePlace::Off)?;
     let prepare = || -> Result<Prepared, Box<dyn Error>> {
-        let (start, config) = (Instant::now(), options.localizer.clone());
+        let (start, config) = (Instant::now(), options.vote_search.clone());
         let (prepared, cost) = cpu_ms(|| {
             let preparation = Preparation::of_map(
                 FRAME,
@@ -75,12 +75,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         Ok(prepared)
     };
-    let Prepared { localizer, kept } = prepare()?;
+    let Prepared { vote_search, kept } = prepare()?;
     println!(
         "{:.1} million cells, {:.1} searchable, index {:.0} MB, peak memory {}",
         cells.len() as f64 / 1e6,
-        localizer.searchable_cells() as f64 / 1e6,
-        localizer.index_bytes() as f64 / 1e6,
+        vote_search.searchable_cells() as f64 / 1e6,
+        vote_search.index_bytes() as f64 / 1e6,
         peak_memory()
     );
     if let Some(unsaved) = kept.unsaved {
@@ -103,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Many scans are taken in unknown space; robots are in known space.
     let tried = simulate(
         &world,
-        localizer.space(),
+        vote_search.space(),
         &simulated,
         20 * options.scans,
         options.seed,
@@ -118,7 +118,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .filter(|range| **range > options.reach)
             .for_each(|range| *range = f32::INFINITY);
         let (outcome, cost) = cpu_ms(|| {
-            let found = localizer.search_in(&mut workspace, &scan.scan(), &|| false);
+            let found = vote_search.search_in(&mut workspace, &scan.scan(), &|| false);
             found.map(|outcome| outcome.and_then(|outcome| outcome.found.votes.first().copied()))
         });
         costs.push(cost);

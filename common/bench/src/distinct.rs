@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use engine::grid::GridFrame;
-use engine::localizer::Outcome;
+use engine::vote_search::Outcome;
 use geometry::Pose;
 
 /// Difference in metres and radians up to which two votes are of one place.

@@ -6,6 +6,7 @@ use crate::grid::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOL
 
 /// Reason why the engine rejects a map, a scan or a setting.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EngineError {
     /// A side of the grid is out of range.
     #[error("a grid of {width} x {height} cells: each side must have 1 to {MAX_SIDE} cells")]
@@ -70,9 +71,8 @@ pub enum EngineError {
     NoHeadingWithin(u32),
     /// Preparing the map needs more memory than is allowed.
     #[error(
-        "preparing the map takes about {needed_mb} MB and --memory-limit allows {limit_mb}: larger \
-         cells (--search-cell), fewer headings (--headings) or a part of the map (--region) take \
-         less"
+        "preparing the map takes about {needed_mb} MB and the memory limit allows {limit_mb}: a larger \
+         search cell, fewer headings or a smaller region take less"
     )]
     Memory {
         /// Memory needed, in megabytes of 10⁶ bytes.
@@ -100,8 +100,8 @@ pub enum EngineError {
     Odometry(Pose),
     /// Several lasers are to be joined, and the mount of one of them is unknown.
     #[error(
-        "it is not known where laser {laser} sits on the base: to join several, /tf_static or \
-         --mount must say so"
+        "the pose of laser {laser} on the base is unknown: joining several lasers needs it, from \
+         /tf_static or as a mount"
     )]
     NoMount {
         /// Name of the laser.
@@ -159,6 +159,15 @@ pub enum EngineError {
         /// Largest range, in metres.
         max: f32,
     },
+    /// There is no map to search.
+    #[error("no map is given: at least one is needed")]
+    NoMap,
+    /// The map was prepared for known headings, and none is given.
+    #[error("no heading is given, and the map was prepared for scans that come with one")]
+    HeadingMissing,
+    /// The map was prepared for unknown headings, and one is given.
+    #[error("a heading of {0} rad is given, and the map was prepared for unknown headings")]
+    HeadingGiven(f64),
     /// The given heading is not finite.
     #[error("the known heading is {0}: it must be finite, in radians")]
     Heading(f64),

@@ -13,7 +13,7 @@ use messages::{FrameName, GroundTruth, Odometry, ScanHeader};
 pub use config::{HeadingConfig, HeadingFrom};
 
 use crate::joined::MotionConfig;
-use crate::localizer::Prior;
+use crate::vote_search::Prior;
 
 /// Source of the heading of scans.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,7 +145,7 @@ impl Driven {
 }
 
 impl HeadingSource {
-    /// Returns the kind of prior for which the localizer must be prepared.
+    /// Returns the kind of prior for which the map must be prepared.
     #[must_use]
     pub fn prior(&self) -> Prior {
         match self {

@@ -20,9 +20,8 @@
 //! odometry (`motion`), and an `observation` of carried scans is searched. From the places found,
 //! `particles` draws start poses for a particle filter.
 //!
-//! A [`locator::Locator`] does all of it in one call: start there, its example compiles. A
-//! [`map_set::MapSet`] does the same for several maps at once. `docs/engine.md` explains the method
-//! with drawings.
+//! A [`Localizer`] does all of it in one call, on one map or on several: start there, its example
+//! compiles. `docs/engine.md` explains the method with drawings.
 //!
 //! The crate uses no process, socket, clock or file.
 
@@ -42,8 +41,6 @@ pub mod instruction_set;
 pub mod joined;
 pub mod limits;
 pub mod localizer;
-pub mod locator;
-pub mod map_set;
 pub mod motion;
 pub mod observation;
 pub mod particles;
@@ -62,6 +59,11 @@ pub mod taper;
 mod testing;
 mod threads;
 pub mod tracking;
+pub mod vote_search;
 pub mod votes;
 
 pub use error::EngineError;
+pub use geometry::Pose;
+pub use localizer::{Answer, Localizer, Map, Settings, Workspace};
+pub use messages::Verdict;
+pub use scan::Scan;

@@ -1,374 +1,356 @@
-//! A map and its settings, ready for searches.
+//! From a scan to the places at which it may have been taken, in one call.
+//!
+//! ```text
+//! scan ─┬─ map 0: VoteSearch: votes ── peaks::Workspace::judge: places ─┐
+//!       ├─ map 1: votes ── places ──────────────────────────────────────┼─ merged: one verdict
+//!       └─ map 2: votes ── places ──────────────────────────────────────┘
+//! ```
+//!
+//! The graph runs the two halves in two processes, the accumulator and the peak
+//! extractor; a [`Localizer`] runs them one after the other, with the same code.
+//!
+//! Several maps (the floors of a building, or the buildings of a campus) are searched as one: as
+//! soon as a good pose is known on one of them, blocks of the others are compared with its votes, so
+//! that ten maps cost far less than ten searches. Votes are compared as shares of the highest
+//! possible on each map; ties go to the map listed first. All maps are judged by the same beams, up
+//! to the diagonal of the largest map: a beam that is too long for a map matches nothing there.
 
-mod config;
-mod preparation;
-mod together;
-
-use std::sync::Arc;
+use geometry::Pose;
 
 use crate::EngineError;
-use crate::accumulator::Query;
-use crate::grid::{CellRules, Grid, GridFrame};
-use crate::instruction_set::InstructionSet;
-use crate::limits::Limits;
+use crate::beams::BeamConfig;
+use crate::fit::{DistanceField, Ends};
+use crate::grid::{CellRules, GridFrame};
 use crate::observation::Observation;
-use crate::program::ScanProgram;
-use crate::search::{self, BlockBounds, SearchIndex};
-use crate::simd::Simd;
+use crate::peaks::{self, Found, Judged, Merged, PeakConfig, PeakInput, Places, merge};
 use crate::space::Space;
-use crate::sweep::{self, FieldSweep};
-use crate::votes::{FieldVotes, VoteSet, VoteShare};
-pub use config::LocalizerConfig;
-pub use preparation::Preparation;
+use crate::vote_search::{self, Outcome, Prior, VoteSearch, VoteSearchConfig};
 
-/// Prior knowledge of the heading.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Prior {
-    /// No knowledge: all headings are searched.
-    None,
-    /// Each scan comes with its heading: only x and y are searched.
-    Heading,
+/// A borrowed occupancy map.
+#[derive(Debug, Clone, Copy)]
+pub struct Map<'a> {
+    /// Cell size and pose of the grid in the map frame.
+    pub frame: GridFrame,
+    /// Number of cells along x and y.
+    pub sides: (usize, usize),
+    /// Occupancies in per cent, or [`messages::UNKNOWN`], row by row from the lowest y.
+    pub occupancy: &'a [u8],
+    /// Thresholds for occupied, free and unknown cells.
+    pub rules: CellRules,
 }
 
-/// A map prepared for searches with one kind of [`Prior`].
+impl<'a> Map<'a> {
+    /// Takes a map with cells of this size, of which the first has its lower left corner at a pose in
+    /// the map frame, and the default thresholds of ROS.
+    #[must_use]
+    pub fn new(
+        resolution_m: f64,
+        map_from_grid: Pose,
+        sides: (usize, usize),
+        occupancy: &'a [u8],
+    ) -> Self {
+        Map {
+            frame: GridFrame {
+                resolution_m,
+                map_from_grid,
+            },
+            sides,
+            occupancy,
+            rules: CellRules::default(),
+        }
+    }
+}
+
+/// Settings of a [`Localizer`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    /// First stage: finds the poses with the most votes.
+    pub vote_search: VoteSearchConfig,
+    /// Second stage: groups them to places and decides if one is unambiguous.
+    pub peaks: PeakConfig,
+    /// Knowledge of the heading with which scans come.
+    pub prior: Prior,
+}
+
+/// Maps prepared for locating scans, shared by any number of threads.
+///
+/// ```
+/// use engine::{Localizer, Map, Pose, Scan, Settings, Verdict, Workspace};
+///
+/// // A hall of 12 m × 8 m with a store room in a corner, cells of 0.1 m.
+/// let (width, height) = (120, 80);
+/// let is_wall = |x: usize, y: usize| {
+///     x < 2 || y < 2 || x >= width - 2 || y >= height - 2 || (x > 75 && y > 50)
+/// };
+/// let occupancy: Vec<u8> = (0..width * height)
+///     .map(|i| if is_wall(i % width, i / width) { 100 } else { 0 })
+///     .collect();
+/// let map = Map::new(0.1, Pose::IDENTITY, (width, height), &occupancy);
+/// let localizer = Localizer::new(map, Settings::default())?;
+///
+/// // Ranges of a laser with one beam per degree at 3 m, 2.5 m, turned by a radian.
+/// let truth = Pose::new(3.0, 2.5, 1.0);
+/// let ranges: Vec<f32> = (0..360)
+///     .map(|beam| {
+///         let (sin, cos) = (truth.yaw + f64::from(beam).to_radians()).sin_cos();
+///         let (x, y) = (10.0 * truth.x, 10.0 * truth.y);
+///         let is_free = |r: &f64| !is_wall((x + r * cos) as usize, (y + r * sin) as usize);
+///         let cells = (0..).map(|step| 0.1 * f64::from(step)).take_while(is_free).last();
+///         0.1 * cells.unwrap_or_default() as f32
+///     })
+///     .collect();
+/// let scan = Scan {
+///     angle_min: 0.0,
+///     angle_increment: 1f64.to_radians(),
+///     range_min_m: 0.1,
+///     range_max_m: 30.0,
+///     ranges: &ranges,
+/// };
+///
+/// let mut workspace = Workspace::default();
+/// let answer = localizer.locate(&mut workspace, &scan)?;
+/// assert_eq!(answer.places.verdict, Verdict::Unique);
+/// assert!(answer.places.places[0].map_from_laser.is_within(truth, 0.1, 0.02));
+/// # Ok::<(), engine::EngineError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Localizer {
-    frame: GridFrame,
-    pooling: usize,
-    grid: Grid,
-    space: Space,
-    config: LocalizerConfig,
-    method: Method,
+    /// At least one map.
+    maps: Vec<PreparedMap>,
 }
 
+/// A map with everything that both stages need.
 #[derive(Debug, Clone)]
-enum Method {
-    Search(Arc<SearchIndex>),
-    Field(Box<FieldSweep>, Limits),
+pub struct PreparedMap {
+    vote_search: VoteSearch,
+    distance_field: DistanceField,
+    /// Space of the map at full resolution; the votes may be counted on a coarser one.
+    space: Space,
+    peaks: PeakConfig,
 }
 
-/// Buffers for searches, and the last outcome. Kept from scan to scan: once the buffers are large
-/// enough, nothing is allocated any more. They may serve any localizer, one after the other.
+/// Buffers for locating, kept from scan to scan: once they are large enough, nothing is allocated
+/// any more on a single map. They may serve any localizer.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    program: ScanProgram,
-    search: search::Workspace,
-    sweep: sweep::Workspace,
-    field: Vec<u16>,
-    field_votes: FieldVotes,
-    outcome: Outcome,
-    blocks: BlockBounds,
+    maps: Vec<OnMap>,
+    merged: Merged,
 }
 
-impl Workspace {
-    /// Intensities of all cells, row by row from the lowest y, at the heading of the last
-    /// [`Localizer::search_at_in`]; empty before the first.
-    #[must_use]
-    pub fn intensities(&self) -> &[u16] {
-        &self.field
-    }
-
-    /// Outcome of the last scan.
-    #[must_use]
-    pub fn outcome(&self) -> &Outcome {
-        &self.outcome
-    }
+#[derive(Debug, Default)]
+struct OnMap {
+    votes: vote_search::Workspace,
+    peaks: peaks::Workspace,
 }
 
-/// Votes that one scan gives to poses, and search statistics.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Outcome {
-    /// The poses with the most votes.
-    pub found: VoteSet,
-    /// Votes of a pose with which every beam agrees fully.
-    pub highest_possible: u32,
-    /// Votes of the best pose; if another of several maps has it, the smallest number of votes that
-    /// is as good on this map.
-    pub lead: u16,
-    /// Number of beams that voted: those not longer than the map.
-    pub beams_used: u32,
-    /// Number of beams without a usable reading.
-    pub beams_silent: u32,
-    /// Largest rounding of a bearing to the heading grid, in radians.
-    pub bearing_rounding: f64,
-    /// Number of headings per turn.
-    pub headings: u32,
-    /// Known heading in the map frame, in radians; `None` if all headings were searched.
-    pub known_heading: Option<f64>,
+/// Result of locating one scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer<'w> {
+    /// Votes and search statistics on the map of the best place; on the first map if there is no
+    /// place.
+    pub outcome: &'w Outcome,
+    /// Places, each with the number of its map, and the verdict.
+    pub places: &'w Places,
+    /// Beams of the scan as they were compared with that map.
+    pub ends: &'w Ends,
 }
 
-impl Outcome {
-    /// Votes of the best collected pose as a share of the highest possible.
-    #[must_use]
-    pub fn best_share(&self) -> VoteShare {
-        VoteShare::new(self.found.best, self.highest_possible as u16)
-    }
-}
-
-impl Localizer {
-    /// Prepares a map of `width · height` occupancies, row by row from the lowest y; cells smaller
-    /// than the search cell are pooled.
+impl PreparedMap {
+    /// Prepares a map, which takes milliseconds to seconds.
     ///
     /// # Errors
-    /// See [`Preparation::of_map`] and [`Preparation::finish`].
-    pub fn of_map(
-        frame: GridFrame,
-        sides: (usize, usize),
-        occupancy: &[u8],
-        rules: CellRules,
-        config: LocalizerConfig,
-        prior: Prior,
-    ) -> Result<Self, EngineError> {
-        Preparation::of_map(frame, sides, occupancy, rules, config, prior)?.finish()
+    /// If the map has no occupied or no free cell, or a setting is out of range.
+    pub fn new(map: Map<'_>, settings: Settings) -> Result<Self, EngineError> {
+        let Settings {
+            vote_search,
+            peaks,
+            prior,
+        } = settings;
+        let Map {
+            frame,
+            sides,
+            occupancy,
+            rules,
+        } = map;
+        let vote_search = VoteSearch::of_map(frame, sides, occupancy, rules, vote_search, prior)?;
+        Self::with(vote_search, map, peaks)
     }
 
-    /// Prepares a grid, which is searched at its own resolution.
+    /// Does the same with a first stage that was already prepared for the map.
     ///
     /// # Errors
-    /// See [`Preparation::new`] and [`Preparation::finish`].
-    pub fn new(
-        frame: GridFrame,
-        grid: Grid,
-        config: LocalizerConfig,
-        prior: Prior,
+    /// See [`PreparedMap::new`].
+    pub fn with(
+        vote_search: VoteSearch,
+        map: Map<'_>,
+        peaks: PeakConfig,
     ) -> Result<Self, EngineError> {
-        Preparation::new(frame, grid, config, prior)?.finish()
-    }
-
-    /// Returns the search index, worth caching for the next start; `None` if prepared for known
-    /// headings.
-    #[must_use]
-    pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
-        match &self.method {
-            Method::Search(index) => Some(Arc::clone(index)),
-            Method::Field(..) => None,
-        }
-    }
-
-    /// Number of map cells along the side of a search cell.
-    #[must_use]
-    pub fn pooling(&self) -> usize {
-        self.pooling
-    }
-
-    /// Cell size and pose in the map of the grid that is searched.
-    #[must_use]
-    pub fn frame(&self) -> GridFrame {
-        self.frame
-    }
-
-    /// Settings of the localizer.
-    #[must_use]
-    pub fn config(&self) -> &LocalizerConfig {
-        &self.config
-    }
-
-    /// Cells that are searched.
-    #[must_use]
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// Number of cells in which poses are searched.
-    #[must_use]
-    pub fn searchable_cells(&self) -> usize {
-        self.limits().open_cells(&self.grid).count()
-    }
-
-    /// Memory of the search data in bytes, without the cells.
-    #[must_use]
-    pub fn index_bytes(&self) -> usize {
-        match &self.method {
-            Method::Search(index) => index.bytes(),
-            Method::Field(sweeps, _) => sweeps.bytes(),
-        }
-    }
-
-    fn limits(&self) -> &Limits {
-        match &self.method {
-            Method::Search(index) => index.limits(),
-            Method::Field(_, limits) => limits,
-        }
+        let ((width, height), headings) = (map.sides, vote_search.config().headings);
+        Ok(PreparedMap {
+            distance_field: DistanceField::new(map.frame, map.sides, map.occupancy, map.rules)?,
+            space: Space::new(headings, map.frame.resolution_m, width, height)?,
+            vote_search,
+            peaks,
+        })
     }
 
     /// Makes beams count up to this length, see [`Space::reaching`].
-    #[must_use]
-    pub fn reaching(self, reach_m: f64) -> Self {
-        Localizer {
+    fn reaching(self, reach_m: f64) -> Self {
+        PreparedMap {
+            vote_search: self.vote_search.reaching(reach_m),
             space: self.space.reaching(reach_m),
             ..self
         }
     }
 
-    /// Space of poses that is searched.
+    /// Runs the second stage.
+    fn judge<'w>(
+        &self,
+        (outcome, peaks): (&Outcome, &'w mut peaks::Workspace),
+        scan: Observation<'_>,
+        (config, has_others): (&PeakConfig, bool),
+    ) -> Result<Judged<'w>, EngineError> {
+        let input = PeakInput {
+            has_others,
+            ..PeakInput::of(outcome, self.vote_search.frame())
+        };
+        let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
+        peaks.judge(&input, &self.distance_field, config, find)
+    }
+
+    /// Returns the beams of a scan as the second stage compares them with the map.
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`].
+    pub fn ends<'s>(&self, scan: impl Into<Observation<'s>>) -> Result<Ends, EngineError> {
+        Ends::new(scan, &self.space, self.beams())
+    }
+
+    fn beams(&self) -> &BeamConfig {
+        &self.vote_search.config().votes.beams
+    }
+
+    /// The first stage.
     #[must_use]
-    pub fn space(&self) -> &Space {
-        &self.space
+    pub fn vote_search(&self) -> &VoteSearch {
+        &self.vote_search
     }
 
-    /// Searches all poses in a new workspace, see [`Localizer::search_in`].
+    /// Distance field of the map, for the second stage.
+    #[must_use]
+    pub fn distance_field(&self) -> &DistanceField {
+        &self.distance_field
+    }
+
+    /// Settings of the second stage.
+    #[must_use]
+    pub fn peaks(&self) -> &PeakConfig {
+        &self.peaks
+    }
+}
+
+impl Localizer {
+    /// Prepares a map, which takes milliseconds to seconds.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`].
-    ///
-    /// # Panics
-    /// If the localizer was prepared for known headings.
-    pub fn search<'s>(
-        &self,
-        scan: impl Into<Observation<'s>>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Outcome>, EngineError> {
-        let mut workspace = Workspace::default();
-        let found = self.search_in(&mut workspace, scan, stop)?.is_some();
-        Ok(found.then_some(workspace.outcome))
+    /// If the map has no occupied or no free cell, or a setting is out of range.
+    pub fn new(map: Map<'_>, settings: Settings) -> Result<Self, EngineError> {
+        Ok(Localizer {
+            maps: vec![PreparedMap::new(map, settings)?],
+        })
     }
 
-    /// Searches all poses; `None` if `stop` returned true before the end.
+    /// Takes one or several maps that are searched together, all prepared with the same settings.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`].
-    ///
-    /// # Panics
-    /// If the localizer was prepared for known headings.
-    pub fn search_in<'w, 's>(
-        &self,
-        workspace: &'w mut Workspace,
-        scan: impl Into<Observation<'s>>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<&'w Outcome>, EngineError> {
-        let index = self.index();
-        let Workspace {
-            program,
-            search,
-            outcome,
-            ..
-        } = workspace;
-        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
-        let how = (InstructionSet::best(), usize::from(self.config.threads));
-        let collect = (self.config.collect, &mut outcome.found);
-        let scan = (&*program, &self.space);
-        let found = index.search_in(search, how, &self.grid, scan, collect, stop);
-        Ok(found.map(|()| self.describe(program, None, outcome)))
+    /// If there is no map.
+    pub fn of_maps(maps: Vec<PreparedMap>) -> Result<Self, EngineError> {
+        let reach_m = maps.iter().map(|map| map.space.longest_m);
+        let reach_m = reach_m.reduce(f64::max).ok_or(EngineError::NoMap)?;
+        let maps = maps.into_iter().map(|map| map.reaching(reach_m)).collect();
+        Ok(Localizer { maps })
     }
 
-    fn index(&self) -> &SearchIndex {
-        let Method::Search(index) = &self.method else {
-            panic!("this localizer was prepared for known headings");
-        };
-        index
+    /// Maps, in the order that decides ties.
+    #[must_use]
+    pub fn maps(&self) -> &[PreparedMap] {
+        &self.maps
     }
 
-    /// Returns upper bounds of the votes that [`Localizer::search`] can find, by block: a coarse
-    /// picture of where the robot may be.
+    /// Returns the places at which a scan may have been taken, at any heading.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`].
-    ///
-    /// # Panics
-    /// If the localizer was prepared for known headings.
-    pub fn block_bounds<'w, 's>(
+    /// If the scan is rejected, see [`Observation::check`], or the localizer was prepared for known
+    /// headings.
+    pub fn locate<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
         scan: impl Into<Observation<'s>>,
-    ) -> Result<&'w BlockBounds, EngineError> {
-        let index = self.index();
-        let Workspace {
-            program,
-            search,
-            blocks,
-            ..
-        } = workspace;
-        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
-        index.block_bounds_in(search, (program, &self.space), blocks);
-        Ok(blocks)
+    ) -> Result<Answer<'w>, EngineError> {
+        let found = self.locate_unless(workspace, scan, None, &|| false)?;
+        Ok(found.expect("a search that nothing stops ends with an outcome"))
     }
 
-    /// Searches x and y at a heading in a new workspace, see [`Localizer::search_at_in`]; returns
-    /// the outcome and the intensities of all cells.
+    /// Locates a scan as [`Localizer::locate`] does, or, if a heading in the maps' frame is given
+    /// (radians), among all positions at that heading. Returns `None` if `stop` returned true
+    /// before the end.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
-    ///
-    /// # Panics
-    /// If the localizer was prepared for unknown headings.
-    pub fn search_at<'s>(
-        &self,
-        scan: impl Into<Observation<'s>>,
-        heading: f64,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<(Outcome, Vec<u16>)>, EngineError> {
-        let mut workspace = Workspace::default();
-        let found = self.search_at_in(&mut workspace, scan, heading, stop)?;
-        let found = found.is_some();
-        Ok(found.then_some((workspace.outcome, workspace.field)))
-    }
-
-    /// Searches x and y at a heading in the map frame, in radians, and leaves the intensities of
-    /// all cells in [`Workspace::intensities`]; `None` if `stop` returned true before the end.
-    ///
-    /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
-    ///
-    /// # Panics
-    /// If the localizer was prepared for unknown headings.
-    pub fn search_at_in<'w, 's>(
+    /// If the scan is rejected, see [`Observation::check`], if the heading is not finite, or if one
+    /// is given and the localizer was prepared for unknown headings, or the other way round.
+    pub fn locate_unless<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
         scan: impl Into<Observation<'s>>,
-        heading: f64,
+        heading: Option<f64>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<&'w Outcome>, EngineError> {
-        let Method::Field(sweeps, limits) = &self.method else {
-            panic!("this localizer was prepared for unknown headings");
-        };
-        if !heading.is_finite() {
-            return Err(EngineError::Heading(heading));
+    ) -> Result<Option<Answer<'w>>, EngineError> {
+        let (scan, Workspace { maps, merged }) = (scan.into(), workspace);
+        maps.resize_with(self.maps.len(), OnMap::default);
+        if let [map] = &self.maps[..] {
+            let OnMap { votes, peaks } = &mut maps[0];
+            let found = map.vote_search.search_with(votes, scan, heading, stop)?;
+            let Some(outcome) = found else {
+                return Ok(None);
+            };
+            let judged = map.judge((outcome, peaks), scan, (&map.peaks, false))?;
+            return Ok(Some(Answer {
+                outcome,
+                places: judged.places,
+                ends: judged.ends,
+            }));
         }
-        let Workspace {
-            program,
-            sweep,
-            field,
-            field_votes,
-            outcome,
-            ..
-        } = workspace;
-        // The beams are turned by the rest of the heading after rounding to the heading grid.
-        let (index, turn) = self
-            .space
-            .directions
-            .nearest(heading - self.frame.map_from_grid.yaw);
-        program.compile(scan, turn, &self.space, &self.config.votes)?;
-        let query = Query {
-            program,
-            space: &self.space,
-            heading: index,
-        };
-        let simd = Simd::new(InstructionSet::best());
-        if sweeps.fill(simd, query, sweep, field, stop).is_none() {
-            return Ok(None);
-        }
-        limits.clear(field, index);
-        let image = (&field[..], self.grid.width());
-        let how = (self.config.collect, &self.space);
-        field_votes.collect(image, index as u16, how, &mut outcome.found);
-        Ok(Some(self.describe(program, Some(heading), outcome)))
+        let searches = self.maps.iter().map(PreparedMap::vote_search);
+        let searches = searches.zip(maps.iter_mut().map(|on_map| &mut on_map.votes));
+        let found = VoteSearch::search_together(searches.collect(), scan, heading, stop)?;
+        found
+            .map(|_| self.judge_all(maps, scan, merged))
+            .transpose()
     }
 
-    /// Fills in an outcome except the votes found.
-    fn describe<'w>(
+    /// Runs the second stage on each map, and merges the places.
+    fn judge_all<'w>(
         &self,
-        program: &ScanProgram,
-        known_heading: Option<f64>,
-        outcome: &'w mut Outcome,
-    ) -> &'w Outcome {
-        outcome.lead = outcome.found.best;
-        outcome.highest_possible = program.highest_possible();
-        outcome.beams_used = program.beams() as u32;
-        outcome.beams_silent = program.silent() as u32;
-        outcome.bearing_rounding = program.bearing_rounding();
-        outcome.headings = self.config.headings;
-        outcome.known_heading = known_heading;
-        outcome
+        maps: &'w mut [OnMap],
+        scan: Observation<'_>,
+        merged: &'w mut Merged,
+    ) -> Result<Answer<'w>, EngineError> {
+        let config = &self.maps[0].peaks;
+        let of_each = config.of_each_map();
+        let mut found = Vec::with_capacity(maps.len());
+        for (number, (map, on_map)) in (0..).zip(self.maps.iter().zip(maps.iter_mut())) {
+            let outcome = on_map.votes.outcome();
+            let judged = map.judge((outcome, &mut on_map.peaks), scan, (&of_each, true))?;
+            found.push(Found::on(number, outcome.best_share(), &judged));
+        }
+        *merged = merge(&found, config);
+        let best = &maps[merged.best_of];
+        merged.places.classes.clone_from(best.peaks.classes());
+        Ok(Answer {
+            outcome: best.votes.outcome(),
+            places: &merged.places,
+            ends: best.peaks.ends(),
+        })
     }
 }
 

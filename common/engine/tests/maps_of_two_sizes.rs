@@ -4,10 +4,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::grid::{CellRules, GridFrame};
-use engine::localizer::Prior;
-use engine::locator::{Locator, LocatorConfig, OccupancyView};
-use engine::map_set::{MapSet, Workspace};
+use engine::localizer::{Localizer, Map, PreparedMap, Settings, Workspace};
 use engine::scan::Scan;
 use geometry::Pose;
 
@@ -41,23 +38,16 @@ impl Room {
         !(is_inside(x, width) && is_inside(y, height)) || (self.is_inner_wall)(x, y)
     }
 
-    fn locator(&self) -> Locator {
+    fn prepared(&self) -> PreparedMap {
         let sides = [self.sides_m.0, self.sides_m.1].map(|m| (m / CELL_M).round() as usize);
         let middle = |i: usize| (i as f64 + 0.5) * CELL_M;
         let cells = (0..sides[0] * sides[1]).map(|i| {
             let (x, y) = (middle(i % sides[0]), middle(i / sides[0]));
             100 * u8::from(self.is_wall(x, y))
         });
-        let view = OccupancyView {
-            frame: GridFrame {
-                resolution_m: CELL_M,
-                map_from_grid: Pose::IDENTITY,
-            },
-            sides: sides.into(),
-            occupancy: &cells.collect::<Vec<_>>(),
-            rules: CellRules::default(),
-        };
-        Locator::new(view, LocatorConfig::default(), Prior::None).unwrap()
+        let cells = cells.collect::<Vec<_>>();
+        let map = Map::new(CELL_M, Pose::IDENTITY, sides.into(), &cells);
+        PreparedMap::new(map, Settings::default()).unwrap()
     }
 
     /// Ranges of a 270° laser at a pose, with people in every fourth of the long beams.
@@ -77,13 +67,14 @@ impl Room {
 
 #[test]
 fn what_a_closet_is_too_small_for_speaks_against_it() {
-    let (hall, closet) = (HALL.locator(), CLOSET.locator());
+    let (hall, closet) = (HALL.prepared(), CLOSET.prepared());
     let sets = [
-        (0, MapSet::new(vec![hall.clone(), closet.clone()])),
-        (1, MapSet::new(vec![closet, hall])),
+        (0, vec![hall.clone(), closet.clone()]),
+        (1, vec![closet, hall]),
     ];
     let mut workspace = Workspace::default();
-    for (hall, set) in sets {
+    for (hall, maps) in sets {
+        let localizer = Localizer::of_maps(maps).unwrap();
         for step in 0..5 {
             // The robot drives along the screen, which is most of what is nearby.
             let pose = Pose::new(
@@ -99,14 +90,9 @@ fn what_a_closet_is_too_small_for_speaks_against_it() {
                 range_max_m: 40.0,
                 ranges: &ranges,
             };
-            let found = set.locate_unless(&mut workspace, &scan, None, &|| false);
-            let found = found.unwrap().unwrap();
+            let found = localizer.locate(&mut workspace, &scan).unwrap();
             let best = &found.places.places[0];
-            assert_eq!(
-                (found.found.leading_map, best.map),
-                (hall, hall),
-                "{best:?}"
-            );
+            assert_eq!(best.map, hall, "{best:?}");
             assert!(
                 best.map_from_laser.is_within(pose, 0.15, 0.03),
                 "{best:?} {pose:?}"

@@ -14,10 +14,10 @@ use allocation_counter::measure;
 use engine::fit::{DistanceField, Ends};
 use engine::grid::{CellRules, GridFrame};
 use engine::instruction_set::InstructionSet;
-use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::reference;
 use engine::scan::Scan;
+use engine::vote_search::{Outcome, Prior, VoteSearch, VoteSearchConfig, Workspace};
 use geometry::Pose;
 use messages::Verdict;
 
@@ -99,14 +99,14 @@ impl World {
         }
     }
 
-    fn localizer(&self, threads: u8, prior: Prior) -> Localizer {
-        let config = LocalizerConfig {
+    fn vote_search(&self, threads: u8, prior: Prior) -> VoteSearch {
+        let config = VoteSearchConfig {
             threads,
             search_cell: 0.0,
-            ..LocalizerConfig::default()
+            ..VoteSearchConfig::default()
         };
         let rules = CellRules::default();
-        Localizer::of_map(FRAME, self.sides, &self.occupancy, rules, config, prior).unwrap()
+        VoteSearch::of_map(FRAME, self.sides, &self.occupancy, rules, config, prior).unwrap()
     }
 
     fn distance_field(&self) -> DistanceField {
@@ -116,8 +116,8 @@ impl World {
     /// Ranges of a laser with a view of half a turn at a pose of the grid, within 3 cm; one beam in
     /// twenty does not return.
     fn scan(&self, (x, y, heading): (i64, i64, usize), noise: &mut Noise) -> Vec<f32> {
-        let localizer = self.localizer(1, Prior::Heading);
-        let (grid, directions) = (localizer.grid(), &localizer.space().directions);
+        let vote_search = self.vote_search(1, Prior::Heading);
+        let (grid, directions) = (vote_search.grid(), &vote_search.space().directions);
         let beams = (0..361).map(|beam| {
             let direction = directions.get(heading + 270 + beam / 2);
             let steps = reference::range(grid, x, y, direction);
@@ -155,9 +155,9 @@ fn allocations(world: &World, mut work: impl FnMut(&Scan<'_>)) -> u64 {
 #[test]
 fn what_allocates_is_counted() {
     let world = World::rooms();
-    let localizer = world.localizer(1, Prior::None);
+    let vote_search = world.vote_search(1, Prior::None);
     let fresh = allocations(&world, |scan| {
-        localizer.search(scan, &|| false).unwrap();
+        vote_search.search(scan, &|| false).unwrap();
     });
     assert!(
         fresh > 10,
@@ -168,17 +168,17 @@ fn what_allocates_is_counted() {
 #[test]
 fn a_search_of_all_headings_allocates_nothing() {
     let world = World::rooms();
-    let localizer = world.localizer(1, Prior::None);
+    let vote_search = world.vote_search(1, Prior::None);
     let mut workspace = Workspace::default();
     let mut best = 0;
     let count = allocations(&world, |scan| {
-        let outcome = localizer.search_in(&mut workspace, scan, &|| false);
+        let outcome = vote_search.search_in(&mut workspace, scan, &|| false);
         best = outcome.unwrap().unwrap().found.best;
     });
     assert!(best > 0, "something is found");
     assert_eq!(count, 0);
     let count = allocations(&world, |scan| {
-        localizer.block_bounds(&mut workspace, scan).unwrap();
+        vote_search.block_bounds(&mut workspace, scan).unwrap();
     });
     assert_eq!(count, 0);
 }
@@ -186,12 +186,12 @@ fn a_search_of_all_headings_allocates_nothing() {
 #[test]
 fn a_search_that_counts_every_pose_allocates_nothing() {
     let world = World::clutter();
-    let localizer = world.localizer(1, Prior::None);
-    let all = (localizer.grid().cells().len() * localizer.space().directions.count()) as u64;
+    let vote_search = world.vote_search(1, Prior::None);
+    let all = (vote_search.grid().cells().len() * vote_search.space().directions.count()) as u64;
     let mut workspace = Workspace::default();
     let mut counted = 0;
     let count = allocations(&world, |scan| {
-        let outcome = localizer.search_in(&mut workspace, scan, &|| false);
+        let outcome = vote_search.search_in(&mut workspace, scan, &|| false);
         counted = outcome.unwrap().unwrap().found.poses_evaluated;
     });
     // Without wide vectors, counting is so slow that bounds help even here.
@@ -207,11 +207,11 @@ fn a_search_that_counts_every_pose_allocates_nothing() {
 #[test]
 fn a_search_at_a_heading_allocates_nothing() {
     let world = World::rooms();
-    let localizer = world.localizer(1, Prior::Heading);
+    let vote_search = world.vote_search(1, Prior::Heading);
     let mut workspace = Workspace::default();
     let mut best = 0;
     let count = allocations(&world, |scan| {
-        let outcome = localizer.search_at_in(&mut workspace, scan, 0.5, &|| false);
+        let outcome = vote_search.search_at_in(&mut workspace, scan, 0.5, &|| false);
         best = outcome.unwrap().unwrap().found.best;
     });
     assert!(best > 0, "something is found");
@@ -221,9 +221,9 @@ fn a_search_at_a_heading_allocates_nothing() {
 #[test]
 fn the_second_stage_allocates_nothing() {
     let world = World::rooms();
-    let (localizer, distance_field) = (world.localizer(1, Prior::None), world.distance_field());
-    let space = localizer.space();
-    let search = |scan: Scan<'_>| localizer.search(&scan, &|| false).unwrap().unwrap();
+    let (vote_search, distance_field) = (world.vote_search(1, Prior::None), world.distance_field());
+    let space = vote_search.space();
+    let search = |scan: Scan<'_>| vote_search.search(&scan, &|| false).unwrap().unwrap();
     let outcomes: Vec<Outcome> = world.scans().map(search).collect();
     let mut workspace = peaks::Workspace::default();
     let (config, mut next, mut candidates) = (PeakConfig::default(), 0, 0);
@@ -231,7 +231,7 @@ fn the_second_stage_allocates_nothing() {
         let outcome = &outcomes[next % outcomes.len()];
         next += 1;
         let input = PeakInput::of(outcome, FRAME);
-        let beams = &localizer.config().votes.beams;
+        let beams = &vote_search.config().votes.beams;
         let find = |ends: &mut Ends| ends.find(scan, space, beams);
         let judged = workspace.judge(&input, &distance_field, &config, find);
         let places = judged.unwrap().places;
@@ -245,13 +245,13 @@ fn the_second_stage_allocates_nothing() {
 #[test]
 fn a_search_on_two_threads_allocates_no_more_than_their_start() {
     let world = World::rooms();
-    let localizer = world.localizer(2, Prior::None);
+    let vote_search = world.vote_search(2, Prior::None);
     let mut workspace = Workspace::default();
     // The buffer sizes of each thread depend on which of them finds the best pose first, so that
     // buffers still grow now and then for a while.
     let searches = (0..16).map(|_| {
         allocations(&world, |scan| {
-            let outcome = localizer.search_in(&mut workspace, scan, &|| false);
+            let outcome = vote_search.search_in(&mut workspace, scan, &|| false);
             assert!(outcome.unwrap().unwrap().found.best > 0);
         })
     });
@@ -269,12 +269,12 @@ fn a_search_on_two_threads_allocates_no_more_than_their_start() {
 #[test]
 fn going_from_map_to_map_allocates_nothing() {
     let (large, small) = (World::rooms(), World::clutter());
-    let localizers = [&large, &small].map(|world| world.localizer(1, Prior::Heading));
+    let localizers = [&large, &small].map(|world| world.vote_search(1, Prior::Heading));
     let mut workspace = Workspace::default();
     let mut work = || {
-        for (world, localizer) in [&large, &small].into_iter().zip(&localizers) {
+        for (world, vote_search) in [&large, &small].into_iter().zip(&localizers) {
             for scan in world.scans() {
-                localizer
+                vote_search
                     .search_at_in(&mut workspace, &scan, 0.0, &|| false)
                     .unwrap();
             }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use engine::EngineError;
-use engine::localizer::{Localizer, Preparation, Prior};
-use engine::locator::{Locator, LocatorConfig, OccupancyView};
+use engine::localizer::{Map, PreparedMap, Settings};
 use engine::search::{IndexKey, SearchIndex};
+use engine::vote_search::{Preparation, VoteSearch};
 
 use crate::error::{FileError, failed};
 use crate::{CacheError, file, folder};
@@ -24,7 +24,7 @@ pub struct IndexCache {
 /// A localizer, and the state of its cached index.
 #[derive(Debug)]
 pub struct Prepared {
-    pub localizer: Localizer,
+    pub vote_search: VoteSearch,
     /// State of the cached index.
     pub kept: Kept,
 }
@@ -56,26 +56,26 @@ impl Prepared {
     pub fn new(cache: Option<&IndexCache>, preparation: Preparation) -> Result<Self, EngineError> {
         let mut kept = Kept::default();
         let Some((cache, key)) = cache.zip(preparation.key()) else {
-            let localizer = preparation.finish()?;
-            return Ok(Prepared { localizer, kept });
+            let vote_search = preparation.finish()?;
+            return Ok(Prepared { vote_search, kept });
         };
         match cache.read(key, &preparation) {
             Ok(Some(index)) => {
-                let localizer = preparation.with(index);
+                let vote_search = preparation.with(index);
                 kept.is_read = true;
-                return Ok(Prepared { localizer, kept });
+                return Ok(Prepared { vote_search, kept });
             }
             Ok(None) => {}
             Err(problem) => kept.problem = Some(problem),
         }
-        let localizer = preparation.finish()?;
+        let vote_search = preparation.finish()?;
         let unsaved = |index| Unsaved {
             cache: cache.clone(),
             key,
             index,
         };
-        kept.unsaved = localizer.search_index().map(unsaved);
-        Ok(Prepared { localizer, kept })
+        kept.unsaved = vote_search.search_index().map(unsaved);
+        Ok(Prepared { vote_search, kept })
     }
 }
 
@@ -83,22 +83,25 @@ impl Prepared {
 ///
 /// # Errors
 /// The map cannot be searched, or a setting is out of range.
-pub fn locator(
+pub fn prepared_map(
     cache: Option<&IndexCache>,
-    map: OccupancyView<'_>,
-    config: LocatorConfig,
-    prior: Prior,
-) -> Result<(Locator, Kept), EngineError> {
-    let OccupancyView {
+    map: Map<'_>,
+    settings: Settings,
+) -> Result<(PreparedMap, Kept), EngineError> {
+    let Map {
         frame,
         sides,
         occupancy,
         rules,
     } = map;
-    let LocatorConfig { localizer, peaks } = config;
-    let preparation = Preparation::of_map(frame, sides, occupancy, rules, localizer, prior)?;
-    let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
-    Ok((Locator::with(localizer, map, peaks)?, kept))
+    let Settings {
+        vote_search,
+        peaks,
+        prior,
+    } = settings;
+    let preparation = Preparation::of_map(frame, sides, occupancy, rules, vote_search, prior)?;
+    let Prepared { vote_search, kept } = Prepared::new(cache, preparation)?;
+    Ok((PreparedMap::with(vote_search, map, peaks)?, kept))
 }
 
 impl Unsaved {
@@ -175,8 +178,8 @@ mod tests {
 
     use engine::grid::{CellRules, GridFrame};
     use engine::limits::LimitsConfig;
-    use engine::localizer::{LocalizerConfig, Prior};
     use engine::search::{SECTIONS, SectionError};
+    use engine::vote_search::{Prior, VoteSearchConfig};
     use nix::sys::stat::Mode;
     use nix::unistd::{geteuid, mkfifo};
 
@@ -209,7 +212,7 @@ mod tests {
         assert!(read.kept.is_read && read.kept.problem.is_none() && read.kept.unsaved.is_none());
         let made = preparation(1).finish().unwrap().search_index().unwrap();
         assert_eq!(
-            read.localizer.search_index().unwrap().sections(),
+            read.vote_search.search_index().unwrap().sections(),
             made.sections()
         );
         remove_dir_all(folder.path().join("new")).unwrap();
@@ -276,15 +279,15 @@ mod tests {
 
     #[test]
     fn the_key_is_of_all_that_an_index_is_made_of() {
-        let default = LocalizerConfig::default();
-        let limited = |limits| LocalizerConfig {
+        let default = VoteSearchConfig::default();
+        let limited = |limits| VoteSearchConfig {
             limits,
-            ..LocalizerConfig::default()
+            ..VoteSearchConfig::default()
         };
         let limits = LimitsConfig::default;
         let other = |config| preparation_with(1, config).key().unwrap();
         let of = |frame, cells: &[u8], rules| {
-            let config = LocalizerConfig::default();
+            let config = VoteSearchConfig::default();
             let preparation = Preparation::of_map(frame, SIDES, cells, rules, config, Prior::None);
             preparation.unwrap().key().unwrap()
         };
@@ -302,11 +305,11 @@ mod tests {
         let keys = [
             other(default.clone()),
             preparation_with(2, default.clone()).key().unwrap(),
-            other(LocalizerConfig {
+            other(VoteSearchConfig {
                 headings: 48,
                 ..default.clone()
             }),
-            other(LocalizerConfig {
+            other(VoteSearchConfig {
                 search_cell: 0.1,
                 ..default.clone()
             }),
@@ -335,7 +338,7 @@ mod tests {
         }
         // Parameters that only affect a search do not matter.
         assert_eq!(
-            other(LocalizerConfig {
+            other(VoteSearchConfig {
                 threads: 3,
                 ..default
             }),
@@ -346,7 +349,7 @@ mod tests {
             SIDES,
             &occupancy(1),
             CellRules::default(),
-            LocalizerConfig::default(),
+            VoteSearchConfig::default(),
             Prior::Heading,
         );
         assert_eq!(known.unwrap().key(), None);
@@ -387,9 +390,9 @@ mod tests {
 
     #[test]
     fn a_memory_limit_holds_for_what_is_read() {
-        let config = LocalizerConfig {
+        let config = VoteSearchConfig {
             memory_limit: Some(1),
-            ..LocalizerConfig::default()
+            ..VoteSearchConfig::default()
         };
         let mut lengths = [0; SECTIONS];
         (lengths[0], lengths[5]) = (1, 1_000_000);

@@ -16,8 +16,8 @@ use std::hash::Hasher;
 use std::io::{self, Read, Write};
 
 use bytemuck::{Pod, Zeroable, bytes_of, bytes_of_mut};
-use engine::localizer::Preparation;
 use engine::search::{IndexKey, SECTIONS, SearchIndex};
+use engine::vote_search::Preparation;
 use twox_hash::XxHash3_64;
 
 use crate::error::FileError;
@@ -170,8 +170,8 @@ mod tests {
 
     /// Returns a file of the map with seed 1.
     fn file() -> Vec<u8> {
-        let localizer = preparation(1).finish().unwrap();
-        let index = localizer.search_index().unwrap();
+        let vote_search = preparation(1).finish().unwrap();
+        let index = vote_search.search_index().unwrap();
         let mut bytes = Vec::new();
         write(&mut bytes, key(), &index).unwrap();
         assert_eq!(bytes.len() as u64, size(&index));

@@ -17,6 +17,6 @@ mod folder;
 #[cfg(test)]
 mod testing;
 
-pub use cache::{IndexCache, Kept, Prepared, Unsaved, locator};
+pub use cache::{IndexCache, Kept, Prepared, Unsaved, prepared_map};
 pub use config::{CachePlace, IndexCacheConfig};
 pub use error::{CacheError, FileError};

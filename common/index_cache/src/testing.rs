@@ -1,7 +1,7 @@
 //! Small maps for the tests of this crate.
 
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{LocalizerConfig, Preparation, Prior};
+use engine::vote_search::{Preparation, Prior, VoteSearchConfig};
 use geometry::Pose;
 
 /// Width and height in cells.
@@ -31,16 +31,16 @@ pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
 }
 
 /// Prepares the map of a seed with these settings.
-pub(crate) fn preparation_with(seed: usize, config: LocalizerConfig) -> Preparation {
+pub(crate) fn preparation_with(seed: usize, config: VoteSearchConfig) -> Preparation {
     let (cells, rules) = (occupancy(seed), CellRules::default());
     Preparation::of_map(FRAME, SIDES, &cells, rules, config, Prior::None).unwrap()
 }
 
 /// Prepares the map of a seed with few headings.
 pub(crate) fn preparation(seed: usize) -> Preparation {
-    let config = LocalizerConfig {
+    let config = VoteSearchConfig {
         headings: 48,
-        ..LocalizerConfig::default()
+        ..VoteSearchConfig::default()
     };
     preparation_with(seed, config)
 }

@@ -7,8 +7,8 @@ use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::heading::HeadingConfig;
 use engine::joined::MotionConfig;
-use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
+use engine::vote_search::VoteSearchConfig;
 use index_cache::IndexCacheConfig;
 use map::OccupancyGrid;
 use progress::say;
@@ -62,7 +62,7 @@ pub struct EngineOptions {
     #[command(flatten)]
     pub cells: CellRules,
     #[command(flatten)]
-    pub localizer: LocalizerConfig,
+    pub vote_search: VoteSearchConfig,
     #[command(flatten)]
     pub peaks: PeakConfig,
 }
@@ -87,7 +87,7 @@ impl Options {
     /// # Errors
     /// Names the option and what is allowed.
     pub fn check_settings(&self) -> anyhow::Result<()> {
-        let headings = Directions::new(self.engine.localizer.headings);
+        let headings = Directions::new(self.engine.vote_search.headings);
         headings.map_err(|error| wrong_use(error.to_string()))?;
         self.heading.check().map_err(wrong_use)
     }

@@ -4,12 +4,11 @@ use anyhow::Context;
 use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
-use engine::localizer::{Outcome, Prior};
-use engine::locator::{Locator, LocatorConfig, OccupancyView};
-use engine::map_set::{self, MapSet};
+use engine::localizer::{Localizer, Map, PreparedMap, Settings, Workspace};
 use engine::observation::Observation;
 use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;
+use engine::vote_search::{Outcome, Prior};
 use geometry::Pose;
 use index_cache::{IndexCache, Kept};
 use map::OccupancyGrid;
@@ -23,8 +22,8 @@ pub struct World {
     /// The map's id, as in the graph's messages; that of the first map of several.
     pub map_id: u64,
     maps: Vec<KnownMap>,
-    set: MapSet,
-    workspace: map_set::Workspace,
+    localizer: Localizer,
+    workspace: Workspace,
     /// The last places, as poses of the first laser.
     of_laser: Places,
 }
@@ -128,9 +127,9 @@ impl World {
         prior: Prior,
         cache: Option<&IndexCache>,
     ) -> Result<(Self, Kept), EngineError> {
-        let (locator, kept) = locator_of(map, options, prior, cache)?;
+        let (prepared, kept) = prepare(map, options, prior, cache)?;
         let known = KnownMap::of(map, String::new(), None);
-        Ok((World::of(vec![known], vec![locator]), kept))
+        Ok((World::of(vec![known], vec![prepared])?, kept))
     }
 
     /// Like [`World::prepare_with`], for several maps that are searched together.
@@ -143,30 +142,30 @@ impl World {
         prior: Prior,
         cache: Option<&IndexCache>,
     ) -> anyhow::Result<(Self, Vec<Kept>)> {
-        let (mut known, mut locators, mut all_kept) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut known, mut prepared, mut all_kept) = (Vec::new(), Vec::new(), Vec::new());
         for NamedMap { name, floor, grid } in maps {
-            let prepared = locator_of(grid, options, prior, cache);
-            let (locator, kept) = prepared.with_context(|| unusable(name))?;
+            let (map, kept) =
+                prepare(grid, options, prior, cache).with_context(|| unusable(name))?;
             known.push(KnownMap::of(grid, name.clone(), floor.clone()));
-            locators.push(locator);
+            prepared.push(map);
             all_kept.push(kept);
         }
-        Ok((World::of(known, locators), all_kept))
+        Ok((World::of(known, prepared)?, all_kept))
     }
 
-    fn of(maps: Vec<KnownMap>, locators: Vec<Locator>) -> Self {
-        World {
+    fn of(maps: Vec<KnownMap>, prepared: Vec<PreparedMap>) -> Result<Self, EngineError> {
+        Ok(World {
+            localizer: Localizer::of_maps(prepared)?,
             map_id: maps[0].id,
             maps,
-            set: MapSet::new(locators),
-            workspace: map_set::Workspace::default(),
+            workspace: Workspace::default(),
             of_laser: Places::default(),
-        }
+        })
     }
 
-    /// The locator of the only or first map.
-    fn locator(&self) -> &Locator {
-        &self.set.locators()[0]
+    /// The only or first map.
+    fn map(&self) -> &PreparedMap {
+        &self.localizer.maps()[0]
     }
 
     /// Number of cells of all maps.
@@ -176,22 +175,22 @@ impl World {
 
     /// Number of cells in which poses are searched, at the resolution of the search.
     pub fn searchable_cells(&self) -> u64 {
-        self.locator().localizer().searchable_cells() as u64
+        self.map().vote_search().searchable_cells() as u64
     }
 
     /// Size of the search index of the map.
     pub fn index_bytes(&self) -> u64 {
-        self.locator().localizer().index_bytes() as u64
+        self.map().vote_search().index_bytes() as u64
     }
 
     /// Distance field of the map, used by the second stage.
     pub fn distance_field(&self) -> &DistanceField {
-        self.locator().distance_field()
+        self.map().distance_field()
     }
 
     /// Settings of the second stage.
     pub fn peaks(&self) -> &PeakConfig {
-        self.locator().peaks()
+        self.map().peaks()
     }
 
     /// Prepares the beams of a scan for the second stage.
@@ -199,7 +198,7 @@ impl World {
     /// # Errors
     /// The scan is rejected.
     pub fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
-        self.locator().ends(scan)
+        self.map().ends(scan)
     }
 
     /// Searches all poses or, if the heading in the map (radians) is given, all positions; the
@@ -215,23 +214,11 @@ impl World {
         heading: Option<f64>,
         target: Target,
     ) -> Result<Answer<'_>, EngineError> {
-        let all = "a search that nothing stops ends with an outcome";
-        let (outcome, places) = match self.set.locators() {
-            [locator] => {
-                let workspace = self.workspace.of_one();
-                let found = locator.locate_unless(workspace, scan, heading, &|| false)?;
-                let found = found.expect(all);
-                (found.outcome, found.places)
-            }
-            _ => {
-                let workspace = &mut self.workspace;
-                let found = self
-                    .set
-                    .locate_unless(workspace, scan, heading, &|| false)?;
-                let found = found.expect(all);
-                (found.outcome, found.places)
-            }
-        };
+        let (localizer, workspace) = (&self.localizer, &mut self.workspace);
+        let found = localizer.locate_unless(workspace, scan, heading, &|| false)?;
+        let engine::Answer {
+            outcome, places, ..
+        } = found.expect("a search that nothing stops ends with an outcome");
         self.of_laser.clone_from(places);
         for place in &mut self.of_laser.places {
             *place = place.of_laser(target);
@@ -274,13 +261,13 @@ impl World {
     /// The scan is rejected.
     pub fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
         let found = self
-            .locator()
-            .localizer()
+            .map()
+            .vote_search()
             .search_at(scan, heading, &|| false)?;
         let (outcome, intensities) = found.expect("a search that nothing stops ends");
-        let grid = self.locator().localizer().grid();
+        let grid = self.map().vote_search().grid();
         Ok(Field {
-            frame: self.locator().localizer().frame(),
+            frame: self.map().vote_search().frame(),
             sides: (grid.width(), grid.height()),
             intensities,
             outcome,
@@ -305,23 +292,24 @@ pub(super) fn unusable(name: &str) -> String {
     format!("{name} cannot be searched")
 }
 
-fn locator_of(
+fn prepare(
     map: &OccupancyGrid,
     options: &EngineOptions,
     prior: Prior,
     cache: Option<&IndexCache>,
-) -> Result<(Locator, Kept), EngineError> {
-    let view = OccupancyView {
+) -> Result<(PreparedMap, Kept), EngineError> {
+    let view = Map {
         frame: frame_of(map),
         sides: sides_of(map),
         occupancy: &map.cells,
         rules: options.cells,
     };
-    let config = LocatorConfig {
-        localizer: options.localizer.clone(),
+    let settings = Settings {
+        vote_search: options.vote_search.clone(),
         peaks: options.peaks,
+        prior,
     };
-    index_cache::locator(cache, view, config, prior)
+    index_cache::prepared_map(cache, view, settings)
 }
 
 /// End point of a beam in the map, in metres, if the scan was taken at this pose.

@@ -14,9 +14,9 @@ use bench::distinct;
 use clap::Parser;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Prior, Workspace};
 use engine::program::VoteConfig;
 use engine::scan::Scan;
+use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig, Workspace};
 use geometry::Pose;
 use map::OccupancyGrid;
 use simulation::{Bearings, Drive, DriveConfig, Path};
@@ -158,11 +158,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         half_width: options.drive.sonar.beam_width.to_radians() / 2.0,
     };
     let drive = taken(drive, options.drive.mount.base_from_laser);
-    let localizer = localizer(&map, options.sigma)?;
+    let vote_search = vote_search(&map, options.sigma)?;
     println!("way_m  echoes  read_as   beams  right_%  in_five_%  scans");
     for &way_m in &options.ways {
         for reading in [Reading::Axes, Reading::Cones, Reading::Regions] {
-            tally(&localizer, &ring, (&drive, way_m), reading)?.print(way_m, reading);
+            tally(&vote_search, &ring, (&drive, way_m), reading)?.print(way_m, reading);
         }
     }
     Ok(())
@@ -186,16 +186,16 @@ fn taken(drive: Drive, base_from_laser: Pose) -> Vec<Taken> {
 }
 
 /// Prepares a localizer with the paper's votes: all beams have the same weight.
-fn localizer(map: &OccupancyGrid, sigma_m: f64) -> Result<Localizer, EngineError> {
+fn vote_search(map: &OccupancyGrid, sigma_m: f64) -> Result<VoteSearch, EngineError> {
     let mut votes = VoteConfig {
         sigma_m,
         ..VoteConfig::default()
     };
     votes.beams.max_beams = regions::BEARINGS as u32;
     votes.beams.beam_arc_m = 0.0;
-    let config = LocalizerConfig {
+    let config = VoteSearchConfig {
         votes,
-        ..LocalizerConfig::default()
+        ..VoteSearchConfig::default()
     };
     let frame = GridFrame {
         resolution_m: map.resolution_m,
@@ -203,12 +203,12 @@ fn localizer(map: &OccupancyGrid, sigma_m: f64) -> Result<Localizer, EngineError
     };
     let sides = (map.width as usize, map.height as usize);
     let rules = CellRules::default();
-    Localizer::of_map(frame, sides, &map.cells, rules, config, Prior::None)
+    VoteSearch::of_map(frame, sides, &map.cells, rules, config, Prior::None)
 }
 
 /// Searches at each scan that ends a full window of `way_m` metres.
 fn tally(
-    localizer: &Localizer,
+    vote_search: &VoteSearch,
     ring: &Ring,
     (drive, way_m): (&[Taken], f64),
     reading: Reading,
@@ -224,9 +224,9 @@ fn tally(
         let echoes = ring.echoes(&drive[first..=i])?;
         let ranges = reading.ranges(&echoes, ring.half_width);
         let scan = regions::scan_of(&ranges);
-        let outcome = localizer.search_in(&mut workspace, &scan, &|| false)?;
+        let outcome = vote_search.search_in(&mut workspace, &scan, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");
-        let places = distinct(outcome, localizer.frame(), PLACES).into_iter();
+        let places = distinct(outcome, vote_search.frame(), PLACES).into_iter();
         let is_right: Vec<bool> = places
             .map(|pose| pose.is_within(last.map_from_laser, RIGHT.0, RIGHT.1))
             .collect();

@@ -4,9 +4,9 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::grid::Grid;
-use engine::localizer::{Localizer, Outcome, Workspace};
 use engine::observation::Observation;
 use engine::search::BlockBounds;
+use engine::vote_search::{Outcome, VoteSearch, Workspace};
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
 use crate::preparation::PreparedMap;
@@ -35,15 +35,14 @@ pub fn ask(
 ) -> Result<Option<usize>, EngineError> {
     workspaces.resize_with(maps.len(), Workspace::default);
     if let ([map], [workspace]) = (maps, &mut workspaces[..]) {
-        let found = match heading {
-            None => map.localizer.search_in(workspace, scan, stop)?,
-            Some(heading) => map.localizer.search_at_in(workspace, scan, heading, stop)?,
-        };
+        let found = map
+            .vote_search
+            .search_with(workspace, scan, heading, stop)?;
         return Ok(found.map(|_| 0));
     }
-    let localizers = maps.iter().map(|map| &map.localizer);
-    let searched = localizers.zip(workspaces.iter_mut()).collect();
-    Localizer::search_together(searched, scan, heading, stop)
+    let searches = maps.iter().map(|map| &map.vote_search);
+    let searched = searches.zip(workspaces.iter_mut()).collect();
+    VoteSearch::search_together(searched, scan, heading, stop)
 }
 
 /// Returns the message about a scan for which the engine took `engine_ns`.
@@ -56,8 +55,8 @@ pub fn answered<'w>(
 ) -> Answer<'w> {
     let terms = Terms {
         map_id: map.map_id,
-        beams: map.localizer.config().votes.beams,
-        pooling: map.localizer.pooling() as u32,
+        beams: map.vote_search.config().votes.beams,
+        pooling: map.vote_search.pooling() as u32,
     };
     let votes = votes_header(scan, &terms, outcome, engine_ns);
     (votes, &outcome.found.votes)
@@ -70,15 +69,15 @@ pub fn answered<'w>(
 /// If the engine rejects the scan.
 pub fn image<'w>(
     votes: &VotesHeader,
-    localizer: &Localizer,
+    vote_search: &VoteSearch,
     workspace: &'w mut Workspace,
     scan: Observation<'_>,
 ) -> Result<Image<'w>, EngineError> {
     if votes.heading_known == 1 {
-        let header = exact_header(votes, localizer.grid());
+        let header = exact_header(votes, vote_search.grid());
         return Ok((header, workspace.intensities()));
     }
-    let blocks = localizer.block_bounds(workspace, scan)?;
+    let blocks = vote_search.block_bounds(workspace, scan)?;
     Ok((bounds_header(votes, blocks), &blocks.bounds))
 }
 

@@ -6,7 +6,7 @@ use command_line::settings::{self, SettingsFile};
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
-use engine::localizer::{LocalizerConfig, Prior};
+use engine::vote_search::{Prior, VoteSearchConfig};
 use index_cache::IndexCacheConfig;
 
 use crate::sonar::regions::SonarConfig;
@@ -27,7 +27,7 @@ pub struct Config {
     pub file: SettingsFile,
 
     #[command(flatten)]
-    pub localizer: LocalizerConfig,
+    pub vote_search: VoteSearchConfig,
 
     #[command(flatten)]
     pub index_cache: IndexCacheConfig,
@@ -73,10 +73,10 @@ impl Config {
 
     /// Returns the settings of the localizer, with a default work limit so that even clutter does
     /// not block the robot.
-    pub(crate) fn localizer(&self) -> LocalizerConfig {
-        let mut localizer = self.localizer.clone();
-        localizer.collect.work_limit.get_or_insert(WORK_LIMIT);
-        localizer
+    pub(crate) fn vote_search(&self) -> VoteSearchConfig {
+        let mut vote_search = self.vote_search.clone();
+        vote_search.collect.work_limit.get_or_insert(WORK_LIMIT);
+        vote_search
     }
 
     /// Returns the prior knowledge of the heading: none, or a known heading.
@@ -87,8 +87,8 @@ impl Config {
 
     /// Checks rules that concern more than one option.
     fn check(&self) -> Result<(), String> {
-        Directions::new(self.localizer.headings).map_err(|error| error.to_string())?;
-        let max_votes = self.localizer.collect.max_votes;
+        Directions::new(self.vote_search.headings).map_err(|error| error.to_string())?;
+        let max_votes = self.vote_search.collect.max_votes;
         if max_votes > MAX_VOTES {
             return Err(format!(
                 "--max-votes is {max_votes}: a message of `votes` holds at most {MAX_VOTES}"
@@ -126,12 +126,12 @@ mod tests {
     #[test]
     fn all_headings_are_searched_unless_one_is_known() {
         let config = parse("").unwrap();
-        assert_eq!(config.localizer, LocalizerConfig::default());
+        assert_eq!(config.vote_search, VoteSearchConfig::default());
         assert_eq!(config.prior(), Prior::None);
         assert_eq!(parse("--heading 0").unwrap().prior(), Prior::Heading);
         assert!(config.sonar.window().is_none());
-        assert_eq!(config.localizer().collect.work_limit, Some(WORK_LIMIT));
-        let endless = parse("--work-limit 0").unwrap().localizer();
+        assert_eq!(config.vote_search().collect.work_limit, Some(WORK_LIMIT));
+        let endless = parse("--work-limit 0").unwrap().vote_search();
         assert_eq!(endless.collect.work_limit, Some(0.0));
         let sonar = parse("--sonar-way 2 --sonar-cone 25").unwrap().sonar;
         assert_eq!((sonar.sonar_way, sonar.sonar_cone), (Some(2.0), 25.0));

@@ -3,8 +3,8 @@
 //! Rays end in the cells of the boundary. The map says where poses may be and what is unknown.
 
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Preparation, Prior};
 use engine::space::Space;
+use engine::vote_search::{Preparation, Prior, VoteSearch, VoteSearchConfig};
 use index_cache::{IndexCache, Kept, Prepared};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 use twox_hash::XxHash3_64;
@@ -56,7 +56,7 @@ impl Key {
 #[derive(Debug, Clone)]
 pub struct PreparedMap {
     pub map_id: u64,
-    pub localizer: Localizer,
+    pub vote_search: VoteSearch,
     /// Space of the original map, whose cells may be finer than the searched ones.
     pub space: Space,
 }
@@ -127,7 +127,7 @@ impl Job {
     /// If map or boundary cannot be used, or do not belong together.
     pub fn prepare(
         self,
-        config: LocalizerConfig,
+        config: VoteSearchConfig,
         prior: Prior,
         cache: Option<&IndexCache>,
     ) -> Result<(PreparedMap, Kept), AccumulatorError> {
@@ -140,10 +140,10 @@ impl Job {
             None => preparation,
             Some(boundary) => preparation.with_boundary(&boundary)?,
         };
-        let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+        let Prepared { vote_search, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
             map_id: self.map.map_id,
-            localizer: localizer.reaching(self.reach_m),
+            vote_search: vote_search.reaching(self.reach_m),
             space: space.reaching(self.reach_m),
         };
         Ok((map, kept))
@@ -199,7 +199,7 @@ mod tests {
         let mut pair = room();
         change(&mut pair);
         Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells)?
-            .prepare(LocalizerConfig::default(), Prior::Heading, None)
+            .prepare(VoteSearchConfig::default(), Prior::Heading, None)
             .map(|(map, _)| map)
     }
 
@@ -213,8 +213,8 @@ mod tests {
     fn a_map_and_its_boundary_make_a_localizer() {
         let prepared = prepare(|pair| pair.map.map_from_grid.x = 3.0).unwrap();
         assert_eq!(prepared.map_id, 77);
-        assert_eq!(prepared.localizer.frame().map_from_grid.x, 3.0);
-        assert_eq!(prepared.localizer.grid().free_cells(), 8);
+        assert_eq!(prepared.vote_search.frame().map_from_grid.x, 3.0);
+        assert_eq!(prepared.vote_search.grid().free_cells(), 8);
     }
 
     #[test]
@@ -225,7 +225,7 @@ mod tests {
             pair.header.boundary_cells -= 1;
         });
         let grid = prepared.unwrap();
-        let grid = grid.localizer.grid();
+        let grid = grid.vote_search.grid();
         assert_eq!(grid.get(3, 0), Some(Cell::Blocked));
         assert_eq!((grid.occupied_cells(), grid.free_cells()), (15, 8));
     }
@@ -236,7 +236,7 @@ mod tests {
         let cache = IndexCache::new(folder.path().join("maps"), 10_000_000);
         let prepare = |pair: &Pair| {
             let job = Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells).unwrap();
-            job.prepare(LocalizerConfig::default(), Prior::None, Some(&cache))
+            job.prepare(VoteSearchConfig::default(), Prior::None, Some(&cache))
                 .unwrap()
         };
         let mut pair = room();
@@ -245,7 +245,7 @@ mod tests {
         kept.unsaved.unwrap().save().unwrap();
         let (map, kept) = prepare(&pair);
         assert!(kept.is_read && kept.unsaved.is_none());
-        assert_eq!((map.map_id, map.localizer.searchable_cells()), (77, 8));
+        assert_eq!((map.map_id, map.vote_search.searchable_cells()), (77, 8));
         // One index serves two rules that classify all cells alike.
         pair.map.occupied_from = 66;
         assert!(prepare(&pair).1.is_read);

@@ -14,7 +14,7 @@ use bytemuck::Zeroable;
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
 use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT_MS, Role, Seen};
-use engine::localizer::Workspace;
+use engine::vote_search::Workspace;
 use messages::{ScanHeader, VotesHeader, searched_id};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
@@ -47,7 +47,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let outputs = Outputs::open(graph, config)?;
     let mut node = Node {
         source,
-        headings: config.localizer.headings,
+        headings: config.vote_search.headings,
         history: History::keeping(POSES_KEPT, &config.join.motion),
         joiner: Joiner::new(join_config(config)),
         pending: None,
@@ -280,7 +280,7 @@ impl Node {
         });
         if has_readings {
             let map = &self.maps[leading];
-            let beams = &map.localizer.config().votes.beams;
+            let beams = &map.vote_search.config().votes.beams;
             readings.find(observation, &map.space, beams)?;
             self.outputs.readings(scan.stamp, &readings.found)?;
         }
@@ -336,8 +336,8 @@ impl Node {
         (map, workspace): (usize, &'w mut Workspace),
         votes: &VotesHeader,
     ) -> Option<Image<'w>> {
-        let localizer = &self.maps.get(map)?.localizer;
-        answer::image(votes, localizer, workspace, self.seen().observation()).ok()
+        let vote_search = &self.maps.get(map)?.vote_search;
+        answer::image(votes, vote_search, workspace, self.seen().observation()).ok()
     }
 
     /// Answers a refused scan, because its sender may be waiting, and reports the reason.

@@ -9,8 +9,8 @@ use clap::builder::TypedValueParser;
 use command_line::number;
 use engine::directions::Directions;
 use engine::grid::CellRules;
-use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
+use engine::vote_search::VoteSearchConfig;
 use map::{MapError, MapFile, MapSet};
 
 /// Locates scans on a map, for clients on Zenoh.
@@ -60,7 +60,7 @@ pub struct Config {
     pub(crate) cells: CellRules,
 
     #[command(flatten)]
-    pub(crate) localizer: LocalizerConfig,
+    pub(crate) vote_search: VoteSearchConfig,
 
     #[command(flatten)]
     pub(crate) peaks: PeakConfig,
@@ -71,7 +71,7 @@ impl Config {
     #[must_use]
     pub fn from_command_line() -> Self {
         command_line::parse(|config: &Config| {
-            let headings = Directions::new(config.localizer.headings);
+            let headings = Directions::new(config.vote_search.headings);
             headings.map(drop).map_err(|problem| problem.to_string())
         })
     }
@@ -134,7 +134,7 @@ mod tests {
         let config = parse("--name office --workers 3 --deadline 0.5").unwrap();
         assert_eq!((config.name().as_str(), config.workers()), ("office", 3));
         assert_eq!(config.deadline, Duration::from_millis(500));
-        assert_eq!(config.localizer, LocalizerConfig::default());
+        assert_eq!(config.vote_search, VoteSearchConfig::default());
     }
 
     #[test]

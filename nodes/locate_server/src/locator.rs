@@ -4,10 +4,8 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::Prior;
-use engine::locator::{LocatorConfig, OccupancyView};
-pub use engine::map_set::Workspace;
-use engine::map_set::{Located, MapSet};
+pub use engine::localizer::Workspace;
+use engine::localizer::{Localizer, Map, PreparedMap, Settings};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
 use map::OccupancyGrid;
@@ -18,7 +16,7 @@ use messages::{HypothesesHeader, Hypothesis, ScanHeader, searched_id};
 pub struct Locator {
     /// Ids and names of the maps, in the order of the set.
     maps: Vec<(u64, String)>,
-    set: MapSet,
+    localizer: Localizer,
 }
 
 /// Map of a set, ready to be searched.
@@ -26,7 +24,7 @@ pub struct Locator {
 pub struct SearchedMap {
     id: u64,
     name: String,
-    locator: engine::locator::Locator,
+    prepared: PreparedMap,
 }
 
 /// Header and items of `hypotheses`, without the times of computing.
@@ -41,9 +39,9 @@ impl SearchedMap {
         name: String,
         map: &OccupancyGrid,
         rules: CellRules,
-        config: LocatorConfig,
+        settings: Settings,
     ) -> Result<Self, EngineError> {
-        let view = OccupancyView {
+        let view = Map {
             frame: GridFrame {
                 resolution_m: map.resolution_m,
                 map_from_grid: map.map_from_grid,
@@ -55,7 +53,7 @@ impl SearchedMap {
         Ok(SearchedMap {
             id: map.id(),
             name,
-            locator: engine::locator::Locator::new(view, config, Prior::None)?,
+            prepared: PreparedMap::new(view, settings)?,
         })
     }
 }
@@ -68,26 +66,25 @@ impl Locator {
     pub fn new(
         map: &OccupancyGrid,
         rules: CellRules,
-        config: LocatorConfig,
+        settings: Settings,
     ) -> Result<Self, EngineError> {
-        let map = SearchedMap::new(String::new(), map, rules, config)?;
-        Ok(Locator::of_set(vec![map]))
+        let map = SearchedMap::new(String::new(), map, rules, settings)?;
+        Locator::of_set(vec![map])
     }
 
     /// Creates a locator that searches several maps together.
     ///
-    /// # Panics
+    /// # Errors
     /// If `maps` is empty.
-    #[must_use]
-    pub fn of_set(maps: Vec<SearchedMap>) -> Self {
-        let (ids, locators): (_, Vec<_>) = maps
+    pub fn of_set(maps: Vec<SearchedMap>) -> Result<Self, EngineError> {
+        let (ids, prepared) = maps
             .into_iter()
-            .map(|map| ((map.id, map.name), map.locator))
+            .map(|map| ((map.id, map.name), map.prepared))
             .unzip();
-        Locator {
+        Ok(Locator {
             maps: ids,
-            set: MapSet::new(locators),
-        }
+            localizer: Localizer::of_maps(prepared)?,
+        })
     }
 
     /// Returns the id of the map; for several maps an id that depends on the maps and their order.
@@ -114,22 +111,14 @@ impl Locator {
         scan: (&ScanHeader, &[f32]),
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Answer>, EngineError> {
-        let found = self.search(workspace, scan, stop)?;
+        let seen = Scan::of(scan.0, scan.1);
+        let localizer = &self.localizer;
+        let found = localizer.locate_unless(workspace, &seen, None, stop)?;
         Ok(found.map(|found| {
             let outcome = found.outcome;
             let votes = (outcome.found.best.into(), outcome.highest_possible);
             described(scan.0, &self.maps, votes, found.places)
         }))
-    }
-
-    fn search<'w>(
-        &self,
-        workspace: &'w mut Workspace,
-        (header, ranges): (&ScanHeader, &[f32]),
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Located<'w>>, EngineError> {
-        let scan = Scan::of(header, ranges);
-        self.set.locate_unless(workspace, &scan, None, stop)
     }
 }
 

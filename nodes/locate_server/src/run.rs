@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use engine::locator::LocatorConfig;
+use engine::localizer::Settings;
 use map::MapFile;
 use messages::NodeState;
 use transport::{Flow, Graph, Waker, wall_ns};
@@ -55,9 +55,10 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
 }
 
 fn prepare(config: &Config) -> Result<Locator, LocateError> {
-    let how = LocatorConfig {
-        localizer: config.localizer.clone(),
+    let how = Settings {
+        vote_search: config.vote_search.clone(),
         peaks: config.peaks,
+        ..Settings::default()
     };
     let failed = |path: &Path, source| LocateError::Map {
         path: path.to_owned(),
@@ -72,7 +73,10 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
         let map = SearchedMap::new(name, &grid, config.cells, how.clone());
         maps.push(map.map_err(|source| LocateError::UnusableMap { path: yaml, source })?);
     }
-    Ok(Locator::of_set(maps))
+    Locator::of_set(maps).map_err(|source| LocateError::UnusableMap {
+        path: set.to_owned(),
+        source,
+    })
 }
 
 /// Declarations on the network; dropping it withdraws them.

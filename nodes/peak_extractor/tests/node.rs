@@ -10,9 +10,9 @@ use bytemuck::Zeroable;
 use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, DistanceField, Ends};
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places};
 use engine::space::Space;
+use engine::vote_search::{Outcome, Prior, VoteSearch, VoteSearchConfig};
 use geometry::Pose;
 use messages::{
     BeamFate, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome,
@@ -31,9 +31,9 @@ struct Searched {
 /// Scans the room from the given pose.
 fn searched(x: i64, y: i64, heading: usize) -> Searched {
     let ranges = ranges(&ROOM, x, y, heading);
-    let config = LocalizerConfig::default();
-    let localizer = Localizer::new(FRAME, grid(&ROOM), config, Prior::None).unwrap();
-    let outcome = localizer.search(&scan(&ranges), &|| false);
+    let config = VoteSearchConfig::default();
+    let vote_search = VoteSearch::new(FRAME, grid(&ROOM), config, Prior::None).unwrap();
+    let outcome = vote_search.search(&scan(&ranges), &|| false);
     Searched {
         outcome: outcome.unwrap().unwrap(),
         ranges,

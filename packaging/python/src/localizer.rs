@@ -1,6 +1,6 @@
 //! Localization of single scans, without memory.
 
-use engine::localizer::Prior;
+use engine::vote_search::Prior;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -114,7 +114,7 @@ impl Localizer {
     /// Size of the search index in bytes, in addition to the map's cells.
     #[getter]
     fn index_bytes(&self) -> usize {
-        self.search.locator().localizer().index_bytes()
+        self.search.map().vote_search().index_bytes()
     }
 
     fn __repr__(&self) -> String {

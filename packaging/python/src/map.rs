@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use engine::grid::{CellRules, GridFrame};
-use engine::locator::OccupancyView;
+use engine::localizer::Map as MapView;
 use geometry::Pose;
 use map::{MAX_CELLS, OccupancyGrid, UNKNOWN};
 use numpy::{
@@ -160,9 +160,9 @@ impl Map {
     }
 
     /// Returns the map in the engine's form.
-    pub(crate) fn view(&self, rules: CellRules) -> OccupancyView<'_> {
+    pub(crate) fn view(&self, rules: CellRules) -> MapView<'_> {
         let grid = &*self.grid;
-        OccupancyView {
+        MapView {
             frame: GridFrame {
                 resolution_m: grid.resolution_m,
                 map_from_grid: grid.map_from_grid,

@@ -1,6 +1,6 @@
 //! Result of a scan for Python.
 
-use engine::locator::Located;
+use engine::localizer::Answer;
 use engine::peaks::{Place, Target};
 use geometry::{Covariance, Pose};
 use numpy::{PyArray1, PyArray2, PyArray3};
@@ -64,9 +64,9 @@ pub(crate) struct Found {
 
 impl Found {
     pub(crate) fn of(
-        Located {
+        Answer {
             outcome, places, ..
-        }: Located<'_>,
+        }: Answer<'_>,
     ) -> Self {
         Found {
             verdict: places.verdict.as_str(),

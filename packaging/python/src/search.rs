@@ -4,9 +4,9 @@ use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use engine::localizer::Prior;
-use engine::locator::{Located, Locator, LocatorConfig, Workspace};
+use engine::localizer::{Answer, Localizer, PreparedMap, Settings, Workspace};
 use engine::observation::Observation;
+use engine::vote_search::Prior;
 use index_cache::CachePlace;
 use pyo3::prelude::*;
 
@@ -20,7 +20,7 @@ const SIGNALS_EVERY: Duration = Duration::from_millis(100);
 /// A prepared map, and the workspaces that its searches reuse.
 #[derive(Debug)]
 pub(crate) struct Search {
-    locator: Locator,
+    localizer: Localizer,
     /// Workspaces of searches that have ended: as many as have run at once.
     workspaces: Mutex<Vec<Workspace>>,
 }
@@ -29,27 +29,31 @@ impl Search {
     pub(crate) fn prepare(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Self> {
         let EngineSettings {
             cells,
-            localizer,
+            vote_search,
             peaks,
             index_cache,
         } = settings;
         let cache = index_cache
             .open(CachePlace::Off)
             .map_err(|error| of_cache(&error))?;
-        let config = LocatorConfig { localizer, peaks };
-        let prepared = index_cache::locator(cache.as_ref(), map.view(cells), config, prior);
-        let (locator, kept) = prepared.map_err(|error| of_engine(&error))?;
+        let settings = Settings {
+            vote_search,
+            peaks,
+            prior,
+        };
+        let prepared = index_cache::prepared_map(cache.as_ref(), map.view(cells), settings);
+        let (prepared, kept) = prepared.map_err(|error| of_engine(&error))?;
         if let Some(unsaved) = kept.unsaved {
             unsaved.save().map_err(|error| of_cache(&error))?;
         }
         Ok(Search {
-            locator,
+            localizer: Localizer::of_maps(vec![prepared]).map_err(|error| of_engine(&error))?,
             workspaces: Mutex::new(Vec::new()),
         })
     }
 
-    pub(crate) fn locator(&self) -> &Locator {
-        &self.locator
+    pub(crate) fn map(&self) -> &PreparedMap {
+        &self.localizer.maps()[0]
     }
 
     /// Searches the map, at `heading` if it was prepared for known headings, and passes the result
@@ -58,13 +62,13 @@ impl Search {
         &self,
         seen: Observation<'_>,
         heading: Option<f64>,
-        read: impl FnOnce(Located<'_>) -> T,
+        read: impl FnOnce(Answer<'_>) -> T,
     ) -> PyResult<T> {
         let mut workspace = self.lock().pop().unwrap_or_default();
         let signals = Signals::default();
         let stop = || signals.ask();
         let found = self
-            .locator
+            .localizer
             .locate_unless(&mut workspace, seen, heading, &stop);
         let read = match (found, signals.said.take()) {
             (_, Some(interrupt)) => Err(interrupt),

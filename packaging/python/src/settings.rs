@@ -9,9 +9,9 @@ use clap::{ArgAction, CommandFactory, FromArgMatches};
 use engine::grid::CellRules;
 use engine::joined::MotionConfig;
 use engine::limits::{HeadingInterval, Region};
-use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use engine::tracking::TrackingConfig;
+use engine::vote_search::VoteSearchConfig;
 use index_cache::IndexCacheConfig;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -27,7 +27,7 @@ pub(crate) struct EngineSettings {
     #[command(flatten)]
     pub(crate) cells: CellRules,
     #[command(flatten)]
-    pub(crate) localizer: LocalizerConfig,
+    pub(crate) vote_search: VoteSearchConfig,
     #[command(flatten)]
     pub(crate) peaks: PeakConfig,
     #[command(flatten)]
@@ -62,8 +62,8 @@ impl EngineSettings {
     }
 
     fn bound(&mut self, bounds: Bounds) {
-        self.localizer.limits.region = bounds.region;
-        self.localizer.limits.headings_within = bounds.headings_within;
+        self.vote_search.limits.region = bounds.region;
+        self.vote_search.limits.headings_within = bounds.headings_within;
     }
 }
 

@@ -5,10 +5,10 @@ use std::sync::{Mutex, PoisonError};
 
 use bytemuck::Zeroable;
 use engine::joined::{ByOdometry, JoinConfig, Joiner, Kept};
-use engine::localizer::Prior;
 use engine::observation::Observation;
 use engine::peaks::Target;
 use engine::tracking::{self, Candidate, Need, Seen, TrackingConfig};
+use engine::vote_search::Prior;
 use geometry::{Covariance, Pose};
 use messages::{FrameName, Hypothesis, Odometry, ScanHeader, Stamp};
 use pyo3::prelude::*;
@@ -245,11 +245,11 @@ impl Tracker {
             expected,
             ..
         } = state;
-        let locator = self.search.locator();
+        let map = self.search.map();
         joiner.on_scan(header, scan.ranges());
         joiner.bring().map_err(|error| of_engine(&error))?;
         let brought = joiner.seen();
-        let ends = locator.ends(brought.observation());
+        let ends = map.ends(brought.observation());
         let ends = ends.map_err(|error| of_engine(&error))?;
         let target = Target::of(scan.base_from_laser, false);
         if let Some((base, covariance)) = expected.take() {
@@ -260,9 +260,9 @@ impl Tracker {
         let moved = ByOdometry::between(*before, now);
         *before = now;
         let seen = Seen {
-            distance_field: locator.distance_field(),
+            distance_field: map.distance_field(),
             ends: &ends,
-            fit: &locator.peaks().fit,
+            fit: &map.peaks().fit,
         };
         let found = match tracker.begin(&[seen], header.stamp.measured_ns, moved) {
             Need::Nothing => None,

@@ -7,9 +7,9 @@
 use std::f64::consts::TAU;
 
 use engine::grid::{CellRules, Grid, Pooled};
-use engine::localizer::{Localizer, LocalizerConfig, Prior};
-use engine::locator::Locator;
+use engine::localizer::Localizer;
 use engine::peaks::{Place, Places};
+use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 use geometry::{Pose, angle_between};
 use messages::Verdict;
 use tests::building::{Building, Laser, places};
@@ -55,20 +55,20 @@ fn error(places: &Places, truth: Pose) -> (f64, f64) {
     (distance, angle_between(found.yaw, truth.yaw).to_degrees())
 }
 
-fn locate(locator: &Locator, truth: Pose, laser: Laser) -> Places {
+fn locate(localizer: &Localizer, truth: Pose, laser: Laser) -> Places {
     let ranges = office().ranges(truth, laser);
-    places(locator, &laser.scan(&ranges))
+    places(localizer, &laser.scan(&ranges))
 }
 
 #[test]
 fn cells_of_any_size_find_the_robot() {
     for (resolution_m, pooling) in [(0.01, 5), (0.02, 2), (0.05, 1), (0.2, 1), (0.5, 1)] {
-        let locator = office()
+        let localizer = office()
             .map(resolution_m)
-            .locator(LocalizerConfig::default());
-        assert_eq!(locator.localizer().pooling(), pooling);
+            .localizer(VoteSearchConfig::default());
+        assert_eq!(localizer.maps()[0].vote_search().pooling(), pooling);
         for truth in POSES {
-            let places = locate(&locator, truth, Laser::AROUND);
+            let places = locate(&localizer, truth, Laser::AROUND);
             let (metres, degrees) = error(&places, truth);
             // Obstacles fill whole cells, so that a wall is off by up to half of one.
             assert!(
@@ -82,22 +82,22 @@ fn cells_of_any_size_find_the_robot() {
 #[test]
 fn a_fine_map_is_searched_exactly_as_its_pooled_one() {
     let fine = office().map(0.01);
-    let config = LocalizerConfig::default();
+    let config = VoteSearchConfig::default();
     let rules = CellRules::default();
     let pooled = Pooled::new(fine.frame, fine.sides, &fine.occupancy, rules, 5).unwrap();
     let (width, height) = pooled.sides;
     let grid = Grid::new(width, height, &pooled.occupancy, rules).unwrap();
-    let plain = Localizer::new(pooled.frame, grid, config.clone(), Prior::None).unwrap();
-    let locator = fine.locator(config);
+    let plain = VoteSearch::new(pooled.frame, grid, config.clone(), Prior::None).unwrap();
+    let localizer = fine.localizer(config);
     let ranges = office().ranges(POSES[0], Laser::AROUND);
     let scan = Laser::AROUND.scan(&ranges);
-    let search = |localizer: &Localizer| localizer.search(&scan, &|| false);
-    assert_eq!(search(locator.localizer()), search(&plain));
+    let search = |vote_search: &VoteSearch| vote_search.search(&scan, &|| false);
+    assert_eq!(search(localizer.maps()[0].vote_search()), search(&plain));
 }
 
 #[test]
 fn any_field_of_view_and_number_of_beams_will_do() {
-    let locator = office().map(0.05).locator(LocalizerConfig::default());
+    let localizer = office().map(0.05).localizer(VoteSearchConfig::default());
     let mut unique = 0;
     for field_of_view in [90.0, 180.0, 270.0, 359.9f64] {
         for beams in [30, 181, 1081, 4000] {
@@ -107,7 +107,7 @@ fn any_field_of_view_and_number_of_beams_will_do() {
                 reach_m: 20.0,
             };
             for truth in POSES {
-                let places = locate(&locator, truth, laser);
+                let places = locate(&localizer, truth, laser);
                 let (metres, degrees) = error(&places, truth);
                 if places.verdict == Verdict::Unique {
                     unique += 1;
@@ -142,14 +142,14 @@ fn a_ring_of_eight_sonars_is_never_sure_of_a_wrong_place() {
         field_of_view: 11.0 / 12.0 * TAU,
         reach_m: 5.0,
     };
-    let locator = office().map(0.05).locator(LocalizerConfig::default());
+    let localizer = office().map(0.05).localizer(VoteSearchConfig::default());
     let mut among = 0;
     for truth in POSES {
         let mut ranges = office().ranges(truth, laser);
         for beam in [1, 2, 9, 10] {
             ranges[beam] = f32::NAN;
         }
-        let places = places(&locator, &laser.scan(&ranges));
+        let places = places(&localizer, &laser.scan(&ranges));
         let (metres, degrees) = error(&places, truth);
         let is_right = metres < 0.5 && degrees < 10.0;
         assert!(places.verdict != Verdict::Unique || is_right, "{truth:?}");

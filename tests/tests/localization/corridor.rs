@@ -4,7 +4,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::localizer::Prior;
+use engine::vote_search::Prior;
 use geometry::Pose;
 use tests::world::{World, as_engine_takes_it};
 use tests::{answers, executables};
@@ -32,9 +32,9 @@ fn the_graph_answers_as_the_engine_alone() {
         &[],
     );
 
-    let localizer = world.localizer(Prior::None);
+    let vote_search = world.vote_search(Prior::None);
     for (scan, (header, votes)) in scans.iter().zip(&answers.votes) {
-        let outcome = localizer
+        let outcome = vote_search
             .search(&as_engine_takes_it(scan), &|| false)
             .unwrap()
             .unwrap();
@@ -64,10 +64,11 @@ fn with_known_headings_the_graph_finds_the_same_places() {
             "{best:?} is not {truth:?}, whose heading was given"
         );
     }
-    let localizer = world.localizer(Prior::Heading);
+    let vote_search = world.vote_search(Prior::Heading);
     for (scan, (header, votes)) in scans.iter().zip(&answers.votes) {
         assert_eq!(header.heading_known, 1);
-        let asked = localizer.search_at(&as_engine_takes_it(scan), header.known_heading, &|| false);
+        let asked =
+            vote_search.search_at(&as_engine_takes_it(scan), header.known_heading, &|| false);
         let (outcome, _) = asked.unwrap().unwrap();
         assert_eq!(*votes, outcome.found.votes);
     }

@@ -4,16 +4,16 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::localizer::LocalizerConfig;
 use engine::peaks::Places;
+use engine::vote_search::VoteSearchConfig;
 use geometry::Pose;
 use messages::Verdict;
 use tests::building::{Building, Laser, Rectangle, places};
 
 /// Locates a scan that covers a whole turn on the building's map.
 fn locate(building: &Building, ranges: &[f32]) -> Places {
-    let locator = building.map(0.05).locator(LocalizerConfig::default());
-    places(&locator, &Laser::AROUND.scan(ranges))
+    let localizer = building.map(0.05).localizer(VoteSearchConfig::default());
+    places(&localizer, &Laser::AROUND.scan(ranges))
 }
 
 fn seen(building: &Building, pose: Pose) -> Vec<f32> {

@@ -11,10 +11,10 @@ use crate::scans::{ScanConfig, SimulatedScan, simulate};
 use crate::timing::cpu_ms;
 use crate::worlds::{Kind, World};
 use engine::grid::GridFrame;
-use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::particles::Candidate;
 use engine::space::Space;
 use engine::taper::TaperShape;
+use engine::vote_search::{Outcome, Prior, VoteSearch, VoteSearchConfig, Workspace};
 use geometry::{Covariance, Pose};
 use plots::drawing::Scene;
 use plots::{Curve, Curves};
@@ -108,7 +108,7 @@ struct Bench {
     world: World,
     space: Space,
     config: ScanConfig,
-    localizer: Localizer,
+    vote_search: VoteSearch,
     markov: RayCasting,
 }
 
@@ -125,14 +125,14 @@ impl Bench {
             resolution_m: space.resolution_m,
             map_from_grid: Pose::IDENTITY,
         };
-        let settings = LocalizerConfig {
+        let settings = VoteSearchConfig {
             headings: HEADINGS,
             votes: config.votes(TaperShape::Trapezoid),
-            ..LocalizerConfig::default()
+            ..VoteSearchConfig::default()
         };
-        let localizer = Localizer::new(frame, world.grid.clone(), settings, Prior::None);
+        let vote_search = VoteSearch::new(frame, world.grid.clone(), settings, Prior::None);
         Ok(Bench {
-            localizer: localizer?,
+            vote_search: vote_search?,
             markov: RayCasting::new(&world, &space),
             world,
             space,
@@ -151,7 +151,7 @@ impl Bench {
         let mut workspace = Workspace::default();
         let (outcome, votes_ms) = cpu_ms(|| {
             let found = self
-                .localizer
+                .vote_search
                 .search_in(&mut workspace, &scan.scan(), &|| false);
             found.map(Option::<&Outcome>::cloned)
         });
@@ -212,7 +212,7 @@ impl Bench {
             covariance: Covariance::from_deviations(rounding_m, rounding_m, rounding),
             weight: 1.0,
         };
-        let poses = distinct(outcome, self.localizer.frame(), CANDIDATES).into_iter();
+        let poses = distinct(outcome, self.vote_search.frame(), CANDIDATES).into_iter();
         poses.map(candidate).collect()
     }
 

@@ -7,7 +7,7 @@ use crate::distinct;
 use clap::Parser;
 use command_line::wrong_use;
 use engine::grid::CellRules;
-use engine::localizer::Prior;
+use engine::vote_search::Prior;
 use geometry::Pose;
 use offline::{Field, Options, Session, TakenScan, World, no_truths};
 use plots::Votes;

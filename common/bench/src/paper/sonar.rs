@@ -6,10 +6,10 @@ use crate::scans::{RingConfig, SimulatedScan, simulate_ring};
 use crate::timing::median;
 use crate::worlds::{Kind, World};
 use engine::grid::{Cell, CellRules};
-use engine::localizer::{LocalizerConfig, Prior};
 use engine::peaks::PeakConfig;
 use engine::space::Space;
 use engine::taper::TaperShape;
+use engine::vote_search::{Prior, VoteSearchConfig};
 use geometry::Pose;
 use map::OccupancyGrid;
 use offline::{EngineOptions, Field, World as Searched};
@@ -336,9 +336,9 @@ fn field_of(
     let votes = ring.votes(TaperShape::Gaussian);
     let options = EngineOptions {
         cells: CellRules::default(),
-        localizer: LocalizerConfig {
+        vote_search: VoteSearchConfig {
             votes,
-            ..LocalizerConfig::default()
+            ..VoteSearchConfig::default()
         },
         peaks: PeakConfig::default(),
     };

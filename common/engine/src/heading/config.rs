@@ -95,7 +95,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 #[cfg(feature = "clap")]
 mod tests {
     use super::*;
-    use crate::localizer::Prior;
+    use crate::vote_search::Prior;
 
     const SECOND_NS: i64 = 1_000_000_000;
 

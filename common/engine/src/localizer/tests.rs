@@ -1,226 +1,159 @@
-use std::cell::Cell;
-use std::f64::consts::FRAC_PI_2;
-
 use geometry::Pose;
-use proptest::collection::vec;
+use messages::Verdict;
 use proptest::prelude::*;
 
 use super::*;
-use crate::boundary;
-use crate::fit::{DistanceField, Ends};
-use crate::grid::drawn::grid;
-use crate::peaks::{self, PeakConfig, PeakInput};
-use crate::testing::{
-    AnyScan, RESOLUTION_M, any_grid, any_scan, occupancy_of, ranges_at, scan_around as scan,
-};
+use crate::fit::GridPose;
+use crate::grid::Grid;
+use crate::program::VoteConfig;
+use crate::scan::Scan;
+use crate::testing::{any_grid, any_scan, occupancy_of};
 
-/// An L-shaped room with a pillar, without symmetry: every pose is distinguishable.
-const ROOM: [&str; 12] = [
-    "####################",
-    "#..................#",
-    "#..................#",
-    "#...........##.....#",
-    "#...........##.....#",
-    "#..................#",
-    "#.......############",
-    "#.......#...........",
-    "#.......#...........",
-    "#..#....#...........",
-    "#.......#...........",
-    "#########...........",
-];
-const FRAME: GridFrame = GridFrame {
-    resolution_m: 0.25,
-    map_from_grid: Pose::new(3.0, -1.0, 0.5),
-};
-
-fn localizer(prior: Prior) -> Localizer {
-    let grid = grid(&ROOM);
-    Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
-}
-
-fn ranges(x: i64, y: i64, heading: usize) -> Vec<f32> {
-    ranges_at(&grid(&ROOM), FRAME.resolution_m, (x, y, heading))
-}
-
-#[test]
-fn finds_the_pose_that_a_scan_was_taken_at() {
-    let ranges = ranges(5, 3, 40);
-    let outcome = localizer(Prior::None)
-        .search(&scan(&ranges), &|| false)
-        .unwrap()
-        .unwrap();
-    let best = outcome.found.votes[0];
-    assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
-    assert_eq!(
-        u32::from(best.intensity),
-        outcome.highest_possible,
-        "every beam agrees"
-    );
-}
-
-#[test]
-fn a_known_heading_is_taken_in_the_map_frame() {
-    let ranges = ranges(5, 3, 40);
-    let heading = 40f64.to_radians() + 0.5;
-    let (outcome, field) = localizer(Prior::Heading)
-        .search_at(&scan(&ranges), heading, &|| false)
-        .unwrap()
-        .unwrap();
-    let best = outcome.found.votes[0];
-    assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
-    assert_eq!(field[3 * 20 + 5], best.intensity);
-    assert!(outcome.bearing_rounding < 1e-6);
-}
-
-#[test]
-fn a_search_at_a_heading_ends_when_it_is_asked_to() {
-    let (ranges, localizer) = (ranges(5, 3, 40), localizer(Prior::Heading));
-    let asked = Cell::new(0);
-    let search_until = |last| {
-        asked.set(0);
-        let stop = || {
-            asked.set(asked.get() + 1);
-            asked.get() == last
-        };
-        localizer.search_at(&scan(&ranges), 0.0, &stop).unwrap()
-    };
-    assert!(search_until(0).is_some());
-    let times = asked.get();
-    assert!(times > 1, "it is asked again and again: {times}");
-    for last in 1..=times {
-        assert_eq!(search_until(last), None);
-        assert_eq!(asked.get(), last, "nothing is swept after that");
-    }
-}
-
-#[test]
-fn a_map_without_obstacles_or_space_is_refused() {
-    let make = |rows: &[&str]| {
-        let grid = grid(rows);
-        Localizer::new(FRAME, grid, LocalizerConfig::default(), Prior::None).map(|_| ())
-    };
-    assert_eq!(make(&["...", "..."]), Err(EngineError::NoOccupiedCell));
-    assert_eq!(make(&["###", "#?#"]), Err(EngineError::NoFreeCell));
-}
-
-#[test]
-fn a_scan_in_which_nothing_returned_has_no_votes() {
-    let outcome = localizer(Prior::None).search(&scan(&[f32::INFINITY; 9]), &|| false);
-    let outcome = outcome.unwrap().unwrap();
-    assert_eq!(
-        (outcome.found.best, outcome.beams_used, outcome.beams_silent),
-        (0, 0, 9)
-    );
-    let (outcome, field) = localizer(Prior::Heading)
-        .search_at(&scan(&[f32::NAN; 9]), FRAC_PI_2, &|| false)
-        .unwrap()
-        .unwrap();
-    assert_eq!(outcome.found.votes, []);
-    assert!(field.iter().all(|&intensity| intensity == 0));
-}
-
-/// One workspace for each step from a scan to its places.
-#[derive(Default)]
-struct All {
-    localizer: Workspace,
-    peaks: peaks::Workspace,
-}
-
-/// Debug text of every result for a scan, for comparison.
-fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Option<String> {
-    let frame = GridFrame {
-        resolution_m: RESOLUTION_M,
-        map_from_grid: Pose::new(1.0, -2.0, 0.3),
-    };
-    let config = LocalizerConfig {
-        headings: 48,
-        votes: scan.config(),
-        ..LocalizerConfig::default()
-    };
-    let prior = heading.map_or(Prior::None, |_| Prior::Heading);
-    let sides = (grid.width(), grid.height());
+/// Prepares a map; `None` if the grid has no obstacle or no free cell.
+fn prepared(grid: &Grid, resolution_m: f64, votes: VoteConfig) -> Option<PreparedMap> {
     let occupancy = occupancy_of(grid);
-    let distance_field = DistanceField::new(frame, sides, &occupancy, Default::default()).unwrap();
-    // Grids without obstacles or free cells are rejected.
-    let localizer = Localizer::new(frame, grid.clone(), config, prior).ok()?;
-    let (workspace, scan) = (&mut all.localizer, scan.scan());
-    let mut text = String::new();
-    match heading {
-        None => text += &format!("{:?}", localizer.block_bounds(workspace, &scan).unwrap()),
-        Some(heading) => {
-            localizer
-                .search_at_in(workspace, &scan, heading, &|| false)
-                .unwrap();
-            text += &format!("{:?}", workspace.intensities());
-        }
-    }
-    let outcome = match heading {
-        None => localizer.search_in(workspace, &scan, &|| false),
-        Some(heading) => localizer.search_at_in(workspace, &scan, heading, &|| false),
+    let map = Map {
+        frame: GridFrame {
+            resolution_m,
+            map_from_grid: Pose::new(1.0, -2.0, 0.3),
+        },
+        sides: (grid.width(), grid.height()),
+        occupancy: &occupancy,
+        rules: CellRules::default(),
     };
-    let outcome = outcome.unwrap().unwrap();
-    let beams = &localizer.config().votes.beams;
-    let (input, peaks) = (PeakInput::of(outcome, frame), PeakConfig::default());
-    let find = |ends: &mut Ends| ends.find(&scan, localizer.space(), beams);
-    let judged = all.peaks.judge(&input, &distance_field, &peaks, find);
-    Some(text + &format!("{outcome:?} {:?}", judged.unwrap()))
+    let settings = Settings {
+        vote_search: VoteSearchConfig {
+            headings: 48,
+            votes,
+            ..VoteSearchConfig::default()
+        },
+        ..Settings::default()
+    };
+    PreparedMap::new(map, settings).ok()
 }
 
 proptest! {
     #[test]
-    fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
-        worlds in vec((any_grid(), any_scan(), proptest::option::of(-3.0..3.0f64)), 2..6),
+    fn a_set_of_one_map_answers_as_that_map_does(
+        grid in any_grid(), scan in any_scan(),
     ) {
-        let mut all = All::default();
-        for (grid, scan, heading) in &worlds {
-            let fresh = said(&mut All::default(), grid, scan, *heading);
-            prop_assert_eq!(said(&mut all, grid, scan, *heading), fresh);
-        }
+        let Some(map) = prepared(&grid, 0.1, scan.config()) else { return Ok(()) };
+        let localizer = Localizer::of_maps(vec![map]).unwrap();
+        let mut alone = Workspace::default();
+        let found = localizer.locate(&mut alone, &scan.scan()).unwrap();
+        let (scan, mut on_maps) = (scan.scan(), [OnMap::default()]);
+        let votes = vec![(localizer.maps[0].vote_search(), &mut on_maps[0].votes)];
+        VoteSearch::search_together(votes, (&scan).into(), None, &|| false).unwrap().unwrap();
+        let mut merged = Merged::default();
+        let all = localizer.judge_all(&mut on_maps, (&scan).into(), &mut merged).unwrap();
+        prop_assert_eq!(all, found);
     }
-}
 
-proptest! {
     #[test]
-    fn the_boundary_of_a_map_changes_nothing(grid in any_grid(), pooling in 1usize..6) {
-        let rules = CellRules { unknown_blocks: grid.has_blocked(), ..CellRules::default() };
-        let frame = GridFrame { resolution_m: RESOLUTION_M, map_from_grid: Pose::IDENTITY };
-        let config = LocalizerConfig {
-            search_cell: RESOLUTION_M * pooling as f64,
-            ..LocalizerConfig::default()
-        };
-        let sides = (grid.width(), grid.height());
-        let cells = occupancy_of(&grid);
-        let prepare = || Preparation::of_map(frame, sides, &cells, rules, config.clone(), Prior::None);
-        // A map may have no obstacle or no free cell.
-        if let Ok(extracted) = prepare() {
-            let given = prepare().unwrap().with_boundary(&boundary::extract(&grid)).unwrap();
-            prop_assert_eq!(given.key(), extracted.key());
-        }
+    fn alternatives_are_counted_by_scores_and_not_by_bounds(
+        grid in any_grid(), scan in any_scan(),
+    ) {
+        let Some(map) = prepared(&grid, 0.1, scan.config()) else { return Ok(()) };
+        let localizer = Localizer::of_maps(vec![map.clone(); 2]).unwrap();
+        let mut workspace = Workspace::default();
+        let found = localizer.locate(&mut workspace, &scan.scan()).unwrap();
+        let alternatives = found.places.alternatives;
+        let (scan, of_each) = (scan.scan(), map.peaks.of_each_map());
+        let scored = (0..).zip(&mut workspace.maps).map(|(number, on_map)| {
+            let outcome = on_map.votes.outcome();
+            let stage = (outcome, &mut on_map.peaks);
+            let judged = map.judge(stage, (&scan).into(), (&of_each, true)).unwrap();
+            let mut found = Found::on(number, outcome.best_share(), &judged);
+            for place in &mut found.places {
+                let pose = GridPose::of(map.distance_field.frame, place.map_from_laser);
+                let score = map.distance_field.score(judged.ends, pose, &map.peaks.fit);
+                // A pose converted to the map and back differs in its last digits.
+                if place.score - score > 1e-9 {
+                    place.score = score;
+                }
+            }
+            found
+        });
+        let scored: Vec<Found> = scored.collect();
+        prop_assert_eq!(alternatives, merge(&scored, &map.peaks).places.alternatives);
     }
 }
 
 #[test]
-fn a_map_that_takes_more_memory_than_is_allowed_is_refused_with_the_figure() {
-    let grid = || crate::grid::drawn::grid(&["####", "#..#", "####"]);
-    let frame = GridFrame {
-        resolution_m: 0.5,
-        map_from_grid: Pose::IDENTITY,
+fn a_place_on_another_map_is_an_alternative() {
+    let rows = [
+        "##########",
+        "#........#",
+        "#.....####",
+        "#........#",
+        "##########",
+    ];
+    let grid = crate::grid::drawn::grid(&rows);
+    let ranges: Vec<f32> = (0..36).map(|_| 0.2).collect();
+    let scan = Scan {
+        angle_min: 0.0,
+        angle_increment: 10f64.to_radians(),
+        range_min_m: 0.0,
+        range_max_m: 9.0,
+        ranges: &ranges,
     };
-    let prepare = |memory_limit, prior| {
-        let config = LocalizerConfig {
-            memory_limit: Some(memory_limit),
-            ..LocalizerConfig::default()
-        };
-        Localizer::new(frame, grid(), config, prior).map(|_| ())
+    let map = prepared(&grid, 0.1, VoteConfig::default()).unwrap();
+    let mut workspace = Workspace::default();
+    let mut ask = |count| {
+        let localizer = Localizer::of_maps(vec![map.clone(); count]).unwrap();
+        localizer
+            .locate(&mut workspace, &scan)
+            .unwrap()
+            .places
+            .clone()
+    };
+    let (one, two) = (ask(1), ask(2));
+    let pose = |places: &Places| (places.places[0].map, places.places[0].map_from_laser);
+    assert_eq!(pose(&two), pose(&one), "ties go to the first map");
+    assert_eq!(two.places[1].map, 1);
+    assert!(two.alternatives > 2 * one.alternatives);
+    assert_ne!(two.verdict, Verdict::Unique);
+}
+
+#[test]
+fn a_heading_that_does_not_go_with_the_preparation_is_an_error() {
+    let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
+    let map = prepared(&grid, 0.1, VoteConfig::default()).unwrap();
+    let unknown = Localizer::of_maps(vec![map]).unwrap();
+    let occupancy = occupancy_of(&grid);
+    let map = Map::new(0.1, Pose::IDENTITY, (4, 3), &occupancy);
+    let prior = Prior::Heading;
+    let known = Localizer::new(
+        map,
+        Settings {
+            prior,
+            ..Settings::default()
+        },
+    )
+    .unwrap();
+    let scan = Scan {
+        angle_min: 0.0,
+        angle_increment: 0.1,
+        range_min_m: 0.0,
+        range_max_m: 9.0,
+        ranges: &[0.1; 12],
+    };
+    let mut workspace = Workspace::default();
+    let mut ask = |localizer: &Localizer, heading| {
+        let answer = localizer.locate_unless(&mut workspace, &scan, heading, &|| false);
+        answer.map(|answer| answer.is_some())
     };
     assert_eq!(
-        prepare(1, Prior::None),
-        Err(EngineError::Memory {
-            needed_mb: 2,
-            limit_mb: 1
-        })
+        ask(&unknown, Some(1.0)),
+        Err(EngineError::HeadingGiven(1.0))
     );
-    assert_eq!(prepare(2, Prior::None), Ok(()));
-    assert_eq!(prepare(1, Prior::Heading), Ok(()), "there is no index");
+    assert_eq!(ask(&known, None), Err(EngineError::HeadingMissing));
+    assert_eq!(
+        (ask(&unknown, None), ask(&known, Some(1.0))),
+        (Ok(true), Ok(true))
+    );
+    assert_eq!(
+        Localizer::of_maps(Vec::new()).unwrap_err(),
+        EngineError::NoMap
+    );
 }

@@ -1,20 +1,20 @@
-//! Merges places on several maps, or found by several machines, into one answer.
+//! Merges places on several maps into one answer.
 
 use super::{Judged, Margin, PeakConfig, Place, Places};
 use crate::votes::{VoteShare, is_close};
 
-/// Result on one map, or the merged result on several.
+/// Result on one map.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Found {
-    /// Distinct places, best first, each with the number of its map.
+    /// Distinct places, best first, each with the number of the map.
     pub places: Vec<Place>,
     /// Lead that the first of them needs over others.
     pub margin: Margin,
     /// Share of the beams that end at an obstacle at the first place.
     pub inlier_share: f64,
-    /// Number of the map with the most votes among these.
-    pub leading_map: u32,
-    /// Votes of its best pose.
+    /// Number of the map.
+    pub map: u32,
+    /// Votes of the best pose.
     pub lead: VoteShare,
 }
 
@@ -28,7 +28,7 @@ impl Found {
             places: places.map(|place| Place { map, ..*place }).collect(),
             margin: judged.margin,
             inlier_share: judged.places.inlier_share,
-            leading_map: map,
+            map,
             lead,
         }
     }
@@ -37,7 +37,7 @@ impl Found {
     /// smaller number.
     fn leads(&self, other: &Found) -> bool {
         let lead = self.lead.compare(other.lead);
-        lead.then(other.leading_map.cmp(&self.leading_map)).is_gt()
+        lead.then(other.map.cmp(&self.map)).is_gt()
     }
 }
 
@@ -46,8 +46,6 @@ impl Found {
 pub struct Merged {
     /// Places and verdict. The beam classes are empty; those of the map of the best place apply.
     pub places: Places,
-    /// Everything that was merged, in a form that can be merged with further results.
-    pub found: Found,
     /// Index of the merged result that has the best place.
     pub best_of: usize,
 }
@@ -67,7 +65,7 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     };
     let counts = |place: &&Place| {
         let best = leading.lead.on(place.possible);
-        place.map == leading.leading_map || is_close(place.intensity, best)
+        place.map == leading.map || is_close(place.intensity, best)
     };
     let numbered = all.iter().enumerate();
     let mut places: Vec<(usize, Place)> = numbered
@@ -93,19 +91,11 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
         inlier_share: all[best_of].inlier_share,
         ..Places::default()
     };
-    let found = Found {
-        places: merged.places.clone(),
-        margin,
-        inlier_share: merged.inlier_share,
-        leading_map: leading.leading_map,
-        lead: leading.lead,
-    };
     if let Some(best) = merged.places.first().copied() {
         merged.judge((best.score, margin), &mut Vec::new(), config);
     }
     Merged {
         places: merged,
-        found,
         best_of,
     }
 }
@@ -139,7 +129,7 @@ mod tests {
                 ..Margin::default()
             },
             inlier_share: 0.9,
-            leading_map: map,
+            map,
             lead: VoteShare::new(lead, 100),
         }
     }
@@ -172,10 +162,9 @@ mod tests {
                 found(map, lead, needed, &places)
             }).collect();
             let merged = merge(&parts, &PeakConfig::default());
-            if let Some(best) = merged.found.places.first() {
+            if let Some(best) = merged.places.places.first() {
                 let is_first = parts[merged.best_of].places.first() == Some(best);
                 prop_assert!(is_first || merged.places.verdict != Verdict::Unique);
-                prop_assert!(is_first || merged.found.margin.may_lack);
             }
         }
     }

@@ -19,7 +19,7 @@ use nalgebra::Matrix3;
 
 use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
-use crate::localizer::Outcome;
+use crate::vote_search::Outcome;
 pub use config::PeakConfig;
 pub(crate) use judge::{doubt_between, lead};
 pub use merged::{Found, Merged, merge};

@@ -12,10 +12,10 @@ use super::*;
 use crate::beams::BeamConfig;
 use crate::fit::{DistanceField, Ends, FitConfig};
 use crate::grid::{CellRules, Grid, GridFrame};
-use crate::localizer::{Localizer, LocalizerConfig, Prior};
 use crate::peaks::{self, PeakConfig, PeakInput, Target};
 use crate::scan::Scan;
 use crate::space::Space;
+use crate::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 
 use self::building::{ALIKE, Building, RESOLUTION_M, UNLIKE, building};
 

@@ -4,8 +4,8 @@
 //! for the reason.
 
 use engine::fit::BeamClass;
-use engine::localizer::Outcome;
 use engine::peaks::Place;
+use engine::vote_search::Outcome;
 use geometry::Pose;
 use messages::Verdict;
 use offline::{Answer, KnownMap, Reply, TakenScan};

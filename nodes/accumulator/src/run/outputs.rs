@@ -23,13 +23,13 @@ pub(super) struct Outputs {
 impl Outputs {
     pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
         Ok(Outputs {
-            votes: graph.publisher_for(config.localizer.collect.max_votes as usize)?,
+            votes: graph.publisher_for(config.vote_search.collect.max_votes as usize)?,
             by_map: graph.publisher()?,
             // Enough for the default number of beams; the publisher grows for more.
             readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
-            settings: reading_id(&config.join, &config.localizer.votes.beams),
+            settings: reading_id(&config.join, &config.vote_search.votes.beams),
         })
     }
 

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use engine::limits::Region;
-use engine::localizer::{LocalizerConfig, Prior};
+use engine::vote_search::{Prior, VoteSearchConfig};
 use index_cache::{CachePlace, IndexCache, Kept};
 use messages::{Corner, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
@@ -19,7 +19,7 @@ use crate::{AccumulatorError, Config};
 /// Received maps and the state of their preparation. One map or all maps of a set are prepared at a
 /// time, always for the newest input.
 pub(super) struct Supply {
-    config: LocalizerConfig,
+    config: VoteSearchConfig,
     /// Search region unless another one is requested.
     configured: Option<Region>,
     prior: Prior,
@@ -59,8 +59,8 @@ impl Supply {
             None
         });
         Supply {
-            configured: config.localizer.limits.region.clone(),
-            config: config.localizer(),
+            configured: config.vote_search.limits.region.clone(),
+            config: config.vote_search(),
             prior: config.prior(),
             cache,
             map: None,
@@ -206,7 +206,7 @@ impl Supply {
         };
         let mut maps = Vec::with_capacity(all.len());
         for (prepared, kept) in all {
-            let grid = prepared.localizer.grid();
+            let grid = prepared.vote_search.grid();
             tracing::info!(
                 map = format_args!("{:016x}", prepared.map_id),
                 width = grid.width(),
@@ -304,7 +304,7 @@ fn keep(kept: Kept) {
 /// Prepares maps, leaving out those of a set in which no pose is allowed.
 fn prepare(
     jobs: Vec<Job>,
-    config: &LocalizerConfig,
+    config: &VoteSearchConfig,
     prior: Prior,
     cache: Option<&IndexCache>,
 ) -> Prepared {

@@ -7,7 +7,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use bytemuck::Zeroable;
-use engine::localizer::Prior;
+use engine::vote_search::Prior;
 use messages::{
     FieldHeader, FieldKind, FrameName, NodeState, Odometry, Pose2, SearchOutcome, Stamp, topic,
 };
@@ -15,7 +15,7 @@ use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 
 use tests::drawn_room::{FRAME, MOUNT, ROOM, ranges, scan};
 
-use crate::world::{World, id, localizer};
+use crate::world::{World, id, vote_search};
 
 /// Heading in the grid's frame, as in the drawn scans, degrees.
 const HEADING: usize = 40;
@@ -61,7 +61,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     let heading = votes.known_heading;
     // The heading was printed in decimal degrees, which costs a rounding or two.
     assert!((heading - map_heading()).abs() < 1e-12, "{heading}");
-    let (outcome, image) = localizer(&ROOM, Prior::Heading)
+    let (outcome, image) = vote_search(&ROOM, Prior::Heading)
         .search_at(&scan(&ranges), heading, &|| false)
         .unwrap()
         .unwrap();

@@ -4,7 +4,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::localizer::{Outcome, Prior};
+use engine::vote_search::{Outcome, Prior};
 use messages::{
     BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, RegionHeader,
     SearchOutcome, Stamp, Vote, VotesHeader, topic,
@@ -14,7 +14,7 @@ use transport::testing::{Isolated, wait_for_health, wait_for_next};
 
 use tests::drawn_room::{FRAME, MOUNT, ROOM, map_header, occupancy, ranges, scan};
 
-use crate::world::{World, id, localizer};
+use crate::world::{World, id, vote_search};
 
 /// The same room with the pillar moved and a door opened.
 pub(crate) const CHANGED: [&str; 9] = [
@@ -52,7 +52,7 @@ const HALL: [&str; 18] = [
 ];
 
 fn searched(rows: &[&str], ranges: &[f32]) -> Outcome {
-    let outcome = localizer(rows, Prior::None).search(&scan(ranges), &|| false);
+    let outcome = vote_search(rows, Prior::None).search(&scan(ranges), &|| false);
     outcome.unwrap().unwrap()
 }
 

@@ -29,7 +29,7 @@ fn a_server_of_several_maps_answers_as_one_search_of_all_of_them() {
         )
         .unwrap()
     });
-    let (locator, mut workspace) = (Locator::of_set(maps.into()), Workspace::default());
+    let (locator, mut workspace) = (Locator::of_set(maps.into()).unwrap(), Workspace::default());
     let mut on_the_right_map = 0;
     let scans = World::of("malaga_corridor").scans();
     for (scan, counter) in scans.into_iter().zip(0..).step_by(6) {

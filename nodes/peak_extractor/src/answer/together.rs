@@ -11,7 +11,7 @@ use crate::maps::Maps;
 use crate::scans::Scans;
 
 /// Finds the places from votes on several maps that were searched together, with the same result as
-/// the engine's `MapSet` in one process.
+/// the engine's `Localizer` in one process.
 pub(super) fn on_several<'w>(
     header: &VotesHeader,
     votes: &[Vote],

@@ -9,7 +9,7 @@ pub(super) const RESOLUTION_M: f64 = 0.1;
 pub(super) struct Building {
     grid: Grid,
     distance_field: DistanceField,
-    localizer: Localizer,
+    vote_search: VoteSearch,
     pub(super) space: Space,
 }
 
@@ -22,13 +22,13 @@ pub(super) fn building(rows: &[&str]) -> Building {
     };
     let rules = CellRules::default();
     let grid = Grid::new(width, height, &cells, rules).unwrap();
-    let config = LocalizerConfig {
+    let config = VoteSearchConfig {
         search_cell: 0.0,
-        ..LocalizerConfig::default()
+        ..VoteSearchConfig::default()
     };
     Building {
         distance_field: DistanceField::new(frame, (width, height), &cells, rules).unwrap(),
-        localizer: Localizer::new(frame, grid.clone(), config, Prior::None).unwrap(),
+        vote_search: VoteSearch::new(frame, grid.clone(), config, Prior::None).unwrap(),
         space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
         grid,
     }
@@ -77,9 +77,9 @@ impl Building {
     }
 
     pub(super) fn found_of(&self, ranges: &[f32]) -> Vec<Candidate> {
-        let outcome = self.localizer.search(&self.scan(ranges), &|| false);
+        let outcome = self.vote_search.search(&self.scan(ranges), &|| false);
         let outcome = outcome.unwrap().unwrap();
-        let input = PeakInput::of(&outcome, self.localizer.frame());
+        let input = PeakInput::of(&outcome, self.vote_search.frame());
         let mut workspace = peaks::Workspace::default();
         let beams = BeamConfig::default();
         let find = |ends: &mut Ends| ends.find(&self.scan(ranges), &self.space, &beams);

@@ -9,7 +9,7 @@ use std::cell::Cell;
 
 use bytemuck::Zeroable;
 use engine::boundary;
-use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig};
 use messages::{
     BoundaryHeader, FrameName, HealthHeader, NodeState, ScanHeader, Stamp, Vote, VotesHeader, topic,
 };
@@ -23,9 +23,9 @@ pub(crate) fn id(rows: &[&str]) -> u64 {
 }
 
 /// Returns the engine's localizer for comparison.
-pub(crate) fn localizer(rows: &[&str], prior: Prior) -> Localizer {
+pub(crate) fn vote_search(rows: &[&str], prior: Prior) -> VoteSearch {
     let grid = grid(rows);
-    Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
+    VoteSearch::new(FRAME, grid, VoteSearchConfig::default(), prior).unwrap()
 }
 
 /// Neighbours of the node.

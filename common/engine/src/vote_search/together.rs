@@ -2,14 +2,14 @@
 
 use std::cmp::Ordering;
 
-use super::{Localizer, Workspace};
+use super::{VoteSearch, Workspace};
 use crate::EngineError;
 use crate::instruction_set::InstructionSet;
 use crate::observation::Observation;
 use crate::search::{Lead, SearchIndex, Searched};
 use crate::votes::{VoteShare, least_close};
 
-impl Localizer {
+impl VoteSearch {
     /// Searches several maps together, each in its own workspace, with the settings of the first:
     /// collects from each map the poses that come near the best one of all. Returns the number of
     /// the map with the best pose (the first one on a tie), or `None` if `stop` returned true
@@ -18,12 +18,13 @@ impl Localizer {
     /// Votes are compared as exact shares of the highest possible on each map.
     ///
     /// # Errors
-    /// If the scan is rejected, see [`Observation::check`], or the heading is not finite.
+    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or a map was
+    /// prepared for the other [`Prior`](super::Prior).
     ///
     /// # Panics
-    /// If there is no map, or a localizer was prepared for the other [`Prior`](super::Prior).
+    /// If there is no map.
     pub fn search_together(
-        mut maps: Vec<(&Localizer, &mut Workspace)>,
+        mut maps: Vec<(&VoteSearch, &mut Workspace)>,
         scan: Observation<'_>,
         heading: Option<f64>,
         stop: &dyn Fn() -> bool,
@@ -58,32 +59,37 @@ impl Localizer {
 }
 
 fn at_any_heading(
-    maps: &mut [(&Localizer, &mut Workspace)],
+    maps: &mut [(&VoteSearch, &mut Workspace)],
     scan: Observation<'_>,
     lead: &Lead,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<()>, EngineError> {
+    let mut indices = Vec::with_capacity(maps.len());
     for (map, workspace) in maps.iter_mut() {
+        indices.push(map.index()?);
         let (space, votes) = (&map.space, &map.config.votes);
         workspace.program.compile(scan, 0.0, space, votes)?;
     }
     let config = &maps.first().expect("a map").0.config;
     let how = (InstructionSet::best(), usize::from(config.threads));
-    let searched = maps.iter_mut().map(|(map, workspace)| {
-        let Workspace {
-            program,
-            search,
-            outcome,
-            ..
-        } = &mut **workspace;
-        Searched {
-            index: map.index(),
-            grid: &map.grid,
-            scan: (program, &map.space),
-            workspace: search,
-            found: &mut outcome.found,
-        }
-    });
+    let searched = maps
+        .iter_mut()
+        .zip(indices)
+        .map(|((map, workspace), index)| {
+            let Workspace {
+                program,
+                search,
+                outcome,
+                ..
+            } = &mut **workspace;
+            Searched {
+                index,
+                grid: &map.grid,
+                scan: (program, &map.space),
+                workspace: search,
+                found: &mut outcome.found,
+            }
+        });
     let mut searched: Vec<_> = searched.collect();
     let found = SearchIndex::search_together(&mut searched, how, (config.collect, lead), stop);
     for (map, workspace) in maps.iter_mut() {
@@ -96,7 +102,7 @@ fn at_any_heading(
 }
 
 fn at_heading(
-    maps: &mut [(&Localizer, &mut Workspace)],
+    maps: &mut [(&VoteSearch, &mut Workspace)],
     scan: Observation<'_>,
     heading: f64,
     stop: &dyn Fn() -> bool,

@@ -1,10 +1,10 @@
-//! Preparation of a map for a localizer; its index is built, or read from a cache.
+//! Preparation of a map for the first stage; its index is built, or read from a cache.
 
 use std::sync::Arc;
 
 use messages::BoundaryCell;
 
-use super::{Localizer, LocalizerConfig, Method, Prior};
+use super::{Method, Prior, VoteSearch, VoteSearchConfig};
 use crate::EngineError;
 use crate::boundary;
 use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
@@ -19,14 +19,14 @@ const MEGABYTE: u64 = 1_000_000;
 /// on cells of 0.5 m, a place of an office is not found from 0.88 on.
 const FEW_BLOCKS_FLOOR: f64 = 0.85;
 
-/// A map and its settings, checked: a localizer without the parts that take long to build.
+/// A map and its settings, checked: a [`VoteSearch`] without the parts that take long to build.
 #[derive(Debug)]
 pub struct Preparation {
     frame: GridFrame,
     pooling: usize,
     grid: Grid,
     space: Space,
-    config: LocalizerConfig,
+    config: VoteSearchConfig,
     prior: Prior,
 }
 
@@ -41,7 +41,7 @@ impl Preparation {
         sides: (usize, usize),
         occupancy: &[u8],
         rules: CellRules,
-        config: LocalizerConfig,
+        config: VoteSearchConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
         let pooling = grid::pooling(frame.resolution_m, config.search_cell);
@@ -71,7 +71,7 @@ impl Preparation {
     pub fn new(
         frame: GridFrame,
         grid: Grid,
-        config: LocalizerConfig,
+        config: VoteSearchConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
         if grid.occupied_cells() == 0 {
@@ -141,15 +141,15 @@ impl Preparation {
 
     /// Finishes with a cached index that has the key of this map.
     #[must_use]
-    pub fn with(self, index: SearchIndex) -> Localizer {
-        self.localizer(Method::Search(Arc::new(index)))
+    pub fn with(self, index: SearchIndex) -> VoteSearch {
+        self.vote_search(Method::Search(Arc::new(index)))
     }
 
     /// Finishes by building what is missing.
     ///
     /// # Errors
     /// If the limits exclude every pose, or more memory would be needed than is allowed.
-    pub fn finish(self) -> Result<Localizer, EngineError> {
+    pub fn finish(self) -> Result<VoteSearch, EngineError> {
         let Preparation {
             frame,
             grid,
@@ -165,10 +165,10 @@ impl Preparation {
             }
             Prior::Heading => Method::Field(Box::new(FieldSweep::new(grid)), limits),
         };
-        Ok(self.localizer(method))
+        Ok(self.vote_search(method))
     }
 
-    fn localizer(self, method: Method) -> Localizer {
+    fn vote_search(self, method: Method) -> VoteSearch {
         let Preparation {
             frame,
             pooling,
@@ -184,7 +184,7 @@ impl Preparation {
             // The search has a candidate for each block, and more only above its floor.
             collect.floor_share = collect.floor_share.min(FEW_BLOCKS_FLOOR);
         }
-        Localizer {
+        VoteSearch {
             frame,
             pooling,
             grid,

@@ -1,4 +1,4 @@
-//! Settings of a localizer.
+//! Settings of the first stage.
 
 use crate::limits::LimitsConfig;
 use crate::program::VoteConfig;
@@ -7,7 +7,7 @@ use crate::votes::CollectConfig;
 /// Settings for matching scans with the map.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
-pub struct LocalizerConfig {
+pub struct VoteSearchConfig {
     /// Headings per turn, a multiple of 8 from 8 to 3600.
     #[cfg_attr(
         feature = "clap",
@@ -43,9 +43,9 @@ fn parse_cell(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.0..=1.0, "metres")
 }
 
-impl Default for LocalizerConfig {
+impl Default for VoteSearchConfig {
     fn default() -> Self {
-        LocalizerConfig {
+        VoteSearchConfig {
             headings: 360,
             threads: 1,
             votes: VoteConfig::default(),

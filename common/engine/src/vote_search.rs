@@ -1,0 +1,385 @@
+//! A map and its settings, ready for searches.
+
+mod config;
+mod preparation;
+mod together;
+
+use std::sync::Arc;
+
+use crate::EngineError;
+use crate::accumulator::Query;
+use crate::grid::{CellRules, Grid, GridFrame};
+use crate::instruction_set::InstructionSet;
+use crate::limits::Limits;
+use crate::observation::Observation;
+use crate::program::ScanProgram;
+use crate::search::{self, BlockBounds, SearchIndex};
+use crate::simd::Simd;
+use crate::space::Space;
+use crate::sweep::{self, FieldSweep};
+use crate::votes::{FieldVotes, VoteSet, VoteShare};
+pub use config::VoteSearchConfig;
+pub use preparation::Preparation;
+
+/// Prior knowledge of the heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Prior {
+    /// No knowledge: all headings are searched.
+    #[default]
+    None,
+    /// Each scan comes with its heading: only x and y are searched.
+    Heading,
+}
+
+/// A map prepared for searches with one kind of [`Prior`].
+#[derive(Debug, Clone)]
+pub struct VoteSearch {
+    frame: GridFrame,
+    pooling: usize,
+    grid: Grid,
+    space: Space,
+    config: VoteSearchConfig,
+    method: Method,
+}
+
+#[derive(Debug, Clone)]
+enum Method {
+    Search(Arc<SearchIndex>),
+    Field(Box<FieldSweep>, Limits),
+}
+
+/// Buffers for searches, and the last outcome. Kept from scan to scan: once the buffers are large
+/// enough, nothing is allocated any more. They may serve any map, one after the other.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    program: ScanProgram,
+    search: search::Workspace,
+    sweep: sweep::Workspace,
+    field: Vec<u16>,
+    field_votes: FieldVotes,
+    outcome: Outcome,
+    blocks: BlockBounds,
+}
+
+impl Workspace {
+    /// Intensities of all cells, row by row from the lowest y, at the heading of the last
+    /// [`VoteSearch::search_at_in`]; empty before the first.
+    #[must_use]
+    pub fn intensities(&self) -> &[u16] {
+        &self.field
+    }
+
+    /// Outcome of the last scan.
+    #[must_use]
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+}
+
+/// Votes that one scan gives to poses, and search statistics.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// The poses with the most votes.
+    pub found: VoteSet,
+    /// Votes of a pose with which every beam agrees fully.
+    pub highest_possible: u32,
+    /// Votes of the best pose; if another of several maps has it, the smallest number of votes that
+    /// is as good on this map.
+    pub lead: u16,
+    /// Number of beams that voted: those not longer than the map.
+    pub beams_used: u32,
+    /// Number of beams without a usable reading.
+    pub beams_silent: u32,
+    /// Largest rounding of a bearing to the heading grid, in radians.
+    pub bearing_rounding: f64,
+    /// Number of headings per turn.
+    pub headings: u32,
+    /// Known heading in the map frame, in radians; `None` if all headings were searched.
+    pub known_heading: Option<f64>,
+}
+
+impl Outcome {
+    /// Votes of the best collected pose as a share of the highest possible.
+    #[must_use]
+    pub fn best_share(&self) -> VoteShare {
+        VoteShare::new(self.found.best, self.highest_possible as u16)
+    }
+}
+
+impl VoteSearch {
+    /// Prepares a map of `width · height` occupancies, row by row from the lowest y; cells smaller
+    /// than the search cell are pooled.
+    ///
+    /// # Errors
+    /// See [`Preparation::of_map`] and [`Preparation::finish`].
+    pub fn of_map(
+        frame: GridFrame,
+        sides: (usize, usize),
+        occupancy: &[u8],
+        rules: CellRules,
+        config: VoteSearchConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        Preparation::of_map(frame, sides, occupancy, rules, config, prior)?.finish()
+    }
+
+    /// Prepares a grid, which is searched at its own resolution.
+    ///
+    /// # Errors
+    /// See [`Preparation::new`] and [`Preparation::finish`].
+    pub fn new(
+        frame: GridFrame,
+        grid: Grid,
+        config: VoteSearchConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        Preparation::new(frame, grid, config, prior)?.finish()
+    }
+
+    /// Returns the search index, worth caching for the next start; `None` if prepared for known
+    /// headings.
+    #[must_use]
+    pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
+        match &self.method {
+            Method::Search(index) => Some(Arc::clone(index)),
+            Method::Field(..) => None,
+        }
+    }
+
+    /// Number of map cells along the side of a search cell.
+    #[must_use]
+    pub fn pooling(&self) -> usize {
+        self.pooling
+    }
+
+    /// Cell size and pose in the map of the grid that is searched.
+    #[must_use]
+    pub fn frame(&self) -> GridFrame {
+        self.frame
+    }
+
+    /// Settings of the search.
+    #[must_use]
+    pub fn config(&self) -> &VoteSearchConfig {
+        &self.config
+    }
+
+    /// Cells that are searched.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Number of cells in which poses are searched.
+    #[must_use]
+    pub fn searchable_cells(&self) -> usize {
+        self.limits().open_cells(&self.grid).count()
+    }
+
+    /// Memory of the search data in bytes, without the cells.
+    #[must_use]
+    pub fn index_bytes(&self) -> usize {
+        match &self.method {
+            Method::Search(index) => index.bytes(),
+            Method::Field(sweeps, _) => sweeps.bytes(),
+        }
+    }
+
+    fn limits(&self) -> &Limits {
+        match &self.method {
+            Method::Search(index) => index.limits(),
+            Method::Field(_, limits) => limits,
+        }
+    }
+
+    /// Makes beams count up to this length, see [`Space::reaching`].
+    #[must_use]
+    pub fn reaching(self, reach_m: f64) -> Self {
+        VoteSearch {
+            space: self.space.reaching(reach_m),
+            ..self
+        }
+    }
+
+    /// Space of poses that is searched.
+    #[must_use]
+    pub fn space(&self) -> &Space {
+        &self.space
+    }
+
+    /// Searches all poses in a new workspace, see [`VoteSearch::search_in`].
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`], or the map was prepared for known
+    /// headings.
+    pub fn search<'s>(
+        &self,
+        scan: impl Into<Observation<'s>>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Outcome>, EngineError> {
+        let mut workspace = Workspace::default();
+        let found = self.search_in(&mut workspace, scan, stop)?.is_some();
+        Ok(found.then_some(workspace.outcome))
+    }
+
+    /// Searches all poses or, if a heading in the map frame is given (radians), all positions;
+    /// `None` if `stop` returned true before the end.
+    ///
+    /// # Errors
+    /// See [`VoteSearch::search_in`] and [`VoteSearch::search_at_in`].
+    pub fn search_with<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        heading: Option<f64>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<&'w Outcome>, EngineError> {
+        match heading {
+            Some(heading) => self.search_at_in(workspace, scan, heading, stop),
+            None => self.search_in(workspace, scan, stop),
+        }
+    }
+
+    /// Searches all poses; `None` if `stop` returned true before the end.
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`], or the map was prepared for known
+    /// headings.
+    pub fn search_in<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<&'w Outcome>, EngineError> {
+        let index = self.index()?;
+        let Workspace {
+            program,
+            search,
+            outcome,
+            ..
+        } = workspace;
+        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
+        let how = (InstructionSet::best(), usize::from(self.config.threads));
+        let collect = (self.config.collect, &mut outcome.found);
+        let scan = (&*program, &self.space);
+        let found = index.search_in(search, how, &self.grid, scan, collect, stop);
+        Ok(found.map(|()| self.describe(program, None, outcome)))
+    }
+
+    fn index(&self) -> Result<&SearchIndex, EngineError> {
+        match &self.method {
+            Method::Search(index) => Ok(index),
+            Method::Field(..) => Err(EngineError::HeadingMissing),
+        }
+    }
+
+    /// Returns upper bounds of the votes that [`VoteSearch::search`] can find, by block: a coarse
+    /// picture of where the robot may be.
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`], or the map was prepared for known
+    /// headings.
+    pub fn block_bounds<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+    ) -> Result<&'w BlockBounds, EngineError> {
+        let index = self.index()?;
+        let Workspace {
+            program,
+            search,
+            blocks,
+            ..
+        } = workspace;
+        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
+        index.block_bounds_in(search, (program, &self.space), blocks);
+        Ok(blocks)
+    }
+
+    /// Searches x and y at a heading in a new workspace, see [`VoteSearch::search_at_in`]; returns
+    /// the outcome and the intensities of all cells.
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or the map
+    /// was prepared for unknown headings.
+    pub fn search_at<'s>(
+        &self,
+        scan: impl Into<Observation<'s>>,
+        heading: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<(Outcome, Vec<u16>)>, EngineError> {
+        let mut workspace = Workspace::default();
+        let found = self.search_at_in(&mut workspace, scan, heading, stop)?;
+        let found = found.is_some();
+        Ok(found.then_some((workspace.outcome, workspace.field)))
+    }
+
+    /// Searches x and y at a heading in the map frame, in radians, and leaves the intensities of
+    /// all cells in [`Workspace::intensities`]; `None` if `stop` returned true before the end.
+    ///
+    /// # Errors
+    /// If the scan is rejected, see [`Observation::check`], the heading is not finite, or the map
+    /// was prepared for unknown headings.
+    pub fn search_at_in<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        heading: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<&'w Outcome>, EngineError> {
+        let Method::Field(sweeps, limits) = &self.method else {
+            return Err(EngineError::HeadingGiven(heading));
+        };
+        if !heading.is_finite() {
+            return Err(EngineError::Heading(heading));
+        }
+        let Workspace {
+            program,
+            sweep,
+            field,
+            field_votes,
+            outcome,
+            ..
+        } = workspace;
+        // The beams are turned by the rest of the heading after rounding to the heading grid.
+        let (index, turn) = self
+            .space
+            .directions
+            .nearest(heading - self.frame.map_from_grid.yaw);
+        program.compile(scan, turn, &self.space, &self.config.votes)?;
+        let query = Query {
+            program,
+            space: &self.space,
+            heading: index,
+        };
+        let simd = Simd::new(InstructionSet::best());
+        if sweeps.fill(simd, query, sweep, field, stop).is_none() {
+            return Ok(None);
+        }
+        limits.clear(field, index);
+        let image = (&field[..], self.grid.width());
+        let how = (self.config.collect, &self.space);
+        field_votes.collect(image, index as u16, how, &mut outcome.found);
+        Ok(Some(self.describe(program, Some(heading), outcome)))
+    }
+
+    /// Fills in an outcome except the votes found.
+    fn describe<'w>(
+        &self,
+        program: &ScanProgram,
+        known_heading: Option<f64>,
+        outcome: &'w mut Outcome,
+    ) -> &'w Outcome {
+        outcome.lead = outcome.found.best;
+        outcome.highest_possible = program.highest_possible();
+        outcome.beams_used = program.beams() as u32;
+        outcome.beams_silent = program.silent() as u32;
+        outcome.bearing_rounding = program.bearing_rounding();
+        outcome.headings = self.config.headings;
+        outcome.known_heading = known_heading;
+        outcome
+    }
+}
+
+#[cfg(test)]
+mod tests;
