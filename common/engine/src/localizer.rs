@@ -63,6 +63,7 @@ impl<'a> Map<'a> {
 
 /// Settings of a [`Localizer`].
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(not(feature = "unstable"), non_exhaustive)]
 pub struct Settings {
     /// First stage: finds the poses with the most votes.
     pub vote_search: VoteSearchConfig,
@@ -73,46 +74,6 @@ pub struct Settings {
 }
 
 /// Maps prepared for locating scans, shared by any number of threads.
-///
-/// ```
-/// use engine::{Localizer, Map, Pose, Scan, Settings, Verdict, Workspace};
-///
-/// // A hall of 12 m × 8 m with a store room in a corner, cells of 0.1 m.
-/// let (width, height) = (120, 80);
-/// let is_wall = |x: usize, y: usize| {
-///     x < 2 || y < 2 || x >= width - 2 || y >= height - 2 || (x > 75 && y > 50)
-/// };
-/// let occupancy: Vec<u8> = (0..width * height)
-///     .map(|i| if is_wall(i % width, i / width) { 100 } else { 0 })
-///     .collect();
-/// let map = Map::new(0.1, Pose::IDENTITY, (width, height), &occupancy);
-/// let localizer = Localizer::new(map, Settings::default())?;
-///
-/// // Ranges of a laser with one beam per degree at 3 m, 2.5 m, turned by a radian.
-/// let truth = Pose::new(3.0, 2.5, 1.0);
-/// let ranges: Vec<f32> = (0..360)
-///     .map(|beam| {
-///         let (sin, cos) = (truth.yaw + f64::from(beam).to_radians()).sin_cos();
-///         let (x, y) = (10.0 * truth.x, 10.0 * truth.y);
-///         let is_free = |r: &f64| !is_wall((x + r * cos) as usize, (y + r * sin) as usize);
-///         let cells = (0..).map(|step| 0.1 * f64::from(step)).take_while(is_free).last();
-///         0.1 * cells.unwrap_or_default() as f32
-///     })
-///     .collect();
-/// let scan = Scan {
-///     angle_min: 0.0,
-///     angle_increment: 1f64.to_radians(),
-///     range_min_m: 0.1,
-///     range_max_m: 30.0,
-///     ranges: &ranges,
-/// };
-///
-/// let mut workspace = Workspace::default();
-/// let answer = localizer.locate(&mut workspace, &scan)?;
-/// assert_eq!(answer.places.verdict, Verdict::Unique);
-/// assert!(answer.places.places[0].map_from_laser.is_within(truth, 0.1, 0.02));
-/// # Ok::<(), engine::EngineError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Localizer {
     /// At least one map.
@@ -340,7 +301,11 @@ impl Localizer {
         let mut found = Vec::with_capacity(maps.len());
         for (number, (map, on_map)) in (0..).zip(self.maps.iter().zip(maps.iter_mut())) {
             let outcome = on_map.votes.outcome();
-            let judged = map.judge((outcome, &mut on_map.peaks), scan, (&of_each, true))?;
+            let judged = map.judge(
+                (outcome, &mut on_map.peaks),
+                scan,
+                (&of_each, self.maps.len() > 1),
+            )?;
             found.push(Found::on(number, outcome.best_share(), &judged));
         }
         *merged = merge(&found, config);

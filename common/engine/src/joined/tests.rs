@@ -222,7 +222,7 @@ fn the_first_laser_must_be_sound() {
     };
     joiner.on_scan(&lost, &RANGES);
     let error = joiner.bring().unwrap_err().to_string();
-    assert!(error.contains("where laser front sits"), "{error}");
+    assert!(error.contains("pose of laser front on the base"), "{error}");
 }
 
 #[test]

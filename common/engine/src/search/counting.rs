@@ -9,7 +9,7 @@ use crate::votes::{Collector, VoteSet};
 
 /// Buffers and results of one thread, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Share {
+pub(in crate::parts::search) struct Share {
     sweep: sweep::Workspace,
     field: Vec<u16>,
     collector: Collector,
@@ -18,7 +18,7 @@ pub(in crate::search) struct Share {
 
 /// Finds the poses with the most votes, on as many threads as there are shares; `None` if
 /// `stop` returned true before the end.
-pub(in crate::search) fn count(
+pub(in crate::parts::search) fn count(
     (task, program): (&Task<'_>, &ScanProgram),
     shares: &mut [Share],
     found: &mut VoteSet,

@@ -11,15 +11,15 @@ use crate::simd::words::{BitWords, Words};
 /// Words of a quad, aligned to a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(in crate::search) struct Aligned(pub Words);
+pub(in crate::parts::search) struct Aligned(pub Words);
 
 /// Rows carried over to the plane that is being added up, to the next one, and to the one
 /// after it.
-pub(in crate::search) type Carries = [Vec<Aligned>; 3];
+pub(in crate::parts::search) type Carries = [Vec<Aligned>; 3];
 
 /// Beams with the same bearing modulo 8.
 #[derive(Debug, Clone)]
-pub(in crate::search) struct Group {
+pub(in crate::parts::search) struct Group {
     /// Bearing modulo 8.
     shift: u32,
     /// Windows with a share of `1 << i` units, by `i`.
@@ -57,7 +57,7 @@ impl Plane {
 }
 
 impl Group {
-    pub(in crate::search) fn new(shift: u32) -> Self {
+    pub(in crate::parts::search) fn new(shift: u32) -> Self {
         Group {
             shift,
             planes: Vec::new(),
@@ -67,19 +67,19 @@ impl Group {
         }
     }
 
-    pub(in crate::search) fn shift(&self) -> u32 {
+    pub(in crate::parts::search) fn shift(&self) -> u32 {
         self.shift
     }
 
     /// Drops all windows; their buffer stays.
-    pub(in crate::search) fn clear(&mut self) {
+    pub(in crate::parts::search) fn clear(&mut self) {
         self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;
         self.reads = 0;
         self.extent = Extent::default();
     }
 
-    pub(in crate::search) fn push(&mut self, plane: usize, window: Window) {
+    pub(in crate::parts::search) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         self.reads += window.reads;
         self.extent.take(&window);
@@ -91,7 +91,7 @@ impl Group {
 
     /// Lays out the windows that were pushed; `nothing`, a window that sees nothing, fills up
     /// pairs.
-    pub(in crate::search) fn lay_out(&mut self, nothing: Window) {
+    pub(in crate::parts::search) fn lay_out(&mut self, nothing: Window) {
         self.extent.take(&nothing);
         self.planes
             .iter_mut()
@@ -99,7 +99,7 @@ impl Group {
     }
 
     /// Largest number of words carried over from a plane to another.
-    pub(in crate::search) fn carries(&self) -> usize {
+    pub(in crate::parts::search) fn carries(&self) -> usize {
         let windows: usize = self.planes.iter().map(|plane| plane.windows.len()).sum();
         windows.div_ceil(2) + 1
     }
@@ -107,7 +107,7 @@ impl Group {
     /// Adds up the windows plane by plane with carry-save adders, and adds the result to
     /// `total`, the sums of all groups.
     #[inline(always)]
-    pub(in crate::search) fn add<W: BitWords>(
+    pub(in crate::parts::search) fn add<W: BitWords>(
         &self,
         set: W::Set,
         reader: Reader<'_>,

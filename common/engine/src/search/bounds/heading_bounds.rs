@@ -9,13 +9,13 @@ pub(crate) struct HeadingBounds {
     /// Unit of all numbers, in votes.
     unit: u16,
     /// Greatest bound of each block, in units.
-    pub(in crate::search) greatest: [u16; QUAD],
-    pub(in crate::search) chunks: Vec<Chunk>,
+    pub(in crate::parts::search) greatest: [u16; QUAD],
+    pub(in crate::parts::search) chunks: Vec<Chunk>,
 }
 
 /// Bounds at the headings of a chunk.
 #[derive(Debug, Clone)]
-pub(in crate::search) struct Chunk {
+pub(in crate::parts::search) struct Chunk {
     /// Greatest bound of each block, in units.
     pub greatest: [u16; QUAD],
     /// A bit for each heading that matters.
@@ -27,7 +27,11 @@ pub(in crate::search) struct Chunk {
 impl HeadingBounds {
     /// Allocates bounds at some headings, a word of `headings` for each chunk; drops earlier
     /// bounds.
-    pub(in crate::search) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = u128>) {
+    pub(in crate::parts::search) fn fit(
+        &mut self,
+        unit: u16,
+        headings: impl Iterator<Item = u128>,
+    ) {
         self.unit = unit;
         self.greatest = [0; QUAD];
         self.chunks.clear();

@@ -11,8 +11,8 @@ use crate::tables::TABLE;
 /// A scan program laid out for bounds from intervals; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
-    pub(in crate::search) directions: usize,
-    pub(in crate::search) simd: Simd,
+    pub(in crate::parts::search) directions: usize,
+    pub(in crate::parts::search) simd: Simd,
     /// Beams by sector.
     beams: Vec<IntervalBeam>,
     /// Most votes that all beams after each sector give.
@@ -23,7 +23,7 @@ pub(crate) struct IntervalProgram {
 /// the next.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
-pub(in crate::search) struct IntervalBeam {
+pub(in crate::parts::search) struct IntervalBeam {
     pub votes: BinVotes,
     pub bearing: u16,
 }
@@ -54,7 +54,7 @@ impl IntervalProgram {
 
     /// Returns the beams of each sector, and the most votes that those after it give.
     #[inline(always)]
-    pub(in crate::search) fn sectors(&self) -> impl Iterator<Item = (&[IntervalBeam], u16)> {
+    pub(in crate::parts::search) fn sectors(&self) -> impl Iterator<Item = (&[IntervalBeam], u16)> {
         self.beams
             .chunks(sectors::BEAMS)
             .zip(self.rests.iter().copied())

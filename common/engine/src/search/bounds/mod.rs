@@ -4,11 +4,11 @@
 //! each beam may choose the best cell of the block for itself. They differ in tightness and
 //! cost.
 
-pub(in crate::search) mod group;
-pub(in crate::search) mod heading_bounds;
-pub(in crate::search) mod interval_bounds;
-pub(in crate::search) mod interval_program;
-pub(in crate::search) mod quad_rows;
-pub(in crate::search) mod sectors;
-pub(in crate::search) mod set_bounds;
-pub(in crate::search) mod set_program;
+pub(in crate::parts::search) mod group;
+pub(in crate::parts::search) mod heading_bounds;
+pub(in crate::parts::search) mod interval_bounds;
+pub(in crate::parts::search) mod interval_program;
+pub(in crate::parts::search) mod quad_rows;
+pub(in crate::parts::search) mod sectors;
+pub(in crate::parts::search) mod set_bounds;
+pub(in crate::parts::search) mod set_program;

@@ -15,21 +15,21 @@ use crate::search::index::steps::BinSteps;
 use crate::simd::Simd;
 
 /// Number of groups of beams: one for each bearing modulo 8.
-pub(in crate::search) const GROUPS: usize = 8;
+pub(in crate::parts::search) const GROUPS: usize = 8;
 
 /// A scan program laid out for bounds from sets; made again for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
-    pub(in crate::search) simd: Simd,
+    pub(in crate::parts::search) simd: Simd,
     /// Unit of the sums, in votes: all peaks are multiples of it.
-    pub(in crate::search) unit: u16,
+    pub(in crate::parts::search) unit: u16,
     /// Number of planes that hold every sum.
-    pub(in crate::search) planes: usize,
+    pub(in crate::parts::search) planes: usize,
     /// One group for each bearing modulo 8; those with beams come first.
     groups: [Group; GROUPS],
     /// Number of groups with beams.
     used: usize,
-    pub(in crate::search) layout: RowLayout,
+    pub(in crate::parts::search) layout: RowLayout,
 }
 
 impl Default for SetProgram {
@@ -80,7 +80,7 @@ impl SetProgram {
     }
 
     /// Returns the groups that have beams.
-    pub(in crate::search) fn groups(&self) -> &[Group] {
+    pub(in crate::parts::search) fn groups(&self) -> &[Group] {
         &self.groups[..self.used]
     }
 }

@@ -5,17 +5,17 @@
 //! its cells: no range that a cell sees is missing. Nothing here depends on a scan, a floor
 //! or the order in which blocks are searched.
 
-pub(in crate::search) mod bins;
-pub(in crate::search) mod bits;
-pub(in crate::search) mod block_ids;
-pub(in crate::search) mod intervals;
+pub(in crate::parts::search) mod bins;
+pub(in crate::parts::search) mod bits;
+pub(in crate::parts::search) mod block_ids;
+pub(in crate::parts::search) mod intervals;
 mod key;
 mod needed;
-pub(in crate::search) mod obstacles;
+pub(in crate::parts::search) mod obstacles;
 mod sections;
-pub(in crate::search) mod sets;
-pub(in crate::search) mod steps;
-pub(in crate::search) mod within;
+pub(in crate::parts::search) mod sets;
+pub(in crate::parts::search) mod steps;
+pub(in crate::parts::search) mod within;
 
 pub use key::IndexKey;
 pub use sections::{SECTIONS, SectionError, UncheckedIndex};
@@ -38,12 +38,12 @@ use crate::sweep::FieldSweep;
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
-    pub(in crate::search) steps: BinSteps,
-    pub(in crate::search) intervals: RangeIntervals,
-    pub(in crate::search) fine: RangeSets,
-    pub(in crate::search) coarse: RangeSets,
-    pub(in crate::search) obstacles: Obstacles,
-    pub(in crate::search) within: Within,
+    pub(in crate::parts::search) steps: BinSteps,
+    pub(in crate::parts::search) intervals: RangeIntervals,
+    pub(in crate::parts::search) fine: RangeSets,
+    pub(in crate::parts::search) coarse: RangeSets,
+    pub(in crate::parts::search) obstacles: Obstacles,
+    pub(in crate::parts::search) within: Within,
     /// Prepared for counting every pose; made when bounds first do not help.
     sweeps: OnceLock<FieldSweep>,
 }
@@ -98,7 +98,7 @@ impl SearchIndex {
     }
 
     /// Returns the grid of the index, prepared for counting every pose.
-    pub(in crate::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
+    pub(in crate::parts::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
         self.sweeps.get_or_init(|| FieldSweep::new(grid))
     }
 

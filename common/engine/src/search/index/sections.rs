@@ -50,7 +50,7 @@ pub enum SectionError {
         bytes: u64,
     },
     /// The index takes more bytes than are allowed.
-    #[error("the index takes {bytes} bytes, and --memory-limit allows {limit}")]
+    #[error("the index takes {bytes} bytes, and the memory limit allows {limit}")]
     Memory {
         /// Bytes of the index.
         bytes: u64,

@@ -122,7 +122,7 @@ impl BlockRanges {
 
     /// Computes the ranges in direction `d`, unless that was done for this block.
     #[inline(always)]
-    pub(in crate::search) fn compute(&mut self, view: &View<'_>, d: usize) {
+    pub(in crate::parts::search) fn compute(&mut self, view: &View<'_>, d: usize) {
         if self.computed_for[d] != self.number {
             self.computed_for[d] = self.number;
             self.casts += 1;

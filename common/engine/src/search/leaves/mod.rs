@@ -2,6 +2,6 @@
 //!
 //! They equal those of the plain reference, to the last vote.
 
-pub(in crate::search) mod block_ranges;
-pub(in crate::search) mod bundle;
-pub(in crate::search) mod leaf;
+pub(in crate::parts::search) mod block_ranges;
+pub(in crate::parts::search) mod bundle;
+pub(in crate::parts::search) mod leaf;

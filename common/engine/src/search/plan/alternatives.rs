@@ -30,14 +30,14 @@ const COARSE_SHARE: usize = 4;
 const MIN_BOUND_RATIO: u32 = 31;
 
 /// Finds candidates on one thread, independent of how the search went.
-pub(in crate::search) struct Alternatives<'a> {
+pub(in crate::parts::search) struct Alternatives<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
 }
 
 /// Buffers for finding candidates, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Scratch {
+pub(in crate::parts::search) struct Scratch {
     bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
@@ -63,7 +63,7 @@ struct Spot {
 }
 
 impl<'a> Alternatives<'a> {
-    pub(in crate::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
+    pub(in crate::parts::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
         scratch.bounds.fit(&task.programs.sets, task.headings());
         scratch
             .block_ranges
@@ -73,7 +73,7 @@ impl<'a> Alternatives<'a> {
 
     /// Leaves poses of the `wanted` blocks with the highest bounds in its scratch buffer, in no
     /// order. Blocks whose bounds are below `least` are not searched.
-    pub(in crate::search) fn find(&mut self, wanted: usize, least: u16) {
+    pub(in crate::parts::search) fn find(&mut self, wanted: usize, least: u16) {
         let task = self.task;
         let Scratch {
             bounds,

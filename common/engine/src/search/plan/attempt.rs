@@ -9,7 +9,7 @@ use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, least_close, most_candidates};
 
 /// A search to be made, with a scratch buffer and a share for each of its threads.
-pub(in crate::search) struct Attempt<'a> {
+pub(in crate::parts::search) struct Attempt<'a> {
     pub task: Task<'a>,
     pub program: &'a ScanProgram,
     pub scratches: &'a mut [descent::Scratch],
@@ -21,7 +21,7 @@ pub(in crate::search) struct Attempt<'a> {
 impl Attempt<'_> {
     /// Finds the poses above the floor and candidates below, by bounds or by counting; `None`
     /// if it was asked to stop.
-    pub(in crate::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
+    pub(in crate::parts::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
         let end = self.by_bounds(found);
         match end {
             End::Done => {}
@@ -34,7 +34,7 @@ impl Attempt<'_> {
 
     /// Finds the poses of several maps that are searched together: on each map, those that come
     /// near the best one of all.
-    pub(in crate::search) fn find_all(
+    pub(in crate::parts::search) fn find_all(
         maps: &mut [(Self, &mut VoteSet)],
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
@@ -57,7 +57,7 @@ impl Attempt<'_> {
     }
 
     /// Finds the poses above the floor by bounds, unless that is hopeless.
-    pub(in crate::search) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
+    pub(in crate::parts::search) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
         let end = parts::run(&self.task, self.scratches, self.stop);
         if end == End::Done {
             parts::finish(self.scratches, found);
@@ -66,13 +66,13 @@ impl Attempt<'_> {
     }
 
     /// Finds them by counting every pose; `None` if it was asked to stop.
-    pub(in crate::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
+    pub(in crate::parts::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
         let what = (&self.task, self.program);
         counting::count(what, self.shares, found, self.stop)
     }
 
     /// Adds the candidates that are wanted below the poses that were found.
-    pub(in crate::search) fn add_candidates(&mut self, found: &mut VoteSet) {
+    pub(in crate::parts::search) fn add_candidates(&mut self, found: &mut VoteSet) {
         let Self {
             task, alternatives, ..
         } = self;

@@ -17,10 +17,10 @@ use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
 use crate::search::task::budget::Budget;
 use crate::search::task::{End, Task};
-pub(in crate::search) use scratch::Scratch;
+pub(in crate::parts::search) use scratch::Scratch;
 
 /// One thread's part of a search.
-pub(in crate::search) struct Descent<'a> {
+pub(in crate::parts::search) struct Descent<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
     budget: Budget,
@@ -28,7 +28,7 @@ pub(in crate::search) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     /// Starts with one of `parts` of the coarse blocks.
-    pub(in crate::search) fn new(
+    pub(in crate::parts::search) fn new(
         task: &'a Task<'a>,
         scratch: &'a mut Scratch,
         (part, parts): (usize, usize),
@@ -45,7 +45,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Searches until there is nothing left that may matter.
-    pub(in crate::search) fn run(mut self, stop: &dyn Fn() -> bool) -> End {
+    pub(in crate::parts::search) fn run(mut self, stop: &dyn Fn() -> bool) -> End {
         loop {
             if let Some(end) = self.step(0.0, stop) {
                 return end;
@@ -54,13 +54,13 @@ impl<'a> Descent<'a> {
     }
 
     /// Cost that was spent so far.
-    pub(in crate::search) fn spent(&self) -> f64 {
+    pub(in crate::parts::search) fn spent(&self) -> f64 {
         self.budget.spent()
     }
 
     /// Searches the next block, and returns how the search ended, if it did. `elsewhere` is the
     /// cost that was spent on other maps that are searched with this one.
-    pub(in crate::search) fn step(
+    pub(in crate::parts::search) fn step(
         &mut self,
         elsewhere: f64,
         stop: &dyn Fn() -> bool,

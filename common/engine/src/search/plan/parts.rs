@@ -9,7 +9,7 @@ use crate::threads;
 use crate::votes::VoteSet;
 
 /// Runs a search on as many threads as there are scratch buffers, the calling one included.
-pub(in crate::search) fn run(
+pub(in crate::parts::search) fn run(
     task: &Task<'_>,
     scratches: &mut [Scratch],
     stop: &dyn Fn() -> bool,
@@ -47,7 +47,7 @@ fn run_together(descents: &mut [Descent<'_>], ends: &mut [Option<End>], stop: &d
 
 /// Does the same on as many threads as each map has scratch buffers; `None` if `stop`
 /// returned true before the end.
-pub(in crate::search) fn run_all<'a>(
+pub(in crate::parts::search) fn run_all<'a>(
     maps: impl Iterator<Item = (&'a Task<'a>, &'a mut [Scratch])>,
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<End>> {
@@ -87,7 +87,7 @@ pub(in crate::search) fn run_all<'a>(
 }
 
 /// Merges the results of all threads.
-pub(in crate::search) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
+pub(in crate::parts::search) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
     let (own, others) = scratches.split_first_mut().expect("a thread");
     for other in others {
         own.collector.merge(&other.collector);

@@ -3,7 +3,7 @@
 /// A block in the queue. The one with the highest bound comes first, of equal ones the
 /// smallest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::search) struct Block {
+pub(in crate::parts::search) struct Block {
     /// Votes that none of its poses exceeds.
     pub bound: u16,
     pub level: Level,
@@ -12,7 +12,7 @@ pub(in crate::search) struct Block {
 
 /// Size of a block, and the places of the headings known for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::search) enum Level {
+pub(in crate::parts::search) enum Level {
     /// 16 × 16 cells.
     Coarse,
     /// 8 × 8 cells, at the headings of these windows.

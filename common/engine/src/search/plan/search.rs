@@ -25,12 +25,12 @@ pub struct Workspace {
     alternatives: alternatives::Scratch,
     /// Buffers for counting every pose, one for each thread.
     shares: Vec<counting::Share>,
-    pub(in crate::search) bounding: Bounding,
+    pub(in crate::parts::search) bounding: Bounding,
 }
 
 /// Program and buffers for bounding blocks.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Bounding {
+pub(in crate::parts::search) struct Bounding {
     pub(super) program: SetProgram,
     pub(super) bounds: SetBounds,
 }
@@ -97,7 +97,7 @@ impl SearchIndex {
     }
 
     /// Prepares a search.
-    pub(in crate::search) fn attempt<'a>(
+    pub(in crate::parts::search) fn attempt<'a>(
         &'a self,
         workspace: &'a mut Workspace,
         (instruction_set, threads): (InstructionSet, usize),

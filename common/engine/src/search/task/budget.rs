@@ -10,11 +10,11 @@ use crate::space::Space;
 
 /// Work, in nanoseconds with AVX2 on a processor of 2 GHz. Only ratios matter.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub(in crate::search) struct Cost(pub f64);
+pub(in crate::parts::search) struct Cost(pub f64);
 
 /// Work that was done since it was last taken.
 #[derive(Debug, Clone, Copy, Default)]
-pub(in crate::search) struct Tally {
+pub(in crate::parts::search) struct Tally {
     /// Words that were read for bounds from sets, ever.
     pub reads: u64,
     reads_before: u64,
@@ -29,7 +29,7 @@ pub(in crate::search) struct Tally {
 
 /// Cost of a search so far, and its limits.
 #[derive(Debug)]
-pub(in crate::search) struct Budget {
+pub(in crate::parts::search) struct Budget {
     /// Cost at which the search ends, done or not.
     limit: f64,
     /// Cost of counting every pose.
@@ -50,7 +50,7 @@ const HOPELESS: f64 = 0.25;
 
 impl Cost {
     /// Cost of counting every pose.
-    pub(in crate::search) fn of_brute_force(
+    pub(in crate::parts::search) fn of_brute_force(
         grid: &Grid,
         program: &ScanProgram,
         space: &Space,
@@ -62,7 +62,7 @@ impl Cost {
 
 impl Tally {
     /// Returns the cost of the work since the last call, with this many beams.
-    pub(in crate::search) fn take(&mut self, beams: usize) -> Cost {
+    pub(in crate::parts::search) fn take(&mut self, beams: usize) -> Cost {
         let cost = (self.reads - self.reads_before) as f64 * READ
             + self.windows as f64 * WINDOW_PER_BEAM * beams as f64
             + self.sectors as f64 * SECTOR
@@ -80,7 +80,7 @@ impl Tally {
 
 impl Budget {
     /// Returns the budget of one of `parts` of a search, which takes `most_steps` at most.
-    pub(in crate::search) fn new(brute_force: Cost, most_steps: f64, parts: usize) -> Self {
+    pub(in crate::parts::search) fn new(brute_force: Cost, most_steps: f64, parts: usize) -> Self {
         Budget {
             limit: most_steps / parts as f64,
             counting: brute_force.0 / parts as f64,
@@ -89,22 +89,22 @@ impl Budget {
     }
 
     /// Adds the cost of a block.
-    pub(in crate::search) fn spend(&mut self, cost: Cost) {
+    pub(in crate::parts::search) fn spend(&mut self, cost: Cost) {
         self.spent += cost.0;
     }
 
     /// Cost of the search so far.
-    pub(in crate::search) fn spent(&self) -> f64 {
+    pub(in crate::parts::search) fn spent(&self) -> f64 {
         self.spent
     }
 
     /// True if the search has to end, counting the cost spent on other maps.
-    pub(in crate::search) fn is_used_up(&self, elsewhere: f64) -> bool {
+    pub(in crate::parts::search) fn is_used_up(&self, elsewhere: f64) -> bool {
         self.spent + elsewhere >= self.limit
     }
 
     /// True if every pose is to be counted instead, which is done before the search has to end.
-    pub(in crate::search) fn is_hopeless(&self, elsewhere: f64) -> bool {
+    pub(in crate::parts::search) fn is_hopeless(&self, elsewhere: f64) -> bool {
         self.spent >= self.counting * HOPELESS
             && self.spent + elsewhere + self.counting <= self.limit
     }

@@ -38,7 +38,7 @@ impl Lead {
 
     /// Returns the least number of votes that is as good as the best pose, on a map where
     /// `possible` votes are the most.
-    pub(in crate::search) fn on(&self, possible: u16) -> u16 {
+    pub(in crate::parts::search) fn on(&self, possible: u16) -> u16 {
         let best = self.share();
         match best.possible == possible {
             true => best.votes,

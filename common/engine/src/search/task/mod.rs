@@ -3,8 +3,8 @@
 //! A task does not change while it is searched, except for bounds and the best pose so far,
 //! which only let threads skip work.
 
-pub(in crate::search) mod budget;
-pub(in crate::search) mod lead;
+pub(in crate::parts::search) mod budget;
+pub(in crate::parts::search) mod lead;
 
 use std::sync::atomic::AtomicU16;
 
@@ -22,7 +22,7 @@ use crate::space::Space;
 use crate::votes::{CollectConfig, VoteShare};
 
 /// A scan to be searched on a map.
-pub(in crate::search) struct Task<'a> {
+pub(in crate::parts::search) struct Task<'a> {
     pub index: &'a SearchIndex,
     pub grid: &'a Grid,
     pub space: &'a Space,
@@ -42,7 +42,7 @@ pub(in crate::search) struct Task<'a> {
 
 /// End of a part of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::search) enum End {
+pub(in crate::parts::search) enum End {
     /// All poses that matter were found, except for those in blocks that were left when the
     /// work limit was reached.
     Done,
@@ -54,7 +54,7 @@ pub(in crate::search) enum End {
 
 /// Data that the threads of a search share, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Shared {
+pub(in crate::parts::search) struct Shared {
     pub programs: Programs,
     coarse_bounds: Vec<AtomicU16>,
     by_chunk: Vec<AtomicU16>,
@@ -62,7 +62,7 @@ pub(in crate::search) struct Shared {
 
 /// A scan program laid out for each way in which blocks are bounded and counted.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Programs {
+pub(in crate::parts::search) struct Programs {
     pub sets: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
@@ -83,7 +83,7 @@ impl Programs {
 }
 
 impl<'a> Task<'a> {
-    pub(in crate::search) fn new(
+    pub(in crate::parts::search) fn new(
         shared: &'a mut Shared,
         simd: Simd,
         index: &'a SearchIndex,
@@ -116,7 +116,7 @@ impl<'a> Task<'a> {
 
     /// Returns the same task with another lead; it is never given up.
     #[cfg(all(test, loom))]
-    pub(in crate::search) fn anew(&self, lead: &'a Lead) -> Self {
+    pub(in crate::parts::search) fn anew(&self, lead: &'a Lead) -> Self {
         Task {
             lead,
             brute_force: Cost(f64::INFINITY),
@@ -126,17 +126,17 @@ impl<'a> Task<'a> {
 
     /// Returns the votes of the best pose so far or, if that is on another map, the least
     /// number that is as good here.
-    pub(in crate::search) fn best(&self) -> u16 {
+    pub(in crate::parts::search) fn best(&self) -> u16 {
         self.lead.on(self.possible)
     }
 
     /// Takes the votes of a pose of this map.
-    pub(in crate::search) fn raise_best(&self, votes: u16) {
+    pub(in crate::parts::search) fn raise_best(&self, votes: u16) {
         self.lead.raise(VoteShare::new(votes, self.possible));
     }
 
     /// Returns the map and tables for following rays.
-    pub(in crate::search) fn view(&self) -> View<'a> {
+    pub(in crate::parts::search) fn view(&self) -> View<'a> {
         View {
             grid: self.grid,
             obstacles: &self.index.obstacles,
@@ -146,19 +146,19 @@ impl<'a> Task<'a> {
     }
 
     /// Returns the bounds of a coarse block in each chunk of headings.
-    pub(in crate::search) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
+    pub(in crate::parts::search) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
         let chunks = self.by_chunk.len() / self.coarse_bounds.len();
         &self.by_chunk[block * chunks..][..chunks]
     }
 
     /// Returns the headings that are searched.
-    pub(in crate::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
+    pub(in crate::parts::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
         let limits = &self.index.within.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
     /// Returns a bit for each heading that is searched, a word for each chunk.
-    pub(in crate::search) fn headings(&self) -> impl Iterator<Item = u128> {
+    pub(in crate::parts::search) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }
 }

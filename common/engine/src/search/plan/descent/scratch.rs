@@ -15,7 +15,7 @@ use crate::votes::Collector;
 
 /// Buffers of one thread's search, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Scratch {
+pub(in crate::parts::search) struct Scratch {
     pub(super) set_bounds: SetBounds,
     pub(super) intervals: BlockIntervals,
     pub(super) interval_bounds: IntervalBounds,
