@@ -4,6 +4,9 @@
 use std::error::Error;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use engine::EngineError;
 use index_cache::CacheError;
@@ -60,14 +63,44 @@ fn with_causes(error: &dyn Error) -> String {
     text
 }
 
+/// Time between two checks for a signal to stop.
+pub(crate) const SIGNALS_EVERY: Duration = Duration::from_millis(50);
+
 /// Runs a long computation without Python's lock. A panic, which would be a bug of the engine,
 /// becomes a `RuntimeError`.
 pub(crate) fn detached<T: Send>(
     py: Python<'_>,
     run: impl FnOnce() -> PyResult<T> + Send,
 ) -> PyResult<T> {
-    let caught = py.detach(|| catch_unwind(AssertUnwindSafe(run)));
-    caught.unwrap_or_else(|panic| {
+    py.detach(|| without_panic(run))
+}
+
+/// Runs a long computation that nothing can stop, on a thread, and raises the exception of a
+/// signal's handler, such as `KeyboardInterrupt`, at once. The thread then ends in the background,
+/// and its result is dropped; a process that exits does not wait for it.
+pub(crate) fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    run: impl FnOnce() -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = mpsc::sync_channel(1);
+    // Nobody receives the result after a signal.
+    let work = move || drop(sender.send(without_panic(run)));
+    thread::Builder::new().spawn(work)?;
+    py.detach(move || {
+        loop {
+            match receiver.recv_timeout(SIGNALS_EVERY) {
+                Ok(done) => return done,
+                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err("a thread ended without a result"));
+                }
+            }
+        }
+    })
+}
+
+fn without_panic<T>(run: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
         Err(PyRuntimeError::new_err(format!(

@@ -19,7 +19,9 @@ use crate::settings::EngineSettings;
 /// backcast.Settings.
 ///
 /// Any number of threads may call it at the same time: Python's lock is released while
-/// the map is prepared and while it is searched. Ctrl-C ends a search.
+/// the map is prepared and while it is searched. Ctrl-C ends a search at once; while a map
+/// is prepared, it raises KeyboardInterrupt at once, and the preparing ends in the
+/// background.
 #[pyclass(frozen, module = "backcast")]
 pub(crate) struct Localizer {
     map: Py<Map>,
@@ -42,8 +44,7 @@ impl Localizer {
             true => Prior::Heading,
             false => Prior::None,
         };
-        let of = map.get();
-        let search = detached(py, || Search::prepare(of, settings, prior))?;
+        let search = Search::prepare(py, map.get(), settings, prior)?;
         Ok(Localizer {
             map,
             search,

@@ -145,6 +145,13 @@ impl Map {
         }
     }
 
+    /// Returns the same map, without copying its cells.
+    pub(crate) fn shared(&self) -> Self {
+        Map {
+            grid: Arc::clone(&self.grid),
+        }
+    }
+
     /// Refuses a pose that is off the map.
     pub(crate) fn check_holds(&self, name: &str, pose: Pose) -> PyResult<()> {
         let grid = &self.grid;

@@ -2,7 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use engine::localizer::{Answer, Localizer, PreparedMap, Settings, Workspace};
 use engine::observation::Observation;
@@ -10,12 +10,9 @@ use engine::vote_search::Prior;
 use index_cache::CachePlace;
 use pyo3::prelude::*;
 
-use crate::error::{of_cache, of_engine};
+use crate::error::{SIGNALS_EVERY, interruptible, of_cache, of_engine};
 use crate::map::Map;
 use crate::settings::EngineSettings;
-
-/// Time between two checks for a signal to stop.
-const SIGNALS_EVERY: Duration = Duration::from_millis(100);
 
 /// A prepared map, and the workspaces that its searches reuse.
 #[derive(Debug)]
@@ -26,7 +23,18 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    pub(crate) fn prepare(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Self> {
+    /// Prepares a map without Python's lock; an exception of a signal's handler is raised at once.
+    pub(crate) fn prepare(
+        py: Python<'_>,
+        map: &Map,
+        settings: EngineSettings,
+        prior: Prior,
+    ) -> PyResult<Self> {
+        let map = map.shared();
+        interruptible(py, move || Search::prepared(&map, settings, prior))
+    }
+
+    fn prepared(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Self> {
         let EngineSettings {
             cells,
             vote_search,

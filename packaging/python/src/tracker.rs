@@ -81,8 +81,7 @@ impl Tracker {
             tracking,
             motion,
         } = TrackerSettings::new(settings)?;
-        let of = map.get();
-        let search = detached(py, || Search::prepare(of, engine, Prior::None))?;
+        let search = Search::prepare(py, map.get(), engine, Prior::None)?;
         let join = JoinConfig {
             motion,
             ..JoinConfig::default()

@@ -4,6 +4,8 @@ import copy
 import math
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -272,6 +274,52 @@ def test_a_signal_ends_a_search(clutter):
     again = localizer.locate(ranges, *ANGLES)
     other = backcast.Localizer(map).locate(ranges, *ANGLES)
     assert again.poses.tolist() == other.poses.tolist()
+
+
+PREPARES_UNTIL_THE_THIRD_SIGNAL = """
+import os, signal, sys
+
+import numpy as np
+
+import backcast
+
+folder = sys.argv[1]
+heard = 0
+
+
+def on_interrupt(number, frame):
+    global heard
+    heard += 1
+    print("heard", flush=True)
+    if heard == 3:
+        signal.default_int_handler(number, frame)
+
+
+cells = np.where(np.random.default_rng(5).random((2000, 2000)) < 0.01, 100, 0)
+map = backcast.Map.from_array(cells.astype(np.int8), 0.05)
+signal.signal(signal.SIGINT, on_interrupt)
+print("prepares", flush=True)
+try:
+    backcast.Localizer(map, index_cache=folder)
+    print("prepared")
+except KeyboardInterrupt:
+    print("interrupted", os.listdir(folder))
+"""
+
+
+def test_a_signal_ends_the_preparing_of_a_map(tmp_path):
+    """What is prepared is kept in the folder before the call ends: no file is there if and only
+    if the exception came first. The second and third signals are sent once the one before was
+    handled, so they are handled within the call, however fast or slow the machine is."""
+    child = [sys.executable, "-c", PREPARES_UNTIL_THE_THIRD_SIGNAL, tmp_path]
+    with subprocess.Popen(child, stdout=subprocess.PIPE, text=True) as process:
+        said = []
+        for line in process.stdout:
+            said.append(line.strip())
+            if said[-1] in ("prepares", "heard") and said.count("heard") < 3:
+                process.send_signal(signal.SIGINT)
+    assert said == ["prepares", "heard", "heard", "heard", "interrupted []"]
+    assert process.returncode == 0
 
 
 def test_masked_ranges_are_no_returns(localizer, ranges):

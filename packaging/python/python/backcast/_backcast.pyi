@@ -79,7 +79,9 @@ class Localizer:
     backcast.Settings.
 
     Any number of threads may call it at the same time: Python's lock is released while
-    the map is prepared and while it is searched. Ctrl-C ends a search.
+    the map is prepared and while it is searched. Ctrl-C ends a search at once; while a map
+    is prepared, it raises KeyboardInterrupt at once, and the preparing ends in the
+    background.
     """
 
     def __new__(
