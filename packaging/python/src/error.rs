@@ -90,13 +90,19 @@ pub(crate) fn interruptible<T: Send + 'static>(
         loop {
             match receiver.recv_timeout(SIGNALS_EVERY) {
                 Ok(done) => return done,
-                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Timeout) => check_signals()?,
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(PyRuntimeError::new_err("a thread ended without a result"));
                 }
             }
         }
     })
+}
+
+/// Runs the handlers of signals; by default that of Ctrl-C is an error.
+pub(crate) fn check_signals() -> PyResult<()> {
+    let check = |py: Python<'_>| py.check_signals();
+    Python::attach(check)
 }
 
 fn without_panic<T>(run: impl FnOnce() -> PyResult<T>) -> PyResult<T> {

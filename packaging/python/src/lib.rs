@@ -4,6 +4,7 @@
 //! computations run without Python's lock. The module knows neither recordings nor graphs.
 
 mod error;
+mod joined;
 mod kept;
 mod localizer;
 mod map;
@@ -24,6 +25,8 @@ mod _backcast {
     use crate::map::Map;
     #[pymodule_export]
     use crate::result::LocateResult;
+    #[pymodule_export]
+    use crate::scan::GivenScan;
     #[pymodule_export]
     use crate::tracked::TrackedPose;
     #[pymodule_export]

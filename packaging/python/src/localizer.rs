@@ -1,10 +1,14 @@
 //! Localization of single scans, without memory.
 
+use engine::localizer::Answer;
+use engine::peaks::Target;
 use engine::vote_search::Prior;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::error::{detached, value};
+use crate::joined;
 use crate::map::Map;
 use crate::result::{Found, LocateResult};
 use crate::scan::GivenScan;
@@ -67,37 +71,68 @@ impl Localizer {
     /// heading is the heading in the map of the base or, without a mount, of the laser,
     /// radians: it is given if and only if the localizer was made with heading_known=True.
     ///
-    /// Raises ValueError if the scan is invalid, with the value found and the values
+    /// In place of ranges and what belongs to them, a Scan may be given, or a list of Scans of
+    /// several lasers of one robot, the main one first. Several need mounts on the same base,
+    /// and stamps within a second of the first's. odometry is (stamps_ns, poses) around the
+    /// scans, nanoseconds and N × 3 poses of the base: with it, the motion between the scans
+    /// and within each is removed; without it, the robot counts as standing.
+    ///
+    /// Raises ValueError if a scan is invalid, with the value found and the values
     /// allowed.
     #[pyo3(signature = (
-        ranges, angle_min, angle_increment, *, range_min=0.0, range_max=None,
-        mount=None, upside_down=false, heading=None
+        ranges, angle_min=None, angle_increment=None, *, range_min=0.0, range_max=None,
+        mount=None, upside_down=false, heading=None, odometry=None
     ))]
     #[allow(clippy::too_many_arguments)]
     fn locate(
         &self,
         py: Python<'_>,
         ranges: &Bound<'_, PyAny>,
-        angle_min: f64,
-        angle_increment: f64,
+        angle_min: Option<f64>,
+        angle_increment: Option<f64>,
         range_min: f64,
         range_max: Option<f64>,
         mount: Option<&Bound<'_, PyAny>>,
         upside_down: bool,
         heading: Option<f64>,
+        odometry: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<LocateResult> {
-        let scan = GivenScan::new(
-            ranges,
-            (angle_min, angle_increment),
-            (range_min, range_max.unwrap_or(f64::INFINITY)),
-            (mount, upside_down),
-        )?;
-        let heading = self.of_laser(heading, &scan)?;
+        let odometry = odometry.map_or(Ok(Vec::new()), joined::odometry)?;
+        let given = scans_in(ranges)?;
+        let has_others = range_min != 0.0 || range_max.is_some() || mount.is_some() || upside_down;
+        let alone;
+        let scans: Vec<&GivenScan> = match (&given[..], angle_min.zip(angle_increment)) {
+            ([], Some(angles)) => {
+                let limits = (range_min, range_max);
+                alone = GivenScan::new(ranges, angles, limits, (mount, upside_down), (0, 0.0))?;
+                vec![&alone]
+            }
+            ([], None) => {
+                return Err(PyTypeError::new_err(
+                    "angle_min or angle_increment is missing; allowed: both, or a Scan or a list \
+                     of Scans in place of ranges",
+                ));
+            }
+            (_, None) if angle_min.or(angle_increment).is_none() && !has_others => {
+                given.iter().map(Py::get).collect()
+            }
+            _ => {
+                return Err(PyTypeError::new_err(
+                    "angles, limits and mount are given with a Scan; allowed: those that are in it",
+                ));
+            }
+        };
+        let heading = self.of_laser(heading, scans[0])?;
+        let joiner = joined::join(&scans, &odometry)?;
+        let heading = heading.map(|heading| joiner.target_heading(heading));
+        let base_from_laser = scans[0].base_from_laser;
+        let target = Target::of(base_from_laser, joiner.targets_base());
         let found = detached(py, || {
-            let seen = (&scan.above()).into();
-            self.search.locate(seen, heading, Found::of)
+            let seen = joiner.seen();
+            let read = |answer: Answer<'_>| Found::of(answer, target);
+            self.search.locate(seen.observation(), heading, read)
         })?;
-        found.read(py, scan.base_from_laser)
+        found.read(py, base_from_laser)
     }
 
     /// The map.
@@ -140,5 +175,21 @@ impl Localizer {
                 Ok(heading.map(|heading| heading + mount.yaw))
             }
         }
+    }
+}
+
+/// Returns the Scans of a Scan or a list of them; none of a row of numbers.
+fn scans_in(given: &Bound<'_, PyAny>) -> PyResult<Vec<Py<GivenScan>>> {
+    if let Ok(scan) = given.cast::<GivenScan>() {
+        return Ok(vec![scan.clone().unbind()]);
+    }
+    let has_scans = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
+    match has_scans
+        && given
+            .get_item(0)
+            .is_ok_and(|first| first.is_instance_of::<GivenScan>())
+    {
+        true => given.extract(),
+        false => Ok(Vec::new()),
     }
 }

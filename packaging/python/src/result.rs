@@ -63,18 +63,19 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    pub(crate) fn of(
-        Answer {
+    /// Copies an answer for this target, as places of the first laser.
+    pub(crate) fn of(answer: Answer<'_>, target: Target) -> Self {
+        let Answer {
             outcome, places, ..
-        }: Answer<'_>,
-    ) -> Self {
+        } = answer;
+        let of_laser = places.places.iter().map(|place| place.of_laser(target));
         Found {
             verdict: places.verdict.as_str(),
             why: places.sentence(),
             confidence: places.confidence,
             alternatives: places.alternatives,
             beams_used: outcome.beams_used,
-            places: places.places.clone(),
+            places: of_laser.collect(),
         }
     }
 

@@ -4,14 +4,22 @@ use engine::EngineError;
 use engine::scan::{MAX_RANGES, Scan};
 use geometry::Pose;
 use numpy::{
-    PyArrayDescrMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods, get_array_module,
+    PyArray1, PyArrayDescrMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods,
+    get_array_module,
 };
 use pyo3::prelude::*;
 
 use crate::error::{of_engine, value};
-use crate::numbers;
+use crate::numbers::{self, PoseTuple};
 
-/// A checked scan, and the mount of its laser.
+/// A scan of a laser, with the laser's mount on the robot.
+///
+/// The arguments are those of Localizer.locate. stamp_ns is the time of the first range,
+/// nanoseconds, and time_increment the seconds from one range to the next: with odometry,
+/// the motion between them is removed.
+///
+/// Raises ValueError if the scan is invalid, with the value found and the values allowed.
+#[pyclass(frozen, module = "backcast", name = "Scan")]
 #[derive(Debug)]
 pub(crate) struct GivenScan {
     ranges: Vec<f32>,
@@ -23,13 +31,109 @@ pub(crate) struct GivenScan {
     /// Pose of the laser on the base, if it is given.
     pub(crate) base_from_laser: Option<Pose>,
     pub(crate) upside_down: bool,
+    pub(crate) stamp_ns: i64,
+    /// Seconds.
+    pub(crate) time_increment: f64,
+}
+
+#[pymethods]
+impl GivenScan {
+    #[new]
+    #[pyo3(signature = (
+        ranges, angle_min, angle_increment, *, range_min=0.0, range_max=None, mount=None,
+        upside_down=false, stamp_ns=0, time_increment=0.0
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn of(
+        ranges: &Bound<'_, PyAny>,
+        angle_min: f64,
+        angle_increment: f64,
+        range_min: f64,
+        range_max: Option<f64>,
+        mount: Option<&Bound<'_, PyAny>>,
+        upside_down: bool,
+        stamp_ns: i64,
+        time_increment: f64,
+    ) -> PyResult<Self> {
+        GivenScan::new(
+            ranges,
+            (angle_min, angle_increment),
+            (range_min, range_max),
+            (mount, upside_down),
+            (stamp_ns, time_increment),
+        )
+    }
+
+    /// A copy of the ranges, metres, (beams,) of float32, in the order in which they were
+    /// measured.
+    #[getter(ranges)]
+    fn copied_ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.ranges)
+    }
+
+    /// Bearing of the first range, radians.
+    #[getter]
+    fn angle_min(&self) -> f64 {
+        self.angle_min
+    }
+
+    /// Angle from one range to the next, radians.
+    #[getter]
+    fn angle_increment(&self) -> f64 {
+        self.angle_increment
+    }
+
+    /// Smallest range, metres.
+    #[getter]
+    fn range_min(&self) -> f64 {
+        self.range_min_m.into()
+    }
+
+    /// Range from which readings are no returns, metres; infinite for no limit.
+    #[getter]
+    fn range_max(&self) -> f64 {
+        self.range_max_m.into()
+    }
+
+    /// Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
+    /// None if it is not known.
+    #[getter]
+    fn mount(&self) -> Option<PoseTuple> {
+        self.base_from_laser.map(numbers::tuple)
+    }
+
+    /// True if the laser is mounted upside down.
+    #[getter]
+    fn upside_down(&self) -> bool {
+        self.upside_down
+    }
+
+    /// Time of the first range, nanoseconds.
+    #[getter]
+    fn stamp_ns(&self) -> i64 {
+        self.stamp_ns
+    }
+
+    /// Time from one range to the next, seconds.
+    #[getter]
+    fn time_increment(&self) -> f64 {
+        self.time_increment
+    }
+
+    fn __repr__(&self) -> String {
+        let (ranges, stamp_ns) = (self.ranges.len(), self.stamp_ns);
+        format!("<backcast.Scan of {ranges} ranges at {stamp_ns} ns>")
+    }
 }
 
 /// Bearing of the first range and step to the next, radians.
 pub(crate) type Angles = (f64, f64);
 
 /// Smallest and largest range, metres.
-pub(crate) type Limits = (f64, f64);
+pub(crate) type Limits = (f64, Option<f64>);
+
+/// Time of the first range in nanoseconds, and seconds from one to the next.
+pub(crate) type Times = (i64, f64);
 
 impl GivenScan {
     /// Checks the values from Python.
@@ -38,15 +142,23 @@ impl GivenScan {
         (angle_min, angle_increment): Angles,
         (range_min, range_max): Limits,
         (mount, upside_down): (Option<&Bound<'_, PyAny>>, bool),
+        (stamp_ns, time_increment): Times,
     ) -> PyResult<Self> {
+        if !time_increment.is_finite() {
+            return Err(value(format!(
+                "time_increment is {time_increment}; allowed: finite numbers, seconds"
+            )));
+        }
         let scan = GivenScan {
             ranges: metres(ranges)?,
             angle_min,
             angle_increment,
             range_min_m: range_min as f32,
-            range_max_m: range_max as f32,
+            range_max_m: range_max.unwrap_or(f64::INFINITY) as f32,
             base_from_laser: mount.map(numbers::mount).transpose()?,
             upside_down,
+            stamp_ns,
+            time_increment,
         };
         scan.above().check().map_err(|error| of_engine(&error))?;
         scan.check_unit()?;

@@ -10,7 +10,7 @@ use engine::vote_search::Prior;
 use index_cache::CachePlace;
 use pyo3::prelude::*;
 
-use crate::error::{SIGNALS_EVERY, interruptible, of_cache, of_engine};
+use crate::error::{SIGNALS_EVERY, check_signals, interruptible, of_cache, of_engine};
 use crate::map::Map;
 use crate::settings::EngineSettings;
 
@@ -113,8 +113,7 @@ impl Default for Signals {
 impl Signals {
     fn ask(&self) -> bool {
         if self.asked.get().elapsed() >= SIGNALS_EVERY {
-            let signals = |py: Python<'_>| py.check_signals();
-            let said = Python::attach(signals).err();
+            let said = check_signals().err();
             self.asked.set(Instant::now());
             if said.is_some() {
                 self.said.replace(said);

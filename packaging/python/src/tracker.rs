@@ -3,18 +3,18 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use bytemuck::Zeroable;
 use engine::joined::{ByOdometry, JoinConfig, Joiner, Kept};
 use engine::observation::Observation;
 use engine::peaks::Target;
 use engine::tracking::{self, Candidate, Need, Seen, TrackingConfig};
 use engine::vote_search::Prior;
 use geometry::{Covariance, Pose};
-use messages::{FrameName, Hypothesis, Odometry, ScanHeader, Stamp};
+use messages::Hypothesis;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{detached, of_engine, value};
+use crate::joined::{header, message};
 use crate::map::Map;
 use crate::numbers;
 use crate::scan::GivenScan;
@@ -103,9 +103,7 @@ impl Tracker {
     fn add_odometry(&self, py: Python<'_>, stamp_ns: i64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let odom_from_base = numbers::pose("pose", pose)?;
         self.with_state(py, |state| {
-            state
-                .joiner
-                .on_odometry(&odometry(stamp_ns, odom_from_base));
+            state.joiner.on_odometry(&message(stamp_ns, odom_from_base));
             Ok(())
         })
     }
@@ -145,26 +143,19 @@ impl Tracker {
         let scan = GivenScan::new(
             ranges,
             (angle_min, angle_increment),
-            (range_min, range_max.unwrap_or(f64::INFINITY)),
+            (range_min, range_max),
             (mount, upside_down),
+            (stamp_ns, time_increment),
         )?;
-        if !time_increment.is_finite() {
-            return Err(value(format!(
-                "time_increment is {time_increment}; allowed: finite numbers, seconds"
-            )));
-        }
         let odom_from_base = odometry
             .map(|given| numbers::pose("odometry", given))
             .transpose()?;
-        let header = header(&scan, stamp_ns, time_increment);
         let followed = self.with_state(py, |state| {
             check_stamp(state.newest_ns, stamp_ns)?;
             if let Some(odom_from_base) = odom_from_base {
-                state
-                    .joiner
-                    .on_odometry(&self::odometry(stamp_ns, odom_from_base));
+                state.joiner.on_odometry(&message(stamp_ns, odom_from_base));
             }
-            let followed = self.follow(state, &scan, &header)?;
+            let followed = self.follow(state, &scan)?;
             state.newest_ns = Some(stamp_ns);
             Ok(followed)
         })?;
@@ -230,12 +221,7 @@ impl Tracker {
         })
     }
 
-    fn follow(
-        &self,
-        state: &mut State,
-        scan: &GivenScan,
-        header: &ScanHeader,
-    ) -> PyResult<Followed> {
+    fn follow(&self, state: &mut State, scan: &GivenScan) -> PyResult<Followed> {
         let State {
             tracker,
             joiner,
@@ -245,7 +231,7 @@ impl Tracker {
             ..
         } = state;
         let map = self.search.map();
-        joiner.on_scan(header, scan.ranges());
+        joiner.on_scan(&header(scan), scan.ranges());
         joiner.bring().map_err(|error| of_engine(&error))?;
         let brought = joiner.seen();
         let ends = map.ends(brought.observation());
@@ -263,7 +249,7 @@ impl Tracker {
             ends: &ends,
             fit: &map.peaks().fit,
         };
-        let found = match tracker.begin(&[seen], header.stamp.measured_ns, moved) {
+        let found = match tracker.begin(&[seen], scan.stamp_ns, moved) {
             Need::Nothing => None,
             Need::ThisScan => {
                 *asked = None;
@@ -286,7 +272,7 @@ impl Tracker {
         match interrupt {
             Some(interrupt) => Err(interrupt),
             None => Ok(Followed {
-                stamp_ns: header.stamp.measured_ns,
+                stamp_ns: scan.stamp_ns,
                 report: tracker.report(),
                 base_from_laser: scan.base_from_laser,
                 odom_from_laser: now.map(|now| now.odom_from_target),
@@ -329,37 +315,5 @@ fn check_stamp(newest_ns: Option<i64>, stamp_ns: i64) -> PyResult<()> {
             "stamp_ns is {stamp_ns}, {later_ns} after that of the last scan; allowed: at least \
              {LEAST_NS} nanoseconds after it, or reset() for another drive"
         ))),
-    }
-}
-
-fn stamp(measured_ns: i64) -> Stamp {
-    Stamp {
-        measured_ns,
-        ..Stamp::default()
-    }
-}
-
-fn odometry(stamp_ns: i64, odom_from_base: Pose) -> Odometry {
-    Odometry {
-        stamp: stamp(stamp_ns),
-        odom_from_child: odom_from_base.into(),
-        child_frame: FrameName::new("base"),
-        ..Odometry::zeroed()
-    }
-}
-
-fn header(scan: &GivenScan, stamp_ns: i64, time_increment_s: f64) -> ScanHeader {
-    ScanHeader {
-        stamp: stamp(stamp_ns),
-        angle_min: scan.angle_min,
-        angle_increment: scan.angle_increment,
-        time_increment_s,
-        range_min_m: scan.range_min_m,
-        range_max_m: scan.range_max_m,
-        base_from_laser: scan.base_from_laser.unwrap_or_default().into(),
-        mount_known: scan.base_from_laser.is_some().into(),
-        upside_down: scan.upside_down.into(),
-        frame: FrameName::new("laser"),
-        ..ScanHeader::zeroed()
     }
 }

@@ -43,6 +43,8 @@ import backcast
 map = backcast.Map.from_yaml("map.yaml")
 localizer = backcast.Localizer(map, taper="box", max_beams=90)
 result = localizer.locate([1.0, 2.0], 0.0, 0.1, mount=(0.1, 0.0, 0.0))
+scan = backcast.Scan([1.0, 2.0], 0.0, 0.1)
+print(localizer.locate([scan, scan], heading=0.5), localizer.locate(scan))
 if result.pose is not None:
     x, y, yaw = result.pose
     print(x + y + yaw, result.poses.shape)
@@ -77,11 +79,14 @@ def test_docstrings_are_in_the_stubs_too():
     for of in ast.parse(STUBS.read_text()).body:
         if not isinstance(of, ast.ClassDef):
             continue
-        kind = getattr(backcast, of.name)
+        kind, documented = getattr(backcast, of.name), set()
         check_doc(of, kind)
         for member in of.body:
             if isinstance(member, ast.FunctionDef) and not member.name.startswith("__"):
+                if member.name in documented and member.decorator_list:
+                    continue  # Editors show what the first overload says.
                 check_doc(member, getattr(kind, member.name))
+                documented.add(member.name)
                 found += 1
     assert found > 40
 

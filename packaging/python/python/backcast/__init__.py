@@ -12,13 +12,14 @@ All lengths are metres, all angles radians counter-clockwise, all stamps nanosec
 is (x, y, yaw) in the map. Answers are those of the command `backcast locate`, to the bit.
 """
 
-from ._backcast import Localizer, Map, Result, TrackedPose, Tracker, __version__
+from ._backcast import Localizer, Map, Result, Scan, TrackedPose, Tracker, __version__
 from .settings import Settings, TrackerSettings
 
 __all__ = [
     "Localizer",
     "Map",
     "Result",
+    "Scan",
     "Settings",
     "TrackedPose",
     "Tracker",

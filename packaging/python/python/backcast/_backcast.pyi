@@ -1,5 +1,6 @@
+from collections.abc import Sequence
 from os import PathLike
-from typing import ClassVar, Literal, final
+from typing import ClassVar, Literal, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -7,7 +8,7 @@ from typing_extensions import Unpack
 
 from .settings import Settings, TrackerSettings
 
-__all__ = ["Localizer", "Map", "Result", "TrackedPose", "Tracker", "__version__"]
+__all__ = ["Localizer", "Map", "Result", "Scan", "TrackedPose", "Tracker", "__version__"]
 
 __version__: str
 
@@ -87,6 +88,7 @@ class Localizer:
     def __new__(
         cls, map: Map, *, heading_known: bool = False, **settings: Unpack[Settings]
     ) -> Localizer: ...
+    @overload
     def locate(
         self,
         ranges: ArrayLike,
@@ -114,9 +116,25 @@ class Localizer:
         heading is the heading in the map of the base or, without a mount, of the laser,
         radians: it is given if and only if the localizer was made with heading_known=True.
 
-        Raises ValueError if the scan is invalid, with the value found and the values
+        In place of ranges and what belongs to them, a Scan may be given, or a list of Scans of
+        several lasers of one robot, the main one first. Several need mounts on the same base,
+        and stamps within a second of the first's. odometry is (stamps_ns, poses) around the
+        scans, nanoseconds and N × 3 poses of the base: with it, the motion between the scans
+        and within each is removed; without it, the robot counts as standing.
+
+        Raises ValueError if a scan is invalid, with the value found and the values
         allowed.
         """
+    @overload
+    def locate(
+        self,
+        ranges: Scan | Sequence[Scan],
+        angle_min: None = None,
+        angle_increment: None = None,
+        *,
+        heading: float | None = None,
+        odometry: tuple[ArrayLike, ArrayLike] | None = None,
+    ) -> Result: ...
     @property
     def map(self) -> Map:
         """The map."""
@@ -194,6 +212,62 @@ class Result:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
+
+@final
+class Scan:
+    """A scan of a laser, with the laser's mount on the robot.
+
+    The arguments are those of Localizer.locate. stamp_ns is the time of the first range,
+    nanoseconds, and time_increment the seconds from one range to the next: with odometry,
+    the motion between them is removed.
+
+    Raises ValueError if the scan is invalid, with the value found and the values allowed.
+    """
+
+    def __new__(
+        cls,
+        ranges: ArrayLike,
+        angle_min: float,
+        angle_increment: float,
+        *,
+        range_min: float = 0.0,
+        range_max: float | None = None,
+        mount: ArrayLike | None = None,
+        upside_down: bool = False,
+        stamp_ns: int = 0,
+        time_increment: float = 0.0,
+    ) -> Scan: ...
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """A copy of the ranges, metres, (beams,) of float32, in the order in which they were
+        measured.
+        """
+    @property
+    def angle_min(self) -> float:
+        """Bearing of the first range, radians."""
+    @property
+    def angle_increment(self) -> float:
+        """Angle from one range to the next, radians."""
+    @property
+    def range_min(self) -> float:
+        """Smallest range, metres."""
+    @property
+    def range_max(self) -> float:
+        """Range from which readings are no returns, metres; infinite for no limit."""
+    @property
+    def mount(self) -> tuple[float, float, float] | None:
+        """Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
+        None if it is not known.
+        """
+    @property
+    def upside_down(self) -> bool:
+        """True if the laser is mounted upside down."""
+    @property
+    def stamp_ns(self) -> int:
+        """Time of the first range, nanoseconds."""
+    @property
+    def time_increment(self) -> float:
+        """Time from one range to the next, seconds."""
 
 @final
 class Tracker:
