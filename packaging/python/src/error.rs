@@ -13,6 +13,7 @@ use index_cache::CacheError;
 use map::MapError;
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use recording::RecordingError;
 
 /// Makes a `ValueError`.
 pub(crate) fn value(text: impl Into<String>) -> PyErr {
@@ -43,8 +44,20 @@ pub(crate) fn of_map(error: &MapError) -> PyErr {
     }
 }
 
+/// Converts an error of a recording; keywords have the names of the command's options.
+pub(crate) fn of_recording(error: &RecordingError) -> PyErr {
+    match error {
+        RecordingError::Open { source, .. } => of_file(error, source),
+        other => value(
+            with_causes(other)
+                .replace("--odom-topic", "odom_topic")
+                .replace("--map-topic", "map_topic"),
+        ),
+    }
+}
+
 /// Makes an `OSError` of the class that fits the cause, such as `FileNotFoundError`.
-fn of_file(error: &MapError, cause: &io::Error) -> PyErr {
+fn of_file(error: &dyn Error, cause: &io::Error) -> PyErr {
     io::Error::new(cause.kind(), with_causes(error)).into()
 }
 

@@ -1,7 +1,8 @@
 //! Backcast's engine as a Python module: maps, the places of a scan, and the tracker.
 //!
-//! It converts and checks; all computation is in `common/engine`, which the command uses, too. Long
-//! computations run without Python's lock. The module knows neither recordings nor graphs.
+//! It converts and checks; all computation is in `common/engine`, and reading in
+//! `common/recording`, which the command uses, too. Long
+//! computations run without Python's lock. The module knows no graphs.
 
 mod error;
 mod joined;
@@ -9,6 +10,7 @@ mod kept;
 mod localizer;
 mod map;
 mod numbers;
+mod recording;
 mod result;
 mod scan;
 mod search;
@@ -23,6 +25,8 @@ mod _backcast {
     use crate::localizer::Localizer;
     #[pymodule_export]
     use crate::map::Map;
+    #[pymodule_export]
+    use crate::recording::{LaserScans, Recording, read};
     #[pymodule_export]
     use crate::result::LocateResult;
     #[pymodule_export]

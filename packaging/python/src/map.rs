@@ -139,7 +139,8 @@ impl Map {
 }
 
 impl Map {
-    fn of(grid: OccupancyGrid) -> Self {
+    /// Takes a grid.
+    pub(crate) fn of(grid: OccupancyGrid) -> Self {
         Map {
             grid: Arc::new(grid),
         }

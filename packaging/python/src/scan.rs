@@ -8,6 +8,8 @@ use numpy::{
     get_array_module,
 };
 use pyo3::prelude::*;
+use recording::Mount;
+use ros::LaserScan;
 
 use crate::error::{of_engine, value};
 use crate::numbers::{self, PoseTuple};
@@ -144,11 +146,6 @@ impl GivenScan {
         (mount, upside_down): (Option<&Bound<'_, PyAny>>, bool),
         (stamp_ns, time_increment): Times,
     ) -> PyResult<Self> {
-        if !time_increment.is_finite() {
-            return Err(value(format!(
-                "time_increment is {time_increment}; allowed: finite numbers, seconds"
-            )));
-        }
         let scan = GivenScan {
             ranges: metres(ranges)?,
             angle_min,
@@ -160,9 +157,35 @@ impl GivenScan {
             stamp_ns,
             time_increment,
         };
-        scan.above().check().map_err(|error| of_engine(&error))?;
-        scan.check_unit()?;
-        Ok(scan)
+        scan.checked()
+    }
+
+    /// Takes a scan of a recording, and the mount of its laser.
+    pub(crate) fn recorded(message: &LaserScan, mount: Option<&Mount>) -> PyResult<Self> {
+        let scan = GivenScan {
+            ranges: message.ranges.clone(),
+            angle_min: message.angle_min.into(),
+            angle_increment: message.angle_increment.into(),
+            range_min_m: message.range_min,
+            range_max_m: message.range_max,
+            base_from_laser: mount.map(|mount| mount.base_from_laser),
+            upside_down: mount.is_some_and(|mount| mount.upside_down),
+            stamp_ns: message.header.stamp.as_ns(),
+            time_increment: message.time_increment.into(),
+        };
+        scan.checked()
+    }
+
+    fn checked(self) -> PyResult<Self> {
+        if !self.time_increment.is_finite() {
+            return Err(value(format!(
+                "time_increment is {}; allowed: finite numbers, seconds",
+                self.time_increment
+            )));
+        }
+        self.above().check().map_err(|error| of_engine(&error))?;
+        self.check_unit()?;
+        Ok(self)
     }
 
     /// Refuses ranges that cannot be metres: no scan has returns from beyond 100 m alone.

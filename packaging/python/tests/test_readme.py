@@ -18,7 +18,7 @@ def test_the_examples_run(monkeypatch, capsys):
     drive = [(scan.stamp_ns, scan, odometry[scan.stamp_ns]) for scan in scans]
     angles = dict(zip(("angle_min", "angle_increment"), recorded.scans[4].angles, strict=True))
     rear = {"ranges": scans[4].ranges, "rear_ranges": [math.inf] * 361}
-    names = {"scan": scans[4], "drive": drive, **angles, **rear}
+    names = {"drive": drive, **angles, **rear}
     for example in examples:
         exec(example, names)
     assert names["result"].verdict == "Unique"

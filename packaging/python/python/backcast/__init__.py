@@ -12,12 +12,25 @@ All lengths are metres, all angles radians counter-clockwise, all stamps nanosec
 is (x, y, yaw) in the map. Answers are those of the command `backcast locate`, to the bit.
 """
 
-from ._backcast import Localizer, Map, Result, Scan, TrackedPose, Tracker, __version__
+from ._backcast import (
+    LaserScans,
+    Localizer,
+    Map,
+    Recording,
+    Result,
+    Scan,
+    TrackedPose,
+    Tracker,
+    __version__,
+    read,
+)
 from .settings import Settings, TrackerSettings
 
 __all__ = [
+    "LaserScans",
     "Localizer",
     "Map",
+    "Recording",
     "Result",
     "Scan",
     "Settings",
@@ -25,4 +38,5 @@ __all__ = [
     "Tracker",
     "TrackerSettings",
     "__version__",
+    "read",
 ]

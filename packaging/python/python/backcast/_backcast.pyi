@@ -8,7 +8,18 @@ from typing_extensions import Unpack
 
 from .settings import Settings, TrackerSettings
 
-__all__ = ["Localizer", "Map", "Result", "Scan", "TrackedPose", "Tracker", "__version__"]
+__all__ = [
+    "LaserScans",
+    "Localizer",
+    "Map",
+    "Recording",
+    "Result",
+    "Scan",
+    "TrackedPose",
+    "Tracker",
+    "__version__",
+    "read",
+]
 
 __version__: str
 
@@ -212,6 +223,88 @@ class Result:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
+
+@final
+class LaserScans:
+    """The scans of one laser, in the order of their recording; scans[i] is a Scan."""
+
+    @property
+    def topic(self) -> str:
+        """Topic of the scans."""
+    @property
+    def frame(self) -> str:
+        """Name of the laser's frame."""
+    @property
+    def mount(self) -> tuple[float, float, float] | None:
+        """Pose of the laser on the robot, (x, y, yaw) in the base's frame, metres and radians;
+        None if the recording does not say it.
+        """
+    @property
+    def upside_down(self) -> bool:
+        """True if the laser is mounted upside down."""
+    @property
+    def stamps_ns(self) -> NDArray[np.int64]:
+        """Stamps of the scans, (n,) of int64, nanoseconds since 1970."""
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """Ranges, (n, beams) of float32, metres, as they were recorded: NaN and infinite ones
+        included. A scan with fewer beams than the longest ends with NaN.
+        """
+    @property
+    def angle_min(self) -> NDArray[np.float64]:
+        """Bearing of the first range of each scan, (n,), radians."""
+    @property
+    def angle_increment(self) -> NDArray[np.float64]:
+        """Angle from one range to the next, (n,), radians."""
+    @property
+    def range_min(self) -> NDArray[np.float64]:
+        """Smallest range, (n,), metres."""
+    @property
+    def range_max(self) -> NDArray[np.float64]:
+        """Range from which readings are no returns, (n,), metres."""
+    @property
+    def time_increment(self) -> NDArray[np.float64]:
+        """Time from one range to the next, (n,), seconds."""
+    def __len__(self, /) -> int: ...
+    def __getitem__(self, index: int, /) -> Scan: ...
+
+@final
+class Recording:
+    """A recording of a drive: scans by topic, odometry, true poses and the map. Made by
+    backcast.read.
+    """
+
+    @property
+    def scans(self) -> dict[str, LaserScans]:
+        """Scans by topic, a dict of LaserScans: one for each laser."""
+    @property
+    def odometry(self) -> tuple[NDArray[np.int64], NDArray[np.float64]] | None:
+        """Odometry as (stamps_ns, poses): N of int64, nanoseconds, and N × 3, (x, y, yaw) in
+        metres and radians of the base since the odometry's start; None if there is none.
+        """
+    @property
+    def truth(self) -> tuple[NDArray[np.int64], NDArray[np.float64]] | None:
+        """True poses as (stamps_ns, poses): N of int64, nanoseconds, and N × 3, (x, y, yaw) in
+        metres and radians of the laser in the map; None if there are none.
+        """
+    @property
+    def map(self) -> Map | None:
+        """The newest map; None if there is none."""
+
+def read(
+    path: str | PathLike[str], *, odom_topic: str | None = None, map_topic: str | None = None
+) -> Recording:
+    """Reads a recording: an MCAP file with messages of ROS 2, or a folder of them as rosbag2
+    writes it.
+
+    Scans are those of sensor_msgs/LaserScan on any topic, with the mounts that the
+    transforms of the recording say. Odometry is nav_msgs/Odometry on the only topic or
+    /odom, true poses geometry_msgs/PoseStamped on /ground_truth, the map
+    nav_msgs/OccupancyGrid on the only topic or /map; odom_topic and map_topic name others.
+
+    Raises OSError if the file cannot be read, ValueError if it is no recording, is damaged,
+    or has messages that cannot be used.
+    """
 
 @final
 class Scan:
