@@ -233,7 +233,7 @@ fn who_looks_on_and_stands_still_for_a_while_misses_nothing() {
     let descriptor = descriptor.to_str().unwrap();
     let printed = start(&["run", descriptor, "--json", "--rate", "max"]);
     let of_scan = |line: &&str| {
-        let is_of_scan = !line.starts_with(r#"{"schema":2,"summary""#);
+        let is_of_scan = !line.starts_with(r#"{"schema":3,"summary""#);
         assert_follows(if is_of_scan { "run" } else { "run_summary" }, line);
         is_of_scan
     };

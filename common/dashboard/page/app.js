@@ -76,8 +76,8 @@ const handlers = {
 /** Fetches the cells of a map that is not shown yet. */
 async function loadMap() {
   const { map } = store;
-  if (!map || map.id === shownMap) return;
-  const wanted = (shownMap = map.id);
+  if (!map || map.map_id === shownMap) return;
+  const wanted = (shownMap = map.map_id);
   try {
     const response = await fetch(`/api/v1/robots/${encodeURIComponent(robot)}/map`);
     const cells = new Uint8Array(await response.arrayBuffer());
@@ -319,7 +319,7 @@ function picture() {
   const is = situation(store, link, paused);
   const best = is.known ? inFrame(store.best(), view.frame) : null;
   const pose = best ? `${best.frame} x ${fixed(best.x, 2)} m, y ${fixed(best.y, 2)} m, ${fixed(degrees(best.yaw), 1)}°` : "pose not known";
-  const stamp = answer ? new Date(answer.stamp_s * 1000).toISOString() : "";
+  const stamp = answer ? new Date(answer.stamp_ns / 1e6).toISOString() : "";
   savePicture($("map"), view.colors, [robot, store.graph, is.word, pose, stamp].filter(Boolean).join("   "), view.ratio);
 }
 

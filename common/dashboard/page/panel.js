@@ -31,7 +31,7 @@ export function showTiming({ answer, latencies }, theme) {
   const sorted = [...latencies].sort((a, b) => a - b);
   const at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))];
   $("timing").textContent = sorted.length && answer
-    ? `median ${fixed(at(0.5), 1)}, max ${fixed(at(1), 1)} · search ${fixed(answer.search_ms, 1)}, fit ${fixed(answer.extract_ms, 1)}` : "";
+    ? `median ${fixed(at(0.5), 1)}, max ${fixed(at(1), 1)} · search ${fixed(answer.search_cpu_ms, 1)}, fit ${fixed(answer.extract_cpu_ms, 1)}` : "";
   drawSpark($("spark"), latencies, palette(theme));
 }
 
@@ -63,7 +63,7 @@ export function showNodes({ robot, nodes, answer, abilities }, restart) {
   const all = [...nodes.values()].sort((a, b) => a.name.localeCompare(b.name));
   const well = all.filter(({ state }) => state === "ready").length;
   write("node-count", all.length ? `${well} of ${all.length} ready` : robot ? "none has reported: not started" : "not known");
-  const took = { accumulator: answer?.search_ms, peak_extractor: answer?.extract_ms };
+  const took = { accumulator: answer?.search_cpu_ms, peak_extractor: answer?.extract_cpu_ms };
   const rows = all.map((node) => nodeWords(node, took[node.name]));
   const button = abilities.restart ? restart : null;
   replace($("nodes"), JSON.stringify([rows, abilities.restart]), () => rows.map((row) => nodeRow(row, button)));

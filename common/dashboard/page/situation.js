@@ -77,20 +77,29 @@ export function contenders({ map, answer }) {
 const NO_MAP = "0".repeat(16);
 
 /** Whether a place is on the map that is shown: of several, one is shown at a time. */
-export const isOn = (map, { map_id }) => !map || map_id === map.id || map_id === NO_MAP;
+export const isOn = (map, { map_id }) => !map || map_id === map.map_id || map_id === NO_MAP;
 
 /** The pose and its ellipse in a frame; the laser's where the base's is not known. */
 export function inFrame(place, frame) {
   if (!place) return null;
-  if (frame === "base_link" && place.base) return { ...place.base, ellipse: place.base_ellipse, frame };
-  return place.laser ? { ...place.laser, ellipse: place.ellipse, frame: "laser" } : null;
+  if (frame === "base_link" && place.base) return { ...place.base, ellipse: ellipseOf(place.base_covariance), frame };
+  return place.laser ? { ...place.laser, ellipse: ellipseOf(place.laser_covariance), frame: "laser" } : null;
+}
+
+/** The ellipse of one standard deviation, of a covariance over x, y and yaw; null where there is none. */
+function ellipseOf(covariance) {
+  if (!covariance) return null;
+  const [xx, xy, , , yy, , , , yaw] = covariance;
+  const [mean, half] = [(xx + yy) / 2, Math.hypot((xx - yy) / 2, xy)];
+  const [major_m, minor_m] = [mean + half, mean - half].map((variance) => Math.sqrt(Math.max(0, variance)));
+  return { major_m, minor_m, angle: Math.atan2(2 * xy, xx - yy) / 2, yaw: Math.sqrt(Math.max(0, yaw)) };
 }
 
 /** Since when the state holds, seconds; null where that is not known. */
 export function since({ pose, states }, now) {
   const period = states.at(-1);
   const seen = period ? (now - period.at) / 1000 : null;
-  const measured = pose?.since_s > 0 ? pose.stamp_s - pose.since_s : 0;
+  const measured = pose?.since_s > 0 ? pose.stamp_ns / 1e9 - pose.since_s : 0;
   // The monitor may have come later than the state.
   return states.length === 1 ? Math.max(seen, measured) : seen;
 }

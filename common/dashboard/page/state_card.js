@@ -18,7 +18,7 @@ export function showState(store, is, frame) {
   showPose(store, is, frame);
   showTrust(store, is, frame);
   const newest = pose ?? answer;
-  write("stamp", newest ? `Scan of ${stamp(newest.stamp_s)}` : "");
+  write("stamp", newest ? `Scan of ${stamp(newest.stamp_ns / 1e9)}` : "");
   const single = pose && answer && STATES[answer.verdict];
   write("single", single ? `The last scan that was searched, alone: ${single.word}, ${sentence(answer.says)}` : "");
 }

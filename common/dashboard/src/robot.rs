@@ -95,6 +95,15 @@ struct Known {
     recording: Option<Recording>,
 }
 
+impl Known {
+    /// Returns the name of the map that is shown, if it is this one of several.
+    fn name_of(&self, map_id: u64) -> Option<String> {
+        let map = &self.map.as_ref()?.info;
+        let is_named = !map.name.is_empty() && map.map_id == pose_table::map_id(map_id);
+        is_named.then(|| map.name.clone())
+    }
+}
+
 /// A new viewer's snapshot, and the messages that follow it.
 pub(crate) struct Watching {
     pub(crate) snapshot: Utf8Bytes,
@@ -146,8 +155,8 @@ impl Robot {
 
     /// Stores and sends the result of a scan. `now_ns`: monotonic clock of the host.
     pub fn on_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
-        let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
+        let answer = Answer::new(header, items, &|map_id| known.name_of(map_id), now_ns);
         self.broadcast(&Message::Answer(&answer));
         known.times.on_answer(header);
         known.track.on_answer(&answer);
@@ -159,8 +168,8 @@ impl Robot {
 
     /// Stores and sends the tracker's pose. `now_ns`: monotonic clock of the host.
     pub fn on_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
-        let pose = Tracked::new(header, words, now_ns);
         let mut known = self.known();
+        let pose = Tracked::new(header, words, &|map_id| known.name_of(map_id), now_ns);
         self.broadcast(&Message::Pose(&pose));
         known.times.on_pose(header);
         known.track.on_pose(&pose);

@@ -30,8 +30,6 @@ pub(crate) use state_change::StateChange;
 pub(crate) use track::{Track, TrackPoint};
 pub(crate) use tracked::Tracked;
 
-use geometry::Covariance;
-use messages::Pose2;
 use serde::{Deserialize, Serialize};
 
 /// A message to the viewers of a robot.
@@ -118,48 +116,6 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) abilities: Abilities,
     /// `None` without a launcher that records on request.
     pub(crate) recording: Option<&'a Recording>,
-}
-
-/// A pose in the map: metres and radians.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct PoseJson {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) yaw: f64,
-}
-
-impl From<Pose2> for PoseJson {
-    fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
-        PoseJson { x, y, yaw }
-    }
-}
-
-/// One-sigma ellipse of a covariance.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct Ellipse {
-    /// Semi-major axis.
-    pub(crate) major_m: f64,
-    /// Semi-minor axis.
-    pub(crate) minor_m: f64,
-    /// Angle of the major axis to the map's x axis.
-    pub(crate) angle: f64,
-    /// Standard deviation of the heading.
-    pub(crate) yaw: f64,
-}
-
-impl Ellipse {
-    /// From a covariance over x, y and yaw, row by row; `None` if it is not a valid one.
-    pub(crate) fn new(rows: [f64; 9]) -> Option<Self> {
-        let is_finite = rows.iter().all(|value| value.is_finite());
-        let ellipse = is_finite.then(|| Covariance::from_rows(rows).ellipse())?;
-        let [.., yaw_variance] = rows;
-        Some(Ellipse {
-            major_m: ellipse.major_m,
-            minor_m: ellipse.minor_m,
-            angle: ellipse.angle,
-            yaw: yaw_variance.max(0.0).sqrt(),
-        })
-    }
 }
 
 /// Converts nanoseconds to milliseconds.

@@ -1,14 +1,10 @@
 //! Frame whose pose is printed. Pure.
 
-use messages::Pose2;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 /// The base, or the laser where its mount is not known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Frame {
     Base,
+    #[default]
     Laser,
 }
 
@@ -18,15 +14,6 @@ impl Frame {
         match mount_is_known {
             true => Frame::Base,
             false => Frame::Laser,
-        }
-    }
-
-    /// Returns the pose of this frame.
-    #[must_use]
-    pub fn pose(self, map_from_base: Pose2, map_from_laser: Pose2) -> Pose2 {
-        match self {
-            Frame::Base => map_from_base,
-            Frame::Laser => map_from_laser,
         }
     }
 

@@ -1,13 +1,16 @@
-//! Output for a scan, as a row of a table or as JSON: `line` is the answer to the scan alone,
-//! `pose_line` the tracker's pose with it, and `rows` joins both in either order. All pure.
+//! The answer to a scan and the tracker's pose, as JSON and as rows of a table. `place` has what
+//! both share, `answer` the answer to a scan alone, `tracked` the tracker's pose, and `rows` joins
+//! both in either order. All pure.
 
+mod answer;
 mod frame;
-mod line;
-mod pose_line;
+mod place;
 mod rows;
 pub mod testing;
+mod tracked;
 
+pub use answer::{ScanAnswer, number};
 pub use frame::Frame;
-pub use line::{Line, number};
-pub use pose_line::{PoseLine, Row};
+pub use place::{Candidate, Place, map_id};
 pub use rows::Rows;
+pub use tracked::{Row, TrackedPose};

@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 use messages::Stamp;
 
-use super::line::Line;
-use super::pose_line::{PoseLine, Row};
+use super::answer::ScanAnswer;
+use super::tracked::{Row, TrackedPose};
 
 /// Largest number of answers that wait for their poses, so that a dead tracker does not hold them
 /// back.
@@ -24,7 +24,7 @@ pub struct Rows {
 
 impl Rows {
     /// Adds the answer to a scan alone; returns the rows that are due.
-    pub fn answer(&mut self, scan: Stamp, single: Line) -> Vec<Row> {
+    pub fn answer(&mut self, scan: Stamp, single: ScanAnswer) -> Vec<Row> {
         if let Some(at) = self.find(scan) {
             if let Some((_, row)) = self.waiting.get_mut(at) {
                 row.single = Some(single);
@@ -44,7 +44,7 @@ impl Rows {
     }
 
     /// Adds the tracker's pose of a scan; returns the rows that are due.
-    pub fn pose(&mut self, scan: Stamp, pose: PoseLine) -> Vec<Row> {
+    pub fn pose(&mut self, scan: Stamp, pose: TrackedPose) -> Vec<Row> {
         if let Some(at) = self.find(scan) {
             if let Some((_, row)) = self.waiting.get_mut(at) {
                 row.pose = Some(pose);
@@ -102,7 +102,7 @@ mod tests {
     use messages::{TrackState, Verdict};
 
     use super::*;
-    use crate::testing::{message, pose};
+    use crate::testing::{answer as single, message, pose};
 
     /// Returns the stamps of answer and pose of each row, which equal their counters.
     fn printed(rows: &[Row]) -> Vec<(Option<i64>, Option<i64>)> {
@@ -115,12 +115,12 @@ mod tests {
 
     fn answer(rows: &mut Rows, counter: u64) -> Vec<(Option<i64>, Option<i64>)> {
         let (header, found) = message(counter as i64, counter, Verdict::Unique as u32);
-        printed(&rows.answer(header.stamp, Line::new(&header, &found)))
+        printed(&rows.answer(header.stamp, single(&header, &found)))
     }
 
     fn track(rows: &mut Rows, counter: u64) -> Vec<(Option<i64>, Option<i64>)> {
         let header = pose(counter as i64, counter, TrackState::Unique);
-        printed(&rows.pose(header.stamp, PoseLine::new(&header, b"")))
+        printed(&rows.pose(header.stamp, TrackedPose::new(&header, b"")))
     }
 
     #[test]
@@ -168,10 +168,10 @@ mod tests {
         assert_eq!(track(&mut rows, 7), [(Some(7), Some(7))]);
         let (mut header, found) = message(9, 0, Verdict::Unique as u32);
         header.stamp.entered_ns += 1;
-        rows.answer(header.stamp, Line::new(&header, &found));
+        rows.answer(header.stamp, single(&header, &found));
         let mut again = pose(9, 0, TrackState::Unique);
         again.stamp = header.stamp;
-        let rows = rows.pose(again.stamp, PoseLine::new(&again, b""));
+        let rows = rows.pose(again.stamp, TrackedPose::new(&again, b""));
         assert_eq!(printed(&rows), [(Some(9), Some(9))]);
     }
 }

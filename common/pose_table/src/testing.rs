@@ -3,6 +3,8 @@
 use bytemuck::Zeroable;
 use messages::{HypothesesHeader, Hypothesis, Pose2, PoseHeader, Stamp, TrackState};
 
+use super::ScanAnswer;
+
 /// Creates an answer to the scan measured at `measured_ns`: at (1, -2), half a turn from the x
 /// axis, after 25 ms, 24 ms of them computing.
 #[must_use]
@@ -34,6 +36,12 @@ pub fn message(
         ..Hypothesis::zeroed()
     };
     (header, [hypothesis])
+}
+
+/// Converts an answer whose map has no name.
+#[must_use]
+pub fn answer(header: &HypothesesHeader, found: &[Hypothesis]) -> ScanAnswer {
+    ScanAnswer::new(header, found, &|_| None)
 }
 
 /// Creates the pose of the scan measured at `measured_ns`: the laser at (1, -2), half a turn from

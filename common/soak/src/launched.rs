@@ -7,7 +7,6 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
 use geometry::Pose;
-use messages::Pose2;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::{Deserialize, Serialize};
@@ -29,7 +28,8 @@ pub(super) struct SentPose {
     /// Stamp of the scan, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
     pub(super) state: String,
-    pub(super) map_from_laser: Option<Pose2>,
+    /// Pose of the laser in the map, if known.
+    pub(super) laser: Option<Pose>,
     pub(super) latency_ms: f64,
     /// By the machine's monotonic clock.
     pub(super) sent_ns: i64,
@@ -45,11 +45,6 @@ pub(super) struct Losses {
 }
 
 impl SentPose {
-    /// Pose of the laser in the map, if known.
-    pub(super) fn pose(&self) -> Option<Pose> {
-        self.map_from_laser.map(Pose::from)
-    }
-
     /// Time at which the scan entered the graph, by the machine's monotonic clock.
     pub(super) fn entered_ns(&self) -> i64 {
         self.sent_ns - (self.latency_ms * 1e6) as i64
@@ -164,11 +159,11 @@ mod tests {
     #[test]
     fn poses_and_the_summary_are_read_from_what_run_prints() {
         let row = r#"{"verdict":"Unique","pose":{"stamp_ns":5,"state":"Unique",
-            "map_from_laser":{"x":1.5,"y":-2.0,"yaw":3.0},"latency_ms":2.5,"sent_ns":7000000}}"#;
+            "laser":{"x":1.5,"y":-2.0,"yaw":3.0},"latency_ms":2.5,"sent_ns":7000000}}"#;
         let printed: Printed = serde_json::from_str(row).unwrap();
         let pose = printed.pose.unwrap();
         assert_eq!(pose.entered_ns(), 4_500_000);
-        assert_eq!(pose.pose(), Some(Pose::new(1.5, -2.0, 3.0)));
+        assert_eq!(pose.laser, Some(Pose::new(1.5, -2.0, 3.0)));
         let row = r#"{"stamp_ns":5,"pose":null}"#;
         assert!(serde_json::from_str::<Printed>(row).unwrap().pose.is_none());
         let row = r#"{"summary":{"scans":9,"answered":8,"searched":3,"dropped":1,"refused":0}}"#;

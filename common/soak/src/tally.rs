@@ -147,7 +147,7 @@ impl Tally {
 
     fn judge(&mut self, pose: &SentPose, is_unique: bool) {
         let truth = self.truths.get(&pose.stamp_ns);
-        let (Some(truth), Some(found)) = (truth, pose.pose()) else {
+        let (Some(truth), Some(found)) = (truth, pose.laser) else {
             return;
         };
         self.figures.judged += 1;
@@ -249,7 +249,7 @@ mod tests {
         SentPose {
             stamp_ns,
             state: state.as_str().to_owned(),
-            map_from_laser: Some(Pose::new(x, 0.0, 0.0).into()),
+            laser: Some(Pose::new(x, 0.0, 0.0)),
             latency_ms: 500.0,
             sent_ns: entered_s * SECOND + SECOND / 2,
         }
@@ -315,7 +315,7 @@ mod tests {
         late.latency_ms = 7.0;
         tally.pose(&late);
         let (poses, _) = tally.figures();
-        let medians: Vec<_> = poses.latency_ms.iter().map(|part| part.p50).collect();
+        let medians: Vec<_> = poses.latency_ms.iter().map(|part| part.median).collect();
         assert_eq!((medians[0], medians[1]), (Some(500.0), None));
         assert_eq!(medians[PARTS - 1], Some(7.0), "after the planned end");
     }

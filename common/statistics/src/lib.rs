@@ -70,8 +70,8 @@ impl Distribution {
 
     /// Median and 99th percentile.
     pub fn tail(&self) -> Tail {
-        let [p50, p99] = self.percentiles([50.0, 99.0]);
-        Tail { p50, p99 }
+        let [median, p99] = self.percentiles([50.0, 99.0]);
+        Tail { median, p99 }
     }
 
     /// Median and 90th percentile.
@@ -85,7 +85,7 @@ impl Distribution {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tail {
     /// Half of the values are at or below it.
-    pub p50: Option<f64>,
+    pub median: Option<f64>,
     /// 99 % of the values are at or below it.
     pub p99: Option<f64>,
 }
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(
             distribution(&[7.0]).tail(),
             Tail {
-                p50: Some(7.0),
+                median: Some(7.0),
                 p99: Some(7.0)
             }
         );

@@ -2,7 +2,8 @@
 
 use bytemuck::Zeroable;
 use geometry::Pose;
-use messages::{FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp, Verdict};
+use messages::{FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp};
+use pose_table::{Candidate, ScanAnswer};
 use serde::{Deserialize, Serialize};
 
 /// Scan with defaults for optional fields.
@@ -28,7 +29,7 @@ struct Scan {
     base_from_laser: Option<Placed>,
 }
 
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Placed {
     x: f64,
@@ -40,36 +41,12 @@ struct Placed {
 #[derive(Debug, Serialize)]
 struct Answer {
     stamp_ns: i64,
-    /// Map id in hexadecimal, because JSON numbers do not hold 64 bits safely.
-    map_id: String,
-    /// Name of the map if several are searched, else null.
-    map: Option<String>,
-    verdict: String,
-    /// Number of other places that fit about as well.
-    alternatives: u32,
-    /// Probability of the best place, 0..=1.
-    confidence: f32,
+    #[serde(flatten)]
+    answer: ScanAnswer,
     /// Share of the beams that agree with the best place.
     inlier_share: f32,
-    /// Time of the search, milliseconds.
-    search_ms: f64,
     /// Places, best first.
-    hypotheses: Vec<Place>,
-}
-
-#[derive(Debug, Serialize)]
-struct Place {
-    /// Name of the map if several are searched, else null.
-    map: Option<String>,
-    /// Pose `map_from_laser`, metres and radians.
-    #[serde(flatten)]
-    laser: Placed,
-    /// Covariance of x, y and yaw, row by row.
-    covariance: [f64; 9],
-    score: f32,
-    probability: f32,
-    /// Pose of the base, if the request gave the laser's mount.
-    map_from_base: Option<Placed>,
+    hypotheses: Vec<Candidate>,
 }
 
 /// Parses the scan in `payload`.
@@ -110,25 +87,11 @@ pub(crate) fn write(
     hypotheses: &[Hypothesis],
     name_of: &dyn Fn(u64) -> Option<String>,
 ) -> Result<Vec<u8>, serde_json::Error> {
-    let verdict = Verdict::from_code(header.verdict).unwrap_or(Verdict::NoScan);
-    let place = |place: &Hypothesis| Place {
-        map: name_of(place.map_id),
-        laser: place.map_from_laser.into(),
-        covariance: place.covariance,
-        score: place.score,
-        probability: place.probability,
-        map_from_base: (header.mount_known == 1).then(|| place.map_from_base.into()),
-    };
     serde_json::to_vec(&Answer {
         stamp_ns: header.stamp.measured_ns,
-        map_id: format!("{:016x}", header.map_id),
-        map: name_of(header.map_id),
-        verdict: verdict.to_string(),
-        alternatives: header.alternatives,
-        confidence: header.confidence,
+        answer: ScanAnswer::new(header, hypotheses, name_of),
         inlier_share: header.inlier_share,
-        search_ms: header.search_ns as f64 / 1e6,
-        hypotheses: hypotheses.iter().map(place).collect(),
+        hypotheses: Candidate::all(header, hypotheses, name_of).collect(),
     })
 }
 
@@ -138,14 +101,10 @@ impl From<Placed> for Pose2 {
     }
 }
 
-impl From<Pose2> for Placed {
-    fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
-        Placed { x, y, yaw }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use messages::Verdict;
+
     use super::*;
 
     #[test]
@@ -199,7 +158,9 @@ mod tests {
             (&"attic".into(), &"attic".into())
         );
         assert_eq!(value["verdict"], "Unique");
-        assert_eq!(value["hypotheses"][0]["yaw"], 0.5);
-        assert_eq!(value["hypotheses"][0]["map_from_base"]["x"], 0.0);
+        for place in [&value, &value["hypotheses"][0]] {
+            assert_eq!(place["laser"]["yaw"], 0.5);
+            assert_eq!(place["base"]["x"], 0.0);
+        }
     }
 }

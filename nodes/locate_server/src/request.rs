@@ -13,7 +13,7 @@ use crate::json;
 /// Encoding of a request in JSON.
 pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// Encoding of an answer in JSON.
-pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
+pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v3";
 /// Encodings accepted for requests.
 pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
 /// Number of characters of an unknown encoding that an error shows.
@@ -131,8 +131,7 @@ mod tests {
         assert_eq!(ENCODINGS[0], network_payload::encoding::<topic::Scan>());
         let answer = network_payload::encoding::<topic::Hypotheses>();
         assert!(answer.ends_with("backcast.Hypotheses/v5"), "{answer}");
-        // The keys of the JSON form are still those of version 2.
-        assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
+        assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v3"));
     }
 
     #[test]

@@ -105,7 +105,7 @@ fn is_row<'a>(found: &[Hypothesis], row: &Value, name: &impl Fn(u64) -> &'a str)
         assert_eq!(name(found.map_id), row["map"]);
         let Pose { x, y, yaw } = found.map_from_laser.into();
         for (value, key) in [(x, "x"), (y, "y"), (yaw, "yaw")] {
-            let expected = row[key].as_f64().unwrap();
+            let expected = row["laser"][key].as_f64().unwrap();
             assert!((value - expected).abs() < 1e-9, "{key}: {value} {expected}");
         }
     }

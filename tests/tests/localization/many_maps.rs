@@ -46,7 +46,7 @@ fn locate(scans: &Path, maps: &[&Path], every: usize) -> Vec<Value> {
 
 fn is_near(a: &Value, b: &Value) -> bool {
     let [a, b] = [a, b].map(|found| {
-        let of = |key: &str| found["hypotheses"][0][key].as_f64().unwrap();
+        let of = |key: &str| found["laser"][key].as_f64().unwrap();
         Pose::new(of("x"), of("y"), of("yaw"))
     });
     a.is_within(b, 0.5, 10f64.to_radians())

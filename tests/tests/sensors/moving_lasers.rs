@@ -35,7 +35,7 @@ fn by_tools(recording: &str, topics: &[&str]) -> Places {
     let lines = backcast(&[&["locate", "--json", "--bag", recording], topics].concat());
     let places = lines.lines().map(|line| {
         let line: serde_json::Value = serde_json::from_str(line).unwrap();
-        let best = &line["hypotheses"][0];
+        let best = &line["laser"];
         let number = |key: &str| best[key].as_f64().unwrap();
         let verdict = line["verdict"].as_str().unwrap().to_owned();
         (verdict, number("x"), number("y"), number("yaw"))

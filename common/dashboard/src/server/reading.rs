@@ -43,7 +43,7 @@ pub(super) async fn map(
     let Some(map) = map else {
         return Err(Refusal::new(StatusCode::NOT_FOUND, "there is no map yet"));
     };
-    let etag = format!("\"{}\"", map.info.id);
+    let etag = format!("\"{}\"", map.info.map_id);
     let is_known = headers
         .get(IF_NONE_MATCH)
         .is_some_and(|known| known.as_bytes() == etag.as_bytes());

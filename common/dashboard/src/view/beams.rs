@@ -1,9 +1,7 @@
 //! Beams of a scan, each with its fate.
 
-use messages::{Beam, BeamFate, BeamsHeader};
+use messages::{Beam, BeamFate, BeamsHeader, Pose2};
 use serde::Serialize;
-
-use super::PoseJson;
 
 /// Maximum number of beams sent: as many as a picture can show.
 const MAX_BEAMS: usize = 1440;
@@ -14,7 +12,7 @@ pub(crate) struct Beams {
     /// Number of the scan.
     pub(crate) counter: u64,
     /// Pose of the laser at which the beams were compared with the map.
-    pub(crate) laser: PoseJson,
+    pub(crate) laser: Pose2,
     /// In the laser's frame, rounded to 0.1 mrad.
     pub(crate) bearing: Vec<f64>,
     /// Rounded to a millimetre.
@@ -36,7 +34,7 @@ impl Beams {
             .take(MAX_BEAMS);
         let mut beams = Beams {
             counter: header.stamp.counter,
-            laser: header.map_from_laser.into(),
+            laser: header.map_from_laser,
             bearing: Vec::new(),
             range_m: Vec::new(),
             fate: String::new(),

@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
+use messages::Pose2;
 use serde::Serialize;
 
-use super::{Answer, PoseJson, Tracked};
+use super::{Answer, Tracked};
 
 /// Length of the history.
 const KEPT_NS: i64 = 3600 * 1_000_000_000;
@@ -27,9 +28,9 @@ pub(crate) struct Period<'a> {
     /// Time since the state began.
     pub(crate) ago_s: f64,
     /// Pose at the start of the state: of the base or, if its mount is not known, of the laser.
-    pub(crate) first: Option<PoseJson>,
+    pub(crate) first: Option<Pose2>,
     /// Pose of the last scan in this state, in the same frame as `first`.
-    pub(crate) last: Option<PoseJson>,
+    pub(crate) last: Option<Pose2>,
 }
 
 #[derive(Debug)]
@@ -37,8 +38,8 @@ struct Entry {
     state: &'static str,
     why: String,
     from_ns: i64,
-    first: Option<PoseJson>,
-    last: Option<PoseJson>,
+    first: Option<Pose2>,
+    last: Option<Pose2>,
 }
 
 #[derive(Debug, Default)]
@@ -49,14 +50,16 @@ pub(crate) struct History {
 impl History {
     /// Takes the result of a scan, in graphs without a tracker; true if a state begins.
     pub(crate) fn on_answer(&mut self, answer: &Answer, now_ns: i64) -> bool {
-        let best = answer.hypotheses.first();
-        let pose = best.map(|place| place.base.unwrap_or(place.laser));
+        let answer = &answer.answer;
+        let pose = answer.best.base.or(answer.best.laser);
         self.add(answer.verdict, &answer.says, pose, now_ns)
     }
 
     /// Takes the tracker's pose; true if a state begins.
     pub(crate) fn on_pose(&mut self, pose: &Tracked, now_ns: i64) -> bool {
-        self.add(pose.state, &pose.why, pose.base.or(pose.laser), now_ns)
+        let place = &pose.pose.place;
+        let at = place.base.or(place.laser);
+        self.add(pose.pose.state, &pose.why, at, now_ns)
     }
 
     /// Checks whether no scan has come since `newest_ns`; true if this begins a state.
@@ -66,7 +69,7 @@ impl History {
         is_silent && self.add(NO_DATA, "no scan came", None, since_ns)
     }
 
-    fn add(&mut self, state: &'static str, why: &str, pose: Option<PoseJson>, now_ns: i64) -> bool {
+    fn add(&mut self, state: &'static str, why: &str, pose: Option<Pose2>, now_ns: i64) -> bool {
         if let Some(entry) = self.entries.back_mut()
             && entry.state == state
         {
@@ -118,13 +121,13 @@ impl History {
 mod tests {
     use messages::TrackState;
 
-    use super::super::tracked::tests::header;
+    use super::super::tracked::tests::{header, tracked as shown};
     use super::*;
 
     const SECOND: i64 = 1_000_000_000;
 
     fn tracked(state: TrackState, x: f64) -> Tracked {
-        Tracked::new(&header(state, x), b"one place: none", 0)
+        shown(&header(state, x), b"one place: none")
     }
 
     fn states(history: &History, now_ns: i64) -> Vec<(&'static str, f64)> {

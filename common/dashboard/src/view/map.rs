@@ -5,16 +5,15 @@ use std::sync::OnceLock;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use messages::MapHeader;
+use messages::{MapHeader, Pose2};
+use pose_table::map_id;
 use serde::Serialize;
-
-use super::PoseJson;
 
 /// Description of a map; the cells are requested separately.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct MapInfo {
     /// Hash of cells and geometry, in hexadecimal.
-    pub(crate) id: String,
+    pub(crate) map_id: String,
     /// Name in its map set; empty for a single map.
     pub(crate) name: String,
     /// Number of cells along x.
@@ -24,7 +23,7 @@ pub(crate) struct MapInfo {
     /// Side of a cell.
     pub(crate) resolution_m: f64,
     /// Pose of the grid: its lower left corner and the rotation of its axes.
-    pub(crate) map_from_grid: PoseJson,
+    pub(crate) map_from_grid: Pose2,
 }
 
 #[derive(Debug)]
@@ -46,12 +45,12 @@ impl Map {
             && header.check_id(cells).is_ok();
         is_sound.then(|| Map {
             info: MapInfo {
-                id: format!("{:016x}", header.map_id),
+                map_id: map_id(header.map_id),
                 name: header.name.to_string(),
                 width: header.width,
                 height: header.height,
                 resolution_m: header.resolution_m,
-                map_from_grid: header.map_from_grid.into(),
+                map_from_grid: header.map_from_grid,
             },
             cells: cells.to_vec(),
             packed: OnceLock::new(),
@@ -96,7 +95,7 @@ mod tests {
         let cells: Vec<u8> = (0..200).collect();
         let header = header(20, 10, 0.05, &cells);
         let map = Map::new(&header, &cells).unwrap();
-        assert_eq!(map.info.id, format!("{:016x}", header.map_id));
+        assert_eq!(map.info.map_id, format!("{:016x}", header.map_id));
         let mut unpacked = Vec::new();
         let mut reader = flate2::read::GzDecoder::new(map.packed());
         reader.read_to_end(&mut unpacked).unwrap();

@@ -1,9 +1,8 @@
 //! End points of the newest scan.
 
-use messages::ScanHeader;
+use messages::{Pose2, ScanHeader};
 use serde::Serialize;
 
-use super::PoseJson;
 use super::beams::rounded;
 
 /// Maximum number of points sent: as many as a picture can show.
@@ -17,7 +16,7 @@ pub(crate) struct Scan {
     /// Name of the laser; empty if the graph has only one.
     pub(crate) laser: String,
     /// Pose of the laser on the base; `None` if it is not known.
-    pub(crate) mount: Option<PoseJson>,
+    pub(crate) mount: Option<Pose2>,
     /// Ahead of the laser in metres, rounded to a centimetre.
     pub(crate) x: Vec<f64>,
     /// Left of the laser in metres, rounded to a centimetre.
@@ -32,7 +31,7 @@ impl Scan {
         let mut points = Scan {
             counter: header.stamp.counter,
             laser: header.laser.as_str().to_owned(),
-            mount: (header.mount_known == 1).then(|| header.base_from_laser.into()),
+            mount: (header.mount_known == 1).then_some(header.base_from_laser),
             x: Vec::new(),
             y: Vec::new(),
         };

@@ -1,8 +1,9 @@
 //! A state change, as posted to a webhook.
 
+use messages::Pose2;
 use serde::Serialize;
 
-use super::{Period, PoseJson};
+use super::Period;
 
 /// A robot's new state, and the one before.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -15,7 +16,7 @@ pub(crate) struct StateChange<'a> {
     /// The state before; `None` for the first one.
     pub(crate) before: Option<&'static str>,
     /// The last pose in the state before.
-    pub(crate) before_pose: Option<PoseJson>,
+    pub(crate) before_pose: Option<Pose2>,
     /// The new state.
     #[serde(flatten)]
     pub(crate) period: Period<'a>,

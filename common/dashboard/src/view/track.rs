@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
+use messages::Pose2;
 use serde::Serialize;
 
-use super::{Answer, PoseJson, Tracked};
+use super::{Answer, Tracked};
 
 /// Maximum number of poses: some minutes.
 const CAPACITY: usize = 3000;
@@ -35,8 +36,8 @@ impl Track {
         if self.is_tracked {
             return;
         }
-        let best = answer.hypotheses.first().map(|best| best.laser);
-        self.add(&answer.map_id, answer.verdict, best);
+        let best = &answer.answer.best;
+        self.add(&best.map_id, answer.answer.verdict, best.laser);
     }
 
     /// Takes the tracker's pose, if it is from a scan. The first one starts a new track.
@@ -44,13 +45,14 @@ impl Track {
         if !std::mem::replace(&mut self.is_tracked, true) {
             self.points.clear();
         }
+        let pose = &pose.pose;
         if pose.from_scan {
-            self.add(&pose.map_id, pose.state, pose.laser);
+            self.add(&pose.place.map_id, pose.state, pose.place.laser);
         }
     }
 
     /// Adds a pose; another map starts a new track.
-    fn add(&mut self, map_id: &str, word: &str, pose: Option<PoseJson>) {
+    fn add(&mut self, map_id: &str, word: &str, pose: Option<Pose2>) {
         if map_id != self.map_id {
             map_id.clone_into(&mut self.map_id);
             self.points.clear();
@@ -77,7 +79,7 @@ mod tests {
     use bytemuck::Zeroable;
     use messages::{HypothesesHeader, Hypothesis, Pose2, TrackState, Verdict};
 
-    use super::super::tracked::tests::header;
+    use super::super::tracked::tests::{header, tracked};
     use super::*;
 
     fn answer(map_id: u64, x: f64) -> Answer {
@@ -87,6 +89,7 @@ mod tests {
             ..Zeroable::zeroed()
         };
         let best = Hypothesis {
+            map_id,
             map_from_laser: Pose2 {
                 x,
                 y: 0.0,
@@ -94,7 +97,7 @@ mod tests {
             },
             ..Zeroable::zeroed()
         };
-        Answer::new(&header, &[best], 0)
+        Answer::new(&header, &[best], &|_| None, 0)
     }
 
     #[test]
@@ -114,11 +117,11 @@ mod tests {
         let mut track = Track::default();
         track.on_answer(&answer(0, 9.0));
         let pose = header(TrackState::Doubtful, 1.5);
-        track.on_pose(&Tracked::new(&pose, b"", 0));
+        track.on_pose(&tracked(&pose, b""));
         track.on_answer(&answer(0, 9.0));
         let mut between = header(TrackState::Unique, 1.6);
         between.from_scan = 0;
-        track.on_pose(&Tracked::new(&between, b"", 0));
+        track.on_pose(&tracked(&between, b""));
         let points: Vec<_> = track.points().copied().collect();
         assert_eq!(points, [TrackPoint(1.5, 2.0, 'D', 0.5)]);
     }

@@ -5,13 +5,12 @@ use std::process::ExitCode;
 
 use command_line::{LOST_DATA, wrong_use};
 use offline::{Accepted, Options, Session};
-use pose_table::Line;
+use pose_table::ScanAnswer;
 use progress::Progress;
 use recording::RecordingError;
 
 use super::object::Object;
 use super::particles::{Particles, ParticlesOptions};
-use super::row;
 
 /// Options of `backcast locate`.
 #[derive(Debug, Clone, clap::Args)]
@@ -86,17 +85,12 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
                 let reply = session.ask(&scan)?;
                 accepted.count(&reply);
                 let particles = Particles::draw(&config.particles, &scan, &reply)?;
+                let object = Object::new(&scan, &reply).with(particles);
+                let of = object.frame();
                 let line = match config.json {
-                    true => json::object(&Object::new(&scan, &reply).with(particles)),
-                    false => match particles {
-                        Some(particles) => row::text(&scan, &reply) + &particles.text(),
-                        None => row::text(&scan, &reply),
-                    },
-                };
-                let of = row::frame(&scan);
-                let line = match frame.replace(of) != Some(of) && !config.json {
-                    true => format!("{}\n{line}", Line::header(of)),
-                    false => line,
+                    true => json::object(&object),
+                    false if frame.replace(of) == Some(of) => object.text(),
+                    false => format!("{}\n{}", ScanAnswer::header(of), object.text()),
                 };
                 for note in session.take_notes() {
                     progress.say(&note);

@@ -6,7 +6,6 @@
 mod command;
 mod object;
 mod particles;
-mod row;
 
 pub use command::{Config, run};
 pub(crate) use object::Object;

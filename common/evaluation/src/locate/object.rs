@@ -3,12 +3,14 @@
 //! Every line has the same keys; a rejected scan has null for the results, any other scan has null
 //! for the reason.
 
+use std::iter;
+
 use engine::fit::BeamClass;
-use engine::peaks::Place;
 use engine::vote_search::Outcome;
 use geometry::Pose;
 use messages::Verdict;
-use offline::{Answer, KnownMap, Reply, TakenScan};
+use offline::{Answer, Reply, TakenScan};
+use pose_table::{Candidate, Frame, Place, ScanAnswer, map_id};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -18,29 +20,18 @@ use super::particles::Particles;
 pub(crate) struct Object {
     /// Time of measurement, in nanoseconds since 1970.
     stamp_ns: i64,
-    /// The map's id in hexadecimal, as in logs: JSON numbers cannot hold 64 bits safely.
-    map_id: String,
-    /// Name of the best place's map, if several maps are searched; else null.
-    map: Option<String>,
-    /// Floor of that map, if the map set defines it.
+    /// Verdict and best place.
+    #[serde(flatten)]
+    answer: ScanAnswer,
+    /// Floor of the best place's map, if the map set defines it.
     floor: Option<String>,
-    verdict: &'static str,
-    /// Number of other places that fit about as well.
-    alternatives: u32,
-    /// The verdict in words; null for a rejected scan.
-    says: Option<String>,
-    /// Probability of the best place, 0..=1; in votes-only mode its relative lead over the next
-    /// place.
-    confidence: f64,
-    /// CPU time from the scan to the verdict, in milliseconds.
-    cpu_ms: f64,
     /// Reason for the rejection.
     refused: Option<String>,
     votes: Option<Votes>,
     /// Number of beams by class, at the best place; null in votes-only mode.
     beams: Option<Beams>,
     /// Best first.
-    hypotheses: Vec<Hypothesis>,
+    hypotheses: Vec<Candidate>,
     /// Initial particles for a particle filter; null without `--particles`.
     particles: Option<Particles>,
 }
@@ -77,38 +68,25 @@ struct Beams {
     unknown: usize,
 }
 
-/// A pose `map_from_laser` in metres and radians, with its uncertainty.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Hypothesis {
-    /// Name of its map, if several maps are searched; else null.
-    map: Option<String>,
-    x: f64,
-    y: f64,
-    yaw: f64,
-    /// Over x, y and yaw, row by row.
-    covariance: [f64; 9],
-    score: f64,
-    /// 0..=1; the rest to a sum of 1 is the probability that none is right.
-    probability: f64,
-    intensity: u16,
-    support: u64,
-    /// Pose of the base, if the laser's mount is known.
-    #[schemars(with = "Option<json::schema::Pose>")]
-    map_from_base: Option<Pose>,
-}
-
 impl Object {
     pub(super) fn new(scan: &TakenScan, reply: &Reply<'_>) -> Self {
-        let mut object = Object {
+        let answer = ScanAnswer {
             stamp_ns: scan.stamp_ns,
-            map_id: format!("{:016x}", reply.map_id),
-            map: None,
-            floor: None,
             verdict: Verdict::NoScan.as_str(),
             alternatives: 0,
-            says: None,
-            confidence: 0.0,
+            says: String::new(),
+            best: Place {
+                map_id: map_id(reply.map_id),
+                frame: Frame::of(scan.base_from_laser.is_some()),
+                ..Place::default()
+            },
             cpu_ms: reply.cpu_ms,
+            latency_ms: None,
+        };
+        let mut object = Object {
+            stamp_ns: scan.stamp_ns,
+            answer,
+            floor: None,
             refused: None,
             votes: None,
             beams: None,
@@ -127,41 +105,49 @@ impl Object {
         Object { particles, ..self }
     }
 
-    fn fill(
-        &mut self,
-        Answer {
-            outcome,
-            places,
-            map,
-            maps,
-            ..
-        }: &Answer<'_>,
-        base_from_laser: Option<Pose>,
-    ) {
-        self.verdict = places.verdict.as_str();
-        self.alternatives = places.alternatives;
-        self.says = Some(places.sentence());
-        self.confidence = places.confidence;
-        self.votes = Some(votes(outcome));
-        self.beams = beams(&places.classes);
+    /// Frame whose pose the row has.
+    pub(super) fn frame(&self) -> Frame {
+        self.answer.best.frame
+    }
+
+    /// Formats the row of the table that `backcast run` prints, with the reason for a rejection,
+    /// followed by the particles.
+    pub(super) fn text(&self) -> String {
+        let refused = self.refused.iter().map(|reason| format!("  {reason}"));
+        let particles = self.particles.iter().map(Particles::text);
+        iter::once(self.answer.text())
+            .chain(refused)
+            .chain(particles)
+            .collect()
+    }
+
+    fn fill(&mut self, answer: &Answer<'_>, base_from_laser: Option<Pose>) {
+        let places = answer.places;
         let laser_from_base = base_from_laser.map(Pose::inverse);
-        let name = |map: &KnownMap| Some(map.name.clone()).filter(|name| !name.is_empty());
-        if !places.places.is_empty() {
-            (self.map, self.floor) = (name(map), map.floor.clone());
-        }
-        let hypothesis = |place: &Place| Hypothesis {
-            map: name(&maps[place.map as usize]),
-            x: place.map_from_laser.x,
-            y: place.map_from_laser.y,
-            yaw: place.map_from_laser.yaw,
-            covariance: place.covariance.to_rows(),
-            score: place.score,
-            probability: place.probability,
-            intensity: place.intensity,
-            support: place.support,
-            map_from_base: laser_from_base.map(|base| place.map_from_laser.then(base)),
+        let candidate = |place: &engine::peaks::Place| {
+            let (laser, map) = (place.map_from_laser, &answer.maps[place.map as usize]);
+            let base = laser_from_base.map(|base| laser.then(base).into());
+            Candidate {
+                place: Place {
+                    map: Some(map.name.clone()).filter(|name| !name.is_empty()),
+                    score: Some(place.score),
+                    probability: Some(place.probability),
+                    ..Place::new(map.id, laser.into(), place.covariance.to_rows(), base)
+                },
+                intensity: place.intensity.into(),
+                support: place.support,
+            }
         };
-        self.hypotheses = places.places.iter().map(hypothesis).collect();
+        self.hypotheses = places.places.iter().map(candidate).collect();
+        self.answer.verdict = places.verdict.as_str();
+        self.answer.alternatives = places.alternatives;
+        self.answer.says = places.sentence();
+        self.votes = Some(votes(answer.outcome));
+        self.beams = beams(&places.classes);
+        if let Some(best) = self.hypotheses.first() {
+            self.answer.best = best.place.clone();
+            self.floor.clone_from(&answer.map.floor);
+        }
     }
 }
 

@@ -25,14 +25,16 @@ pub(super) struct ParticlesOptions {
     particles_seed: u64,
 }
 
-/// Particles of a scan; empty if the scan has no place.
+/// Particles of a scan; empty if the scan has no place. They are poses in the map, in metres and
+/// radians, and all have the same weight.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Particles {
-    /// Frame of the poses: `base`, or `laser` if the mount is not known.
-    of: &'static str,
-    /// In the map, metres and radians; all have the same weight.
-    #[schemars(with = "Vec<json::schema::Pose>")]
-    poses: Vec<Pose>,
+    /// Poses of the laser; `None` if its mount is known.
+    #[schemars(with = "Option<Vec<json::schema::Pose>>")]
+    laser: Option<Vec<Pose>>,
+    /// Poses of the base; `None` if the laser's mount is not known.
+    #[schemars(with = "Option<Vec<json::schema::Pose>>")]
+    base: Option<Vec<Pose>>,
 }
 
 impl Particles {
@@ -49,10 +51,6 @@ impl Particles {
             return Ok(None);
         };
         let laser_from_base = scan.base_from_laser.map(Pose::inverse);
-        let of = match laser_from_base {
-            Some(_) => "base",
-            None => "laser",
-        };
         let mut poses = Vec::new();
         if let Ok(answer) = &reply.answer
             && !answer.places.places.is_empty()
@@ -61,22 +59,29 @@ impl Particles {
             let count = count as usize;
             poses = particles::draw(answer.frame, candidates, count, options.particles_seed)?;
         }
-        for pose in &mut poses {
-            *pose = laser_from_base.map_or(*pose, |base| pose.then(base));
-        }
-        Ok(Some(Particles { of, poses }))
+        Ok(Some(match laser_from_base {
+            Some(base) => Particles {
+                laser: None,
+                base: Some(poses.iter().map(|pose| pose.then(base)).collect()),
+            },
+            None => Particles {
+                laser: Some(poses),
+                base: None,
+            },
+        }))
     }
 
     /// Formats one line per particle, to follow the scan's line.
     pub(super) fn text(&self) -> String {
         let mut text = String::new();
-        for pose in &self.poses {
+        let of = if self.base.is_some() { "base" } else { "laser" };
+        for pose in self.base.iter().chain(&self.laser).flatten() {
             let degrees = pose.yaw.to_degrees();
             // Writing to a string cannot fail.
             let _ = write!(
                 text,
-                "\n  particle of the {}  {:>10.3} {:>10.3} {degrees:>9.2}",
-                self.of, pose.x, pose.y
+                "\n  particle of the {of}  {:>10.3} {:>10.3} {degrees:>9.2}",
+                pose.x, pose.y
             );
         }
         text

@@ -58,7 +58,7 @@ mod tests {
             expected: "Unique".to_owned(),
             found: "PoorFit".to_owned(),
         };
-        let head = r#"{"schema":2,"case":"hall","scans":1,"seconds":1.5,"#;
+        let head = r#"{"schema":3,"case":"hall","scans":1,"seconds":1.5,"#;
         let differs = r#"{"stamp_ns":7,"what":"verdict","expected":"Unique","found":"PoorFit"}"#;
         assert_eq!(
             printed(Ok(vec![difference])),

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
-use pose_table::{Frame, Line, Row, Rows};
+use pose_table::{Frame, Row, Rows, ScanAnswer};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -67,20 +67,24 @@ impl Journal {
 
     /// Records an answer and prints it; with a tracker, it is printed together with the pose.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
-        let line = self.report.answer(header, found);
+        let answer = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
-            if line.x.is_some() || self.frame.is_none() {
-                self.show_header(line.of, Line::header);
+            if answer.best.laser.is_some() || self.frame.is_none() {
+                self.show_header(answer.best.frame, ScanAnswer::header);
             }
             let row = Row {
-                stamp_ns: line.stamp_ns,
-                single: Some(line),
+                stamp_ns: answer.stamp_ns,
+                single: Some(answer),
                 pose: None,
             };
-            let text = |row: &Row| row.single.as_ref().map_or_else(String::new, Line::text);
+            let text = |row: &Row| {
+                row.single
+                    .as_ref()
+                    .map_or_else(String::new, ScanAnswer::text)
+            };
             return self.output.line(shown(self.json, &row, text));
         };
-        let due = rows.answer(header.stamp, line);
+        let due = rows.answer(header.stamp, answer);
         self.print(&due)
     }
 
@@ -97,7 +101,11 @@ impl Journal {
     fn print(&mut self, rows: &[Row]) -> Reader {
         let mut reader = Reader::Reads;
         for row in rows {
-            let of = || row.pose.as_ref().map_or(Frame::Laser, |pose| pose.of);
+            let of = || {
+                row.pose
+                    .as_ref()
+                    .map_or(Frame::Laser, |pose| pose.place.frame)
+            };
             if let Some(frame) = row.frame().or_else(|| self.frame.is_none().then(of)) {
                 self.show_header(frame, Row::header);
             }

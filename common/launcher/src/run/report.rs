@@ -7,7 +7,7 @@ use geometry::Pose;
 use messages::{
     GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapSet, PoseHeader, Stamp, Verdict,
 };
-use pose_table::{Line, PoseLine};
+use pose_table::{ScanAnswer, TrackedPose};
 use statistics::{Accuracy, Answer, Distribution};
 
 use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
@@ -31,7 +31,7 @@ pub(crate) struct Report {
     pairs: Pairs<Answer, Pose>,
     accuracy: Accuracy,
     latency_ms: Distribution,
-    engine_ms: Distribution,
+    cpu_ms: Distribution,
     graph_ms: Distribution,
     /// Dropped and refused samples, by process id.
     losses: HashMap<u32, (u64, u64)>,
@@ -52,7 +52,7 @@ impl Report {
             pairs: Pairs::new(),
             accuracy: Accuracy::new(WINDOW),
             latency_ms: Distribution::new(WINDOW),
-            engine_ms: Distribution::new(WINDOW),
+            cpu_ms: Distribution::new(WINDOW),
             graph_ms: Distribution::new(WINDOW),
             losses: HashMap::new(),
         }
@@ -84,15 +84,15 @@ impl Report {
     }
 
     /// Records the answer to a scan.
-    pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Line {
-        let mut line = Line::new(header, found);
-        line.map = line.x.and_then(|_| self.map(header.map_id));
+    pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> ScanAnswer {
+        let line = ScanAnswer::new(header, found, &|map_id| self.map(map_id));
         self.newest_answer = Some(header.stamp);
         self.answered += 1;
-        self.latency_ms.add(line.latency_ms);
-        self.engine_ms.add(line.engine_ms);
-        self.graph_ms.add(line.latency_ms - line.engine_ms);
-        let has_pose = line.x.is_some();
+        let latency_ms = line.latency_ms.unwrap_or_default();
+        self.latency_ms.add(latency_ms);
+        self.cpu_ms.add(line.cpu_ms);
+        self.graph_ms.add(latency_ms - line.cpu_ms);
+        let has_pose = line.best.laser.is_some();
         let answer = Answer {
             poses: found
                 .iter()
@@ -108,12 +108,12 @@ impl Report {
     }
 
     /// Records the tracker's pose of a scan.
-    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> PoseLine {
-        let mut line = PoseLine::new(header, words);
-        line.map = line.x.and_then(|_| self.map(header.map_id));
+    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> TrackedPose {
+        let mut pose = TrackedPose::new(header, words);
+        pose.place.map = pose.place.laser.and_then(|_| self.map(header.map_id));
         self.newest_pose = Some(header.stamp);
-        self.tracking.pose(header, line.latency_ms);
-        line
+        self.tracking.pose(header, pose.latency_ms);
+        pose
     }
 
     /// Records the true pose of a scan.
@@ -169,7 +169,7 @@ impl Report {
             refused: sum(|losses| losses.1),
             accuracy: self.accuracy.figures(),
             latency_ms: self.latency_ms.tail(),
-            engine_ms: self.engine_ms.tail(),
+            cpu_ms: self.cpu_ms.tail(),
             graph_ms: self.graph_ms.tail(),
         }
     }
@@ -195,7 +195,7 @@ mod tests {
         truth
     }
 
-    fn answer(report: &mut Report, measured_ns: i64, counter: u64, verdict: Verdict) -> Line {
+    fn answer(report: &mut Report, measured_ns: i64, counter: u64, verdict: Verdict) -> ScanAnswer {
         let (header, found) = message(measured_ns, counter, verdict as u32);
         report.answer(&header, &found)
     }
@@ -260,9 +260,9 @@ mod tests {
         let mut report = Report::new(false);
         answer(&mut report, 1, 0, Verdict::Unique);
         let summary = report.summary();
-        assert_eq!(summary.latency_ms.p50, Some(25.0));
-        assert_eq!(summary.engine_ms.p99, Some(24.0));
-        assert_eq!(summary.graph_ms.p50, Some(1.0));
+        assert_eq!(summary.latency_ms.median, Some(25.0));
+        assert_eq!(summary.cpu_ms.p99, Some(24.0));
+        assert_eq!(summary.graph_ms.median, Some(1.0));
     }
 
     #[test]

@@ -38,7 +38,7 @@ pub(crate) struct Summary {
     /// Time from the scan's entry into the graph to the pose.
     pub latency_ms: Tail,
     /// Part of the latency that is computing.
-    pub engine_ms: Tail,
+    pub cpu_ms: Tail,
     /// Rest of the latency: the overhead of the graph.
     pub graph_ms: Tail,
 }
@@ -67,7 +67,7 @@ impl Summary {
                 "latency    {} from scan to pose",
                 tail(self.latency_ms)
             ));
-            lines.push(format!("engine     {} of it", tail(self.engine_ms)));
+            lines.push(format!("engine     {} of it", tail(self.cpu_ms)));
             lines.push(format!("graph      {} on top", tail(self.graph_ms)));
         }
         lines.join("\n")
@@ -128,7 +128,7 @@ fn percent(share: Option<f64>) -> String {
 fn tail(tail: Tail) -> String {
     format!(
         "p50 {} ms, p99 {} ms",
-        number(tail.p50, 2),
+        number(tail.median, 2),
         number(tail.p99, 2)
     )
 }
@@ -142,7 +142,7 @@ mod tests {
 
     fn summary(accuracy: &Accuracy) -> Summary {
         let tail = |ms| Tail {
-            p50: Some(ms),
+            median: Some(ms),
             p99: Some(10.0 * ms),
         };
         Summary {
@@ -154,7 +154,7 @@ mod tests {
             refused: 1,
             accuracy: accuracy.figures(),
             latency_ms: tail(20.0),
-            engine_ms: tail(19.5),
+            cpu_ms: tail(19.5),
             graph_ms: tail(0.5),
         }
     }
@@ -188,7 +188,7 @@ mod tests {
             states: [("Unique", 0.75), ("Searching", 0.25)].into(),
             accuracy: judged().figures(),
             latency_ms: Tail {
-                p50: Some(21.0),
+                median: Some(21.0),
                 p99: Some(25.0),
             },
         });

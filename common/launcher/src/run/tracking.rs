@@ -113,6 +113,6 @@ mod tests {
         assert_eq!(figures.accuracy.unique_wrong, 1);
         // The tolerance covers the difference of two coordinates.
         assert!((figures.accuracy.error_m.median.unwrap() - 0.1).abs() < 1e-12);
-        assert_eq!(figures.latency_ms.p50, Some(10.0));
+        assert_eq!(figures.latency_ms.median, Some(10.0));
     }
 }

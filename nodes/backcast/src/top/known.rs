@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
+use geometry::{Covariance, Pose};
 use serde::Deserialize;
 
 /// Age after which data counts as missing; scans and poses are more frequent.
@@ -21,7 +22,7 @@ pub(super) enum Message {
     /// Answer to one scan.
     Answer(Answer),
     /// Pose from the tracker.
-    Pose(Tracked),
+    Pose(Box<Tracked>),
     /// The map that is shown.
     Map(Map),
     /// State of a node.
@@ -55,7 +56,7 @@ struct Ages {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Map {
-    id: String,
+    map_id: String,
     name: String,
 }
 
@@ -67,8 +68,8 @@ pub(super) struct Answer {
     pub(super) verdict: String,
     pub(super) says: String,
     pub(super) latency_ms: f64,
-    pub(super) search_ms: f64,
-    pub(super) extract_ms: f64,
+    pub(super) search_cpu_ms: f64,
+    pub(super) extract_cpu_ms: f64,
     pub(super) age_ms: f64,
     pub(super) hypotheses: Vec<Place>,
 }
@@ -84,21 +85,13 @@ pub(super) struct Tracked {
     pub(super) says: String,
     pub(super) laser: Option<Pose>,
     pub(super) base: Option<Pose>,
-    pub(super) ellipse: Option<Ellipse>,
-    pub(super) base_ellipse: Option<Ellipse>,
-    pub(super) probability: f64,
-    pub(super) score: f64,
+    laser_covariance: Option<[f64; 9]>,
+    base_covariance: Option<[f64; 9]>,
+    pub(super) probability: Option<f64>,
+    pub(super) score: Option<f64>,
     pub(super) latency_ms: f64,
     pub(super) age_ms: f64,
     pub(super) sent_age_ms: f64,
-}
-
-/// One-sigma ellipse: metres and radians.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Ellipse {
-    pub(super) major_m: f64,
-    pub(super) yaw: f64,
 }
 
 /// Candidate pose: metres and radians in the map.
@@ -112,15 +105,6 @@ pub(super) struct Place {
     pub(super) probability: f64,
 }
 
-/// Pose: metres and radians.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Pose {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) yaw: f64,
-}
-
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
@@ -132,6 +116,17 @@ pub(super) struct Node {
     pub(super) refused: u64,
     pub(super) restarts: u32,
     pub(super) last_error: String,
+}
+
+impl Tracked {
+    /// Returns the covariance of the pose that is shown: that of the base, if it is known.
+    pub(super) fn covariance(&self) -> Option<Covariance> {
+        let rows = match self.base {
+            Some(_) => self.base_covariance,
+            None => self.laser_covariance,
+        };
+        rows.map(Covariance::from_rows)
+    }
 }
 
 /// Age of data: its age when it was received, plus the time since.
@@ -203,7 +198,7 @@ impl Known {
                     self.took(pose.latency_ms);
                 }
                 self.pose_age = Some(age(pose.sent_age_ms / 1e3));
-                self.pose = Some(pose);
+                self.pose = Some(*pose);
             }
             Message::Map(map) => self.map = Some(map),
             Message::Node(node) => {
@@ -227,7 +222,7 @@ impl Known {
     pub(super) fn map_name(&self) -> Option<&str> {
         let tracked = self.pose.as_ref().map(|pose| &pose.map_id);
         let map_id = tracked.or(self.answer.as_ref().map(|answer| &answer.map_id))?;
-        let map = self.map.as_ref().filter(|map| map.id == *map_id)?;
+        let map = self.map.as_ref().filter(|map| map.map_id == *map_id)?;
         Some(&*map.name).filter(|name| !name.is_empty())
     }
 

@@ -106,14 +106,9 @@ fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     let mut lines = vec![Line::from(format!("{}.", pose.says))];
     if let Some(shown) = pose.base.or(pose.laser) {
         let is_base = pose.base.is_some();
-        let ellipse = if is_base {
-            pose.base_ellipse
-        } else {
-            pose.ellipse
-        };
-        let spread = ellipse.map_or(String::new(), |ellipse| {
-            let m = ELLIPSE_95 * ellipse.major_m;
-            let deg = ANGLE_95 * ellipse.yaw.to_degrees();
+        let spread = pose.covariance().map_or(String::new(), |covariance| {
+            let m = ELLIPSE_95 * covariance.ellipse().major_m;
+            let deg = ANGLE_95 * covariance.0[(2, 2)].max(0.0).sqrt().to_degrees();
             format!(" +- {m:.3} m, {deg:.2} deg (95 %)")
         });
         let text = format!(
@@ -124,8 +119,9 @@ fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
             shown.yaw.to_degrees()
         );
         lines.push(Line::from(text.bold()));
-        let share = 100.0 * pose.probability;
-        let text = format!("probability {share:.1} %, score {:.2}", pose.score);
+        let share = 100.0 * pose.probability.unwrap_or_default();
+        let score = pose.score.unwrap_or_default();
+        let text = format!("probability {share:.1} %, score {score:.2}");
         lines.push(Line::from(text));
     }
     lines.push(Line::default());
@@ -175,8 +171,8 @@ fn timing(known: &Known, answer: &Answer) -> [Line<'static>; 2] {
     let text = format!(
         "scan to pose {:.1} ms: search {:.1} ms, fit {:.1} ms",
         newest.copied().unwrap_or(answer.latency_ms),
-        answer.search_ms,
-        answer.extract_ms
+        answer.search_cpu_ms,
+        answer.extract_cpu_ms
     );
     [Line::from(text), Line::from(bars.fg(Color::Cyan))]
 }
@@ -231,7 +227,7 @@ mod tests {
                 {"name":"boundary_extractor","state":"degraded","received_hz":12345.6,
                  "dropped":12345,"refused":1234567,"restarts":3,"last_error":"no map"}]}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place, fit 0.90",
-                "latency_ms":20.5,"search_ms":15.0,"extract_ms":4.0,"hypotheses":[
+                "latency_ms":20.5,"search_cpu_ms":15.0,"extract_cpu_ms":4.0,"hypotheses":[
                 {"laser":{"x":-1234.5,"y":2.0,"yaw":-3.1},"score":0.97,"probability":1.0}]}"#,
         ]);
         let text = plain(&known, Instant::now());
@@ -264,11 +260,11 @@ mod tests {
     fn a_pose_stands_before_the_single_scan() {
         let known = known(&[
             r#"{"type":"answer","counter":7,"verdict":"Ambiguous","says":"2 places fit",
-                "latency_ms":20.5,"search_ms":15.0,"extract_ms":4.0,"hypotheses":[]}"#,
+                "latency_ms":20.5,"search_cpu_ms":15.0,"extract_cpu_ms":4.0,"hypotheses":[]}"#,
             r#"{"type":"pose","counter":7,"from_scan":true,"state":"Doubtful",
                 "says":"the scans do not fit where the robot should be","probability":0.875,
                 "score":0.5,"latency_ms":21.5,"laser":{"x":1.5,"y":-2.0,"yaw":0.5},
-                "ellipse":{"major_m":0.25,"minor_m":0.125,"angle":0.0,"yaw":0.01}}"#,
+                "laser_covariance":[0.0625,0,0,0,0.01,0,0,0,0.0001]}"#,
         ]);
         let text = plain(&known, Instant::now());
         for expected in [
@@ -290,12 +286,13 @@ mod tests {
     #[test]
     fn poses_are_those_of_the_base_where_it_is_known_and_the_map_is_named() {
         let known = known(&[
-            r#"{"type":"snapshot","robot":"r7","map":{"id":"0a","name":"ground"}}"#,
+            r#"{"type":"snapshot","robot":"r7","map":{"map_id":"0a","name":"ground"}}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place","hypotheses":[
-                {"laser":{"x":1.0},"base":{"x":2.0}}]}"#,
+                {"laser":{"x":1,"y":0,"yaw":0},"base":{"x":2,"y":0,"yaw":0}}]}"#,
             r#"{"type":"pose","map_id":"0a","state":"Unique","says":"one place is left",
-                "laser":{"x":1.0},"base":{"x":2.5},"ellipse":{"major_m":9.0},
-                "base_ellipse":{"major_m":0.25}}"#,
+                "laser":{"x":1,"y":0,"yaw":0},"base":{"x":2.5,"y":0,"yaw":0},
+                "laser_covariance":[9,0,0,0,9,0,0,0,9],
+                "base_covariance":[0.0625,0,0,0,0.01,0,0,0,0]}"#,
         ]);
         let text = plain(&known, Instant::now());
         for expected in [

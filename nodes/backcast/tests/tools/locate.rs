@@ -57,7 +57,7 @@ fn poses_are_searched_within_limits() {
     let here = map_from_laser(HERE);
     let (x, y, degrees) = (here.x, here.y, here.yaw.to_degrees());
     let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
-    let found = |limits: &str| pose(&objects(folder.path(), limits)[0]["hypotheses"][0]);
+    let found = |limits: &str| pose(&objects(folder.path(), limits)[0]["laser"]);
     assert_near(
         found(&format!("--region '{left},{bottom} {right},{top}'")),
         here,
@@ -126,12 +126,26 @@ fn an_object_shows_votes_and_hypotheses() {
     assert_eq!(votes["headings"], 360);
     assert_eq!(votes["known_heading"], Value::Null);
     let best = &object["hypotheses"][0];
-    assert_eq!(best["covariance"].as_array().unwrap().len(), 9);
+    for key in [
+        "map_id",
+        "map",
+        "laser",
+        "base",
+        "base_covariance",
+        "score",
+        "probability",
+    ] {
+        assert_eq!(best[key], object[key], "{key}");
+    }
+    for key in ["laser_covariance", "base_covariance"] {
+        assert_eq!(best[key].as_array().unwrap().len(), 9);
+    }
     assert_eq!(best["intensity"], votes["best"]);
-    assert_near(pose(best), map_from_laser(HERE));
+    let laser = pose(&best["laser"]);
+    assert_near(laser, map_from_laser(HERE));
     // The same transforms in another order: they agree up to a few units in the last place.
-    let base = pose(&best["map_from_base"]);
-    assert!(base.then(BASE_FROM_LASER).is_within(pose(best), 1e-9, 1e-9));
+    let base = pose(&best["base"]);
+    assert!(base.then(BASE_FROM_LASER).is_within(laser, 1e-9, 1e-9));
 }
 
 #[test]
@@ -142,8 +156,8 @@ fn particles_gather_around_the_place_the_same_with_a_seed() {
     let particles = asked("--particles 50");
     assert_eq!(particles, asked("--particles 50 --particles-seed 1"));
     assert_ne!(particles, asked("--particles 50 --particles-seed 2"));
-    assert_eq!(particles["of"], "base");
-    let poses = particles["poses"].as_array().unwrap();
+    assert_eq!(particles["laser"], Value::Null);
+    let poses = particles["base"].as_array().unwrap();
     assert_eq!(poses.len(), 50);
     let base = map_from_laser(HERE).then(BASE_FROM_LASER.inverse());
     for particle in poses {
@@ -169,7 +183,7 @@ fn the_map_that_is_named_goes_before_the_one_in_the_recording() {
     map::save(&wider, folder.path().join("other.yaml")).unwrap();
     map::save(&room(), folder.path().join("same.yaml")).unwrap();
     let other = &objects(folder.path(), "--map other.yaml")[0];
-    assert!(other["hypotheses"][0]["x"].as_f64().unwrap() > 99.0);
+    assert!(other["laser"]["x"].as_f64().unwrap() > 99.0);
     let [inside, same, recorded] = ["", "--map same.yaml", "--map r.mcap"]
         .map(|options| objects(folder.path(), options).remove(0));
     for found in [same, recorded] {
@@ -213,7 +227,7 @@ fn a_known_heading_comes_from_where_it_is_said_to() {
     ] {
         let objects = objects(folder.path(), &options);
         for (object, truth) in objects.iter().zip(truths).take(answered) {
-            let best = pose(&object["hypotheses"][0]);
+            let best = pose(&object["laser"]);
             assert_near(best, truth);
             // One rotation and a few sums: the given heading is kept up to rounding.
             assert!(best.angle_to(truth) < 1e-9, "{options}");
@@ -310,11 +324,10 @@ fn a_real_corridor_is_found_on_either_copy_of_its_map() {
         }
         assert_eq!(inside["verdict"], "Unique");
         // The YAML rounds the origin in the last digit.
-        let copy = pose(&named["hypotheses"][0]);
-        assert!(copy.is_within(pose(&inside["hypotheses"][0]), 1e-9, 1e-9));
+        let copy = pose(&named["laser"]);
+        assert!(copy.is_within(pose(&inside["laser"]), 1e-9, 1e-9));
         // According to the recording, the base is 0.78 m behind the laser.
-        let best = &inside["hypotheses"][0];
-        let apart = pose(best).distance_to(pose(&best["map_from_base"]));
+        let apart = pose(&inside["laser"]).distance_to(pose(&inside["base"]));
         assert!((apart - 0.78).abs() < 1e-6, "{apart}");
     }
 }

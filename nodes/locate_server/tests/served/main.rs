@@ -163,7 +163,7 @@ fn answers_are_those_of_the_engine() {
         assert_eq!(sample.encoding().to_string(), JSON_ANSWER);
         let value: serde_json::Value =
             serde_json::from_slice(&sample.payload().to_bytes()).unwrap();
-        let best = &value["hypotheses"][0];
+        let best = &value["hypotheses"][0]["laser"];
         assert_eq!(best["x"], hypotheses[0].map_from_laser.x);
     }
     server.process.stop();

@@ -17,7 +17,7 @@ fn what_flows_in_the_graph_is_reported() {
     let robots = world.site.get("/api/v1/robots");
     assert_eq!(robots["robots"], json!(["r"]));
     let known = world.wait_for_state(|known| !known["map"].is_null());
-    assert_eq!(known["map"]["id"], map_name());
+    assert_eq!(known["map"]["map_id"], map_name());
     let mut socket = world.stream();
     assert_eq!(next(&mut socket)["type"], "snapshot");
     world.answer(7, 1.5);

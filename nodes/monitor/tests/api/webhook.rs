@@ -45,7 +45,7 @@ fn each_change_of_state_is_posted() {
     world.track(1, TrackState::Unique, 1.5, FRESH);
     let (request, first) = take(&listener, "204 No Content");
     assert_eq!(request, "post /robots?key=7 http/1.1");
-    let expected = json!({"robot": "r", "state": "Unique", "before": null, "schema": 2});
+    let expected = json!({"robot": "r", "state": "Unique", "before": null, "schema": 3});
     for (key, value) in expected.as_object().unwrap() {
         assert_eq!(&first[key], value, "{first}");
     }

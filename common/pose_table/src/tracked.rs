@@ -1,45 +1,32 @@
-//! Output for one scan in a graph with a tracker: its pose, followed by the answer to the scan
-//! alone. Pure.
+//! Pose of the tracker at one scan, followed by the answer to the scan alone. Pure.
 
-use geometry::{Covariance, ELLIPSE_95};
-use messages::{Pose2, PoseHeader, TrackState};
+use geometry::ELLIPSE_95;
+use messages::{PoseHeader, TrackState};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::answer::{NS_PER_MS, ScanAnswer, number, numbers, seconds, with_words};
 use super::frame::Frame;
-use super::line::{Line, NS_PER_MS, number, seconds, with_words};
+use super::place::Place;
 
-/// The tracker's pose at one scan. Fields of the pose are `None` without a pose.
+/// The tracker's pose, with its state.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct PoseLine {
+pub struct TrackedPose {
     /// Time of the measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
     /// State of the tracker, or `?` if this version does not know it.
     pub state: &'static str,
-    /// Frame whose pose this is.
-    pub of: Frame,
-    /// Name of the map of the pose, if there are several maps.
-    pub map: Option<String>,
-    /// Position in the map along x, in metres.
-    pub x: Option<f64>,
-    /// Position in the map along y, in metres.
-    pub y: Option<f64>,
-    /// Heading in the map, in degrees counter-clockwise.
-    pub heading_deg: Option<f64>,
-    /// Pose of the laser in the map, in metres and radians.
-    #[schemars(with = "Option<json::schema::Pose>")]
-    pub map_from_laser: Option<Pose2>,
-    /// Standard deviation of the position along the long axis of its ellipse, in metres.
-    pub deviation_m: Option<f64>,
-    /// Standard deviation of the heading in degrees.
-    pub deviation_deg: Option<f64>,
-    /// Probability of the pose, 0..=1.
-    pub probability: Option<f64>,
-    /// Number of places that are kept as possible.
-    pub places: u32,
     /// Reason for the state in words, and what to do.
     pub says: String,
-    /// Time from the scan's entry into the graph to the pose, in milliseconds.
+    #[serde(flatten)]
+    pub place: Place,
+    /// Number of places that are kept as possible.
+    pub places: u32,
+    /// True if the pose is that of a scan; false if odometry has moved it on since.
+    pub from_scan: bool,
+    /// Computing time without the search, in milliseconds.
+    pub cpu_ms: f64,
+    /// Time from the measurement's entry into the graph to the pose, in milliseconds.
     pub latency_ms: f64,
     /// Time at which the pose was sent, in nanoseconds of the machine's monotonic clock.
     pub sent_ns: i64,
@@ -52,37 +39,25 @@ pub struct Row {
     pub stamp_ns: i64,
     /// Answer to the scan alone; `None` if it was not searched.
     #[serde(flatten)]
-    pub single: Option<Line>,
+    pub single: Option<ScanAnswer>,
     /// Pose from the tracker; `None` if it did not answer the scan.
-    pub pose: Option<PoseLine>,
+    pub pose: Option<TrackedPose>,
 }
 
-impl PoseLine {
+impl TrackedPose {
     /// Converts a message of topic `pose`.
     pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
         let state = TrackState::from_code(header.state);
-        let of = Frame::of(header.mount_known == 1);
-        let (pose, rows) = match of {
-            Frame::Base => (header.base(), header.base_covariance),
-            Frame::Laser => (header.laser(), header.laser_covariance),
-        };
-        let is_finite = rows.iter().all(|c| c.is_finite());
-        let rows = pose.map(|_| rows).filter(|_| is_finite);
+        let words = words.get(..PoseHeader::WORDS_CAPACITY).unwrap_or(words);
         let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
-        PoseLine {
+        TrackedPose {
             stamp_ns: header.stamp.measured_ns,
             state: state.map_or("?", TrackState::as_str),
-            of,
-            map: None,
-            x: pose.map(|pose| pose.x),
-            y: pose.map(|pose| pose.y),
-            heading_deg: pose.map(|pose| pose.yaw.to_degrees()),
-            map_from_laser: header.laser(),
-            deviation_m: rows.map(|rows| Covariance::from_rows(rows).ellipse().major_m),
-            deviation_deg: rows.map(|[.., yaw_variance]| yaw_variance.max(0.0).sqrt().to_degrees()),
-            probability: pose.map(|_| header.probability),
-            places: header.places,
             says: String::from_utf8_lossy(words).into_owned(),
+            place: Place::of_pose(header),
+            places: header.places,
+            from_scan: header.from_scan == 1,
+            cpu_ms: header.tracking_ns as f64 / NS_PER_MS,
             latency_ms: latency_ns as f64 / NS_PER_MS,
             sent_ns: header.sent_ns,
         }
@@ -92,8 +67,8 @@ impl PoseLine {
 impl Row {
     /// Returns the frame of its pose; `None` if it has no pose.
     pub fn frame(&self) -> Option<Frame> {
-        let pose = self.pose.as_ref();
-        pose.filter(|pose| pose.x.is_some()).map(|pose| pose.of)
+        let place = &self.pose.as_ref()?.place;
+        place.pose().map(|_| place.frame)
     }
 
     /// Returns the column names, for poses of this frame.
@@ -122,22 +97,27 @@ impl Row {
         let Some(pose) = &self.pose else {
             return self.text_without_pose(&single);
         };
+        let [x, y, heading] = numbers(&pose.place);
+        // Deviation to either side, as in the web page and the plots.
+        let within = pose
+            .place
+            .covariance()
+            .map(|c| ELLIPSE_95 * c.ellipse().major_m);
         let row = row([
             &seconds(pose.stamp_ns),
-            &number(pose.x, 3),
-            &number(pose.y, 3),
-            &number(pose.heading_deg, 2),
-            // Deviation to either side, as in the web page and the plots.
-            &number(pose.deviation_m.map(|m| ELLIPSE_95 * m), 3),
+            &x,
+            &y,
+            &heading,
+            &number(within, 3),
             pose.state,
-            &number(pose.probability.map(|share| 100.0 * share), 1),
+            &number(pose.place.probability.map(|share| 100.0 * share), 1),
             &single,
             &format!("{:.2}", pose.latency_ms),
         ]);
         // The normal state needs no words.
         let is_normal = pose.state == TrackState::Unique.as_str();
         let words = if is_normal { "" } else { &pose.says };
-        with_words(&row, words, pose.map.as_deref())
+        with_words(&row, words, pose.place.map.as_deref())
     }
 
     /// Returns the row of a scan without an answer of the tracker. No pose is shown, as that of the
@@ -146,7 +126,6 @@ impl Row {
         let Some(line) = &self.single else {
             return String::new();
         };
-        let ms = format!("{:.2}", line.latency_ms);
         let none = "-";
         row([
             &seconds(line.stamp_ns),
@@ -157,7 +136,7 @@ impl Row {
             none,
             none,
             single,
-            &ms,
+            &line.milliseconds(),
         ])
     }
 }
@@ -173,15 +152,15 @@ mod tests {
     use messages::Verdict;
 
     use super::*;
-    use crate::testing::{message, pose};
+    use crate::testing::{answer, message, pose};
 
     fn shown(state: TrackState, words: &str, with_single: bool) -> Row {
         let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
         let pose = pose(1_117_803_432_123_999_999, 0, state);
         Row {
             stamp_ns: header.stamp.measured_ns,
-            single: with_single.then(|| Line::new(&header, &found)),
-            pose: Some(PoseLine::new(&pose, words.as_bytes())),
+            single: with_single.then(|| answer(&header, &found)),
+            pose: Some(TrackedPose::new(&pose, words.as_bytes())),
         }
     }
 
@@ -214,7 +193,7 @@ mod tests {
         assert_eq!(json["pose"]["state"], "Doubtful");
         assert_eq!(json["pose"]["says"], "words");
         assert_eq!(json["pose"]["probability"], 0.975);
-        assert!((json["pose"]["deviation_m"].as_f64().unwrap() - 0.02).abs() < 1e-12);
+        assert_eq!(json["pose"]["laser_covariance"][0], 4e-4);
         let alone = serde_json::to_value(shown(TrackState::Doubtful, "", false)).unwrap();
         assert_eq!(alone["pose"]["stamp_ns"], 1_117_803_432_123_999_999_i64);
         assert_eq!(alone["stamp_ns"], 1_117_803_432_123_999_999_i64);
@@ -227,11 +206,12 @@ mod tests {
         header.mount_known = 1;
         header.map_from_base.x = 1.5;
         header.base_covariance[0] = 0.09;
-        let line = PoseLine::new(&header, b"");
-        assert_eq!((line.of, line.x), (Frame::Base, Some(1.5)));
-        assert_eq!(line.map_from_laser.map(|laser| laser.x), Some(1.0));
-        // The tolerance covers the rounding of the root.
-        assert!((line.deviation_m.unwrap() - 0.3).abs() < 1e-12);
+        let line = TrackedPose::new(&header, b"");
+        let place = line.place;
+        assert_eq!((place.frame, place.pose()), (Frame::Base, place.base));
+        assert_eq!(place.base.map(|base| base.x), Some(1.5));
+        assert_eq!(place.laser.map(|laser| laser.x), Some(1.0));
+        assert_eq!(place.base_covariance.unwrap()[0], 0.09);
     }
 
     #[test]
@@ -242,7 +222,9 @@ mod tests {
         header.laser_covariance[0] = f64::NAN;
         header.sent_ns = i64::MAX;
         header.stamp.entered_ns = i64::MIN;
-        let line = PoseLine::new(&header, &[0xff; 3]);
-        assert_eq!((line.state, line.x, line.deviation_m), ("?", None, None));
+        let line = TrackedPose::new(&header, &[0xff; 999]);
+        assert_eq!((line.state, line.place.laser), ("?", None));
+        assert_eq!(line.place.laser_covariance, None);
+        assert_eq!(line.says.chars().count(), PoseHeader::WORDS_CAPACITY);
     }
 }

@@ -1,77 +1,64 @@
-//! Output for the answer to one scan, as a row of the table or as JSON. Pure.
+//! Answer to one scan, as a row of the table or as JSON. Pure.
 
 use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis, Pose2, Verdict};
+use messages::{HypothesesHeader, Hypothesis, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frame::Frame;
+use super::place::{Candidate, Place, map_id};
 
 pub(super) const NS_PER_MS: f64 = 1e6;
 
-/// One scan and its answer. Fields of the pose are `None` without a pose.
+/// Verdict on one scan, and its best place.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct Line {
-    /// Time of the measurement, in nanoseconds since 1970; in JSON it is that of the [`Row`].
-    ///
-    /// [`Row`]: crate::Row
+pub struct ScanAnswer {
+    /// Time of the measurement, in nanoseconds since 1970; in JSON it is that of the object that
+    /// has this one.
     #[serde(skip)]
     pub stamp_ns: i64,
-    /// Frame whose pose this is.
-    pub of: Frame,
-    /// Name of the map of the pose, if several maps are searched.
-    pub map: Option<String>,
-    /// Position in the map along x, in metres.
-    pub x: Option<f64>,
-    /// Position in the map along y, in metres.
-    pub y: Option<f64>,
-    /// Heading in the map, in degrees counter-clockwise.
-    pub heading_deg: Option<f64>,
-    /// Pose of the laser in the map, in metres and radians.
-    #[schemars(with = "Option<json::schema::Pose>")]
-    pub map_from_laser: Option<Pose2>,
-    /// Fit of the scan to the map at the pose, at most 1.
-    pub score: Option<f32>,
     /// Verdict, or `?` if this version does not know it.
     pub verdict: &'static str,
     /// Number of other places that fit about as well.
     pub alternatives: u32,
     /// Verdict in words.
     pub says: String,
-    /// Time from the scan's entry into the graph to the pose, in milliseconds.
-    pub latency_ms: f64,
-    /// Part of the latency that is computing, in milliseconds.
-    pub engine_ms: f64,
+    #[serde(flatten)]
+    pub best: Place,
+    /// Computing time, in milliseconds.
+    pub cpu_ms: f64,
+    /// Time from the scan's entry into the graph to the answer, in milliseconds; `None` without a
+    /// graph.
+    pub latency_ms: Option<f64>,
 }
 
-impl Line {
-    /// Converts a message of topic `hypotheses`.
-    pub fn new(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Self {
+impl ScanAnswer {
+    /// Converts a message of topic `hypotheses`; `name_of` returns the name of one of several maps.
+    pub fn new(
+        header: &HypothesesHeader,
+        hypotheses: &[Hypothesis],
+        name_of: &dyn Fn(u64) -> Option<String>,
+    ) -> Self {
         let verdict = Verdict::from_code(header.verdict);
-        let best = hypotheses
-            .first()
-            .filter(|_| verdict != Some(Verdict::NoScan));
-        let of = Frame::of(header.mount_known == 1);
-        let pose = best.map(|h| of.pose(h.map_from_base, h.map_from_laser));
-        let engine_ns = header.search_ns.saturating_add(header.extract_ns);
+        let best = Candidate::all(header, hypotheses, name_of).next();
+        let none = || Place {
+            map_id: map_id(header.map_id),
+            frame: Frame::of(header.mount_known == 1),
+            ..Place::default()
+        };
+        let cpu_ns = header.search_ns.saturating_add(header.extract_ns);
         let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
-        Line {
+        ScanAnswer {
             stamp_ns: header.stamp.measured_ns,
-            of,
-            map: None,
-            x: pose.map(|p| p.x),
-            y: pose.map(|p| p.y),
-            heading_deg: pose.map(|p| p.yaw.to_degrees()),
-            map_from_laser: best.map(|h| h.map_from_laser),
-            score: best.map(|h| h.score),
             verdict: verdict.map_or("?", Verdict::as_str),
             alternatives: header.alternatives,
             says: verdict.map_or_else(String::new, |verdict| {
                 sentence(verdict, &summaries(header, hypotheses))
             }),
-            latency_ms: latency_ns as f64 / NS_PER_MS,
-            engine_ms: engine_ns as f64 / NS_PER_MS,
+            best: best.map_or_else(none, |best| best.place),
+            cpu_ms: cpu_ns as f64 / NS_PER_MS,
+            latency_ms: Some(latency_ns as f64 / NS_PER_MS),
         }
     }
 
@@ -92,20 +79,26 @@ impl Line {
 
     /// Returns the row without a newline.
     pub fn text(&self) -> String {
+        let [x, y, heading] = numbers(&self.best);
         let row = row([
             &seconds(self.stamp_ns),
-            &number(self.x, 3),
-            &number(self.y, 3),
-            &number(self.heading_deg, 2),
-            &number(self.score.map(f64::from), 2),
+            &x,
+            &y,
+            &heading,
+            &number(self.best.score, 2),
             self.verdict,
             &self.alternatives.to_string(),
-            &format!("{:.2}", self.latency_ms),
+            &self.milliseconds(),
         ]);
         // The normal verdict needs no words.
         let is_normal = self.verdict == Verdict::Unique.as_str();
         let words = if is_normal { "" } else { &self.says };
-        with_words(&row, words, self.map.as_deref())
+        with_words(&row, words, self.best.map.as_deref())
+    }
+
+    /// Formats the latency or, without a graph, the computing time.
+    pub(super) fn milliseconds(&self) -> String {
+        format!("{:.2}", self.latency_ms.unwrap_or(self.cpu_ms))
     }
 }
 
@@ -131,6 +124,16 @@ fn row([stamp, x, y, heading, score, verdict, alternatives, ms]: [&str; 8]) -> S
     format!(
         "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {score:>5}  {verdict:<9}  {alternatives:>12}  {ms:>8}"
     )
+}
+
+/// Formats x, y and heading in degrees of the pose that is shown, or dashes.
+pub(super) fn numbers(place: &Place) -> [String; 3] {
+    let pose = place.pose();
+    [
+        number(pose.map(|pose| pose.x), 3),
+        number(pose.map(|pose| pose.y), 3),
+        number(pose.map(|pose| pose.yaw.to_degrees()), 2),
+    ]
 }
 
 /// Formats a number, or a dash for `None`.
@@ -159,7 +162,7 @@ pub(super) fn with_words(row: &str, words: &str, map: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::message;
+    use crate::testing::{answer, message};
 
     #[test]
     fn columns_stand_under_their_names() {
@@ -169,7 +172,7 @@ mod tests {
 1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
              -          -          -            -      -  NoScan                2     25.00  no usable beams: is the laser covered?
 ";
-        let mut none = Line::new(
+        let mut none = answer(
             &HypothesesHeader {
                 verdict: 0,
                 ..header
@@ -180,8 +183,8 @@ mod tests {
         none.stamp_ns = -1_500_000_000;
         let text = format!(
             "\n{}\n{}\n{}\n",
-            Line::header(Frame::Laser),
-            Line::new(&header, &found).text(),
+            ScanAnswer::header(Frame::Laser),
+            answer(&header, &found).text(),
             none.text().replace("        -1.500", "             -"),
         );
         assert_eq!(text, expected);
@@ -192,9 +195,8 @@ mod tests {
         let (mut header, mut found) = message(1, 0, Verdict::Unique as u32);
         header.mount_known = 1;
         found[0].map_from_base.x = 1.5;
-        let mut line = Line::new(&header, &found);
-        line.map = Some("ground".to_owned());
-        assert!(Line::header(line.of).contains("   base x m   base y m  "));
+        let line = ScanAnswer::new(&header, &found, &|_| Some("ground".to_owned()));
+        assert!(ScanAnswer::header(line.best.frame).contains("   base x m   base y m  "));
         assert!(
             line.text().contains("  1.500      0.000  "),
             "{}",
@@ -202,8 +204,10 @@ mod tests {
         );
         assert!(line.text().ends_with("  on ground"), "{}", line.text());
         let json = serde_json::to_value(&line).unwrap();
-        assert_eq!((&json["of"], &json["x"]), (&"base".into(), &1.5.into()));
-        assert_eq!(json["map_from_laser"]["y"], -2.0);
+        assert_eq!(
+            (&json["base"]["x"], &json["laser"]["y"]),
+            (&1.5.into(), &(-2.0).into())
+        );
     }
 
     #[test]
@@ -212,7 +216,7 @@ mod tests {
         header.sent_ns = i64::MAX;
         header.stamp.entered_ns = i64::MIN;
         header.search_ns = u64::MAX;
-        let line = Line::new(&header, &found);
+        let line = answer(&header, &found);
         assert_eq!(line.verdict, "?");
         assert!(
             line.text().starts_with("-9223372036.854"),
