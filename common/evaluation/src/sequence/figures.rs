@@ -69,8 +69,8 @@ pub(crate) struct Figures {
     pub(super) from_first_scan: Errors,
     pub(super) searched_share: Option<f64>,
     /// CPU time per scan, in milliseconds of one thread.
-    pub(super) tracking_cpu_ms: Spread,
-    pub(super) search_cpu_ms: Spread,
+    pub(super) cpu_ms_tracking: Spread,
+    pub(super) cpu_ms_searching: Spread,
 }
 
 fn spread_of(times_ms: impl IntoIterator<Item = f64>) -> Spread {
@@ -113,8 +113,8 @@ impl Figures {
             outages_wrong: outages.wrong.len() as u64,
             from_first_scan: judged.from_first_scan.figures(),
             searched_share: share(starts.searches, starts.scans),
-            tracking_cpu_ms: spread_of(followed.tracking_ms.iter().copied()),
-            search_cpu_ms: spread_of(judged.searching_ms.iter().copied()),
+            cpu_ms_tracking: spread_of(followed.tracking_ms.iter().copied()),
+            cpu_ms_searching: spread_of(judged.searching_ms.iter().copied()),
         }
     }
 
@@ -161,10 +161,10 @@ impl Figures {
             percent(self.outages_right_after_5_m),
             self.outages_wrong,
             self.from_first_scan.text(),
-            number(self.tracking_cpu_ms.median, 2),
-            number(self.tracking_cpu_ms.p90, 2),
-            number(self.search_cpu_ms.median, 1),
-            number(self.search_cpu_ms.p90, 1),
+            number(self.cpu_ms_tracking.median, 2),
+            number(self.cpu_ms_tracking.p90, 2),
+            number(self.cpu_ms_searching.median, 1),
+            number(self.cpu_ms_searching.p90, 1),
             percent(self.searched_share),
         )
     }
