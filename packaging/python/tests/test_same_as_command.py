@@ -20,20 +20,23 @@ def check(scan, result, line):
     assert line["stamp_ns"] == scan.stamp_ns
     assert result.verdict == line["verdict"]
     assert result.why == line["says"]
-    assert result.confidence == line["confidence"]
+    assert result.confidence == line["probability"]
     assert result.alternatives == line["alternatives"]
     assert result.beams_used == line["votes"]["beams_used"]
     places = line["hypotheses"]
-    assert result.laser_poses.tolist() == [[p["x"], p["y"], p["yaw"]] for p in places]
-    flat = result.laser_covariances.reshape(-1, 9).tolist()
-    assert flat == [p["covariance"] for p in places]
+    for frame, poses, covariances in [
+        ("laser", result.laser_poses, result.laser_covariances),
+        ("base", result.poses, result.covariances),
+    ]:
+        expected = [[p[frame][axis] for axis in ("x", "y", "yaw")] for p in places]
+        assert poses.tolist() == expected
+        flat = covariances.reshape(-1, 9).tolist()
+        assert flat == [p[f"{frame}_covariance"] for p in places]
     assert result.scores.tolist() == [p["score"] for p in places]
     assert result.probabilities.tolist() == [p["probability"] for p in places]
     assert result.votes.tolist() == [p["intensity"] for p in places]
-    bases = [[p["map_from_base"][axis] for axis in ("x", "y", "yaw")] for p in places]
     assert result.frame == "base"
-    assert result.poses.tolist() == bases
-    assert result.pose == tuple(bases[0])
+    assert result.pose == tuple(result.poses[0])
 
 
 @pytest.mark.parametrize("name", NAMES)
