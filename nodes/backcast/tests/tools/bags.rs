@@ -132,7 +132,7 @@ fn the_topic_is_named_where_several_could_be_meant() {
     let (code, _, stderr) = verdicts(folder.path(), both);
     assert_eq!(code, 1);
     assert!(
-        stderr.contains("where laser rear sits on the base"),
+        stderr.contains("the pose of laser rear on the base is unknown"),
         "{stderr}"
     );
     let (code, _, stderr) = verdicts(folder.path(), "r.mcap --scan-topic /scan");
