@@ -223,7 +223,7 @@ fn centimetres(of: &Value) -> String {
     format!("{:.1} cm, {turned}", 100.0 * metres)
 }
 
-/// Share of the `Unique` whose true position lies in the ellipse of 95 %.
+/// Share of the `Unique` whose true position is in the ellipse of 95 %.
 fn in_ellipse(of: &Value) -> String {
     let held = of["unique_in_ellipse"].as_f64().unwrap();
     share(&(held / of["unique"].as_f64().unwrap()).into())
@@ -337,7 +337,16 @@ fn figures_of_single_scans_of_the_evaluation_data_are_those_of_evaluate() {
         .iter()
         .map(|(name, range)| (&name[..], range.clone()));
     compare_table(&PROBABILITIES, &ranges.collect());
+}
 
+#[test]
+fn figures_of_scans_of_other_places_are_those_of_evaluate() {
+    let Some(data) = evaluation_data("documents figures of other places") else {
+        return;
+    };
+    let queries = QUERIES.map(|(_, file)| data.join(file));
+    let recordings = root().join("recordings");
+    let shipped = SHIPPED.map(|(_, file)| recordings.join(file));
     let erased = evaluate(&["--erase-place", "2.5", "--every", "2"], &queries);
     let mut rows: Rows<'_> = QUERIES
         .iter()
@@ -429,7 +438,7 @@ impl Outcome {
     }
 }
 
-/// What is found on each set with the value that is best on the others, in the mean.
+/// Mean share that is found on each set with the value that is best on the others.
 fn left_out(values: &[&Outcome]) -> f64 {
     let sets = values[0].found.len();
     let of_set = (0..sets).map(|set| {
