@@ -96,7 +96,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     run: impl FnOnce() -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
     let (sender, receiver) = mpsc::sync_channel(1);
-    // Nobody receives the result after a signal.
+    // After a signal the receiver is gone.
     let work = move || drop(sender.send(without_panic(run)));
     thread::Builder::new().spawn(work)?;
     py.detach(move || {
