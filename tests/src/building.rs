@@ -3,8 +3,9 @@
 
 use std::f64::consts::TAU;
 
+use engine::Map;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Localizer, Map, Settings, Workspace};
+use engine::localizer::{Localizer, Settings, Workspace};
 use engine::peaks::Places;
 use engine::scan::Scan;
 use engine::vote_search::VoteSearchConfig;

@@ -14,6 +14,7 @@ use bench::scans::{ScanConfig, simulate};
 use bench::timing::{cpu_ms, median};
 use bench::worlds::{World, city};
 use clap::Parser;
+use engine::Map;
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::vote_search::{Preparation, Prior, VoteSearchConfig, Workspace};
 use geometry::Pose;
@@ -52,14 +53,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let prepare = || -> Result<Prepared, Box<dyn Error>> {
         let (start, config) = (Instant::now(), options.vote_search.clone());
         let (prepared, cost) = cpu_ms(|| {
-            let preparation = Preparation::of_map(
-                FRAME,
+            let map = Map {
+                frame: FRAME,
                 sides,
-                &cells,
-                CellRules::default(),
-                config,
-                Prior::None,
-            )?;
+                occupancy: &cells,
+                rules: CellRules::default(),
+            };
+            let preparation = Preparation::of_map(map, config, Prior::None)?;
             let cells_ms = start.elapsed().as_secs_f64() * 1e3;
             Prepared::new(cache.as_ref(), preparation).map(|prepared| (prepared, cells_ms))
         });

@@ -52,6 +52,7 @@ mod parts {
     pub mod localizer;
     pub mod motion;
     pub mod observation;
+    pub mod occupancy_map;
     pub mod particles;
     pub mod peaks;
     pub mod program;
@@ -74,6 +75,7 @@ pub use parts::*;
 
 pub use error::EngineError;
 pub use geometry::Pose;
-pub use localizer::{Answer, Localizer, Map, PreparedMap, Settings, Workspace};
+pub use localizer::{Answer, Localizer, PreparedMap, Settings, Workspace};
 pub use messages::Verdict;
+pub use occupancy_map::Map;
 pub use scan::Scan;

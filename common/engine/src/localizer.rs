@@ -15,51 +15,14 @@
 //! possible on each map; ties go to the map listed first. All maps are judged by the same beams, up
 //! to the diagonal of the largest map: a beam that is too long for a map matches nothing there.
 
-use geometry::Pose;
-
 use crate::EngineError;
 use crate::beams::BeamConfig;
 use crate::fit::{DistanceField, Ends};
-use crate::grid::{CellRules, GridFrame};
 use crate::observation::Observation;
+use crate::occupancy_map::Map;
 use crate::peaks::{self, Found, Judged, Merged, PeakConfig, PeakInput, Places, merge};
 use crate::space::Space;
-use crate::vote_search::{self, Outcome, Prior, VoteSearch, VoteSearchConfig};
-
-/// A borrowed occupancy map.
-#[derive(Debug, Clone, Copy)]
-pub struct Map<'a> {
-    /// Cell size and pose of the grid in the map frame.
-    pub frame: GridFrame,
-    /// Number of cells along x and y.
-    pub sides: (usize, usize),
-    /// Occupancies in per cent, or [`messages::UNKNOWN`], row by row from the lowest y.
-    pub occupancy: &'a [u8],
-    /// Thresholds for occupied, free and unknown cells.
-    pub rules: CellRules,
-}
-
-impl<'a> Map<'a> {
-    /// Takes a map with cells of this size, of which the first has its lower left corner at a pose in
-    /// the map frame, and the default thresholds of ROS.
-    #[must_use]
-    pub fn new(
-        resolution_m: f64,
-        map_from_grid: Pose,
-        sides: (usize, usize),
-        occupancy: &'a [u8],
-    ) -> Self {
-        Map {
-            frame: GridFrame {
-                resolution_m,
-                map_from_grid,
-            },
-            sides,
-            occupancy,
-            rules: CellRules::default(),
-        }
-    }
-}
+use crate::vote_search::{self, Outcome, Preparation, Prior, VoteSearch, VoteSearchConfig};
 
 /// Settings of a [`Localizer`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -122,19 +85,8 @@ impl PreparedMap {
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(map: Map<'_>, settings: Settings) -> Result<Self, EngineError> {
-        let Settings {
-            vote_search,
-            peaks,
-            prior,
-        } = settings;
-        let Map {
-            frame,
-            sides,
-            occupancy,
-            rules,
-        } = map;
-        let vote_search = VoteSearch::of_map(frame, sides, occupancy, rules, vote_search, prior)?;
-        Self::with(vote_search, map, peaks)
+        let preparation = Preparation::of_map(map, settings.vote_search, settings.prior)?;
+        Self::with(preparation.finish()?, map, settings.peaks)
     }
 
     /// Does the same with a first stage that was already prepared for the map.
@@ -216,9 +168,7 @@ impl Localizer {
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(map: Map<'_>, settings: Settings) -> Result<Self, EngineError> {
-        Ok(Localizer {
-            maps: vec![PreparedMap::new(map, settings)?],
-        })
+        Self::of_maps(vec![PreparedMap::new(map, settings)?])
     }
 
     /// Takes one or several maps that are searched together, all prepared with the same settings.

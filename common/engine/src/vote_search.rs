@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::EngineError;
 use crate::accumulator::Query;
-use crate::grid::{CellRules, Grid, GridFrame};
+use crate::grid::{Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::observation::Observation;
@@ -107,22 +107,6 @@ impl Outcome {
 }
 
 impl VoteSearch {
-    /// Prepares a map of `width · height` occupancies, row by row from the lowest y; cells smaller
-    /// than the search cell are pooled.
-    ///
-    /// # Errors
-    /// See [`Preparation::of_map`] and [`Preparation::finish`].
-    pub fn of_map(
-        frame: GridFrame,
-        sides: (usize, usize),
-        occupancy: &[u8],
-        rules: CellRules,
-        config: VoteSearchConfig,
-        prior: Prior,
-    ) -> Result<Self, EngineError> {
-        Preparation::of_map(frame, sides, occupancy, rules, config, prior)?.finish()
-    }
-
     /// Prepares a grid, which is searched at its own resolution.
     ///
     /// # Errors

@@ -4,7 +4,8 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::localizer::{Localizer, Map, PreparedMap, Settings, Workspace};
+use engine::Map;
+use engine::localizer::{Localizer, PreparedMap, Settings, Workspace};
 use engine::scan::Scan;
 use geometry::Pose;
 

@@ -11,13 +11,14 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use allocation_counter::measure;
+use engine::Map;
 use engine::fit::{DistanceField, Ends};
 use engine::grid::{CellRules, GridFrame};
 use engine::instruction_set::InstructionSet;
 use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::reference;
 use engine::scan::Scan;
-use engine::vote_search::{Outcome, Prior, VoteSearch, VoteSearchConfig, Workspace};
+use engine::vote_search::{Outcome, Preparation, Prior, VoteSearch, VoteSearchConfig, Workspace};
 use geometry::Pose;
 use messages::Verdict;
 
@@ -105,8 +106,14 @@ impl World {
             search_cell: 0.0,
             ..VoteSearchConfig::default()
         };
-        let rules = CellRules::default();
-        VoteSearch::of_map(FRAME, self.sides, &self.occupancy, rules, config, prior).unwrap()
+        let map = Map {
+            frame: FRAME,
+            sides: self.sides,
+            occupancy: &self.occupancy,
+            rules: CellRules::default(),
+        };
+        let preparation = Preparation::of_map(map, config, prior);
+        preparation.and_then(Preparation::finish).unwrap()
     }
 
     fn distance_field(&self) -> DistanceField {

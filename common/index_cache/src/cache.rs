@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use engine::EngineError;
-use engine::localizer::{Map, PreparedMap, Settings};
+use engine::Map;
+use engine::localizer::{PreparedMap, Settings};
 use engine::search::{IndexKey, SearchIndex};
 use engine::vote_search::{Preparation, VoteSearch};
 
@@ -21,7 +22,7 @@ pub struct IndexCache {
     limit: u64,
 }
 
-/// A localizer, and the state of its cached index.
+/// A first stage that is prepared for a map, and the state of its cached index.
 #[derive(Debug)]
 pub struct Prepared {
     pub vote_search: VoteSearch,
@@ -88,20 +89,9 @@ pub fn prepared_map(
     map: Map<'_>,
     settings: Settings,
 ) -> Result<(PreparedMap, Kept), EngineError> {
-    let Map {
-        frame,
-        sides,
-        occupancy,
-        rules,
-    } = map;
-    let Settings {
-        vote_search,
-        peaks,
-        prior,
-    } = settings;
-    let preparation = Preparation::of_map(frame, sides, occupancy, rules, vote_search, prior)?;
+    let preparation = Preparation::of_map(map, settings.vote_search, settings.prior)?;
     let Prepared { vote_search, kept } = Prepared::new(cache, preparation)?;
-    Ok((PreparedMap::with(vote_search, map, peaks)?, kept))
+    Ok((PreparedMap::with(vote_search, map, settings.peaks)?, kept))
 }
 
 impl Unsaved {
@@ -184,7 +174,7 @@ mod tests {
     use nix::unistd::{geteuid, mkfifo};
 
     use super::*;
-    use crate::testing::{FRAME, SIDES, occupancy, preparation, preparation_with};
+    use crate::testing::{FRAME, map, occupancy, preparation, preparation_with};
 
     const LIMIT: u64 = 100_000_000;
 
@@ -287,8 +277,8 @@ mod tests {
         let limits = LimitsConfig::default;
         let other = |config| preparation_with(1, config).key().unwrap();
         let of = |frame, cells: &[u8], rules| {
-            let config = VoteSearchConfig::default();
-            let preparation = Preparation::of_map(frame, SIDES, cells, rules, config, Prior::None);
+            let map = map(frame, cells, rules);
+            let preparation = Preparation::of_map(map, VoteSearchConfig::default(), Prior::None);
             preparation.unwrap().key().unwrap()
         };
         let frame = GridFrame {
@@ -344,14 +334,9 @@ mod tests {
             }),
             keys[0]
         );
-        let known = Preparation::of_map(
-            FRAME,
-            SIDES,
-            &occupancy(1),
-            CellRules::default(),
-            VoteSearchConfig::default(),
-            Prior::Heading,
-        );
+        let cells = occupancy(1);
+        let map = map(FRAME, &cells, CellRules::default());
+        let known = Preparation::of_map(map, VoteSearchConfig::default(), Prior::Heading);
         assert_eq!(known.unwrap().key(), None);
     }
 

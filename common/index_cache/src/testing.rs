@@ -1,5 +1,6 @@
 //! Small maps for the tests of this crate.
 
+use engine::Map;
 use engine::grid::{CellRules, GridFrame};
 use engine::vote_search::{Preparation, Prior, VoteSearchConfig};
 use geometry::Pose;
@@ -30,10 +31,22 @@ pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
     (0..width * height).map(cell).collect()
 }
 
+/// A map of these cells.
+pub(crate) fn map(frame: GridFrame, occupancy: &[u8], rules: CellRules) -> Map<'_> {
+    let sides = SIDES;
+    Map {
+        frame,
+        sides,
+        occupancy,
+        rules,
+    }
+}
+
 /// Prepares the map of a seed with these settings.
 pub(crate) fn preparation_with(seed: usize, config: VoteSearchConfig) -> Preparation {
-    let (cells, rules) = (occupancy(seed), CellRules::default());
-    Preparation::of_map(FRAME, SIDES, &cells, rules, config, Prior::None).unwrap()
+    let cells = occupancy(seed);
+    let map = map(FRAME, &cells, CellRules::default());
+    Preparation::of_map(map, config, Prior::None).unwrap()
 }
 
 /// Prepares the map of a seed with few headings.

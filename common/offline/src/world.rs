@@ -2,9 +2,10 @@
 
 use anyhow::Context;
 use engine::EngineError;
+use engine::Map;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
-use engine::localizer::{Localizer, Map, PreparedMap, Settings, Workspace};
+use engine::localizer::{Localizer, PreparedMap, Settings, Workspace};
 use engine::observation::Observation;
 use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;

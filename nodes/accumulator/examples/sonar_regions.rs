@@ -13,10 +13,10 @@ use accumulator::sonar::regions::{self, Echo, RegionConfig};
 use bench::distinct;
 use clap::Parser;
 use engine::EngineError;
-use engine::grid::{CellRules, GridFrame};
+use engine::Map;
 use engine::program::VoteConfig;
 use engine::scan::Scan;
-use engine::vote_search::{Prior, VoteSearch, VoteSearchConfig, Workspace};
+use engine::vote_search::{Preparation, Prior, VoteSearch, VoteSearchConfig, Workspace};
 use geometry::Pose;
 use map::OccupancyGrid;
 use simulation::{Bearings, Drive, DriveConfig, Path};
@@ -197,13 +197,9 @@ fn vote_search(map: &OccupancyGrid, sigma_m: f64) -> Result<VoteSearch, EngineEr
         votes,
         ..VoteSearchConfig::default()
     };
-    let frame = GridFrame {
-        resolution_m: map.resolution_m,
-        map_from_grid: map.map_from_grid,
-    };
     let sides = (map.width as usize, map.height as usize);
-    let rules = CellRules::default();
-    VoteSearch::of_map(frame, sides, &map.cells, rules, config, Prior::None)
+    let map = Map::new(map.resolution_m, map.map_from_grid, sides, &map.cells);
+    Preparation::of_map(map, config, Prior::None)?.finish()
 }
 
 /// Searches at each scan that ends a full window of `way_m` metres.

@@ -2,6 +2,7 @@
 //!
 //! Rays end in the cells of the boundary. The map says where poses may be and what is unknown.
 
+use engine::Map;
 use engine::grid::{CellRules, GridFrame};
 use engine::space::Space;
 use engine::vote_search::{Preparation, Prior, VoteSearch, VoteSearchConfig};
@@ -134,8 +135,13 @@ impl Job {
         let frame = GridFrame::of(&self.map)?;
         let (width, height) = (self.map.width as usize, self.map.height as usize);
         let space = Space::new(config.headings, frame.resolution_m, width, height)?;
-        let (cells, rules) = (&self.occupancy, self.rules);
-        let preparation = Preparation::of_map(frame, (width, height), cells, rules, config, prior)?;
+        let map = Map {
+            frame,
+            sides: (width, height),
+            occupancy: &self.occupancy,
+            rules: self.rules,
+        };
+        let preparation = Preparation::of_map(map, config, prior)?;
         let preparation = match self.boundary {
             None => preparation,
             Some(boundary) => preparation.with_boundary(&boundary)?,

@@ -3,9 +3,10 @@
 
 use bytemuck::Zeroable;
 use engine::EngineError;
+use engine::Map;
 use engine::grid::{CellRules, GridFrame};
 pub use engine::localizer::Workspace;
-use engine::localizer::{Localizer, Map, PreparedMap, Settings};
+use engine::localizer::{Localizer, PreparedMap, Settings};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
 use map::OccupancyGrid;

@@ -4,8 +4,8 @@ use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use engine::Map as MapView;
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::Map as MapView;
 use geometry::Pose;
 use map::{MAX_CELLS, OccupancyGrid, UNKNOWN};
 use numpy::{

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fit::GridPose;
-use crate::grid::Grid;
+use crate::grid::{CellRules, Grid, GridFrame};
 use crate::program::VoteConfig;
 use crate::scan::Scan;
 use crate::testing::{any_grid, any_scan, occupancy_of};

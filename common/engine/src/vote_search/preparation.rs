@@ -7,8 +7,9 @@ use messages::BoundaryCell;
 use super::{Method, Prior, VoteSearch, VoteSearchConfig};
 use crate::EngineError;
 use crate::boundary;
-use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
+use crate::grid::{self, Grid, GridFrame, Pooled};
 use crate::limits::Limits;
+use crate::occupancy_map::Map;
 use crate::search::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
 use crate::space::Space;
 use crate::sweep::FieldSweep;
@@ -31,19 +32,21 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// Takes a map of `width · height` occupancies, row by row from the lowest y; cells smaller
-    /// than the search cell are pooled.
+    /// Takes a map, of which cells smaller than the search cell are pooled.
     ///
     /// # Errors
     /// See [`Grid::new`] and [`Preparation::new`].
     pub fn of_map(
-        frame: GridFrame,
-        sides: (usize, usize),
-        occupancy: &[u8],
-        rules: CellRules,
+        map: Map<'_>,
         config: VoteSearchConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
+        let Map {
+            frame,
+            sides,
+            occupancy,
+            rules,
+        } = map;
         let pooling = grid::pooling(frame.resolution_m, config.search_cell);
         if pooling == 1 {
             let grid = Grid::new(sides.0, sides.1, occupancy, rules)?;

@@ -6,8 +6,10 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::Map;
 use crate::boundary;
 use crate::fit::{DistanceField, Ends};
+use crate::grid::CellRules;
 use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::testing::{
@@ -191,7 +193,8 @@ proptest! {
         };
         let sides = (grid.width(), grid.height());
         let cells = occupancy_of(&grid);
-        let prepare = || Preparation::of_map(frame, sides, &cells, rules, config.clone(), Prior::None);
+        let map = Map { frame, sides, occupancy: &cells, rules };
+        let prepare = || Preparation::of_map(map, config.clone(), Prior::None);
         // A map may have no obstacle or no free cell.
         if let Ok(extracted) = prepare() {
             let given = prepare().unwrap().with_boundary(&boundary::extract(&grid)).unwrap();
