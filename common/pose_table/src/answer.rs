@@ -169,7 +169,7 @@ mod tests {
         let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
         let expected = "
        stamp s  laser x m  laser y m  heading deg  score  verdict    alternatives        ms
-1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
+1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  no place stands out enough to be sure
              -          -          -            -      -  NoScan                2     25.00  no usable beams: is the laser covered?
 ";
         let mut none = answer(

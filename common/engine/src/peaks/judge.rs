@@ -58,19 +58,30 @@ impl Workspace {
                 .sum();
             let resolution = distance_field.frame.resolution_m;
             let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
-            let scan = (ends.effective_beams(), ends.effective_pieces(apart));
-            let needed = config.needed_lead((best.score, unmatched), scan);
+            let pieces = ends.effective_pieces(apart);
+            let doubt = likelihood::doubt(best.score, unmatched, pieces, config);
             let left_out = lead(
                 best.score,
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
-            (self.margin.needed, self.margin.left_out) = (needed, left_out);
+            let weight = likelihood::weight_of_leads(ends.effective_beams(), config);
+            self.margin.doubt = doubt;
+            (self.margin.left_out, self.margin.weight) = (left_out, weight);
             // The best place of all may be on another map.
             let apart = if input.has_others { ELSEWHERE } else { 1.0 };
-            let matters = (apart * needed).max(left_out + NEGLIGIBLE * config.lead_scale);
-            for (_, place) in &mut self.refined[scored..] {
-                if lead(best.score, place.score) < matters {
+            let needed = likelihood::needed_lead(doubt, config);
+            let matters = needed.max(NEGLIGIBLE * config.lead_scale);
+            let matters = left_out + apart * matters / weight;
+            let mut nearest = f64::INFINITY;
+            for (rank, (_, place)) in self.refined.iter_mut().enumerate() {
+                if rank >= scored {
+                    if lead(best.score, place.score) >= matters.max(nearest) {
+                        break;
+                    }
                     place.score = score(place);
+                }
+                if !is_same_place(&best, place, config) {
+                    nearest = nearest.min(lead(best.score, place.score));
                 }
             }
             self.refined.sort_unstable_by(by_score);
@@ -82,7 +93,7 @@ impl Workspace {
 
 impl Places {
     /// Derives verdict, alternatives and probabilities from the scores of the places, and keeps as
-    /// many places as requested. `margin` is the lead that the best place needs to be unique.
+    /// many places as requested. `margin` is what the best place needs to be unique.
     pub(super) fn judge(
         &mut self,
         (best, margin): (f64, Margin),
@@ -90,39 +101,36 @@ impl Places {
         config: &PeakConfig,
     ) {
         let Margin {
-            needed,
+            doubt,
             left_out,
+            weight,
             may_lack,
         } = margin;
         let places = &mut self.places;
-        leads.clear();
-        leads.extend(places.iter().map(|place| lead(best, place.score)));
         let first = places[0];
-        let left_out = |place: &Place| match place.map == first.map {
-            true => left_out,
-            false => {
-                let drawn = [first.drawn_doubt, place.drawn_doubt];
-                lead(best, best - doubt_between(first.score, drawn))
-            }
-        };
-        let rivals = leads.iter().zip(&*places).skip(1);
-        let needed = |place: &Place| match place.map == first.map {
-            true => needed,
-            false => needed * ELSEWHERE,
-        };
-        let rivals = rivals.filter(|&(&lead, place)| lead < needed(place).max(left_out(place)));
-        self.alternatives = rivals.count() as u32;
-        for (lead, place) in leads.iter_mut().zip(&*places) {
-            *lead = (*lead - left_out(place)).max(0.0);
-        }
-        likelihood::assign(places, leads, config);
-        self.verdict = match () {
-            () if best < config.least_score => Verdict::PoorFit,
-            () if self.alternatives > 0 || may_lack => Verdict::Ambiguous,
-            () => Verdict::Unique,
-        };
+        leads.clear();
+        leads.extend(places.iter().map(|place| {
+            let (left_out, apart) = match place.map == first.map {
+                true => (left_out, 1.0),
+                false => {
+                    let drawn = [first.drawn_doubt, place.drawn_doubt];
+                    let left_out = lead(best, best - doubt_between(first.score, drawn));
+                    (left_out, ELSEWHERE)
+                }
+            };
+            (lead(best, place.score) - left_out).max(0.0) * weight / apart
+        }));
+        let needed = likelihood::needed_lead(doubt, config);
+        self.alternatives = leads[1..].iter().filter(|&&lead| lead < needed).count() as u32;
+        likelihood::assign(places, leads, doubt, config);
         places.truncate(config.max_hypotheses as usize);
         self.confidence = places[0].probability;
+        let is_sure = self.alternatives == 0 && self.confidence >= config.unique_from;
+        self.verdict = match () {
+            () if best < config.least_score => Verdict::PoorFit,
+            () if may_lack || !is_sure => Verdict::Ambiguous,
+            () => Verdict::Unique,
+        };
     }
 }
 
@@ -165,13 +173,9 @@ fn score_best(
 
 /// Keeps the best of all poses that converged to one place.
 fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &PeakConfig) {
-    let angle = config.same_place_deg.to_radians();
     for (_, place) in places {
-        let is_near = |other: &&mut Place| {
-            let pose = other.map_from_laser;
-            pose.is_within(place.map_from_laser, config.same_place_m, angle)
-        };
-        match kept.iter_mut().find(is_near) {
+        let is_same = |other: &&mut Place| is_same_place(other, place, config);
+        match kept.iter_mut().find(is_same) {
             Some(other) => {
                 other.support += place.support;
                 other.intensity = other.intensity.max(place.intensity);
@@ -179,6 +183,12 @@ fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &Peak
             None => kept.push(*place),
         }
     }
+}
+
+fn is_same_place(a: &Place, b: &Place, config: &PeakConfig) -> bool {
+    let angle = config.same_place_deg.to_radians();
+    a.map_from_laser
+        .is_within(b.map_from_laser, config.same_place_m, angle)
 }
 
 /// Refines a candidate to a place; its score is an upper bound.

@@ -8,7 +8,7 @@ use crate::votes::{VoteShare, is_close};
 pub struct Found {
     /// Distinct places, best first, each with the number of the map.
     pub places: Vec<Place>,
-    /// Lead that the first of them needs over others.
+    /// What the first of them needs to be unique.
     pub margin: Margin,
     /// Share of the beams that end at an obstacle at the first place.
     pub inlier_share: f64,
@@ -77,7 +77,7 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     // A stable sort keeps equal places of one map in their order.
     places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score).then(a.map.cmp(&b.map)));
     let best_of = places.first().map_or(0, |&(number, _)| number);
-    // Another place of a result may need a larger lead than its first one, and its score may be a
+    // Another place of a result may be more doubtful than its first one, and its score may be a
     // bound.
     let is_first = |&(number, place): &(usize, Place)| all[number].places.first() == Some(&place);
     let may_lack =
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     /// Places on a map with 100 possible votes, from their scores and votes.
-    fn found(map: u32, lead: u16, needed: f64, places: &[(f64, u16)]) -> Found {
+    fn found(map: u32, lead: u16, doubt: f64, places: &[(f64, u16)]) -> Found {
         let place = |&(score, intensity): &(f64, u16)| Place {
             map,
             map_from_laser: Pose::new(score, f64::from(intensity), 0.0),
@@ -125,7 +125,7 @@ mod tests {
         Found {
             places: places.iter().map(place).collect(),
             margin: Margin {
-                needed,
+                doubt,
                 ..Margin::default()
             },
             inlier_share: 0.9,
@@ -136,19 +136,19 @@ mod tests {
 
     #[test]
     fn a_place_behind_a_first_one_that_is_left_out_never_stands_alone() {
-        let other = found(0, 60, 0.09, &[(0.57, 60)]);
+        let other = found(0, 60, 0.0, &[(0.57, 60)]);
         let verdict = |part: Found| {
             let merged = merge(&[other.clone(), part], &PeakConfig::default());
             assert_eq!((merged.best_of, merged.places.places[0].map), (1, 1));
             merged.places.verdict
         };
-        // The first place of the result needs less lead than the second.
-        let second = verdict(found(1, 40, 0.09, &[(0.9, 20), (0.7, 40)]));
+        // The first place of the result is less doubtful than the second.
+        let second = verdict(found(1, 40, 0.0, &[(0.9, 20), (0.7, 40)]));
         assert_eq!(second, Verdict::Ambiguous);
         // So far behind the first, the score of the second place may be a bound.
-        let bound = verdict(found(1, 40, 0.09, &[(0.99, 20), (0.85, 40)]));
+        let bound = verdict(found(1, 40, 0.0, &[(0.99, 20), (0.85, 40)]));
         assert_eq!(bound, Verdict::Ambiguous);
-        let first = verdict(found(1, 40, 0.09, &[(0.9, 40), (0.7, 20)]));
+        let first = verdict(found(1, 40, 0.0, &[(0.9, 40), (0.7, 20)]));
         assert_eq!(first, Verdict::Unique);
     }
 
@@ -157,9 +157,9 @@ mod tests {
         fn what_stands_alone_is_the_first_place_of_its_part(
             parts in vec((0u16..=100, 0.0..0.3f64, vec((0.0..1.0f64, 0u16..=100), 0..4)), 1..4),
         ) {
-            let parts: Vec<Found> = (0..).zip(parts).map(|(map, (lead, needed, mut places))| {
+            let parts: Vec<Found> = (0..).zip(parts).map(|(map, (lead, doubt, mut places))| {
                 places.sort_by(|a, b| b.0.total_cmp(&a.0));
-                found(map, lead, needed, &places)
+                found(map, lead, doubt, &places)
             }).collect();
             let merged = merge(&parts, &PeakConfig::default());
             if let Some(best) = merged.places.places.first() {

@@ -256,15 +256,29 @@ impl Default for Places {
     }
 }
 
-/// Lead over others that the best place needs to be unique.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// What the best place needs to be unique.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
-    /// Lead needed because of the scan, see [`PeakConfig::least_lead`].
-    pub needed: f64,
+    /// What its score lacks of the sure score, see [`PeakConfig::sure_score`].
+    pub doubt: f64,
     /// Lead that may be due to things the map leaves out.
     pub left_out: f64,
+    /// Weight of leads, 0..=1: less than 1 for a scan of few beams.
+    pub weight: f64,
     /// True if a pose that the search did not reach may be as good.
     pub may_lack: bool,
+}
+
+impl Default for Margin {
+    /// Margin of a scan that needs no more than any.
+    fn default() -> Self {
+        Margin {
+            doubt: 0.0,
+            left_out: 0.0,
+            weight: 1.0,
+            may_lack: false,
+        }
+    }
 }
 
 /// Buffers for finding places, and the last places. Kept from scan to scan: once the buffers are
@@ -277,7 +291,7 @@ pub struct Workspace {
     /// Lead of the best place over each place.
     leads: Vec<f64>,
     places: Places,
-    /// Lead that the best place needs to be unique.
+    /// What the best place needs to be unique.
     margin: Margin,
     /// Beams of the last scan that was compared with a map.
     ends: Ends,
@@ -290,7 +304,7 @@ pub struct Judged<'w> {
     pub places: &'w Places,
     /// Beams that were compared with the map.
     pub ends: &'w Ends,
-    /// Lead over others that the best place needs.
+    /// What the best place needs to be unique.
     pub margin: Margin,
 }
 

@@ -40,7 +40,7 @@ pub fn sentence(verdict: Verdict, places: &[PlaceSummary]) -> String {
             "the best place has a fit of only {:.2}: is it this map?",
             fit(best)
         ),
-        (Verdict::Ambiguous, [_]) => "several places fit about as well".into(),
+        (Verdict::Ambiguous, [_]) => "no place stands out enough to be sure".into(),
         (Verdict::Ambiguous, [best, others @ ..]) => {
             format!("{} places fit: {}", places.len(), apart(best, others))
         }
@@ -118,7 +118,7 @@ mod tests {
         );
         assert_eq!(
             say(Verdict::Ambiguous, &[at(0.0, 0.0, 0.0)]),
-            "several places fit about as well"
+            "no place stands out enough to be sure"
         );
     }
 

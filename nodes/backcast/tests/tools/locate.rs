@@ -259,7 +259,7 @@ fn settings_reach_the_engine() {
     assert_eq!(votes("--max-votes 1 --candidates 0")["total"], 1);
     let verdict = |options| objects(folder.path(), options)[0]["verdict"].clone();
     assert_eq!(verdict(""), "Unique");
-    assert_eq!(verdict("--floor-share 0.3 --least-lead 1"), "Ambiguous");
+    assert_eq!(verdict("--floor-share 0.3 --unique-from 1"), "Ambiguous");
     assert_eq!(verdict("--least-score 1"), "PoorFit");
     let many = objects(folder.path(), "--floor-share 0.3 --max-hypotheses 5").remove(0);
     assert_eq!(many["hypotheses"].as_array().unwrap().len(), 5);

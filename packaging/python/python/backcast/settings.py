@@ -145,47 +145,40 @@ class Settings(TypedDict, total=False):
     # are. Default: 0.15.
     drawn_doubt: float
 
-    # Another place whose score lies behind the best by less makes the answer ambiguous, 0..=1.
-    # The lead is measured against what is missing of a perfect score: (best - other) / √(1.1 -
-    # best). Default: 0.09.
-    least_lead: float
-
-    # What a best place's score lacks of this must be made up for by its lead, 0..=1: where the
-    # scan fits badly, the true place may not be on the map. This is for a scan that sees six
-    # pieces, see piece_doubt. Default: 0.74.
+    # Score from which nothing but the lead over other places decides, 0..=1; a best place with a
+    # lower score needs a larger lead: where the scan fits badly, the true place may not be on the
+    # map. This is for a scan that sees six pieces, see piece_doubt. Default: 0.68.
     sure_score: float
 
-    # By so much the sure score falls with the natural logarithm of the pieces of the world that
-    # a scan sees, 0..=1, since many rarely fit together by chance. Where neighbouring readings
-    # leap, another piece begins. Default: 0.14.
+    # Fall of the sure score with the natural logarithm of the number of pieces of the world that
+    # a scan sees, 0..=1, since many pieces rarely fit together by chance. A new piece begins
+    # where neighbouring readings jump. Default: 0.25.
     piece_doubt: float
 
-    # Where beams pass through obstacles at the best place, its score counts for less against
-    # that by this times their share, 0..=1. Which place is best does not depend on it, see
-    # through_penalty: walls that are seen at a flat angle are passed through at the true place,
-    # too. Default: 0.4.
+    # Doubt because of beams that pass through obstacles or end behind unknown space at the best
+    # place: the score that is compared with the sure score is lowered by this times their share,
+    # 0..=1. It does not change which place is best, see through_penalty. Default: 0.9.
     through_doubt: float
 
-    # A scan of fewer beams needs a lead that is larger by the root of what it lacks, for chance
-    # makes its scores differ so much more, 1..=1000. A beam of little weight counts for less
-    # than one. Default: 100.
+    # Number of beams whose scores decide as they are, 1..=1000: with fewer, scores vary more by
+    # chance, and a lead counts for less by the square root of what is missing. Default: 100.
     sure_beams: int
 
-    # A best place with a lower score fits poorly: the scan may not be of this map, 0..=1.
-    # Default: 0.6.
-    least_score: float
+    # Increase of the lead, less what the score lacks of the sure score, that makes it less likely
+    # by a factor of e that the best place is wrong, 0.001..=1. The lead is measured relative to
+    # what is missing of a perfect score: (best - other) / √(1.1 - best). Default: 0.09.
+    doubt_scale: float
 
-    # Each such lead makes another place less likely by a factor of e, 0.001..=1. Default:
-    # 0.025.
+    # Lead that makes another place less likely than the best by a factor of e, 0.001..=1.
+    # Default: 0.025.
     lead_scale: float
 
-    # A single place with this score is as likely as that the robot is at none that was found,
-    # 0..=1. Default: 0.55.
-    even_score: float
+    # Probability from which the best place is unique, 0..=1. Default: 0.75.
+    unique_from: float
 
-    # By each such score above that, none becomes less likely by a factor of e, 0.001..=1.
-    # Default: 0.06.
-    score_scale: float
+    # Minimum score of the best place; below it the verdict is PoorFit: the scan may not be of
+    # this map, 0..=1. Default: 0.6.
+    least_score: float
 
 
 class TrackerSettings(Settings, total=False):
