@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::EngineError;
 use engine::joined::{ByOdometry, Joiner, ODOMETRY_WAIT_MS, Role};
-use engine::tracking::{Candidate, Need, Tracker};
+use engine::tracking::{Candidate, Need, PlaceTracker};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -56,7 +56,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         worlds: Worlds::default(),
         served: None,
         shown: None,
-        tracker: Tracker::new(config.tracking),
+        tracker: PlaceTracker::new(config.tracking),
         scans: Scans::default(),
         answers: Answers::default(),
         turn: Turn::Idle,
@@ -98,7 +98,7 @@ struct Node {
     served: Option<Served>,
     /// Id of the map of a set that is displayed.
     shown: Option<u64>,
-    tracker: Tracker,
+    tracker: PlaceTracker,
     scans: Scans,
     answers: Answers,
     /// State of the current scan.

@@ -45,7 +45,7 @@ pub(crate) struct Tracker {
 /// State that is kept from scan to scan.
 #[derive(Debug)]
 struct State {
-    tracker: tracking::Tracker,
+    tracker: tracking::PlaceTracker,
     /// Newest scan, and the motion of the robot.
     joiner: Joiner,
     /// Scan to be searched later, if the tracker needs it.
@@ -61,7 +61,7 @@ struct State {
 impl State {
     fn new(config: TrackingConfig, join: JoinConfig) -> Self {
         State {
-            tracker: tracking::Tracker::new(config),
+            tracker: tracking::PlaceTracker::new(config),
             joiner: Joiner::new(join),
             asked: None,
             before: None,

@@ -58,7 +58,7 @@ pub enum Need {
     Nothing,
     /// A search for this scan.
     ThisScan,
-    /// The search that [`Tracker::asks_ahead`] requested earlier.
+    /// The search that [`PlaceTracker::asks_ahead`] requested earlier.
     EarlierScan,
 }
 
@@ -71,9 +71,9 @@ const COUNTS_AFTER: u32 = 2;
 /// Smallest number of beams of a usable scan.
 pub const MIN_BEAMS: usize = 10;
 
-/// Finds the robot and tracks its pose.
+/// State machine that keeps the places where the robot may be. Its caller sees the scans and searches.
 #[derive(Debug, Clone)]
-pub struct Tracker {
+pub struct PlaceTracker {
     config: TrackingConfig,
     /// Transitions between the maps.
     transitions: Vec<Transition>,
@@ -102,11 +102,11 @@ pub struct Tracker {
     tried: Option<(Hint, DrivenPath)>,
 }
 
-impl Tracker {
+impl PlaceTracker {
     /// Creates a tracker that knows no place yet.
     #[must_use]
     pub fn new(config: TrackingConfig) -> Self {
-        Tracker {
+        PlaceTracker {
             config,
             transitions: Vec::new(),
             places: Places::new(config),
@@ -136,7 +136,7 @@ impl Tracker {
     /// Forgets everything except the settings and the transitions.
     fn start_over(&mut self) {
         let transitions = std::mem::take(&mut self.transitions);
-        *self = Tracker::new(self.config).with_transitions(transitions);
+        *self = PlaceTracker::new(self.config).with_transitions(transitions);
     }
 
     /// Gives a hint: a pose, on the map with this number, at which to expect the robot at the next
@@ -173,7 +173,7 @@ impl Tracker {
 
     /// Takes the next scan, as seen on each of the maps, by map number, and the motion of the
     /// target frame since the scan before. If odometry does not measure the motion, scans are
-    /// matched instead. [`Tracker::finish`] ends the work on the scan.
+    /// matched instead. [`PlaceTracker::finish`] ends the work on the scan.
     ///
     /// # Panics
     /// If there is no map.

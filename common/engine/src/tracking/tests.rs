@@ -21,7 +21,7 @@ use self::building::{ALIKE, Building, RESOLUTION_M, UNLIKE, building};
 
 const START: Pose = Pose::new(1.0, 0.8, 0.0);
 
-fn is_at(tracker: &Tracker, truth: Pose) -> bool {
+fn is_at(tracker: &PlaceTracker, truth: Pose) -> bool {
     let pose = tracker.report().pose;
     pose.is_some_and(|pose| pose.is_within(truth, 0.1, 0.05))
 }
@@ -29,7 +29,7 @@ fn is_at(tracker: &Tracker, truth: Pose) -> bool {
 #[test]
 fn one_scan_is_never_enough_and_a_few_metres_are() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     assert_eq!(building.step(&mut tracker, START, None), Need::ThisScan);
     assert_eq!(tracker.report().state, TrackState::Searching);
     let end = building.drive(&mut tracker, START, 10);
@@ -45,7 +45,7 @@ fn one_scan_is_never_enough_and_a_few_metres_are() {
 /// Handles a scan without answers to searches.
 fn unanswered(
     building: &Building,
-    tracker: &mut Tracker,
+    tracker: &mut PlaceTracker,
     truth: Pose,
     moved: Option<Pose>,
 ) -> Need {
@@ -93,7 +93,7 @@ fn a_doubt_stays_until_a_search_has_an_answer() {
 #[test]
 fn the_map_is_only_blamed_after_a_search() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     unanswered(&building, &mut tracker, START, None);
     assert_eq!(tracker.report().reason, TrackReason::NoSearch);
     let (ends, fit) = (building.ends(START), FitConfig::default());
@@ -106,7 +106,7 @@ fn the_map_is_only_blamed_after_a_search() {
 #[test]
 fn nothing_becomes_the_only_place_without_a_search() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let step = Pose::new(0.3, 0.0, 0.0);
     let mut pose = START;
@@ -122,7 +122,7 @@ fn nothing_becomes_the_only_place_without_a_search() {
 #[test]
 fn places_that_look_alike_are_never_distinguished() {
     let building = building(&ALIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     building.drive(&mut tracker, START, 6);
     let report = tracker.report();
@@ -142,7 +142,7 @@ fn places_that_look_alike_are_never_distinguished() {
 #[test]
 fn a_robot_that_is_carried_away_is_noticed_at_once_and_found_again() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     building.drive(&mut tracker, START, 8);
     assert_eq!(tracker.report().state, TrackState::Unique);
@@ -233,7 +233,7 @@ fn what_fits_badly_for_long_is_not_taken_for_good() {
 #[test]
 fn what_odometry_misses_is_followed() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let at = building.drive(&mut tracker, START, 8);
     // The robot turns by 20° and the wheels do not report it.
@@ -252,7 +252,7 @@ fn what_odometry_misses_is_followed() {
 #[test]
 fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_lost() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let at = building.drive(&mut tracker, START, 8);
     assert_eq!(tracker.report().state, TrackState::Unique);
@@ -277,7 +277,7 @@ fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_los
 #[test]
 fn a_robot_that_stands_keeps_its_pose() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let at = building.drive(&mut tracker, START, 8);
     let pose = tracker.report().pose;
@@ -352,7 +352,7 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
 #[test]
 fn a_scan_of_nothing_changes_nothing() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     let (ends, fit) = (Ends::default(), FitConfig::default());
     let seen = building.seen(&ends, &fit);
     assert_eq!(tracker.begin(&[seen], 1, None), Need::Nothing);
@@ -366,7 +366,7 @@ fn a_scan_of_nothing_changes_nothing() {
 #[test]
 fn tracking_allocates_nothing() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
     let mut at = building.drive(&mut tracker, START, 8);
     let step = Pose::new(0.0, 0.0, 0.1);
@@ -390,7 +390,7 @@ fn a_robot_that_stands_is_found_by_one_scan_where_that_is_believed() {
         start: Start::Believe,
         ..TrackingConfig::default()
     };
-    let mut tracker = Tracker::new(config);
+    let mut tracker = PlaceTracker::new(config);
     building.step(&mut tracker, START, None);
     assert_eq!(tracker.report().state, TrackState::Unique);
     assert!(is_at(&tracker, START));
@@ -403,7 +403,7 @@ fn rooms_that_are_alike_are_believed_by_no_single_scan() {
         start: Start::Believe,
         ..TrackingConfig::default()
     };
-    let mut tracker = Tracker::new(config);
+    let mut tracker = PlaceTracker::new(config);
     building.step(&mut tracker, START, None);
     assert_eq!(tracker.report().state, TrackState::Searching);
 }

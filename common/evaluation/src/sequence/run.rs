@@ -1,6 +1,6 @@
 //! Runs the tracker over moments of a drive.
 
-use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
+use engine::tracking::{Candidate, Need, PlaceTracker, Report, Seen, TrackingConfig};
 use geometry::{Covariance, Pose};
 use messages::TrackState;
 use offline::{World, cpu};
@@ -11,7 +11,7 @@ use crate::trust::Trust;
 pub(super) struct Run<'a> {
     world: &'a World,
     moments: &'a [Moment],
-    tracker: Tracker,
+    tracker: PlaceTracker,
     /// Moment whose search result is delivered at a later scan.
     asked: Option<usize>,
     /// CPU time of each scan that was tracked without a search, in milliseconds.
@@ -93,7 +93,7 @@ impl<'a> Run<'a> {
         Run {
             world,
             moments,
-            tracker: Tracker::new(config),
+            tracker: PlaceTracker::new(config),
             asked: None,
             tracking_ms: Vec::new(),
             searches: 0,

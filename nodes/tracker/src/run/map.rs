@@ -1,7 +1,7 @@
 //! Maps, and the expected pose of the robot on them.
 
 use engine::peaks::Target;
-use engine::tracking::Tracker;
+use engine::tracking::PlaceTracker;
 use geometry::{Covariance, Pose};
 use messages::{MapHeader, MapSet, MapsHeader, NodeState, TrackState};
 use transport::{TransportError, with_causes};
@@ -111,8 +111,8 @@ impl Node {
     }
 
     /// Returns a tracker without knowledge of the pose.
-    pub(super) fn nothing_known(&self) -> Tracker {
-        Tracker::new(self.config.tracking).with_transitions(self.worlds.transitions.to_vec())
+    pub(super) fn nothing_known(&self) -> PlaceTracker {
+        PlaceTracker::new(self.config.tracking).with_transitions(self.worlds.transitions.to_vec())
     }
 
     /// Returns the number of the map on which the robot was last, or 0 before that.

@@ -13,7 +13,7 @@ fn a_robot_that_sees_nothing_goes_on_by_odometry_and_is_doubtful_once_it_may_be_
     let (nothing, fit) = (Ends::default(), FitConfig::default());
     let seen = building.seen(&nothing, &fit);
     let step = Pose::new(0.2, 0.0, 0.0);
-    let see_nothing = |tracker: &mut Tracker| {
+    let see_nothing = |tracker: &mut PlaceTracker| {
         assert_eq!(tracker.begin(&[seen], 1, Some(step)), Need::Nothing);
         tracker.finish(&[seen], None);
         tracker.report()

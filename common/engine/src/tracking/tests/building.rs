@@ -108,7 +108,12 @@ impl Building {
     }
 
     /// Gives a tracker the scan at a pose; returns the search that was needed.
-    pub(super) fn step(&self, tracker: &mut Tracker, truth: Pose, moved: Option<Pose>) -> Need {
+    pub(super) fn step(
+        &self,
+        tracker: &mut PlaceTracker,
+        truth: Pose,
+        moved: Option<Pose>,
+    ) -> Need {
         let (ends, fit) = (self.ends(truth), FitConfig::default());
         let seen = self.seen(&ends, &fit);
         let need = tracker.begin(&[seen], 1, moved);
@@ -118,9 +123,9 @@ impl Building {
     }
 
     /// A tracker that believes the true pose of the robot.
-    pub(super) fn believed(&self, truth: Pose) -> Tracker {
+    pub(super) fn believed(&self, truth: Pose) -> PlaceTracker {
         let (ends, fit) = (self.ends(truth), FitConfig::default());
-        let mut tracker = Tracker::new(TrackingConfig::default());
+        let mut tracker = PlaceTracker::new(TrackingConfig::default());
         let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
         tracker.start_at(&[self.seen(&ends, &fit)], (0, truth), covariance);
         self.step(&mut tracker, truth, Some(Pose::IDENTITY));
@@ -128,7 +133,7 @@ impl Building {
     }
 
     /// Drives straight on by steps of 0.3 m.
-    pub(super) fn drive(&self, tracker: &mut Tracker, from: Pose, steps: usize) -> Pose {
+    pub(super) fn drive(&self, tracker: &mut PlaceTracker, from: Pose, steps: usize) -> Pose {
         let step = Pose::new(0.3, 0.0, 0.0);
         let mut pose = from;
         for _ in 0..steps {

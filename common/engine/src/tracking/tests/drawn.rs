@@ -31,7 +31,7 @@ const DRAWN: [&str; 22] = [
 #[test]
 fn a_drawn_map_may_be_right_where_a_measured_one_fits_better() {
     let maps = [building(&DRAWN), building(&UNLIKE)];
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     let (mut pose, mut moved) = (START, None);
     for number in 0..8 {
         let mut ranges = maps[1].ranges(pose);

@@ -61,17 +61,17 @@ impl Floors {
     }
 
     /// A tracker that knows the lift.
-    fn tracker() -> Tracker {
+    fn tracker() -> PlaceTracker {
         let lift = transition([LIFT; 2], [SIDE_M; 2]);
-        Tracker::new(TrackingConfig::default()).with_transitions(vec![lift])
+        PlaceTracker::new(TrackingConfig::default()).with_transitions(vec![lift])
     }
 
     /// Gives a tracker the scan at a pose of a floor; all floors are searched.
-    fn step(&self, tracker: &mut Tracker, (floor, truth): (usize, Pose), moved: Option<Pose>) {
+    fn step(&self, tracker: &mut PlaceTracker, (floor, truth): (usize, Pose), moved: Option<Pose>) {
         self.see(tracker, &self.0[floor].ranges(truth), moved);
     }
 
-    fn see(&self, tracker: &mut Tracker, ranges: &[f32], moved: Option<Pose>) {
+    fn see(&self, tracker: &mut PlaceTracker, ranges: &[f32], moved: Option<Pose>) {
         let (ends, fit) = (self.0[0].ends_of(ranges), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
         let need = tracker.begin(&seen, 1, moved);
@@ -87,7 +87,7 @@ impl Floors {
     }
 
     /// Starts a tracker at a trusted pose on the first floor.
-    fn start_at(&self, tracker: &mut Tracker, pose: Pose) {
+    fn start_at(&self, tracker: &mut PlaceTracker, pose: Pose) {
         let (ends, fit) = (self.0[0].ends(pose), measured());
         let seen: Vec<_> = self.0.iter().map(|map| map.seen(&ends, &fit)).collect();
         let covariance = Covariance::from_deviations(0.1, 0.1, 0.1);
@@ -99,7 +99,7 @@ impl Floors {
     /// each with its map.
     fn drive(
         &self,
-        tracker: &mut Tracker,
+        tracker: &mut PlaceTracker,
         (floor, from): (usize, Pose),
         (steps, turns): (usize, usize),
     ) -> (Pose, Vec<(TrackState, u32)>) {
@@ -115,13 +115,13 @@ impl Floors {
     }
 }
 
-fn in_the_lift(floors: &Floors) -> (Tracker, Pose) {
+fn in_the_lift(floors: &Floors) -> (PlaceTracker, Pose) {
     let mut tracker = Floors::tracker();
     let pose = into_the_lift(floors, &mut tracker);
     (tracker, pose)
 }
 
-fn into_the_lift(floors: &Floors, tracker: &mut Tracker) -> Pose {
+fn into_the_lift(floors: &Floors, tracker: &mut PlaceTracker) -> Pose {
     floors.start_at(tracker, START);
     let (pose, states) = floors.drive(tracker, (0, START), (8, 0));
     assert!(states.contains(&(TrackState::Unique, 0)), "{states:?}");
@@ -134,7 +134,7 @@ fn into_the_lift(floors: &Floors, tracker: &mut Tracker) -> Pose {
 }
 
 /// The robot goes up in the lift and drives out; checks that it is tracked and found.
-fn goes_up(floors: &Floors, tracker: &mut Tracker, pose: Pose) {
+fn goes_up(floors: &Floors, tracker: &mut PlaceTracker, pose: Pose) {
     // The robot stands while the lift goes up.
     floors.step(tracker, (1, pose), Some(Pose::IDENTITY));
     let (end, states) = floors.drive(tracker, (1, pose), (4, 6));
@@ -195,7 +195,7 @@ fn the_maps_of_a_transition_may_be_turned_and_shifted() {
     let above: Vec<&str> = above.iter().map(String::as_str).collect();
     let floors = Floors::of(&[&UNLIKE, &above]);
     let lift = transition([LIFT, on_turned(LIFT, &ABOVE)], [SIDE_M; 2]);
-    let mut tracker = Tracker::new(TrackingConfig::default()).with_transitions(vec![lift]);
+    let mut tracker = PlaceTracker::new(TrackingConfig::default()).with_transitions(vec![lift]);
     let pose = on_turned(into_the_lift(&floors, &mut tracker), &ABOVE);
     goes_up(&floors, &mut tracker, pose);
 }
@@ -256,7 +256,7 @@ fn a_floor_that_does_not_fit_stays_possible_inside_a_transition() {
     let floors = Floors::of(&[&UNLIKE, &hall]);
     let at = [Pose::new(2.5, 0.8, 0.0), Pose::new(6.0, 3.0, 0.0)];
     let stairs = transition(at, [2.8, 1.2]);
-    let mut tracker = Tracker::new(TrackingConfig::default()).with_transitions(vec![stairs]);
+    let mut tracker = PlaceTracker::new(TrackingConfig::default()).with_transitions(vec![stairs]);
     floors.start_at(&mut tracker, Pose::new(0.8, 0.8, 0.0));
     let step = Pose::new(0.4, 0.0, 0.0);
     let mut states = Vec::new();

@@ -19,7 +19,7 @@ fn twin(pose: Pose) -> Pose {
 
 /// Gives a tracker the scan of a standing robot, and the answers to all searches in time; returns
 /// the search that was needed.
-fn stand(building: &Building, tracker: &mut Tracker, truth: Pose) -> Need {
+fn stand(building: &Building, tracker: &mut PlaceTracker, truth: Pose) -> Need {
     let (ends, fit) = (building.ends(truth), FitConfig::default());
     let seen = building.seen(&ends, &fit);
     let need = tracker.begin(&[seen], 1, Some(Pose::IDENTITY));
@@ -28,7 +28,7 @@ fn stand(building: &Building, tracker: &mut Tracker, truth: Pose) -> Need {
     need
 }
 
-fn believes(tracker: &Tracker, pose: Pose) -> bool {
+fn believes(tracker: &PlaceTracker, pose: Pose) -> bool {
     let state = tracker.report().state;
     matches!(state, TrackState::Unique | TrackState::Doubtful) && is_at(tracker, pose)
 }
@@ -36,12 +36,12 @@ fn believes(tracker: &Tracker, pose: Pose) -> bool {
 #[test]
 fn an_expected_pose_is_believed_where_a_scan_confirms_it() {
     let building = building(&ALIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     tracker.expect((0, START), Covariance::from_deviations(0.3, 0.3, 0.2));
     building.step(&mut tracker, START, None);
     assert_eq!(tracker.report().state, TrackState::Unique);
     assert!(is_at(&tracker, START));
-    let mut wrong = Tracker::new(TrackingConfig::default());
+    let mut wrong = PlaceTracker::new(TrackingConfig::default());
     wrong.expect(
         (0, Pose::new(3.0, 0.3, 1.0)),
         Covariance::from_deviations(0.1, 0.1, 0.1),
@@ -75,7 +75,7 @@ fn a_hint_near_the_pose_that_is_believed_changes_nothing() {
 #[test]
 fn a_hint_near_the_one_that_is_tried_starts_nothing_anew() {
     let building = building(&UNLIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     tracker.expect((0, START), pointed());
     let still = Some(Pose::IDENTITY);
     assert_eq!(
@@ -118,7 +118,7 @@ fn wrong_hints_leave_the_pose_as_it_is() {
 #[test]
 fn a_hint_at_a_place_that_looks_alike_is_taken_up_and_a_pose_is_there_all_the_while() {
     let building = building(&ALIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     tracker.expect((0, START), pointed());
     stand(&building, &mut tracker, START);
     assert_eq!(tracker.report().state, TrackState::Unique);
@@ -154,7 +154,7 @@ fn a_robot_that_was_carried_away_is_believed_where_a_hint_says_it_is() {
 #[test]
 fn a_hint_is_not_taken_up_without_a_search() {
     let building = building(&ALIKE);
-    let mut tracker = Tracker::new(TrackingConfig::default());
+    let mut tracker = PlaceTracker::new(TrackingConfig::default());
     tracker.expect((0, START), pointed());
     stand(&building, &mut tracker, START);
     tracker.expect((0, twin(START)), pointed());
