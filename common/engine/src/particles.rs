@@ -118,9 +118,10 @@ impl Seed {
     fn new(frame: GridFrame, candidate: &Candidate) -> Option<Self> {
         let Candidate {
             map_from_target,
-            covariance: Covariance(covariance),
+            covariance,
             weight,
         } = *candidate;
+        let covariance = Matrix3::from(covariance);
         let pose = GridPose::of(frame, map_from_target);
         let GridPose { x, y, heading } = &pose;
         let mut numbers = covariance.iter().chain([x, y, heading, &weight]);
@@ -219,7 +220,7 @@ mod tests {
     #[test]
     fn candidates_that_are_no_numbers_are_left_out() {
         let mut broken = candidate(0.0, 1.0);
-        broken.covariance.0[(1, 1)] = f64::NAN;
+        broken.covariance = Covariance::from_deviations(0.3, f64::NAN, 0.05);
         let refused = Seeds::new(FRAME, [broken, candidate(1.0, -1.0)]);
         assert_eq!(refused.err(), Some(EngineError::NoStart));
         let seeds = Seeds::new(FRAME, [broken, candidate(0.0, 0.0), candidate(9.0, 0.0)]);

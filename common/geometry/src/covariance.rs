@@ -14,7 +14,7 @@ pub const ANGLE_95: f64 = 1.959_963_984_540_054;
 /// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
 /// in the frame in which the pose is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Covariance(pub Matrix3<f64>);
+pub struct Covariance(Matrix3<f64>);
 
 /// The one-sigma ellipse of a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +69,13 @@ impl Covariance {
         Covariance(Matrix3::from_row_slice(&rows))
     }
 
+    /// True if the covariance is positive definite, and symmetric up to the rounding of 32 bits.
+    #[must_use]
+    pub fn is_positive_definite(self) -> bool {
+        let asymmetry = (self.0 - self.0.transpose()).amax();
+        asymmetry <= 1e-6 * self.0.amax() && self.0.cholesky().is_some()
+    }
+
     /// Returns the one-sigma ellipse of the position, with the heading marginalised.
     #[must_use]
     pub fn ellipse(self) -> Ellipse {
@@ -98,6 +105,18 @@ impl Covariance {
 
     fn of_position(self) -> Matrix2<f64> {
         self.0.fixed_view::<2, 2>(0, 0).into_owned()
+    }
+}
+
+impl From<Matrix3<f64>> for Covariance {
+    fn from(matrix: Matrix3<f64>) -> Self {
+        Covariance(matrix)
+    }
+}
+
+impl From<Covariance> for Matrix3<f64> {
+    fn from(covariance: Covariance) -> Self {
+        covariance.0
     }
 }
 

@@ -71,8 +71,8 @@ fn covariance(from: &HypothesesHeader, item: &Hypothesis) -> Covariance {
 fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covariance {
     let on_map = from.on_map(items);
     let count = on_map.clone().count().max(1);
-    let parts = on_map.map(|item| covariance(from, item).about(robot(from, item), about).0);
-    Covariance(parts.sum::<Matrix3<f64>>() / count as f64)
+    let parts = on_map.map(|item| covariance(from, item).about(robot(from, item), about));
+    (parts.map(Matrix3::from).sum::<Matrix3<f64>>() / count as f64).into()
 }
 
 /// Converts the tracker's pose: of the base, or of the laser if no mount is known. `None` if it

@@ -49,10 +49,7 @@ impl Memory {
         let found: Remembered = serde_json::from_str(&text).map_err(|error| self.refuse(&error))?;
         let is_sound = found.map_from_base.is_finite()
             && found.covariance.iter().all(|value| value.is_finite())
-            && Covariance::from_rows(found.covariance)
-                .0
-                .cholesky()
-                .is_some();
+            && Covariance::from_rows(found.covariance).is_positive_definite();
         match is_sound {
             true => Ok(Some(found)),
             false => Err(self.refuse(&"its pose or covariance is not valid")),

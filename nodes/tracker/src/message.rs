@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Report;
-use geometry::{Covariance, Pose};
+use geometry::Pose;
 use messages::{FrameName, MapName, PoseHeader, Stamp, TrackReason, TrackState};
 
 /// Tracking result of a scan.
@@ -58,8 +58,8 @@ impl Tracked {
         let laser = self.target.laser(map_from_target);
         let base = self.target.base(map_from_target);
         let covariance = |of: Pose| {
-            let target = Covariance(report.covariance);
-            target.carried(map_from_target, of).to_rows()
+            let carried = report.covariance.carried(map_from_target, of);
+            carried.to_rows()
         };
         let frame = self.by_odometry.map(|(_, frame)| frame);
         PoseHeader {

@@ -71,9 +71,7 @@ pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covar
         _ => return Err(wrong()),
     };
     let covariance = Covariance::from_rows(numbers);
-    // Rounding may leave it slightly asymmetric.
-    let is_symmetric = (covariance.0 - covariance.0.transpose()).amax() <= 1e-9;
-    match is_symmetric && covariance.0.cholesky().is_some() {
+    match covariance.is_positive_definite() {
         true => Ok(covariance),
         false => Err(wrong()),
     }

@@ -2,7 +2,7 @@
 
 use engine::peaks::Target;
 use engine::tracking::Report;
-use geometry::{Covariance, Pose};
+use geometry::Pose;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -76,7 +76,7 @@ impl Followed {
             Some(_) => target.base(laser),
             None => laser,
         });
-        let of_laser = Covariance(report.covariance);
+        let of_laser = report.covariance;
         let covariance = laser
             .zip(pose)
             .map(|(laser, pose)| of_laser.carried(laser, pose));

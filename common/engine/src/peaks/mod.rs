@@ -86,7 +86,7 @@ impl<'a> PeakInput<'a> {
 /// Converts a covariance over cells and radians of a grid's frame to metres along the map's axes.
 pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
     let turn = frame.metres_from_cells();
-    Covariance(turn * in_cells * turn.transpose())
+    (turn * in_cells * turn.transpose()).into()
 }
 
 /// One place where the robot may be.

@@ -247,7 +247,7 @@ impl Belief {
             reason: self.reason,
             map: place.map_or(0, |place| place.map),
             pose: at.map(|(pose, _)| pose),
-            covariance: at.map_or(covariance, |(_, covariance)| covariance),
+            covariance: at.map_or(covariance, |(_, covariance)| covariance).into(),
             probability: self.probability,
             score: place.filter(|_| !is_blind).map_or(0.0, |place| place.last),
             lead: (self.probability / (1.0 - self.probability).max(1e-9))

@@ -71,7 +71,7 @@ const COUNTS_AFTER: u32 = 2;
 /// Smallest number of beams of a usable scan.
 pub const MIN_BEAMS: usize = 10;
 
-/// State machine that keeps the places where the robot may be. Its caller sees the scans and searches.
+/// State machine that keeps the places where the robot may be. Its caller searches the maps.
 #[derive(Debug, Clone)]
 pub struct PlaceTracker {
     config: TrackingConfig,
@@ -167,7 +167,7 @@ impl PlaceTracker {
         covariance: Covariance,
     ) {
         self.start_over();
-        let id = self.places.start_at(seen, (map, (pose, covariance.0)));
+        let id = self.places.start_at(seen, (map, (pose, covariance.into())));
         self.belief.believe(id);
     }
 

@@ -66,7 +66,7 @@ impl Candidate {
     /// Pose and covariance, in the form that places use.
     pub(super) fn at(&self) -> (Pose, Matrix3<f64>) {
         // The covariance already contains the additional error of a drawn map.
-        let covariance = with_map_error(self.covariance.0, 0.0);
+        let covariance = with_map_error(self.covariance.into(), 0.0);
         (self.pose, tightened(covariance))
     }
 }

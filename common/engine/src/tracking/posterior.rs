@@ -59,8 +59,8 @@ pub(super) fn spread(places: &[Place], about: &Place) -> Matrix3<f64> {
     let weight = |place: &Place| (place.log_weight - top).exp();
     let all: f64 = on_map().map(weight).sum();
     let parts = on_map().map(|place| {
-        let about = Covariance(place.covariance).about(place.pose, about.pose);
-        about.0 * (weight(place) / all)
+        let covariance = Covariance::from(place.covariance);
+        Matrix3::from(covariance.about(place.pose, about.pose)) * (weight(place) / all)
     });
     parts.sum()
 }

@@ -1,8 +1,7 @@
 //! The tracker's report.
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};
-use nalgebra::Matrix3;
 
 use super::driven_path::DrivenPath;
 use super::nowhere::is_blind;
@@ -20,7 +19,7 @@ pub struct Report {
     pub pose: Option<Pose>,
     /// Covariance of the pose, in m², m·rad and rad². Unless the state is `Unique`, it spans all
     /// places kept on the pose's map; it cannot express places on other maps.
-    pub covariance: Matrix3<f64>,
+    pub covariance: Covariance,
     /// Probability that the robot is there, 0..=1.
     pub probability: f64,
     /// Score of the last scan there, at most 1.
@@ -54,7 +53,7 @@ impl Report {
         };
         let mut path = DrivenPath::default();
         path.add(Some(step));
-        let (pose, covariance) = path.carry((pose, self.covariance), odometry_error);
+        let (pose, covariance) = path.carry((pose, self.covariance.into()), odometry_error);
         let is_lost_sight = self.state == TrackState::Unique && is_blind(&(pose, covariance));
         let (state, reason) = match is_lost_sight {
             true => (TrackState::Doubtful, TrackReason::NoScan),
@@ -64,7 +63,7 @@ impl Report {
             state,
             reason,
             pose: Some(pose),
-            covariance,
+            covariance: covariance.into(),
             ..*self
         }
     }
@@ -150,7 +149,7 @@ mod tests {
             reason,
             map: 0,
             pose: None,
-            covariance: Matrix3::zeros(),
+            covariance: Covariance::from_deviations(0.0, 0.0, 0.0),
             probability: 0.5,
             score: 0.14,
             lead: 1.0,
@@ -200,14 +199,14 @@ mod tests {
     fn without_scans_the_ellipse_grows_until_the_pose_is_doubtful() {
         let at = Report {
             pose: Some(Pose::new(1.0, 2.0, 0.0)),
-            covariance: Matrix3::identity() * 0.03f64.powi(2),
+            covariance: Covariance::from_deviations(0.03, 0.03, 0.03),
             ..report(TrackState::Unique, TrackReason::OnePlace)
         };
         assert_eq!(at.carried(Pose::IDENTITY, 1.0).covariance, at.covariance);
         let near = at.carried(Pose::new(1.0, 0.0, 0.0), 1.0);
         assert_eq!(near.state, TrackState::Unique);
         // 15 cm per metre, from the study of eight robots' odometry.
-        assert!((near.covariance[(0, 0)].sqrt() - 0.15f64.hypot(0.03)).abs() < 1e-9);
+        assert!((near.covariance.to_rows()[0].sqrt() - 0.15f64.hypot(0.03)).abs() < 1e-9);
         let far = at.carried(Pose::new(4.0, 0.0, 0.0), 1.0);
         assert_eq!(far.pose, Some(Pose::new(5.0, 2.0, 0.0)));
         assert_eq!(far.state, TrackState::Doubtful);

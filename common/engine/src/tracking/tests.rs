@@ -39,7 +39,7 @@ fn one_scan_is_never_enough_and_a_few_metres_are() {
         (TrackState::Unique, TrackReason::OnePlace)
     );
     assert!(is_at(&tracker, end), "{report:?}");
-    assert!(report.covariance[(0, 0)].sqrt() < 0.1 && report.probability > 0.94);
+    assert!(report.covariance.to_rows()[0].sqrt() < 0.1 && report.probability > 0.94);
 }
 
 /// Handles a scan without answers to searches.
@@ -133,7 +133,7 @@ fn places_that_look_alike_are_never_distinguished() {
     assert_eq!(report.rivals, 2, "{}", report.words());
     // The two places are half a turn and metres apart: the covariance spans both.
     assert!(
-        report.covariance[(0, 0)].sqrt() > 0.3,
+        report.covariance.to_rows()[0].sqrt() > 0.3,
         "{:?}",
         report.covariance
     );

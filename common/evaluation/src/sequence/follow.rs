@@ -1,7 +1,6 @@
 //! Runs the tracker over a whole drive, starting at the truth.
 
 use engine::tracking::TrackingConfig;
-use geometry::Covariance;
 use offline::World;
 
 use super::drive::Moment;
@@ -161,6 +160,6 @@ fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
     let Some(((target, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
         return false;
     };
-    let covariance = Covariance(said.report.covariance).carried(target, laser);
+    let covariance = said.report.covariance.carried(target, laser);
     statistics::holds(covariance, laser, truth)
 }

@@ -108,7 +108,7 @@ fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
         let is_base = pose.base.is_some();
         let spread = pose.covariance().map_or(String::new(), |covariance| {
             let m = ELLIPSE_95 * covariance.ellipse().major_m;
-            let deg = ANGLE_95 * covariance.0[(2, 2)].max(0.0).sqrt().to_degrees();
+            let deg = ANGLE_95 * covariance.to_rows()[8].max(0.0).sqrt().to_degrees();
             format!(" +- {m:.3} m, {deg:.2} deg (95 %)")
         });
         let text = format!(

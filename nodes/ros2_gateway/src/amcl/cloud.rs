@@ -5,6 +5,7 @@
 
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, PoseHeader};
+use nalgebra::{Matrix3, Vector3};
 use ros::nav2_msgs::{Particle, ParticleCloud};
 use ros::{Header, planar};
 
@@ -53,9 +54,9 @@ fn cloud(header: Header, places: impl Iterator<Item = Place>) -> ParticleCloud {
             pose: planar::pose(pose),
             weight,
         };
-        match covariance.0.cholesky() {
+        match Matrix3::from(covariance).cholesky() {
             Some(root) => particles.extend((0..POINTS).map(|index| {
-                let off = root.l() * nalgebra::Vector3::from(normal(index));
+                let off = root.l() * Vector3::from(normal(index));
                 particle(Pose::new(
                     pose.x + off[0],
                     pose.y + off[1],

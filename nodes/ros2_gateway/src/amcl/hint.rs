@@ -88,17 +88,16 @@ fn widened(rows: [f64; 9]) -> Result<Covariance, GatewayError> {
     if rows == [0.0; 9] {
         return Ok(unsaid());
     }
-    let mut covariance = Covariance::from_rows(rows);
-    let (metres, radians) = LEAST;
-    for (axis, least) in [(0, metres), (1, metres), (2, radians)] {
-        let variance = &mut covariance.0[(axis, axis)];
-        *variance = variance.max(least * least);
+    let (mut wide, (metres, radians)) = (rows, LEAST);
+    for (variance, least) in [(0, metres), (4, metres), (8, radians)] {
+        wide[variance] = wide[variance].max(least * least);
     }
+    let covariance = Covariance::from_rows(wide);
     let is_sound = rows.iter().all(|value| value.is_finite())
         && [rows[0], rows[4], rows[8]]
             .iter()
             .all(|variance| *variance >= 0.0)
-        && covariance.0.cholesky().is_some();
+        && covariance.is_positive_definite();
     is_sound
         .then_some(covariance)
         .ok_or(GatewayError::InitialPoseCovariance)

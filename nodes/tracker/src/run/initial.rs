@@ -37,7 +37,7 @@ impl Initial {
         }
         let covariance = Covariance::from_rows(message.covariance);
         let pose = Pose::from(message.map_from_base);
-        match pose.is_finite() && covariance.0.cholesky().is_some() {
+        match pose.is_finite() && covariance.is_positive_definite() {
             true => Ok(Some(Initial {
                 base: (pose, covariance),
                 is_believed: kind == InitialPoseKind::Believed,

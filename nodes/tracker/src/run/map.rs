@@ -84,10 +84,8 @@ impl Node {
                 same.or_else(|| self.worlds.number_of_name(last.map_name))
             }
         };
-        let believed = believed.and_then(|last| {
-            let covariance = Covariance(last.report.covariance);
-            Some(((number(&last)?, last.report.pose?), covariance))
-        });
+        let believed = believed
+            .and_then(|last| Some(((number(&last)?, last.report.pose?), last.report.covariance)));
         if let Some((at, covariance)) = believed {
             self.tracker.expect(at, covariance);
             return;

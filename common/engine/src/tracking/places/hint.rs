@@ -33,7 +33,7 @@ impl Hint {
     ) -> Self {
         Hint {
             map,
-            at: (pose, covariance.0),
+            at: (pose, covariance.into()),
         }
     }
 

@@ -8,7 +8,7 @@ fn a_robot_that_sees_nothing_goes_on_by_odometry_and_is_doubtful_once_it_may_be_
     let mut tracker = building.believed(START);
     let start = building.drive(&mut tracker, START, 4);
     let believed = tracker.report().pose.unwrap();
-    let deviation = tracker.report().covariance[(0, 0)].sqrt();
+    let deviation = tracker.report().covariance.to_rows()[0].sqrt();
     assert_eq!(tracker.report().state, TrackState::Unique);
     let (nothing, fit) = (Ends::default(), FitConfig::default());
     let seen = building.seen(&nothing, &fit);
@@ -30,7 +30,7 @@ fn a_robot_that_sees_nothing_goes_on_by_odometry_and_is_doubtful_once_it_may_be_
     }
     let report = tracker.report();
     assert!(
-        report.covariance[(0, 0)].sqrt() > deviation.hypot(0.25),
+        report.covariance.to_rows()[0].sqrt() > deviation.hypot(0.25),
         "{report:?}"
     );
     // The next usable scan finds the robot there.
