@@ -3,6 +3,8 @@
 use geometry::Pose;
 
 use crate::grid::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
+use crate::joined::MAX_APART_NS;
+use crate::tracker::MIN_PERIOD_NS;
 
 /// Reason why the engine rejects a map, a scan or a setting.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -107,6 +109,59 @@ pub enum EngineError {
         /// Name of the laser.
         laser: String,
     },
+    /// The scans of two lasers that are to be joined are too far apart in time.
+    #[error(
+        "the scan of laser {laser} has stamp {stamp_ns}, {later_ns} ns after that of laser 0: within \
+         {MAX_APART_NS} ns are needed"
+    )]
+    StampsApart {
+        /// Number of the laser, from 0.
+        laser: usize,
+        /// Stamp of its scan, in nanoseconds.
+        stamp_ns: i64,
+        /// Nanoseconds after the stamp of the first laser's scan.
+        later_ns: i64,
+    },
+    /// The stamps of a laser do not rise.
+    #[error(
+        "the scan of laser {laser} has stamp {stamp_ns}, {later_ns} ns after that of the last one: at \
+         least {MIN_PERIOD_NS} ns are needed, or a reset for another drive"
+    )]
+    StampOrder {
+        /// Number of the laser, from 0.
+        laser: usize,
+        /// Stamp of its scan, in nanoseconds.
+        stamp_ns: i64,
+        /// Nanoseconds after the stamp of its last scan.
+        later_ns: i64,
+    },
+    /// An update of a tracker has not as many scans as the first.
+    #[error("{given} scans are given, and the robot has {lasers} lasers: one of each is needed")]
+    Lasers {
+        /// Number of scans given.
+        given: usize,
+        /// Number of lasers of the robot.
+        lasers: usize,
+    },
+    /// The time from one range to the next is not finite.
+    #[error("time_increment is {0}: it must be finite, in seconds")]
+    TimeIncrement(f64),
+    /// The pose at which a robot is expected is off the map.
+    #[error(
+        "the expected pose is at x {} m, y {} m, yaw {} rad: it must be on map {map}", .pose.x,
+        .pose.y, .pose.yaw
+    )]
+    ExpectedPose {
+        /// Number of the map.
+        map: u32,
+        /// Pose in the map.
+        pose: Pose,
+    },
+    /// The covariance of the pose at which a robot is expected is not one.
+    #[error(
+        "the covariance of the expected pose is {0:?}: it must be symmetric and positive definite"
+    )]
+    Covariance([f64; 9]),
     /// The pose of the laser on the base is not finite.
     #[error(
         "the laser sits at x {} m, y {} m, yaw {} rad of the base: each must be finite",

@@ -11,6 +11,7 @@ mod brought;
 mod config;
 mod kept;
 mod laser;
+mod timed;
 
 use geometry::Pose;
 use messages::{FrameName, Name, Odometry, ScanHeader};
@@ -18,6 +19,8 @@ use messages::{FrameName, Name, Odometry, ScanHeader};
 pub use brought::{Brought, LeftOut, MotionKnown};
 pub use config::{JoinConfig, MotionConfig, ScanStamp};
 pub use kept::Kept;
+pub(crate) use timed::MAX_APART_NS;
+pub use timed::TimedScan;
 
 use crate::EngineError;
 use crate::motion::Motion;

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! For a moving robot, or one with several lasers, `joined` carries the scans to one time by
-//! odometry (`motion`), and an `observation` of carried scans is searched. From the places found,
+//! odometry (`motion`), and an `observation` of carried scans is searched. `tracker` does so for
+//! each scan of a drive, and `tracking` weighs the places from scan to scan. From the places found,
 //! `particles` draws start poses for a particle filter. `docs/engine.md` of the repository explains
 //! the method with drawings.
 
@@ -63,6 +64,7 @@ mod parts {
     pub mod space;
     pub mod sweep;
     pub mod taper;
+    pub mod tracker;
     pub mod tracking;
     pub mod vote_search;
     pub mod votes;
@@ -74,8 +76,11 @@ use parts::*;
 pub use parts::*;
 
 pub use error::EngineError;
-pub use geometry::Pose;
+pub use geometry::{Covariance, Pose};
+pub use joined::{LeftOut, ScanStamp, TimedScan};
 pub use localizer::{Answer, Localizer, PreparedMap, Settings, Workspace};
-pub use messages::Verdict;
+pub use messages::{TrackReason, TrackState, Verdict};
 pub use occupancy_map::Map;
 pub use scan::Scan;
+pub use tracker::{TrackedPose, Tracker, TrackerSettings};
+pub use tracking::{Report, Start};

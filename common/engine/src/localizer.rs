@@ -22,6 +22,7 @@ use crate::observation::Observation;
 use crate::occupancy_map::Map;
 use crate::peaks::{self, Found, Judged, Merged, PeakConfig, PeakInput, Places, merge};
 use crate::space::Space;
+use crate::tracking::Seen;
 use crate::vote_search::{self, Outcome, Preparation, Prior, VoteSearch, VoteSearchConfig};
 
 /// Settings of a [`Localizer`].
@@ -137,6 +138,15 @@ impl PreparedMap {
     /// If the scan is rejected, see [`Observation::check`].
     pub fn ends<'s>(&self, scan: impl Into<Observation<'s>>) -> Result<Ends, EngineError> {
         Ends::new(scan, &self.space, self.beams())
+    }
+
+    /// Returns the map with a scan on it, for a tracker.
+    pub(crate) fn seen<'a>(&'a self, ends: &'a Ends) -> Seen<'a> {
+        Seen {
+            distance_field: &self.distance_field,
+            ends,
+            fit: &self.peaks.fit,
+        }
     }
 
     fn beams(&self) -> &BeamConfig {

@@ -1,7 +1,9 @@
 //! A map for the second stage: distances of points from obstacles, and obstacles along rays.
 
+use geometry::Pose;
+
 use super::lanes::{LANES, Lanes, lanes};
-use super::{FitConfig, distance, drawing};
+use super::{FitConfig, GridPose, distance, drawing};
 use crate::EngineError;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
@@ -107,6 +109,13 @@ impl DistanceField {
     #[must_use]
     pub fn drawn_error_m(&self) -> f64 {
         self.drawn_share * DRAWN_ERROR_M
+    }
+
+    /// True if the position of a pose is on the map.
+    pub(crate) fn holds(&self, pose: Pose) -> bool {
+        let GridPose { x, y, .. } = GridPose::of(self.frame, pose);
+        let is_within = |cells: usize, at: f64| (0.0..=cells as f64).contains(&at);
+        pose.is_finite() && is_within(self.width, x) && is_within(self.height, y)
     }
 
     /// Distance of a point to the nearest occupied cell, in cells: bilinear between the centres of

@@ -31,6 +31,7 @@ pub enum MotionKnown {
 
 /// Reason why a laser was left out.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[cfg_attr(not(feature = "unstable"), non_exhaustive)]
 pub enum LeftOut {
     /// The laser has not sent any scan yet.
     #[error("no scan received")]

@@ -8,6 +8,7 @@ use super::nowhere::is_blind;
 
 /// Pose of the robot, its certainty, and the reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(not(feature = "unstable"), non_exhaustive)]
 pub struct Report {
     /// State of the tracker.
     pub state: TrackState,
