@@ -14,13 +14,11 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Ellipse
-from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
 
 import backcast
 
 here = Path(__file__).resolve() if "__file__" in globals() else Path.cwd() / "examples/locate.py"
-recording = here.parents[3] / "recordings/malaga_corridor"
+folder = here.parents[3] / "recordings/malaga_corridor"
 
 # %% [markdown]
 # ## The map
@@ -29,35 +27,25 @@ recording = here.parents[3] / "recordings/malaga_corridor"
 # threads.
 
 # %%
-map = backcast.Map.from_yaml(recording / "map.yaml")
+map = backcast.Map.from_yaml(folder / "map.yaml")
 localizer = backcast.Localizer(map)
 print(map)
 
 # %% [markdown]
 # ## A scan
 #
-# Ranges in metres, angles in radians, as `sensor_msgs/LaserScan` has them. The laser sits
-# 0.78 m ahead of the robot's base.
+# Ranges in metres, angles in radians, as `sensor_msgs/LaserScan` has them, and the mount of the
+# laser: it sits 0.78 m ahead of the robot's base.
 
 # %%
-with open(recording / "recording.mcap", "rb") as file:
-    reader = make_reader(file, decoder_factories=[DecoderFactory()])
-    _, _, _, scan = next(reader.iter_decoded_messages(topics=["/scan"]))
-mount = (0.78, 0.0, 0.0)
-ranges = np.array(scan.ranges, np.float32)
+scan = backcast.read(folder / "recording.mcap").scans["/scan"][0]
+print(scan, scan.mount)
 
 # %% [markdown]
 # ## The places where it may have been taken
 
 # %%
-result = localizer.locate(
-    ranges,
-    scan.angle_min,
-    scan.angle_increment,
-    range_min=scan.range_min,
-    range_max=scan.range_max,
-    mount=mount,
-)
+result = localizer.locate(scan)
 print(result)
 best = slice(5)
 for pose, probability, score in zip(
@@ -114,6 +102,7 @@ for pose in result.poses[1:]:
 draw_pose(whole, result.pose, "tab:red", 4.0)
 whole.set_title(f"the best place in red, {len(result.poses) - 1} others in blue", fontsize=10)
 
+ranges = scan.ranges
 bearings = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
 hit = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges < scan.range_max)
 ends = transformed(

@@ -238,7 +238,14 @@ impl Contents {
         };
         let odom_topic = recording.topic(Kind::Odometry).map_err(failed)?;
         for record in recording.records_of(&[Kind::Scan, Kind::Odometry]) {
-            let record = record.map_err(failed)?;
+            let record = match record {
+                Err(RecordingError::Message { topic, kind, .. })
+                    if kind == Kind::Odometry && odom_topic.as_deref() != Some(&*topic) =>
+                {
+                    continue;
+                }
+                record => record.map_err(failed)?,
+            };
             match record.message {
                 Message::Scan(scan) => contents.take(&recording, &record.topic, scan)?,
                 Message::Odometry(message) if Some(&record.topic) == odom_topic.as_ref() => {

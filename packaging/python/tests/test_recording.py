@@ -5,6 +5,8 @@ import json
 import numpy as np
 import pytest
 from conftest import NAMES, RECORDINGS
+from mcap.reader import make_reader
+from mcap.writer import Writer
 from recorded import read
 from test_same_as_command import check, map_of
 
@@ -71,6 +73,30 @@ def test_two_lasers_are_located_as_by_the_command(command, tmp_path):
     for scan, before, line in list(pairs)[1:-1]:
         assert before.stamp_ns < scan.stamp_ns
         check(scan, localizer.locate([scan, before], odometry=recording.odometry), line)
+
+
+def test_odometry_that_cannot_be_decoded_is_an_error_only_where_it_is_asked_for(tmp_path):
+    sound, broken = file_of("malaga_corridor"), tmp_path / "broken.mcap"
+    with open(sound, "rb") as file, open(broken, "wb") as out:
+        writer, channels = Writer(out), {}
+        writer.start()
+        for schema, channel, message in make_reader(file).iter_messages():
+            if channel.id not in channels:
+                of_schema = writer.register_schema(schema.name, schema.encoding, schema.data)
+                cdr = channel.message_encoding
+                channels[channel.id] = writer.register_channel(channel.topic, cdr, of_schema)
+                if channel.topic == "/odom":
+                    wheels = writer.register_channel("/wheels", cdr, of_schema)
+                    writer.add_message(wheels, message.log_time, b"\0\1\0\0", message.log_time)
+            stamps = (message.log_time, message.data, message.publish_time)
+            writer.add_message(channels[channel.id], *stamps)
+        writer.finish()
+    for read_again, expected in zip(
+        backcast.read(broken).odometry, backcast.read(sound).odometry, strict=True
+    ):
+        assert np.array_equal(read_again, expected)
+    with pytest.raises(ValueError, match="the message of /wheels .* is not a nav_msgs/"):
+        backcast.read(broken, odom_topic="/wheels")
 
 
 def test_files_that_cannot_be_read_are_refused(tmp_path):
