@@ -136,7 +136,7 @@ pub enum EngineError {
         later_ns: i64,
     },
     /// An update of a tracker has not as many scans as the first.
-    #[error("{given} scans are given, and the robot has {lasers} lasers: one of each is needed")]
+    #[error("scans given: {given}; lasers of the robot: {lasers}; a scan of each laser is needed")]
     Lasers {
         /// Number of scans given.
         given: usize,
