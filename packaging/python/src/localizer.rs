@@ -1,18 +1,18 @@
 //! Localization of single scans, without memory.
 
+use engine::TimedScan;
 use engine::localizer::Answer;
 use engine::peaks::Target;
 use engine::vote_search::Prior;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::PyDict;
 
 use crate::error::{detached, value};
 use crate::joined;
 use crate::map::Map;
 use crate::result::{Found, LocateResult};
-use crate::scan::GivenScan;
-use crate::search::Search;
+use crate::scan::{self, GivenScan};
+use crate::search::{self, Search};
 use crate::settings::EngineSettings;
 
 /// A map that is prepared for locating scans, each by itself.
@@ -48,10 +48,10 @@ impl Localizer {
             true => Prior::Heading,
             false => Prior::None,
         };
-        let search = Search::prepare(py, map.get(), settings, prior)?;
+        let localizer = search::prepare(py, map.get(), settings, prior)?;
         Ok(Localizer {
             map,
-            search,
+            search: Search::new(localizer),
             heading_known,
         })
     }
@@ -98,31 +98,17 @@ impl Localizer {
         odometry: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<LocateResult> {
         let odometry = odometry.map_or(Ok(Vec::new()), joined::odometry)?;
-        let given = scans_in(ranges)?;
-        let has_others = range_min != 0.0 || range_max.is_some() || mount.is_some() || upside_down;
-        let alone;
-        let scans: Vec<&GivenScan> = match (&given[..], angle_min.zip(angle_increment)) {
-            ([], Some(angles)) => {
-                let limits = (range_min, range_max);
-                alone = GivenScan::new(ranges, angles, limits, (mount, upside_down), (0, 0.0))?;
-                vec![&alone]
-            }
-            ([], None) => {
-                return Err(PyTypeError::new_err(
-                    "angle_min or angle_increment is missing; allowed: both, or a Scan or a list \
-                     of Scans in place of ranges",
-                ));
-            }
-            (_, None) if angle_min.or(angle_increment).is_none() && !has_others => {
-                given.iter().map(Py::get).collect()
-            }
-            _ => {
-                return Err(PyTypeError::new_err(
-                    "angles, limits and mount are given with a Scan; allowed: those that are in it",
-                ));
-            }
-        };
-        let heading = self.of_laser(heading, scans[0])?;
+        let angles = angle_min.zip(angle_increment);
+        let is_mounted = mount.is_some() || upside_down;
+        let has_angles = angle_min.or(angle_increment).is_some();
+        let has_others = has_angles || is_mounted || range_min != 0.0 || range_max.is_some();
+        let scans = scan::scans_of(ranges, has_others, || {
+            let angles = angles.ok_or_else(|| scan::missing("angle_min or angle_increment"))?;
+            let limits = (range_min, range_max);
+            GivenScan::new(ranges, angles, limits, (mount, upside_down), (0, 0.0))
+        })?;
+        let scans: Vec<TimedScan<'_>> = scans.iter().map(|scan| scan.get().timed()).collect();
+        let heading = self.of_laser(heading, &scans[0])?;
         let joiner = joined::join(&scans, &odometry)?;
         let heading = heading.map(|heading| joiner.target_heading(heading));
         let base_from_laser = scans[0].base_from_laser;
@@ -160,7 +146,7 @@ impl Localizer {
 
 impl Localizer {
     /// Returns the heading of the laser, from the given one of the base or the laser.
-    fn of_laser(&self, heading: Option<f64>, scan: &GivenScan) -> PyResult<Option<f64>> {
+    fn of_laser(&self, heading: Option<f64>, scan: &TimedScan<'_>) -> PyResult<Option<f64>> {
         match (self.heading_known, heading) {
             (false, Some(heading)) => Err(value(format!(
                 "heading is {heading}; allowed: None, unless the localizer was made with \
@@ -175,21 +161,5 @@ impl Localizer {
                 Ok(heading.map(|heading| heading + mount.yaw))
             }
         }
-    }
-}
-
-/// Returns the Scans of a Scan or a list of them; none of a row of numbers.
-fn scans_in(given: &Bound<'_, PyAny>) -> PyResult<Vec<Py<GivenScan>>> {
-    if let Ok(scan) = given.cast::<GivenScan>() {
-        return Ok(vec![scan.clone().unbind()]);
-    }
-    let has_scans = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
-    match has_scans
-        && given
-            .get_item(0)
-            .is_ok_and(|first| first.is_instance_of::<GivenScan>())
-    {
-        true => given.extract(),
-        false => Ok(Vec::new()),
     }
 }

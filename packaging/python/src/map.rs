@@ -153,20 +153,6 @@ impl Map {
         }
     }
 
-    /// Refuses a pose that is off the map.
-    pub(crate) fn check_holds(&self, name: &str, pose: Pose) -> PyResult<()> {
-        let grid = &self.grid;
-        let Pose { x, y, .. } = grid.map_from_grid.inverse().then(pose);
-        let side = |cells: u32| f64::from(cells) * grid.resolution_m;
-        match (0.0..=side(grid.width)).contains(&x) && (0.0..=side(grid.height)).contains(&y) {
-            true => Ok(()),
-            false => Err(value(format!(
-                "{name} is {:?}, off the map; allowed: poses on the {self}",
-                numbers::tuple(pose)
-            ))),
-        }
-    }
-
     /// Returns the map in the engine's form.
     pub(crate) fn view(&self, rules: CellRules) -> MapView<'_> {
         let grid = &*self.grid;

@@ -1,13 +1,15 @@
 //! A scan from Python: an array of ranges, with their common angles and limits.
 
-use engine::EngineError;
-use engine::scan::{MAX_RANGES, Scan};
+use engine::scan::MAX_RANGES;
+use engine::{EngineError, Scan, TimedScan};
 use geometry::Pose;
 use numpy::{
     PyArray1, PyArrayDescrMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods,
     get_array_module,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 use recording::Mount;
 use ros::LaserScan;
 
@@ -177,13 +179,7 @@ impl GivenScan {
     }
 
     fn checked(self) -> PyResult<Self> {
-        if !self.time_increment.is_finite() {
-            return Err(value(format!(
-                "time_increment is {}; allowed: finite numbers, seconds",
-                self.time_increment
-            )));
-        }
-        self.above().check().map_err(|error| of_engine(&error))?;
+        self.timed().check().map_err(|error| of_engine(&error))?;
         self.check_unit()?;
         Ok(self)
     }
@@ -203,13 +199,17 @@ impl GivenScan {
         }
     }
 
-    /// Returns the ranges, metres, in the order in which they were measured.
-    pub(crate) fn ranges(&self) -> &[f32] {
-        &self.ranges
+    /// Returns the scan in the engine's form.
+    pub(crate) fn timed(&self) -> TimedScan<'_> {
+        TimedScan {
+            scan: self.above(),
+            stamp_ns: self.stamp_ns,
+            time_increment_s: self.time_increment,
+            base_from_laser: self.base_from_laser,
+        }
     }
 
-    /// Returns the scan in the engine's form: seen from above.
-    pub(crate) fn above(&self) -> Scan<'_> {
+    fn above(&self) -> Scan<'_> {
         let as_measured = Scan {
             angle_min: self.angle_min,
             angle_increment: self.angle_increment,
@@ -219,6 +219,37 @@ impl GivenScan {
         };
         as_measured.seen_from_above(self.upside_down)
     }
+}
+
+/// Returns the scans of a call: a Scan or a list of them in place of ranges, if there are no other
+/// values of a scan, or else the one that `alone` makes of ranges and the other values.
+pub(crate) fn scans_of(
+    given: &Bound<'_, PyAny>,
+    has_others: bool,
+    alone: impl FnOnce() -> PyResult<GivenScan>,
+) -> PyResult<Vec<Py<GivenScan>>> {
+    let is_scan = |item: &Bound<'_, PyAny>| item.is_instance_of::<GivenScan>();
+    let is_list = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
+    let scans = match is_scan(given) {
+        true => vec![given.extract()?],
+        false if is_list && given.get_item(0).is_ok_and(|first| is_scan(&first)) => {
+            given.extract()?
+        }
+        false => return Ok(vec![Py::new(given.py(), alone()?)?]),
+    };
+    match has_others {
+        false => Ok(scans),
+        true => Err(PyTypeError::new_err(
+            "angles, limits, mount and times are given with a Scan; allowed: those that are in it",
+        )),
+    }
+}
+
+/// Makes the error of a call without these values of a scan.
+pub(crate) fn missing(names: &str) -> PyErr {
+    PyTypeError::new_err(format!(
+        "{names} is missing; allowed: all, or a Scan or a list of Scans in place of ranges"
+    ))
 }
 
 /// Converts ranges to 32 bits, like those of messages; NaN and infinite ones stay what they are.

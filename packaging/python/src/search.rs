@@ -1,9 +1,11 @@
-//! A prepared map that any number of Python's threads may search at once, until Ctrl-C.
+//! Maps prepared without Python's lock, and searches that any number of Python's threads may make at
+//! once, until Ctrl-C.
 
 use std::cell::{Cell, RefCell};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use engine::EngineError;
 use engine::localizer::{Answer, Localizer, PreparedMap, Settings, Workspace};
 use engine::observation::Observation;
 use engine::vote_search::Prior;
@@ -14,6 +16,54 @@ use crate::error::{SIGNALS_EVERY, check_signals, interruptible, of_cache, of_eng
 use crate::map::Map;
 use crate::settings::EngineSettings;
 
+/// Prepares a map without Python's lock; an exception of a signal's handler is raised at once.
+pub(crate) fn prepare(
+    py: Python<'_>,
+    map: &Map,
+    settings: EngineSettings,
+    prior: Prior,
+) -> PyResult<Localizer> {
+    let map = map.shared();
+    interruptible(py, move || prepared(&map, settings, prior))
+}
+
+fn prepared(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Localizer> {
+    let EngineSettings {
+        cells,
+        vote_search,
+        peaks,
+        index_cache,
+    } = settings;
+    let cache = index_cache
+        .open(CachePlace::Off)
+        .map_err(|error| of_cache(&error))?;
+    let settings = Settings {
+        vote_search,
+        peaks,
+        prior,
+    };
+    let prepared = index_cache::prepared_map(cache.as_ref(), map.view(cells), settings);
+    let (prepared, kept) = prepared.map_err(|error| of_engine(&error))?;
+    if let Some(unsaved) = kept.unsaved {
+        unsaved.save().map_err(|error| of_cache(&error))?;
+    }
+    Localizer::of_maps(vec![prepared]).map_err(|error| of_engine(&error))
+}
+
+/// Runs a search until Python's signal handlers want to stop it. Python's lock must not be held.
+pub(crate) fn until_signal<T>(
+    run: impl FnOnce(&dyn Fn() -> bool) -> Result<Option<T>, EngineError>,
+) -> PyResult<T> {
+    let signals = Signals::default();
+    let found = run(&|| signals.ask());
+    match (found, signals.said.take()) {
+        (_, Some(interrupt)) => Err(interrupt),
+        (Err(error), None) => Err(of_engine(&error)),
+        (Ok(Some(found)), None) => Ok(found),
+        (Ok(None), None) => Err(crate::error::value("the search was stopped")),
+    }
+}
+
 /// A prepared map, and the workspaces that its searches reuse.
 #[derive(Debug)]
 pub(crate) struct Search {
@@ -23,41 +73,11 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// Prepares a map without Python's lock; an exception of a signal's handler is raised at once.
-    pub(crate) fn prepare(
-        py: Python<'_>,
-        map: &Map,
-        settings: EngineSettings,
-        prior: Prior,
-    ) -> PyResult<Self> {
-        let map = map.shared();
-        interruptible(py, move || Search::prepared(&map, settings, prior))
-    }
-
-    fn prepared(map: &Map, settings: EngineSettings, prior: Prior) -> PyResult<Self> {
-        let EngineSettings {
-            cells,
-            vote_search,
-            peaks,
-            index_cache,
-        } = settings;
-        let cache = index_cache
-            .open(CachePlace::Off)
-            .map_err(|error| of_cache(&error))?;
-        let settings = Settings {
-            vote_search,
-            peaks,
-            prior,
-        };
-        let prepared = index_cache::prepared_map(cache.as_ref(), map.view(cells), settings);
-        let (prepared, kept) = prepared.map_err(|error| of_engine(&error))?;
-        if let Some(unsaved) = kept.unsaved {
-            unsaved.save().map_err(|error| of_cache(&error))?;
-        }
-        Ok(Search {
-            localizer: Localizer::of_maps(vec![prepared]).map_err(|error| of_engine(&error))?,
+    pub(crate) fn new(localizer: Localizer) -> Self {
+        Search {
+            localizer,
             workspaces: Mutex::new(Vec::new()),
-        })
+        }
     }
 
     pub(crate) fn map(&self) -> &PreparedMap {
@@ -73,17 +93,11 @@ impl Search {
         read: impl FnOnce(Answer<'_>) -> T,
     ) -> PyResult<T> {
         let mut workspace = self.lock().pop().unwrap_or_default();
-        let signals = Signals::default();
-        let stop = || signals.ask();
-        let found = self
-            .localizer
-            .locate_unless(&mut workspace, seen, heading, &stop);
-        let read = match (found, signals.said.take()) {
-            (_, Some(interrupt)) => Err(interrupt),
-            (Err(error), None) => Err(of_engine(&error)),
-            (Ok(Some(found)), None) => Ok(read(found)),
-            (Ok(None), None) => Err(crate::error::value("the search was stopped")),
-        };
+        let read = until_signal(|stop| {
+            let localizer = &self.localizer;
+            let found = localizer.locate_unless(&mut workspace, seen, heading, stop)?;
+            Ok(found.map(read))
+        });
         self.lock().push(workspace);
         read
     }

@@ -1,8 +1,6 @@
 //! Pose of the robot for Python.
 
-use engine::peaks::Target;
-use engine::tracking::Report;
-use geometry::Pose;
+use engine::{Covariance, Pose};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -53,58 +51,45 @@ pub(crate) struct TrackedPose {
     since_m: f64,
     /// True if the whole map was searched for this scan, which takes longer.
     searched: bool,
+    /// Lasers whose scans were left out, with the reasons; empty if there are none.
+    left_out: Vec<String>,
 }
 
-/// Data of a pose, before Python's lock is taken.
-#[derive(Debug)]
-pub(crate) struct Followed {
-    pub(crate) stamp_ns: i64,
-    pub(crate) report: Report,
-    pub(crate) base_from_laser: Option<Pose>,
-    /// Pose of the laser by odometry.
-    pub(crate) odom_from_laser: Option<Pose>,
-    pub(crate) searched: bool,
-}
-
-impl Followed {
+impl TrackedPose {
     /// Makes the pose for Python.
-    pub(crate) fn read(self, py: Python<'_>) -> PyResult<TrackedPose> {
-        let report = self.report;
-        let target = Target::of(self.base_from_laser, false);
-        let laser = report.pose;
-        let pose = laser.map(|laser| match self.base_from_laser {
-            Some(_) => target.base(laser),
-            None => laser,
-        });
-        let of_laser = report.covariance;
-        let covariance = laser
-            .zip(pose)
-            .map(|(laser, pose)| of_laser.carried(laser, pose));
-        let map_from_odom = laser
-            .zip(self.odom_from_laser)
-            .map(|(laser, odom)| laser.then(odom.inverse()));
+    pub(crate) fn of(py: Python<'_>, tracked: &engine::TrackedPose) -> PyResult<Self> {
+        let (report, laser) = (&tracked.report, tracked.laser());
+        let (frame, best) = match tracked.is_mount_known {
+            true => ("base", tracked.base()),
+            false => ("laser", laser),
+        };
+        let pose = |of: Option<(Pose, Covariance)>| of.map(|(pose, _)| numbers::tuple(pose));
+        let covariance = |of: Option<(Pose, Covariance)>| {
+            let covariance = of.map(|(_, covariance)| matrix(py, covariance));
+            covariance.transpose()
+        };
+        let left_out = tracked.left_out.iter();
         Ok(TrackedPose {
-            stamp_ns: self.stamp_ns,
+            stamp_ns: tracked.stamp_ns,
             state: report.state.as_str().to_owned(),
             reason: format!("{:?}", report.reason),
             why: report.words(),
-            frame: match self.base_from_laser {
-                Some(_) => "base",
-                None => "laser",
-            }
-            .to_owned(),
-            pose: pose.map(numbers::tuple),
-            covariance: covariance.map(|of| matrix(py, of)).transpose()?,
-            laser_pose: laser.map(numbers::tuple),
-            laser_covariance: laser.map(|_| matrix(py, of_laser)).transpose()?,
-            map_from_odom: map_from_odom.map(numbers::tuple),
+            frame: frame.to_owned(),
+            pose: pose(best),
+            covariance: covariance(best)?,
+            laser_pose: pose(laser),
+            laser_covariance: covariance(laser)?,
+            map_from_odom: tracked.map_from_odom().map(numbers::tuple),
             probability: report.probability,
             score: report.score,
             lead: report.lead,
             places: report.rivals,
             since_ns: report.since_ns,
             since_m: report.since_m,
-            searched: self.searched,
+            searched: tracked.is_searched,
+            left_out: left_out
+                .map(|(laser, why)| format!("laser {laser}: {why}"))
+                .collect(),
         })
     }
 }
@@ -128,6 +113,7 @@ by_fields! {
         since_ns,
         since_m,
         searched,
+        left_out,
     }
 
     fn __repr__(&self) -> String {

@@ -81,25 +81,25 @@ def test_odometry_takes_the_motion_between_scans_out(localizer):
     for wrong in [*short, (0.0, poses), (stamps + 0.5, poses), (stamps, [math.nan] * 3), 5]:
         with pytest.raises(ValueError, match=r"(?s)odometry .*allowed: \(stamps_ns, poses\)"):
             localizer.locate(scans, odometry=wrong)
-    with pytest.raises(ValueError, match=r"scans\[1\]: no odometry for the robot's motion"):
+    with pytest.raises(ValueError, match="laser 1: no odometry for the robot's motion"):
         localizer.locate(scans, odometry=(stamps[:2] + SECOND, poses[:2]))
 
 
 def test_scans_that_do_not_go_together_are_refused(localizer):
     front = scan_at(TRUTH, FRONT)
-    with pytest.raises(ValueError, match=r"scans\[1\].mount is None; allowed"):
+    with pytest.raises(ValueError, match="the pose of laser 1 on the base is unknown"):
         localizer.locate([front, backcast.Scan(front.ranges, 0.0, ANGLES[1])])
     for later in (1_000_000_001, -1_000_000_001):
-        with pytest.raises(ValueError, match=rf"{later} after that of scans\[0\]; allowed: within"):
+        with pytest.raises(ValueError, match=f"{later} ns after that of laser 0: within"):
             localizer.locate([front, scan_at(TRUTH, REAR, later)])
     with pytest.raises(TypeError, match="Scan"):
         localizer.locate([front, 5])
     for others in ({"mount": FRONT}, {"range_max": 5.0}, {"upside_down": True}):
         with pytest.raises(TypeError, match="are given with a Scan; allowed"):
             localizer.locate(front, **others)
-    with pytest.raises(TypeError, match="angle_min or angle_increment is missing; allowed: both"):
+    with pytest.raises(TypeError, match="angle_min or angle_increment is missing; allowed: all"):
         localizer.locate(front.ranges, 0.0)
-    with pytest.raises(ValueError, match="time_increment is NaN; allowed: finite"):
+    with pytest.raises(ValueError, match="time_increment is NaN: it must be finite"):
         scan_at(TRUTH, FRONT, time_increment=math.nan)
 
 

@@ -6,6 +6,8 @@ import re
 from conftest import RECORDINGS, ROOT
 from recorded import read
 
+import backcast
+
 
 def test_the_examples_run(monkeypatch, capsys):
     monkeypatch.chdir(RECORDINGS / "malaga_corridor")
@@ -14,8 +16,8 @@ def test_the_examples_run(monkeypatch, capsys):
     assert len(examples) == 3
     recorded = read("malaga_corridor")
     odometry = dict(recorded.odometry)
-    scans = [Scan(scan) for scan in recorded.scans]
-    drive = [(scan.stamp_ns, scan, odometry[scan.stamp_ns]) for scan in scans]
+    scans = backcast.read("recording.mcap").scans["/scan"]
+    drive = [(scan, odometry[scan.stamp_ns]) for scan in scans]
     angles = dict(zip(("angle_min", "angle_increment"), recorded.scans[4].angles, strict=True))
     rear = {"ranges": scans[4].ranges, "rear_ranges": [math.inf] * 361}
     names = {"drive": drive, **angles, **rear}
@@ -23,12 +25,3 @@ def test_the_examples_run(monkeypatch, capsys):
         exec(example, names)
     assert names["result"].verdict == "Unique"
     assert names["tracked"].state == "Unique" and "Unique" in capsys.readouterr().out
-
-
-class Scan:
-    """A scan with the fields of sensor_msgs/LaserScan."""
-
-    def __init__(self, recorded):
-        self.ranges, self.stamp_ns = recorded.ranges, recorded.stamp_ns
-        self.angle_min, self.angle_increment = recorded.angles
-        self.range_min, self.range_max = recorded.limits.values()

@@ -48,8 +48,9 @@ print(localizer.locate([scan, scan], heading=0.5), localizer.locate(scan))
 if result.pose is not None:
     x, y, yaw = result.pose
     print(x + y + yaw, result.poses.shape)
-tracked = backcast.Tracker(map, sure=0.9).update([1.0], 0.0, 0.1, 5)
-print(tracked.pose)
+tracker = backcast.Tracker(map, sure=0.9)
+tracked = tracker.update([1.0], 0.0, 0.1, 5)
+print(tracked.pose, tracker.update([scan, scan], odometry=(0.0, 0.0, 0.0)).left_out)
 """
 
 

@@ -382,6 +382,7 @@ class Tracker:
         Odometry must come in order of time, and before the scans that it covers: up to the
         middle of a scan, or to its end if the motion within the scan is to be removed.
         """
+    @overload
     def update(
         self,
         ranges: ArrayLike,
@@ -399,22 +400,37 @@ class Tracker:
         """Follows the robot to a scan.
 
         stamp_ns is the time of the first range, nanoseconds, at least a millisecond after that
-        of the last scan, and time_increment the seconds
-        from one range to the next: if odometry covers the scan, the motion between them is
-        removed. odometry is the base's pose at that time, in the form of add_odometry; it
+        of the last scan, and time_increment the seconds from one range to the next: if odometry
+        covers the scan, the motion between them is removed. odometry is the base's pose at that time, in the form of add_odometry; it
         is not needed if that is called. Without any odometry, scans are matched to each
         other.
 
         The other arguments are those of Localizer.locate: metres and radians, and the
         mount, with which poses are the base's.
 
-        Raises ValueError if the scan is invalid; the tracker then stays as it was.
+        In place of ranges and what belongs to them, a Scan may be given, or a list of Scans of
+        several lasers of one robot, the main one first: its stamp is the time. Several need
+        mounts on the same base, and stamps within a second of the first's. Each update has as
+        many as the first, in the same order; a laser without a new scan repeats the last.
+
+        Raises ValueError if a scan is invalid; the tracker then stays as it was.
         """
+    @overload
+    def update(
+        self,
+        ranges: Scan | Sequence[Scan],
+        angle_min: None = None,
+        angle_increment: None = None,
+        stamp_ns: None = None,
+        *,
+        odometry: ArrayLike | None = None,
+    ) -> TrackedPose: ...
     def expect(self, pose: ArrayLike, covariance: ArrayLike | None = None) -> None:
-        """Forgets everything, and expects the robot at this pose at the next scan: the base's
-        pose, or the laser's without a mount, (x, y, yaw) in the map, metres and radians. It
-        is tried first, and not believed before scans confirm it. Raises ValueError if it is
-        off the map.
+        """Expects the robot at this pose at the next scan: the base's pose, or the laser's without
+        a mount, (x, y, yaw) in the map, metres and radians. It is tried first, and believed as
+        soon as a scan fits there and no other place within the covariance fits as well. A
+        believed pose is kept until then; if there is none, everything else is forgotten. Raises
+        ValueError if it is off the map.
 
         covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; the default is that of
         standard deviations of 0.5 m and 0.26 rad.
@@ -503,6 +519,9 @@ class TrackedPose:
     @property
     def searched(self) -> bool:
         """True if the whole map was searched for this scan, which takes longer."""
+    @property
+    def left_out(self) -> list[str]:
+        """Lasers whose scans were left out, with the reasons; empty if there are none."""
     def matrix(self) -> NDArray[np.float64] | None:
         """Homogeneous matrix of pose, 3 × 3: map coordinates (x, y, 1) of a point in the frame
         of the pose; None if there is no pose.
