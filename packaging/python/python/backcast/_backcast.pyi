@@ -401,9 +401,9 @@ class Tracker:
 
         stamp_ns is the time of the first range, nanoseconds, at least a millisecond after that
         of the last scan, and time_increment the seconds from one range to the next: if odometry
-        covers the scan, the motion between them is removed. odometry is the base's pose at that time, in the form of add_odometry; it
-        is not needed if that is called. Without any odometry, scans are matched to each
-        other.
+        covers the scan, the motion between them is removed. odometry is the base's pose at that
+        time, in the form of add_odometry; it is not needed if that is called. Without any
+        odometry, scans are matched to each other.
 
         The other arguments are those of Localizer.locate: metres and radians, and the
         mount, with which poses are the base's.
