@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
+use clap::Arg;
 use command_line::number;
 use offline::{Options, Scans, no_truth_taken};
 use schemars::JsonSchema;
@@ -24,7 +25,7 @@ pub(super) struct AnswerOptions {
     /// Judge the poses in this file in place of searching: a trajectory as TUM (`stamp_s x y z qx
     /// qy qz qw`), or lines of JSON with stamp_ns, x, y, yaw and optionally verdict and
     /// probability. Needs one recording, and not its map
-    #[arg(long, value_name = "FILE", conflicts_with_all = NOT_WITH_ANSWERS)]
+    #[arg(long, value_name = "FILE")]
     pub(super) answers: Option<PathBuf>,
 
     /// Whose poses they are, in the map; those of the base where the laser's mount is not known
@@ -38,23 +39,36 @@ pub(super) struct AnswerOptions {
     answer_gap_s: f64,
 }
 
-/// Options of searching and tracking, and groups of such options.
-const NOT_WITH_ANSWERS: [&str; 14] = [
-    "map",
-    "erase_place",
-    "max_p90_ms",
-    "sequence",
-    "stress",
-    "headings",
-    "HeadingConfig",
-    "MotionConfig",
-    "CellRules",
-    "CollectConfig",
-    "LimitsConfig",
-    "FitConfig",
-    "IndexCacheConfig",
-    "TrackingConfig",
+/// Arguments of `backcast evaluate` that have a meaning for the answers of another program.
+const MEANT_FOR_ANSWERS: [&str; 19] = [
+    "bags",
+    "json",
+    "junit",
+    "force",
+    "total",
+    "truth_gap_s",
+    "min_truths",
+    "min_success",
+    "min_unique",
+    "max_wrong",
+    "max_error_cm",
+    "answers",
+    "answers_of",
+    "answer_gap_s",
+    "scan_topic",
+    "cloud_topic",
+    "heights",
+    "cloud_mount",
+    "every",
 ];
+
+/// Makes an argument an error beside `--answers`, unless it has a meaning there.
+pub(super) fn refuse_beside_answers(argument: Arg) -> Arg {
+    match MEANT_FOR_ANSWERS.contains(&argument.get_id().as_str()) {
+        true => argument,
+        false => argument.conflicts_with("answers"),
+    }
+}
 
 /// Frame whose poses are given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

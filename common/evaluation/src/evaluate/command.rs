@@ -32,6 +32,7 @@ Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wr
 
 /// Options of `backcast evaluate`.
 #[derive(Debug, Clone, clap::Args)]
+#[command(mut_args(answers::refuse_beside_answers))]
 pub struct Config {
     /// Recordings with true poses on /ground_truth, evaluated one by one: MCAP files, or bags of
     /// rosbag2 (their folders, or .db3); a map among them is taken for that of --map

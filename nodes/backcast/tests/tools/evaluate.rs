@@ -379,15 +379,44 @@ fn answers_of_the_base_are_carried_to_the_laser() {
             2,
             "--answers are those to one recording; 2 are given",
         ),
-        ("a.json --sequence m.mcap", 2, "cannot be used with"),
-        ("a.json --headings 360 m.mcap", 2, "cannot be used with"),
-        ("a.json --robot-radius 1 m.mcap", 2, "cannot be used with"),
     ] {
         let (found, _, stderr) = evaluate(options);
         assert!(
             found == code && stderr.contains(expected),
             "{options}: {stderr}"
         );
+    }
+}
+
+#[test]
+fn options_that_mean_nothing_beside_answers_are_refused() {
+    for option in [
+        "--sequence",
+        "--starts 3",
+        "--ignore-truth 3",
+        "--map map.yaml",
+        "--map-topic /map",
+        "--odom-topic /odom",
+        "--erase-place 2.5",
+        "--max-p90-ms 40",
+        "--max-losses 0",
+        "--heading-from odometry",
+        "--scan-stamp last",
+        "--headings 360",
+        "--threads 2",
+        "--robot-radius 1",
+        "--sigma-m 0.1",
+        "--candidates 64",
+        "--least-lead 0.09",
+        "--fit-sigma-m 0.1",
+        "--index-cache here",
+        "--sure 0.94",
+    ] {
+        let folder = Path::new(".");
+        let command = format!("evaluate --answers a.json {option} m.mcap");
+        let (code, _, stderr) = run(folder, &command);
+        let is_refused = stderr.contains("cannot be used with") && stderr.contains("--answers");
+        assert!(code == 2 && is_refused, "{option}: {stderr}");
     }
 }
 
