@@ -8,6 +8,7 @@ use engine::instruction_set::InstructionSet;
 use progress::Progress;
 
 use super::contest::{Contest, Effort};
+use super::docs;
 use super::paper;
 use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases, name_of};
@@ -19,15 +20,21 @@ Worlds are generated: buildings, corridors or scattered boxes with the wanted p/
 cells over free cells. Noise q % adds a normal error of q/100 of the range to each reading,
 and the votes expect the same. The full tables take an hour or so: --quick takes a minute,
 and the options above pick single cases. The table `paper` is not printed but written
-into a folder; in full it takes below an hour, with --quick two minutes.
+into a folder; in full it takes below an hour, with --quick two minutes. The table `docs`
+runs `backcast evaluate` and `locate` on the recordings and writes what they say into README.md
+and docs: half a minute, and with --data some minutes.
 
-Exit codes: 0 measured, 1 failed, 2 wrong use";
+Exit codes: 0 measured, 1 failed, or with --check a figure differs, 2 wrong use";
+
+/// Default seed.
+const SEED: u64 = 1;
 
 /// What is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Measured {
     Table(Table),
     Paper,
+    Docs,
 }
 
 impl clap::ValueEnum for Measured {
@@ -37,6 +44,7 @@ impl clap::ValueEnum for Measured {
             Measured::Table(Table::Table2),
             Measured::Table(Table::Search),
             Measured::Paper,
+            Measured::Docs,
         ]
     }
 
@@ -46,6 +54,10 @@ impl clap::ValueEnum for Measured {
             Measured::Paper => Some(PossibleValue::new("paper").help(
                 "All claims of the paper's sections II to V, into a folder of tables and pictures",
             )),
+            Measured::Docs => Some(
+                PossibleValue::new("docs")
+                    .help("The figures in README.md and docs, into these pages"),
+            ),
         }
     }
 }
@@ -66,7 +78,7 @@ pub struct Config {
     quick: bool,
 
     /// Seed of the random worlds and scans
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = SEED)]
     seed: u64,
 
     /// Maximum number of scans per case, 1..=1000; methods that take long are measured
@@ -79,9 +91,41 @@ pub struct Config {
 
     #[command(flatten)]
     paper: paper::Config,
+
+    #[command(flatten)]
+    docs: docs::Config,
 }
 
 impl Config {
+    /// Checks that no options of another table are given.
+    ///
+    /// # Errors
+    /// Names those that are allowed.
+    fn check_table(&self) -> anyhow::Result<()> {
+        let has_docs = self.docs != docs::Config::default();
+        let has_cases = self.json || self.scans.is_some() || self.filter != Filter::default();
+        let has_effort = self.quick || self.seed != SEED;
+        let message = match self.table {
+            Measured::Docs if has_cases || has_effort || !self.paper.is_empty() => {
+                "`bench docs` takes --root, --data, --check, --constants, --stress and --times"
+                    .to_owned()
+            }
+            Measured::Paper if has_cases || has_docs => {
+                "`bench paper` takes --quick, --seed, --out, --part and --recording".to_owned()
+            }
+            Measured::Table(table) if has_docs => format!(
+                "--root, --data, --check, --constants, --stress and --times are for `bench docs`, not for {}",
+                name_of(&table)
+            ),
+            Measured::Table(table) if !self.paper.is_empty() => format!(
+                "--out, --part and --recording are for `bench paper`, not for {}",
+                name_of(&table)
+            ),
+            _ => return Ok(()),
+        };
+        Err(wrong_use(message))
+    }
+
     fn effort(&self) -> Effort {
         let (scans, budget_ms, patience_s) = match self.quick {
             true => (5, 300.0, 2.0),
@@ -113,27 +157,16 @@ impl Config {
     }
 }
 
-/// Measures a table, or the paper.
+/// Measures a table, the paper, or the figures of the documents.
 ///
 /// # Errors
 /// Options contradict each other, a case cannot be set up, or output cannot be written.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
+    config.check_table()?;
     match config.table {
-        Measured::Table(table) if config.paper.is_empty() => run_table(config, table),
-        Measured::Table(table) => Err(wrong_use(format!(
-            "--out, --part and --recording are for `bench paper`, not for {}",
-            name_of(&table)
-        ))),
-        Measured::Paper => {
-            let has_others =
-                config.json || config.scans.is_some() || config.filter != Filter::default();
-            if has_others {
-                return Err(wrong_use(
-                    "`bench paper` takes --quick, --seed, --out, --part and --recording",
-                ));
-            }
-            paper::run(&config.paper, config.quick, config.seed)
-        }
+        Measured::Table(table) => run_table(config, table),
+        Measured::Paper => paper::run(&config.paper, config.quick, config.seed),
+        Measured::Docs => docs::run(&config.docs),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `backcast bench`: the paper's tables and the search, every method on the
-//! same generated worlds with the same scans, in one run and on one thread; and, in
-//! `paper`, all claims of the paper.
+//! same generated worlds with the same scans, in one run and on one thread; in
+//! `paper`, all claims of the paper; and in `docs`, the figures of the documents.
 //!
 //! `worlds` and `scans` are generated from seeds: the same numbers give the same world, scan and
 //! result. `baselines`, `particles` and `scatter` are the methods that the engine is compared with.
@@ -10,6 +10,7 @@ mod command;
 mod contest;
 pub mod counted;
 mod distinct;
+mod docs;
 mod engine_methods;
 mod line_up;
 mod measure;

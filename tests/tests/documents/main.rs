@@ -1,8 +1,9 @@
 //! Comparison of the documents with the code: links, table of contents, options, exit codes,
 //! messages, JSON and figures of the shipped recordings.
 //!
-//! Tables of options and exit codes are written from `--help`, and the figures by `evaluate`:
-//! `BACKCAST_ACCEPT=1 cargo test --release -p tests --test documents`.
+//! Tables of options and exit codes are written from `--help` by
+//! `BACKCAST_ACCEPT=1 cargo test --release -p tests --test documents`, and the figures by
+//! `backcast bench docs`.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"

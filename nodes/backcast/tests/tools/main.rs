@@ -3,6 +3,7 @@
 
 mod bags;
 mod convert;
+mod docs;
 mod drawn;
 mod evaluate;
 mod init;
