@@ -407,7 +407,7 @@ fn options_that_mean_nothing_beside_answers_are_refused() {
         "--robot-radius 1",
         "--sigma-m 0.1",
         "--candidates 64",
-        "--least-lead 0.09",
+        "--unique-from 0.9",
         "--fit-sigma-m 0.1",
         "--index-cache here",
         "--sure 0.94",
