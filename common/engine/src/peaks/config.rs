@@ -39,19 +39,19 @@ pub struct PeakConfig {
     /// place with a lower score needs a larger lead: where the scan fits badly, the true
     /// place may not be on the map. This is for a scan that sees six pieces, see
     /// `--piece-doubt`.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.68, value_parser = parse_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.73, value_parser = parse_share))]
     pub sure_score: f64,
     /// Fall of the sure score with the natural logarithm of the number of pieces
     /// of the world that a scan sees, 0..=1, since many pieces rarely fit together by
     /// chance. A new piece begins where neighbouring readings jump.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.25, value_parser = parse_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share))]
     pub piece_doubt: f64,
     /// Doubt because of beams that pass through obstacles or end behind unknown space at
     /// the best place: the score that is compared with the sure score is lowered by this
     /// times their share, 0..=1. It does not change which place is best, see
     /// `--through-penalty`: walls that are seen at a flat angle are passed through at the
     /// true place, too.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.9, value_parser = parse_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.7, value_parser = parse_share))]
     pub through_doubt: f64,
     /// Number of beams whose scores decide as they are, 1..=1000: with fewer, scores vary
     /// more by chance, and a lead counts for less by the square root of what is missing.
@@ -105,9 +105,9 @@ impl Default for PeakConfig {
             candidate_m: DISTINCT_M,
             candidate_deg: DISTINCT_DEG,
             fit: FitConfig::default(),
-            sure_score: 0.68,
-            piece_doubt: 0.25,
-            through_doubt: 0.9,
+            sure_score: 0.73,
+            piece_doubt: 0.14,
+            through_doubt: 0.7,
             sure_beams: 100,
             doubt_scale: 0.09,
             lead_scale: 0.025,

@@ -6,8 +6,9 @@ use geometry::{Covariance, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
+use super::likelihood::{self, lead};
 use super::summits::{self, Reach, Summit};
-use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
+use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map};
 use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined, lacks};
 use crate::votes::most_candidates;
 
@@ -65,8 +66,15 @@ impl Workspace {
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
             let weight = likelihood::weight_of_leads(ends.effective_beams(), config);
-            self.margin.doubt = doubt;
-            (self.margin.left_out, self.margin.weight) = (left_out, weight);
+            let left_out = likelihood::discount(left_out, weight, config);
+            // A map that leaves things out explains a low score, too.
+            let doubt = (doubt - weight * left_out).max(0.0);
+            self.margin = Margin {
+                doubt,
+                left_out,
+                weight,
+                ..self.margin
+            };
             // The best place of all may be on another map.
             let apart = if input.has_others { ELSEWHERE } else { 1.0 };
             let needed = likelihood::needed_lead(doubt, config);
@@ -115,7 +123,8 @@ impl Places {
                 false => {
                     let drawn = [first.drawn_doubt, place.drawn_doubt];
                     let left_out = lead(best, best - doubt_between(first.score, drawn));
-                    (left_out, ELSEWHERE)
+                    let weight = weight / ELSEWHERE;
+                    (likelihood::discount(left_out, weight, config), ELSEWHERE)
                 }
             };
             (lead(best, place.score) - left_out).max(0.0) * weight / apart
@@ -139,12 +148,6 @@ impl Places {
 /// what is next to them. The doubts are those of [`DistanceField::drawn_doubt`].
 pub(crate) fn doubt_between(best: f64, [of_best, of_other]: [f64; 2]) -> f64 {
     of_best.max(of_other.min(lacks(best)))
-}
-
-/// Gap of a score behind the best, relative to the best's gap from a perfect score: where the scan
-/// fits well, small differences matter.
-pub(crate) fn lead(best: f64, other: f64) -> f64 {
-    (best - other) / (1.1 - best).sqrt()
 }
 
 /// Sorts the best score first; on a tie the place with more votes.

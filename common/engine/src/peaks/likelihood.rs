@@ -8,11 +8,16 @@
 //! maximum likelihood to real scans on right, drawn and wrong maps and at places that were erased,
 //! each kind with the same weight (docs/accuracy.md).
 
-use super::judge::lead;
 use super::{PeakConfig, Place};
 
 /// Number of pieces that a scan sees for which the sure score is defined.
 const SURE_PIECES: f64 = 6.0;
+
+/// Gap of a score behind the best, relative to the best's gap from a perfect score: where the scan
+/// fits well, small differences matter.
+pub(crate) fn lead(best: f64, other: f64) -> f64 {
+    (best - other) / (1.1 - best).sqrt()
+}
 
 /// Returns what the score of the best place lacks of the sure score, given the share of beams that
 /// pass through obstacles or end behind unknown space, and the number of pieces that the scan sees.
@@ -32,6 +37,12 @@ pub(super) fn weight_of_leads(beams: f64, config: &PeakConfig) -> f64 {
 /// Returns the weighted lead over another place at which the best place is unique.
 pub(super) fn needed_lead(doubt: f64, config: &PeakConfig) -> f64 {
     doubt + config.doubt_scale * (config.unique_from / (1.0 - config.unique_from)).ln()
+}
+
+/// Returns what does not count of a lead because the map leaves things out: a place that leads by
+/// this much, `left_out`, is unique.
+pub(super) fn discount(left_out: f64, weight: f64, config: &PeakConfig) -> f64 {
+    (left_out - needed_lead(0.0, config) / weight).max(0.0)
 }
 
 /// Fills in the probabilities of the places, best first, from their weighted leads. The rest to 1 is the
@@ -129,13 +140,13 @@ mod tests {
             );
         };
         check(0.95, 0.0, 6.0, 0.0);
-        check(0.58, 0.0, 6.0, 0.1);
+        check(0.63, 0.0, 6.0, 0.1);
         // A good score offsets a share of 0.1 of unmatched beams.
-        check(0.77, 0.1, 6.0, 0.0);
-        check(0.68, 0.5, 6.0, 0.45);
+        check(0.80, 0.1, 6.0, 0.0);
+        check(0.73, 0.5, 6.0, 0.35);
         // A scan of one piece is weaker evidence, one of many pieces is stronger.
-        check(0.68, 0.0, 1.0, 0.25 * 6f64.ln());
-        check(0.58, 0.0, 9.0, (0.1 - 0.25 * 1.5f64.ln()).max(0.0));
-        check(0.58, 0.0, 60.0, 0.0);
+        check(0.73, 0.0, 1.0, 0.14 * 6f64.ln());
+        check(0.63, 0.0, 9.0, 0.1 - 0.14 * 1.5f64.ln());
+        check(0.63, 0.0, 60.0, 0.0);
     }
 }

@@ -21,7 +21,8 @@ use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::vote_search::Outcome;
 pub use config::PeakConfig;
-pub(crate) use judge::{doubt_between, lead};
+pub(crate) use judge::doubt_between;
+pub(crate) use likelihood::lead;
 pub use merged::{Found, Merged, merge};
 use sentence::PlaceSummary;
 use summits::Summit;
@@ -259,9 +260,10 @@ impl Default for Places {
 /// What the best place needs to be unique.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
-    /// What its score lacks of the sure score, see [`PeakConfig::sure_score`].
+    /// What its score lacks of the sure score, see [`PeakConfig::sure_score`], beyond what the map
+    /// leaves out.
     pub doubt: f64,
-    /// Lead that may be due to things the map leaves out.
+    /// What does not count of a lead because the map leaves things out.
     pub left_out: f64,
     /// Weight of leads, 0..=1: less than 1 for a scan of few beams.
     pub weight: f64,

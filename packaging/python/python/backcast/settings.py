@@ -147,17 +147,17 @@ class Settings(TypedDict, total=False):
 
     # Score from which nothing but the lead over other places decides, 0..=1; a best place with a
     # lower score needs a larger lead: where the scan fits badly, the true place may not be on the
-    # map. This is for a scan that sees six pieces, see piece_doubt. Default: 0.68.
+    # map. This is for a scan that sees six pieces, see piece_doubt. Default: 0.73.
     sure_score: float
 
     # Fall of the sure score with the natural logarithm of the number of pieces of the world that
     # a scan sees, 0..=1, since many pieces rarely fit together by chance. A new piece begins
-    # where neighbouring readings jump. Default: 0.25.
+    # where neighbouring readings jump. Default: 0.14.
     piece_doubt: float
 
     # Doubt because of beams that pass through obstacles or end behind unknown space at the best
     # place: the score that is compared with the sure score is lowered by this times their share,
-    # 0..=1. It does not change which place is best, see through_penalty. Default: 0.9.
+    # 0..=1. It does not change which place is best, see through_penalty. Default: 0.7.
     through_doubt: float
 
     # Number of beams whose scores decide as they are, 1..=1000: with fewer, scores vary more by
