@@ -161,7 +161,7 @@ impl Tracker {
     ///
     /// It must come in the order of time, or it is ignored, and before the scans that it covers: up
     /// to the middle of a scan, or to its end if the motion within the scan is to be compensated.
-    /// Odometry that goes back by more than a second counts as started anew.
+    /// Odometry that goes back by more than a second counts as a restart.
     ///
     /// # Errors
     /// If the pose is not finite.

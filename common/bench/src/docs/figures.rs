@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// What stands for a figure that there is not.
+/// Placeholder for a missing figure.
 pub(super) const NONE: &str = "–";
 
 fn shown(value: &Value, format: impl FnOnce(f64) -> String) -> String {

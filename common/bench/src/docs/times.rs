@@ -12,7 +12,7 @@ use super::recordings::{Folders, QUERIES, SHIPPED};
 use super::runs::Runs;
 use super::tables::{SHIPPED_TIMES, TIMES};
 
-/// Where machine and commit stand.
+/// Marks that hold machine and commit.
 pub(super) const PLACES: [Place; 2] = [("README.md", "machine"), ("docs/accuracy.md", "machine")];
 
 /// # Errors

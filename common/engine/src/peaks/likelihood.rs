@@ -19,7 +19,7 @@ pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
 
-/// Returns what the score of the best place lacks of the sure score, given the share of beams that
+/// Returns the gap of the best place's score below the sure score, given the share of beams that
 /// pass through obstacles or end behind unknown space, and the number of pieces that the scan sees.
 pub(super) fn doubt(score: f64, unmatched: f64, pieces: f64, config: &PeakConfig) -> f64 {
     let trusted = score - config.through_doubt * unmatched
@@ -39,7 +39,7 @@ pub(super) fn needed_lead(doubt: f64, config: &PeakConfig) -> f64 {
     doubt + config.doubt_scale * (config.unique_from / (1.0 - config.unique_from)).ln()
 }
 
-/// Returns what does not count of a lead because the map leaves things out: a place that leads by
+/// Returns the part of a lead that does not count because the map leaves things out: a place that leads by
 /// this much, `left_out`, is unique.
 pub(super) fn discount(left_out: f64, weight: f64, config: &PeakConfig) -> f64 {
     (left_out - needed_lead(0.0, config) / weight).max(0.0)

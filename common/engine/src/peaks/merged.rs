@@ -8,7 +8,7 @@ use crate::votes::{VoteShare, is_close};
 pub struct Found {
     /// Distinct places, best first, each with the number of the map.
     pub places: Vec<Place>,
-    /// What the first of them needs to be unique.
+    /// Requirements for the first of them to be unique.
     pub margin: Margin,
     /// Share of the beams that end at an obstacle at the first place.
     pub inlier_share: f64,

@@ -257,13 +257,13 @@ impl Default for Places {
     }
 }
 
-/// What the best place needs to be unique.
+/// Requirements for the best place to be unique.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
-    /// What its score lacks of the sure score, see [`PeakConfig::sure_score`], beyond what the map
-    /// leaves out.
+    /// Gap of its score below the sure score, see [`PeakConfig::sure_score`], beyond that due to
+    /// things the map leaves out.
     pub doubt: f64,
-    /// What does not count of a lead because the map leaves things out.
+    /// Part of a lead that does not count because the map leaves things out.
     pub left_out: f64,
     /// Weight of leads, 0..=1: less than 1 for a scan of few beams.
     pub weight: f64,
@@ -293,7 +293,7 @@ pub struct Workspace {
     /// Lead of the best place over each place.
     leads: Vec<f64>,
     places: Places,
-    /// What the best place needs to be unique.
+    /// Requirements for the best place to be unique.
     margin: Margin,
     /// Beams of the last scan that was compared with a map.
     ends: Ends,
@@ -306,7 +306,7 @@ pub struct Judged<'w> {
     pub places: &'w Places,
     /// Beams that were compared with the map.
     pub ends: &'w Ends,
-    /// What the best place needs to be unique.
+    /// Requirements for the best place to be unique.
     pub margin: Margin,
 }
 
