@@ -84,15 +84,15 @@ impl Driven {
         self.joined.robot.order("replay", how);
     }
 
-    /// The next pose: when it came, and how many metres it is from the true one. A pose that is off
-    /// has a covariance that says so: after a gap in odometry it is that of metres.
+    /// The next pose: when it came, and how many metres it is from the true one. A pose that is
+    /// wrong, by the metre from which a pose is called so, has a covariance that says so: after a gap
+    /// in odometry it is that of metres.
     fn pose(&mut self) -> (i64, f64) {
         let pose = self.joined.robot.wait_for("pose");
         let number = |name: &str| pose[name].as_f64().unwrap();
         let (metres, deviation) = (number("metres"), number("deviation"));
-        // Of 3000 normally distributed errors in the plane, one is beyond four deviations. The
-        // recorded truth is known to half a metre.
-        assert!(metres < f64::max(0.5, 4.0 * deviation), "{pose}");
+        // Of 3000 normally distributed errors in the plane, one is beyond four deviations.
+        assert!(metres < f64::max(1.0, 4.0 * deviation), "{pose}");
         (pose["at"].as_i64().unwrap(), metres)
     }
 
