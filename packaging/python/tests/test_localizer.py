@@ -1,6 +1,7 @@
 """Locating scans of a drawn hall, and what is refused."""
 
 import copy
+import functools
 import math
 import pickle
 import signal
@@ -250,9 +251,17 @@ def test_the_lock_is_released_while_a_map_is_prepared_and_searched(clutter):
         assert any(start + quarter < stamp < end - quarter for stamp in stamps), end - start
 
 
-def test_a_signal_ends_a_search(clutter):
+@pytest.mark.parametrize(
+    "question_on",
+    [
+        lambda map: backcast.Localizer(map).locate,
+        lambda map: functools.partial(backcast.Tracker(map).update, stamp_ns=1_000_000_000),
+    ],
+    ids=["localizer", "tracker"],
+)
+def test_a_signal_ends_a_search(clutter, question_on):
     map, ranges = clutter
-    localizer = backcast.Localizer(map)
+    ask = question_on(map)
     came_back = False
 
     class Stopped(Exception):
@@ -265,15 +274,13 @@ def test_a_signal_ends_a_search(clutter):
     try:
         with pytest.raises(Stopped):
             signal.setitimer(signal.ITIMER_REAL, 0.05)
-            localizer.locate(ranges, *ANGLES)
+            ask(ranges, *ANGLES)
             came_back = True
     finally:
         signal.signal(signal.SIGALRM, before)
     assert not came_back
     # What it was searching with serves again.
-    again = localizer.locate(ranges, *ANGLES)
-    other = backcast.Localizer(map).locate(ranges, *ANGLES)
-    assert again.poses.tolist() == other.poses.tolist()
+    assert ask(ranges, *ANGLES) == question_on(map)(ranges, *ANGLES)
 
 
 PREPARES_UNTIL_A_SIGNAL = """

@@ -69,7 +69,7 @@ pub struct PeakConfig {
     #[cfg_attr(feature = "clap", arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale))]
     pub lead_scale: f64,
     /// Probability from which the best place is unique, 0..=1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "PROBABILITY", default_value_t = 0.75, value_parser = parse_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PROBABILITY", default_value_t = 0.85, value_parser = parse_share))]
     pub unique_from: f64,
     /// Minimum score of the best place; below it the verdict is PoorFit: the scan may
     /// not be of this map, 0..=1.
@@ -111,7 +111,7 @@ impl Default for PeakConfig {
             sure_beams: 100,
             doubt_scale: 0.09,
             lead_scale: 0.025,
-            unique_from: 0.75,
+            unique_from: 0.85,
             least_score: 0.60,
         }
     }

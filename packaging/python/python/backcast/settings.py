@@ -173,7 +173,7 @@ class Settings(TypedDict, total=False):
     # Default: 0.025.
     lead_scale: float
 
-    # Probability from which the best place is unique, 0..=1. Default: 0.75.
+    # Probability from which the best place is unique, 0..=1. Default: 0.85.
     unique_from: float
 
     # Minimum score of the best place; below it the verdict is PoorFit: the scan may not be of
