@@ -7,25 +7,13 @@ use crate::{MAX_FILE_BYTES, Problem};
 /// Error of a descriptor.
 #[derive(Debug, thiserror::Error)]
 pub enum DataflowError {
-    /// The file could not be read.
     #[error("cannot read {}", file.display())]
-    Unreadable {
-        /// Path as given.
-        file: PathBuf,
-        source: io::Error,
-    },
-    /// The file is too large to be a descriptor.
+    Unreadable { file: PathBuf, source: io::Error },
     #[error("{} has more than {MAX_FILE_BYTES} bytes, which is the most that is read", file.display())]
-    TooLarge {
-        /// Path as given.
-        file: PathBuf,
-    },
-    /// The file has errors.
+    TooLarge { file: PathBuf },
     #[error("{}", lines(file, problems))]
     Wrong {
-        /// Path as given.
         file: PathBuf,
-        /// Problems in the order of the file, at least one.
         problems: Vec<Problem>,
     },
 }

@@ -43,9 +43,6 @@ pub enum Builds {
 
 /// Reads and checks the descriptor `file`, including that its executables exist or are built. If
 /// [`DEFAULT_FILE`] is not in the current directory, the installed one is used.
-///
-/// # Errors
-/// The descriptor is missing or wrong.
 pub fn load(file: &Path, builds: Builds) -> anyhow::Result<Descriptor> {
     let is_default = file == Path::new(DEFAULT_FILE) && !file.exists();
     let installed = is_default.then(installed::demonstration).flatten();

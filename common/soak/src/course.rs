@@ -84,9 +84,6 @@ enum Watched {
 
 impl Course {
     /// Starts the graph.
-    ///
-    /// # Errors
-    /// It cannot be started.
     pub(super) fn start(
         plan: Plan,
         maps: Maps,
@@ -117,9 +114,6 @@ impl Course {
     }
 
     /// Injects faults until the time is over, then stops the graph.
-    ///
-    /// # Errors
-    /// A fault cannot be injected.
     pub(super) fn run(mut self) -> anyhow::Result<Report> {
         // The graph may be built first, which may take any time.
         while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {

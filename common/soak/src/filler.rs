@@ -16,9 +16,6 @@ const MAX_FREE: u64 = 1 << 30;
 pub(super) struct Filler(PathBuf);
 
 /// Rejects a file system with too much free space.
-///
-/// # Errors
-/// It has too much, or its state cannot be read.
 pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
     let found = statvfs(folder).with_context(|| failed("look at", folder))?;
     let free = found
@@ -37,9 +34,6 @@ pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
 
 impl Filler {
     /// Fills the file system of `folder`.
-    ///
-    /// # Errors
-    /// A file cannot be created, or writing fails for a reason other than lack of space.
     pub(super) fn fill(folder: &Path) -> anyhow::Result<Self> {
         let path = folder.join(format!("backcast-soak-{}", std::process::id()));
         let mut file = File::create(&path).with_context(|| failed("create", &path))?;

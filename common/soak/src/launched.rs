@@ -59,9 +59,6 @@ pub(super) struct Launched {
 
 impl Launched {
     /// Starts the launcher next to this executable with `run` and the arguments.
-    ///
-    /// # Errors
-    /// It cannot be started.
     pub(super) fn start(arguments: &[String]) -> anyhow::Result<Self> {
         let own = std::env::current_exe().map_err(not_started)?;
         let mut child = Command::new(own.with_file_name("backcast"))
@@ -103,25 +100,16 @@ impl Launched {
     }
 
     /// Requests a regular stop.
-    ///
-    /// # Errors
-    /// It cannot be signalled.
     pub(super) fn ask_to_stop(&self) -> anyhow::Result<()> {
         signal(self.pid(), Signal::SIGINT)
     }
 
     /// Waits for its end.
-    ///
-    /// # Errors
-    /// Waiting fails.
     pub(super) fn wait(&mut self) -> anyhow::Result<ExitStatus> {
         self.child.wait().map_err(not_started)
     }
 
     /// Kills it and waits for its end.
-    ///
-    /// # Errors
-    /// Killing or waiting fails.
     pub(super) fn kill(&mut self) -> anyhow::Result<()> {
         self.child.kill().map_err(not_started)?;
         self.wait().map(drop)
@@ -137,9 +125,6 @@ impl Drop for Launched {
 }
 
 /// Signals a process. A process that has ended is no error.
-///
-/// # Errors
-/// The process belongs to another user.
 pub(super) fn signal(pid: i32, signal: Signal) -> anyhow::Result<()> {
     match kill(Pid::from_raw(pid), signal) {
         Ok(()) | Err(nix::errno::Errno::ESRCH) => Ok(()),

@@ -24,9 +24,6 @@ pub(super) struct Maps {
 
 impl Maps {
     /// Prepares both variants of the map at `yaml` in `folder`.
-    ///
-    /// # Errors
-    /// The map cannot be read, or a file cannot be written.
     pub(super) fn new(yaml: &Path, folder: &Path) -> anyhow::Result<Self> {
         let grid = map::load(yaml)?;
         let variants = ["as_given.yaml", "larger.yaml"].map(|name| folder.join(name));
@@ -47,9 +44,6 @@ impl Maps {
     }
 
     /// Replaces the map by the other one, atomically.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub(super) fn swap(&mut self) -> anyhow::Result<()> {
         self.current = 1 - self.current;
         let next = self.served.with_extension("next");

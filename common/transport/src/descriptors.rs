@@ -8,9 +8,6 @@ use crate::TransportError;
 const NEEDED: u64 = 512;
 
 /// Raises the soft limit of this process to [`NEEDED`] if it is lower.
-///
-/// # Errors
-/// [`TransportError::Descriptors`] if the hard limit is lower.
 pub(crate) fn ensure() -> Result<(), TransportError> {
     let Ok((soft, hard)) = getrlimit(Resource::RLIMIT_NOFILE) else {
         // An unknown limit shows when it is reached.

@@ -50,9 +50,6 @@ pub struct Graph {
 
 impl Graph {
     /// Joins the graph named by `BACKCAST_GRAPH`, as `node_name`.
-    ///
-    /// # Errors
-    /// See [`Graph::join_named`]; also if the variable is not a valid name.
     pub fn join(node_name: &str) -> Result<Graph, TransportError> {
         Self::join_named(node_name, &GraphName::from_environment()?)
     }
@@ -136,9 +133,6 @@ impl Graph {
     /// Creates a publisher of topic `T` for samples of up to `items` items. It avoids growing,
     /// which would lose samples that a subscriber has not received yet when the publisher ends. It
     /// still grows for larger samples.
-    ///
-    /// # Errors
-    /// See [`Graph::publisher`].
     pub fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
         let publisher = Publisher::create(&self.node, items, self.losses.clone())?;
         self.publishers.add(publisher.for_event_loop());
@@ -155,9 +149,6 @@ impl Graph {
     }
 
     /// Creates the reporter of this node's health.
-    ///
-    /// # Errors
-    /// See [`Graph::publisher`].
     pub fn health(&self) -> Result<Health, TransportError> {
         // No error message makes it grow, so that the last message before its end is in memory that
         // its subscribers have mapped already.

@@ -60,9 +60,6 @@ impl Health {
 
     /// Sets the number of received samples to `total` if that is more, and reports it at once, for
     /// nodes that wait for it.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn count_received_to(&mut self, total: u64) -> Result<(), TransportError> {
         if total <= self.report.received {
             return Ok(());
@@ -86,9 +83,6 @@ impl Health {
     }
 
     /// Sets the node's state; published at once if it changes.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn state(&mut self, state: NodeState) -> Result<(), TransportError> {
         if self.report.state == state as u32 {
             return Ok(());
@@ -99,9 +93,6 @@ impl Health {
 
     /// Sets the last error and publishes it at once, cut to [`HealthHeader::ERROR_CAPACITY`] bytes
     /// at a character boundary.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn error(&mut self, error: &str) -> Result<(), TransportError> {
         let end = error.floor_char_boundary(HealthHeader::ERROR_CAPACITY);
         self.last_error.clear();
@@ -115,9 +106,6 @@ impl Health {
     }
 
     /// Publishes a report if the last one is a second old, and the waiting log lines.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn tick(&mut self) -> Result<(), TransportError> {
         if let Some(log) = &self.log {
             log.borrow_mut().send_waiting();
@@ -129,9 +117,6 @@ impl Health {
     }
 
     /// Reports that the node is about to end.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn stop(mut self) -> Result<(), TransportError> {
         self.state(NodeState::Stopped)
     }

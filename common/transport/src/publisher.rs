@@ -109,9 +109,6 @@ impl<T: Topic> Publisher<T> {
     }
 
     /// Sends a sample with copies of these items.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`] and [`Loan::send`].
     pub fn send(&self, header: T::Header, items: &[T::Item]) -> Result<(), TransportError> {
         let mut loan = self.loan(items.len())?;
         *loan.header_mut() = header;
@@ -139,9 +136,6 @@ impl<T: Topic> Publisher<T> {
     /// so a source that ends by itself waits for this before. The wait needs a time limit: if a
     /// subscriber drops samples in another order than they came, this may stay false. A latched
     /// topic keeps its newest sample and is never settled.
-    ///
-    /// # Errors
-    /// See [`Publisher::loan`]; there must be no loan at the time.
     pub fn is_settled(&self) -> Result<bool, TransportError> {
         const { assert!(!T::LATCHED, "a latched topic keeps its newest sample") };
         let Some(last) = self.inner.last_sent.get() else {

@@ -81,9 +81,6 @@ impl<T: Topic> Subscriber<T> {
 
     /// Receives all samples and returns the newest: for topics with one publisher whose samples
     /// replace each other, like latched topics.
-    ///
-    /// # Errors
-    /// See [`Subscriber::receive`].
     pub fn newest(&self) -> Result<Option<Sample<T>>, TransportError> {
         let mut newest = None;
         while let Some(sample) = self.receive()? {

@@ -21,9 +21,6 @@ pub type Image<'a> = (FieldHeader, &'a [u16]);
 /// `None` if `stop` interrupted the search. The maps must be prepared for a known heading if and
 /// only if there is one.
 ///
-/// # Errors
-/// If the engine rejects the scan or the heading.
-///
 /// # Panics
 /// If there is no map.
 pub fn ask(
@@ -64,9 +61,6 @@ pub fn answered<'w>(
 
 /// Returns the image of the scan that was last searched in this workspace: the intensities of all
 /// cells if the heading was known, else the upper bound of each block.
-///
-/// # Errors
-/// If the engine rejects the scan.
 pub fn image<'w>(
     votes: &VotesHeader,
     vote_search: &VoteSearch,

@@ -22,38 +22,17 @@ pub enum AccumulatorError {
     Rule(#[from] messages::InvalidRule),
     #[error(transparent)]
     Heading(#[from] HeadingError),
-    /// The scan has too many readings for a ring of sonars.
     #[error(
         "the scan has {found} readings: a ring of sonars, as which it is to be read, has at most \
          {allowed}"
     )]
-    TooManyEchoes {
-        /// Number of readings found.
-        found: usize,
-        /// Largest number accepted.
-        allowed: usize,
-    },
+    TooManyEchoes { found: usize, allowed: usize },
     #[error("the boundary came with {found} cells instead of {expected}")]
-    BoundarySize {
-        /// Number according to the header.
-        expected: u64,
-        /// Number received.
-        found: usize,
-    },
+    BoundarySize { expected: u64, found: usize },
     #[error("cannot start a thread to prepare map {map_id:016x}")]
-    Thread {
-        /// Id of the map.
-        map_id: u64,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
+    Thread { map_id: u64, source: std::io::Error },
     #[error("preparing map {map_id:016x} died: {reason}")]
-    PreparationDied {
-        /// Id of the map.
-        map_id: u64,
-        /// Message of the panic.
-        reason: String,
-    },
+    PreparationDied { map_id: u64, reason: String },
     #[error(transparent)]
     Transport(#[from] TransportError),
 }

@@ -25,9 +25,6 @@ pub struct Key {
 impl Key {
     /// Returns the key of a map and a boundary; `None` if the boundary belongs to another map, so
     /// that the right one is still to come.
-    ///
-    /// # Errors
-    /// If the map's rules are out of range.
     pub fn of(
         map: &MapHeader,
         (boundary, cells): (&BoundaryHeader, &[BoundaryCell]),
@@ -41,9 +38,6 @@ impl Key {
     }
 
     /// Returns the key of a map of a set.
-    ///
-    /// # Errors
-    /// If the map's rules are out of range.
     pub fn in_set(map: &MapHeader) -> Result<Key, AccumulatorError> {
         Ok(Key {
             map_id: map.map_id,
@@ -76,9 +70,6 @@ pub struct Job {
 impl Job {
     /// Copies a map of a set on which beams count up to `reach_m` metres. Its boundary is extracted
     /// here, because topic `boundary` covers only one map.
-    ///
-    /// # Errors
-    /// If the rules of the map are invalid.
     pub fn in_set(
         map: &MapHeader,
         occupancy: &[u8],
@@ -94,9 +85,6 @@ impl Job {
     }
 
     /// Copies the messages, because samples must stay on the thread that received them.
-    ///
-    /// # Errors
-    /// If the size of the boundary does not match its header, or the rules of the map are invalid.
     pub fn new(
         map: &MapHeader,
         occupancy: &[u8],
@@ -123,9 +111,6 @@ impl Job {
     }
 
     /// Prepares the localizer, which takes milliseconds to seconds unless the index is cached.
-    ///
-    /// # Errors
-    /// If map or boundary cannot be used, or do not belong together.
     pub fn prepare(
         self,
         config: VoteSearchConfig,

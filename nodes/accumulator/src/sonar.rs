@@ -32,9 +32,6 @@ impl Sonar {
     }
 
     /// Adds a scan to the window.
-    ///
-    /// # Errors
-    /// If no odometry covers the scan, or the engine rejects it; the scan is then left out.
     pub fn receive(
         &mut self,
         header: &ScanHeader,

@@ -14,10 +14,7 @@ pub enum BoundaryError {
         "the map has {occupied} occupied cells, but none touches a cell that a laser sees \
          through: there is nothing that it could see"
     )]
-    NoBoundaryCell {
-        /// Number of occupied cells.
-        occupied: usize,
-    },
+    NoBoundaryCell { occupied: usize },
     #[error(transparent)]
     Transport(#[from] TransportError),
 }

@@ -12,9 +12,6 @@ use crate::extraction::{Extraction, extract};
 const TICK: Duration = Duration::from_millis(100);
 
 /// Publishes the boundary of each map until the stop flag is set.
-///
-/// # Errors
-/// If the transport fails; a rejected map is reported in `health`.
 pub fn run(graph: &Graph) -> Result<(), BoundaryError> {
     let maps = graph.subscriber::<topic::Map>()?;
     let boundaries = graph.publisher::<topic::Boundary>()?;

@@ -77,9 +77,6 @@ impl Config {
     }
 
     /// Returns the map files with their names.
-    ///
-    /// # Errors
-    /// If the set cannot be read, two maps have the same name, or `--on` names an unknown map.
     pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
         let all = match (&self.maps, &*self.map) {
             (Some(set), _) => map::set_of_noting(set, |line| tracing::info!("{line}")),

@@ -13,66 +13,38 @@ use crate::request::ENCODINGS;
 /// Error of the service, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum LocateError {
-    /// The map cannot be read.
     #[error("map {}", path.display())]
     Map {
         path: PathBuf,
         source: Box<MapError>,
     },
     #[error("map {} cannot be searched", path.display())]
-    UnusableMap {
-        /// Path from the configuration.
-        path: PathBuf,
-        /// Error of the engine.
-        source: EngineError,
-    },
+    UnusableMap { path: PathBuf, source: EngineError },
     #[error(transparent)]
     Network(#[from] NetworkError),
     #[error(transparent)]
     Key(#[from] KeyError),
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The encoding of the request is unknown.
     #[error("the request is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
-    Encoding {
-        /// Encoding of the request, shortened.
-        found: String,
-    },
+    Encoding { found: String },
     #[error("a request of {found} bytes: allowed are at most {most}")]
-    TooLong {
-        /// Size of the request, bytes.
-        found: usize,
-        /// Largest size allowed, bytes.
-        most: usize,
-    },
+    TooLong { found: usize, most: usize },
     /// A postcard request or an answer is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
     #[error("the request is not a scan in JSON")]
     Json(#[from] serde_json::Error),
     #[error("deadline_ms={found:?}: allowed are 1 to 60000")]
-    Deadline {
-        /// Value found.
-        found: String,
-    },
+    Deadline { found: String },
     #[error("the scan is rejected")]
     Scan(#[from] EngineError),
-    /// All servers have as many requests as they accept.
     #[error("busy: {waiting} scans are being searched or waiting, which is the limit")]
-    Busy {
-        /// Number of requests at the server that was asked.
-        waiting: usize,
-    },
+    Busy { waiting: usize },
     #[error("late: no answer within {deadline_ms} ms")]
-    Late {
-        /// Deadline of the request, milliseconds.
-        deadline_ms: u128,
-    },
+    Late { deadline_ms: u128 },
     #[error("the server rejects the request: {says}")]
-    Refused {
-        /// Message of the server.
-        says: String,
-    },
+    Refused { says: String },
 }
 
 /// Encoding of the error reply of a busy server.

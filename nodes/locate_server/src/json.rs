@@ -50,9 +50,6 @@ struct Answer {
 }
 
 /// Parses the scan in `payload`.
-///
-/// # Errors
-/// If it is not JSON, lacks a key or has an unknown one.
 pub(crate) fn read(
     payload: &[u8],
     now_ns: i64,
@@ -79,9 +76,6 @@ pub(crate) fn read(
 }
 
 /// Returns the answer as a JSON object.
-///
-/// # Errors
-/// Not expected for plain numbers.
 pub(crate) fn write(
     header: &HypothesesHeader,
     hypotheses: &[Hypothesis],

@@ -33,9 +33,6 @@ pub type Answer = (HypothesesHeader, Vec<Hypothesis>);
 
 impl SearchedMap {
     /// Prepares the map, which takes milliseconds to seconds.
-    ///
-    /// # Errors
-    /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(
         name: String,
         map: &OccupancyGrid,
@@ -61,9 +58,6 @@ impl SearchedMap {
 
 impl Locator {
     /// Prepares a locator for one map.
-    ///
-    /// # Errors
-    /// See [`SearchedMap::new`].
     pub fn new(
         map: &OccupancyGrid,
         rules: CellRules,
@@ -74,9 +68,6 @@ impl Locator {
     }
 
     /// Creates a locator that searches several maps together.
-    ///
-    /// # Errors
-    /// If `maps` is empty.
     pub fn of_set(maps: Vec<SearchedMap>) -> Result<Self, EngineError> {
         let (ids, prepared) = maps
             .into_iter()
@@ -103,9 +94,6 @@ impl Locator {
     }
 
     /// Finds the places of a scan; `None` if `stop` interrupted the search.
-    ///
-    /// # Errors
-    /// If the engine rejects the scan.
     pub fn locate(
         &self,
         workspace: &mut Workspace,

@@ -38,9 +38,6 @@ pub struct Request {
 }
 
 /// Parses a request with this encoding; `now_ns` is the monotonic clock.
-///
-/// # Errors
-/// If the encoding is unknown, or the request is too long or invalid.
 pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, LocateError> {
     let most = topic::Scan::MAX_BYTES;
     if payload.len() > most {
@@ -71,9 +68,6 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
 
 /// Returns encoding and bytes of an answer in this form; `now_ns` is the monotonic clock at
 /// sending. Map names are included if several maps are searched.
-///
-/// # Errors
-/// If the result cannot be encoded.
 pub fn write(
     form: Form,
     header: &HypothesesHeader,

@@ -27,9 +27,6 @@ const TICK: Duration = Duration::from_millis(200);
 const ACQUAINTANCE: Duration = Duration::from_millis(500);
 
 /// Answers requests until the stop flag is set.
-///
-/// # Errors
-/// If the map cannot be used, the session cannot be opened, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;

@@ -48,9 +48,6 @@ pub fn check<'a>(
 
 /// Validates the votes on one map, which may be one of several that were searched together; `lead`
 /// is the vote share of the best pose on all of them.
-///
-/// # Errors
-/// See [`check`].
 pub fn check_on_map<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
@@ -89,9 +86,6 @@ fn outcome(header: &VotesHeader) -> Result<SearchOutcome, PeakError> {
 }
 
 /// Returns the pose of the laser on the robot, if the header has it.
-///
-/// # Errors
-/// If the pose is not finite.
 pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
     if header.mount_known != 1 {
         return Ok(None);

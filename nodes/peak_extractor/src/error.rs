@@ -11,15 +11,9 @@ pub enum PeakError {
         "they are of map {found:016x}, which is not known; known are the newest map and the one \
          before: {known}"
     )]
-    UnknownMap {
-        /// Map id of the votes.
-        found: u64,
-        /// Ids of the known maps.
-        known: String,
-    },
+    UnknownMap { found: u64, known: String },
     #[error("their scan is not known: it was not received, or too long ago")]
     UnknownScan,
-    /// The distribution of the votes over several maps is not known.
     #[error("which of them are on which map is not known: it was not received, or too long ago")]
     UnknownParts,
     #[error("{maps} maps have {parts} votes together, and {total} came")]
@@ -28,7 +22,6 @@ pub enum PeakError {
         parts: u64,
         total: usize,
     },
-    /// A setting of the search is out of range.
     #[error("{field} is {found}: allowed are {allowed}")]
     Setting {
         field: &'static str,
@@ -45,28 +38,16 @@ pub enum PeakError {
     #[error(
         "outcome is {found}: allowed are 0 (found), 1 (no votes), 2 (refused) and 3 (not asked)"
     )]
-    Outcome {
-        /// Value in the header.
-        found: u32,
-    },
+    Outcome { found: u32 },
     #[error("headings is {found}: allowed are 1 to 65536")]
-    Headings {
-        /// Value in the header.
-        found: u32,
-    },
+    Headings { found: u32 },
     #[error("known_heading is {found}: it must be finite, in radians")]
-    KnownHeading {
-        /// Value in the header.
-        found: f64,
-    },
+    KnownHeading { found: f64 },
     #[error(
         "base_from_laser is x {} m, y {} m, yaw {} rad: each must be finite",
         found.x, found.y, found.yaw
     )]
-    Mount {
-        /// Value in the header.
-        found: Pose2,
-    },
+    Mount { found: Pose2 },
     #[error(
         "best is {best} of {highest_possible} possible, and the first vote has {first:?}: they \
          must be 1 or more, the first two rising and the last two equal"
@@ -74,7 +55,6 @@ pub enum PeakError {
     Best {
         best: u32,
         highest_possible: u32,
-        /// Intensity of the first vote, if there is one.
         first: Option<u16>,
     },
     #[error(
@@ -82,14 +62,10 @@ pub enum PeakError {
          searched at {headings} headings", vote.x, vote.y, vote.heading
     )]
     Pose {
-        /// Index of the vote, from 0.
         index: usize,
         vote: Vote,
-        /// Number of searched cells along x.
         width: u32,
-        /// Number of searched cells along y.
         height: u32,
-        /// Number of headings per turn.
         headings: u32,
     },
     #[error(
@@ -97,7 +73,6 @@ pub enum PeakError {
          ones rise by heading, y and x"
     )]
     Order {
-        /// Index of the vote, from 0.
         index: usize,
         previous: Vote,
         vote: Vote,

@@ -62,9 +62,6 @@ impl Maps {
     }
 
     /// Stores maps that are searched together; if one is rejected, nothing changes.
-    ///
-    /// # Errors
-    /// See [`Maps::receive`].
     pub fn receive_set(&mut self, set: &MapSet<'_>) -> Result<(), EngineError> {
         let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter();
@@ -81,9 +78,6 @@ impl Maps {
     }
 
     /// Returns the map with this id.
-    ///
-    /// # Errors
-    /// If the map is not known.
     pub fn get(&self, map_id: u64) -> Result<&Map, PeakError> {
         let found = self.known.iter().flatten().find(|map| map.map_id == map_id);
         found.ok_or_else(|| PeakError::UnknownMap {

@@ -20,9 +20,6 @@ pub struct ParticlesConfig {
 }
 
 /// Returns header and items of the message; there are no items if the scan has no place.
-///
-/// # Errors
-/// If the places are not finite.
 pub fn draw(
     answer: &Answer<'_>,
     count: u32,

@@ -19,9 +19,6 @@ use crate::{Config, PeakError, particles};
 const TICK: Duration = Duration::from_millis(100);
 
 /// Answers each message of votes with its hypotheses until the stop flag is set.
-///
-/// # Errors
-/// If the transport fails; rejected votes or maps are reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
     let scans = graph.subscriber::<topic::Scan>()?;

@@ -61,9 +61,6 @@ impl Scans {
     }
 
     /// Returns the beams of the scan with this stamp.
-    ///
-    /// # Errors
-    /// If they were not received, or too long ago.
     pub fn readings(&self, stamp: Stamp) -> Result<&[Reading], PeakError> {
         let found = self.readings.get(stamp);
         Ok(found.ok_or(PeakError::UnknownScan)?.1)
@@ -75,18 +72,12 @@ impl Scans {
     }
 
     /// Returns the headers of the votes on each map of the scan with this stamp.
-    ///
-    /// # Errors
-    /// If they were not received, or too long ago.
     pub fn by_map(&self, stamp: Stamp) -> Result<&[VotesHeader], PeakError> {
         let found = self.by_map.get(stamp);
         Ok(found.ok_or(PeakError::UnknownParts)?.1)
     }
 
     /// Returns the scan with this stamp.
-    ///
-    /// # Errors
-    /// If it was not received, or too long ago.
     pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
         let (header, ranges) = self.kept.get(stamp).ok_or(PeakError::UnknownScan)?;
         Ok(Scan::of(header, ranges))

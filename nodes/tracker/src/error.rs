@@ -14,12 +14,7 @@ pub enum TrackerError {
     #[error(transparent)]
     MapSet(#[from] messages::InvalidMapSet),
     #[error("the last pose in {file} cannot be used: {reason}")]
-    Memory {
-        /// Path from the configuration.
-        file: String,
-        /// Reason for the failure.
-        reason: String,
-    },
+    Memory { file: String, reason: String },
     #[error(transparent)]
     Transport(#[from] TransportError),
 }

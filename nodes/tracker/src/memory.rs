@@ -38,9 +38,6 @@ impl Memory {
     }
 
     /// Loads the saved pose; `None` if there is no file yet.
-    ///
-    /// # Errors
-    /// If the file cannot be read, could have been changed by another user, or has no valid pose.
     pub(crate) fn load(&self) -> Result<Option<Remembered>, TrackerError> {
         let text = trusted_files::read(&self.file, MAX_BYTES);
         let Some(text) = text.map_err(|error| self.refuse(&with_causes(&error)))? else {
@@ -57,9 +54,6 @@ impl Memory {
     }
 
     /// Saves a pose. The file is replaced atomically, so that it stays intact if the power fails.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(crate) fn save(&self, pose: &Remembered) -> Result<(), TrackerError> {
         let text = serde_json::to_string(pose).map_err(|error| self.refuse(&error))?;
         let write = || -> std::io::Result<()> {

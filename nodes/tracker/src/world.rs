@@ -61,9 +61,6 @@ impl Worlds {
     }
 
     /// Prepares all maps of a set.
-    ///
-    /// # Errors
-    /// See [`Worlds::of_map`]; with the id of the map.
     pub(crate) fn of_set(set: &MapSet<'_>) -> Result<Self, (u64, EngineError)> {
         let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter().map(|(header, occupancy)| {
@@ -111,9 +108,6 @@ impl Worlds {
     }
 
     /// Computes the end points of a scan's beams.
-    ///
-    /// # Errors
-    /// If the scan is rejected; the end points of the previous scan stay.
     pub(crate) fn find_ends(
         &mut self,
         scan: Observation<'_>,

@@ -65,9 +65,6 @@ enum RecordAction {
 }
 
 /// Prints the state of graphs and of their nodes.
-///
-/// # Errors
-/// No graph is running, or the requested one does not answer.
 pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
     let graphs = match &config.graph {
         Some(graph) => vec![graph.clone()],
@@ -87,9 +84,6 @@ pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
 }
 
 /// Stops a graph in order and waits until it has ended and its name is free.
-///
-/// # Errors
-/// The graph is not running, does not answer, or does not end.
 pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let code = done(&graph, &Question::Stop)?;
@@ -99,9 +93,6 @@ pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
 
 /// Starts or stops a recording of a graph and prints its file. When a stopped one is printed, the
 /// file is complete.
-///
-/// # Errors
-/// The graph is not running or cannot be recorded, or nothing is being recorded.
 pub fn record(config: &RecordConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let on = config.action == RecordAction::Start;
@@ -132,9 +123,6 @@ fn wait_while(what: &str, mut runs: impl FnMut() -> anyhow::Result<bool>) -> any
 }
 
 /// Restarts a node.
-///
-/// # Errors
-/// The graph is not running or has no such node.
 pub fn restart(config: &RestartConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let node = config.node.clone();
@@ -185,9 +173,6 @@ fn status_of(graph: &GraphName) -> anyhow::Result<Status> {
 }
 
 /// Checks that the graph has this node.
-///
-/// # Errors
-/// The graph has no such node; the message lists its nodes.
 pub(super) fn known_node(graph: &GraphName, node: &str) -> anyhow::Result<()> {
     let nodes = status_of(graph)?.nodes;
     match nodes.iter().any(|known| known.id == node) {

@@ -40,9 +40,6 @@ pub struct LogsConfig {
 }
 
 /// Prints the last lines of each node and, with `--follow`, new lines as they come.
-///
-/// # Errors
-/// No graph is running, or it cannot be joined.
 pub fn logs(config: &LogsConfig) -> anyhow::Result<ExitCode> {
     let name = the_graph(config.graph.as_ref())?;
     let graph = Graph::join_named("logs", &name)?;

@@ -20,9 +20,6 @@ pub(crate) fn node(dataflow: &Dataflow, id: &str, build: Vec<Command>) -> Node {
 }
 
 /// Checks that the graph has no node of the executable `id`, which `option` adds.
-///
-/// # Errors
-/// The graph has one already.
 pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> anyhow::Result<()> {
     let is_same = |node: &Node| node.id == id || node.executable() == id;
     if dataflow.nodes.iter().any(is_same) {

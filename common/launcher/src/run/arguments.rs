@@ -34,9 +34,6 @@ pub fn name_robot(dataflow: &mut Dataflow, graph: &str) {
 }
 
 /// Returns the first node with one of these executables. `option` and `file` are named in errors.
-///
-/// # Errors
-/// The graph has no such node.
 pub fn find<'d>(
     dataflow: &'d mut Dataflow,
     executables: &[&'static str],

@@ -16,9 +16,6 @@ use super::{console::note, process::executable};
 /// Builds every node, in the order of the descriptor and in its `folder`. Two nodes with the same
 /// commands and environment are built once. Output of the builds goes to our standard error. If the
 /// build program is not installed, existing executables are used as they are.
-///
-/// # Errors
-/// A command cannot be started or failed.
 pub fn build_all(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let with_build = || dataflow.nodes.iter().filter(|n| !n.build.is_empty());
     let ids: Vec<&str> = with_build().map(|n| n.id.as_str()).collect();

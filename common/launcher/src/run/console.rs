@@ -38,9 +38,6 @@ pub fn say(who: &str, line: &str) {
 
 /// Copies `stream` line by line to the console and to `also` until its end, on a new thread. Then
 /// it drops `open`.
-///
-/// # Errors
-/// The thread cannot be started.
 pub fn forward(
     who: &str,
     stream: impl Read + Send + 'static,

@@ -108,9 +108,6 @@ pub struct Asked {
 }
 
 /// Receives requests on a socket at `path`; `waker` wakes the launcher for each.
-///
-/// # Errors
-/// The socket cannot be created.
 pub fn listen(path: &Path, waker: Waker) -> anyhow::Result<Receiver<Asked>> {
     // Removes the socket of a killed launcher; a living one would hold the graph's name.
     let _ = remove_file(path);
@@ -153,9 +150,6 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
 }
 
 /// Sends a request to the launcher that listens at `path`.
-///
-/// # Errors
-/// No launcher listens, or the answer is invalid.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
     stream.set_read_timeout(Some(2 * TIMEOUT))?;

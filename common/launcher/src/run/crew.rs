@@ -47,9 +47,6 @@ pub struct Crew {
 
 impl Crew {
     /// Creates the crew of `nodes`, in `folder`. Nothing runs before the first [`Crew::tick`].
-    ///
-    /// # Errors
-    /// A node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
     pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> anyhow::Result<Self> {
         let now = Instant::now();
         let (output_open, output_closed) = channel();
@@ -66,9 +63,6 @@ impl Crew {
     /// Starts nodes that are due and handles processes that have ended. Returns true if any process
     /// has ended since the last tick. Without `has_room`, shared memory is full: no process can
     /// report, and failures do not count against it.
-    ///
-    /// # Errors
-    /// An essential node cannot be started for the first time, or failed for good.
     pub fn tick(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(open) = &self.output_open else {
             return Ok(false);
@@ -118,9 +112,6 @@ impl Crew {
 
     /// Ends a node in order and starts it again at once, regardless of its restart policy. A node
     /// that has ended is started. Returns true if there is such a node.
-    ///
-    /// # Errors
-    /// The process cannot be signalled.
     pub fn restart(&mut self, id: &str, now: Instant) -> anyhow::Result<bool> {
         let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
             return Ok(false);
@@ -138,9 +129,6 @@ impl Crew {
     }
 
     /// Adds a node, in place of an ended one with its id, and starts it at the next tick.
-    ///
-    /// # Errors
-    /// See [`Crew::new`].
     pub fn start(&mut self, node: Node, now: Instant) -> anyhow::Result<()> {
         self.members.retain(|member| member.node.id != node.id);
         self.members.push(Member::new(node, now)?);
@@ -148,9 +136,6 @@ impl Crew {
     }
 
     /// Ends a node in order, for good.
-    ///
-    /// # Errors
-    /// The process cannot be signalled.
     pub fn end(&mut self, id: &str) -> anyhow::Result<()> {
         for member in self.members.iter_mut().filter(|m| m.node.id == id) {
             if let State::Running(process) = &member.state {
@@ -195,9 +180,6 @@ impl Crew {
     ///
     /// Nodes without outputs go first: when a publisher ends, samples that are not yet received are
     /// lost.
-    ///
-    /// # Errors
-    /// A process cannot be signalled or waited for.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.stop_those(|node| node.outputs.is_empty())?;
         self.stop_those(|_| true)?;
@@ -216,9 +198,6 @@ impl Crew {
     }
 
     /// Sends `signal` to all processes of one executable and returns their number.
-    ///
-    /// # Errors
-    /// A process cannot be signalled.
     pub fn signal(&mut self, executable: &str, signal: Signal) -> anyhow::Result<usize> {
         let mut signalled = 0;
         let meant = |node: &Node| node.executable() == executable;

@@ -28,9 +28,6 @@ const ON: &str = "--on";
 const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in errors.
-///
-/// # Errors
-/// An option needs a node or an input that the graph does not have.
 pub(crate) fn apply(options: &Options, dataflow: &mut Dataflow, file: &Path) -> anyhow::Result<()> {
     if !options.replay.is_empty() {
         forward_replay(options, dataflow)?;

@@ -10,9 +10,6 @@ use super::added;
 const SERVER: &str = "foxglove_server";
 
 /// Adds the server to the graph.
-///
-/// # Errors
-/// The graph has such a server already.
 pub(crate) fn add(dataflow: &mut Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--foxglove", SERVER)?;
     // It may be restarted, as viewers reconnect by themselves.

@@ -124,9 +124,6 @@ impl Journal {
 
     /// Prints the summary if `wanted`, and waits until all is printed, at most for `patience` if it
     /// is given.
-    ///
-    /// # Errors
-    /// Standard output cannot be written.
     pub(crate) fn finish(
         mut self,
         wanted: bool,

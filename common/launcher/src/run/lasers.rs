@@ -18,9 +18,6 @@ const LASER: &str = "--laser";
 
 /// Names readers and tells the nodes that join scans if a graph has several lasers. `folder` is that of
 /// the descriptor.
-///
-/// # Errors
-/// If a file of settings cannot be used.
 pub(crate) fn name(dataflow: &mut Dataflow, folder: &Path) -> anyhow::Result<()> {
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);
@@ -69,9 +66,6 @@ pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
 }
 
 /// Returns the laser whose scans trigger answers, if the graph has several lasers.
-///
-/// # Errors
-/// If a file of settings cannot be used.
 pub(crate) fn first(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<Option<String>> {
     let mut nodes = dataflow.nodes.iter();
     let Some(accumulator) = nodes.find(|node| node.executable() == ACCUMULATOR) else {

@@ -76,9 +76,6 @@ enum End {
 /// The exit code is 0, or 3 if a node's exit code said that it lost data, or if something was lost
 /// at `--rate max`. At the pace of the recording, a slow machine may drop scans; the summary counts
 /// them.
-///
-/// # Errors
-/// Any error that keeps the graph from running as described. All processes have ended then.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     transport::node::start_logging().map_err(wrong_use)?;
     let graph = config.options.graph_name()?;

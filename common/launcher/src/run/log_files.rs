@@ -34,9 +34,6 @@ struct LogFile {
 
 impl LogFiles {
     /// Writes to `folder`, which is created if missing.
-    ///
-    /// # Errors
-    /// The folder cannot be created.
     pub(crate) fn create(folder: &Path) -> anyhow::Result<Self> {
         create_dir_all(folder)
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;

@@ -143,9 +143,6 @@ pub struct RecordOptions {
 impl Options {
     /// Returns the name of the graph to start: from the option, from the environment, or a random
     /// one. A random name is unique even among containers that share the memory of this machine.
-    ///
-    /// # Errors
-    /// The environment variable is not a valid name.
     pub fn graph_name(&self) -> Result<GraphName, TransportError> {
         match &self.graph {
             Some(name) => Ok(name.clone()),

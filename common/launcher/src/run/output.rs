@@ -28,9 +28,6 @@ pub(crate) enum Reader {
 
 impl Output {
     /// Starts the thread that writes to `writer`.
-    ///
-    /// # Errors
-    /// The thread cannot be started.
     pub(crate) fn start(mut writer: impl Write + Send + 'static) -> anyhow::Result<Self> {
         let (lines, waiting) = sync_channel::<String>(CAPACITY);
         let (end, ended) = channel();
@@ -68,9 +65,6 @@ impl Output {
 
     /// Waits until all is written, at most for `patience` if it is given. Returns the number of
     /// dropped lines.
-    ///
-    /// # Errors
-    /// Writing failed for another reason than a reader that went away.
     pub(crate) fn finish(self, patience: Option<Duration>) -> anyhow::Result<u64> {
         drop(self.lines);
         let ended = match patience {

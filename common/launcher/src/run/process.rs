@@ -49,9 +49,6 @@ impl Process {
     /// Starts `node` in `folder` as a member of `graph`. Its output goes to our standard error, and
     /// the last line of its standard error also to `last_line`. `open` is dropped when both streams
     /// have ended.
-    ///
-    /// # Errors
-    /// The executable cannot be started.
     pub(crate) fn start(
         node: &Node,
         folder: &Path,
@@ -104,9 +101,6 @@ impl Process {
     }
 
     /// Returns the exit status if the process has ended; then its whole group is killed.
-    ///
-    /// # Errors
-    /// The process cannot be waited for.
     pub(crate) fn poll(&mut self) -> io::Result<Option<ExitStatus>> {
         // Until the process is waited for, its id is not reused, so the group is still its group.
         let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
@@ -118,9 +112,6 @@ impl Process {
     }
 
     /// Sends `signal` to the whole group.
-    ///
-    /// # Errors
-    /// The group cannot be signalled.
     pub(crate) fn signal(&self, signal: Signal) -> io::Result<()> {
         match killpg(self.pid, signal) {
             // All processes of the group have ended.
@@ -130,9 +121,6 @@ impl Process {
     }
 
     /// Kills the group and waits for the process.
-    ///
-    /// # Errors
-    /// See [`Process::signal`] and [`Process::poll`].
     pub(crate) fn kill(&mut self) -> io::Result<()> {
         self.signal(Signal::SIGKILL)?;
         self.child.wait().map(drop)

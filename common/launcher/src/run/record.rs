@@ -17,9 +17,6 @@ use crate::descriptor::NO_FOLDER;
 pub(super) const RECORDER: &str = "recorder";
 
 /// Adds a recorder if the options ask for one. `file` and `folder` are those of the descriptor.
-///
-/// # Errors
-/// The output file exists already or cannot be written, or the graph has a recorder.
 pub(crate) fn add(
     options: &RecordOptions,
     dataflow: &mut Dataflow,

@@ -18,9 +18,6 @@ const PEAK_EXTRACTOR: &str = "peak_extractor";
 
 /// Returns the value that a node is given for a setting; `None` if it has its default. `folder` is
 /// that of the descriptor.
-///
-/// # Errors
-/// If the node's file of settings cannot be used.
 pub(crate) fn given(node: &Node, key: &str, folder: &Path) -> anyhow::Result<Option<String>> {
     Ok(all_given(node, folder)?.remove(key))
 }
@@ -53,9 +50,6 @@ struct Shared {
 }
 
 /// Checks that the tracker has the settings of the nodes before it.
-///
-/// # Errors
-/// Names the nodes and a setting that differs, or a file of settings that cannot be used.
 pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let find = |executable| {
         let mut nodes = dataflow.nodes.iter();

@@ -16,9 +16,6 @@ const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 
 /// True if the graph ends when this node has failed for good: `BACKCAST_ESSENTIAL` in the node's
 /// `env` decides, or else its executable.
-///
-/// # Errors
-/// The variable is neither `true` nor `false`.
 pub fn is_essential(node: &Node) -> anyhow::Result<bool> {
     match node.env.iter().find(|(name, _)| name == ESSENTIAL) {
         None => Ok(!ONLY_SHOW.contains(&node.executable())),

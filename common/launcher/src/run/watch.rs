@@ -31,9 +31,6 @@ pub(crate) struct Received {
 impl Watch {
     /// Subscribes; to be called before any node publishes. With several lasers, answers are for the
     /// scans of `first_laser`. `logs` also subscribes to the nodes' log.
-    ///
-    /// # Errors
-    /// A topic cannot be subscribed.
     pub(crate) fn new(
         graph: &Graph,
         first_laser: Option<String>,
@@ -57,9 +54,6 @@ impl Watch {
     }
 
     /// Receives all pending messages; calls `on_health` for each health message.
-    ///
-    /// # Errors
-    /// A topic cannot be read.
     pub(crate) fn take(
         &self,
         journal: &mut Journal,

@@ -21,9 +21,6 @@ pub struct Isolated {
 
 impl Isolated {
     /// Creates the graph. `tag` marks its name in lists of processes, with at most 11 bytes.
-    ///
-    /// # Panics
-    /// `tag` is longer or has characters that are invalid in a graph's name.
     #[must_use]
     pub fn new(tag: &str) -> Self {
         let name = name(tag);
@@ -32,9 +29,6 @@ impl Isolated {
     }
 
     /// Creates a graph without a time limit, for a benchmark.
-    ///
-    /// # Panics
-    /// See [`Isolated::new`].
     #[must_use]
     pub fn for_long(tag: &str) -> Self {
         Isolated {
@@ -49,9 +43,6 @@ impl Isolated {
     }
 
     /// Joins the graph as `node`.
-    ///
-    /// # Panics
-    /// The test cannot join.
     #[must_use]
     pub fn join(&self, node: &str) -> Graph {
         Graph::join_named(node, &self.name).unwrap()

@@ -22,9 +22,6 @@ pub struct NodeProcess {
 impl NodeProcess {
     /// Starts `executable` in `graph`; a test gets the path of its package's executable by
     /// `env!("CARGO_BIN_EXE_…")`. Logging has its default settings.
-    ///
-    /// # Panics
-    /// It cannot be started.
     pub fn start<A: AsRef<OsStr>>(
         executable: &str,
         graph: &Graph,
@@ -49,17 +46,11 @@ impl NodeProcess {
     }
 
     /// Sends SIGTERM.
-    ///
-    /// # Panics
-    /// The signal cannot be sent.
     pub fn interrupt(&self) {
         kill(self.pid(), Signal::SIGTERM).unwrap();
     }
 
     /// Waits until the process ends; returns its exit status and log.
-    ///
-    /// # Panics
-    /// The log is not UTF-8.
     pub fn finish(mut self) -> (ExitStatus, String) {
         let status = self.child.wait().unwrap();
         let log = String::from_utf8(self.take_log()).unwrap();
@@ -72,17 +63,11 @@ impl NodeProcess {
     }
 
     /// Sends SIGTERM and waits until the process ends with success.
-    ///
-    /// # Panics
-    /// The exit status is a failure.
     pub fn stop(self) {
         self.stop_with_log();
     }
 
     /// Like [`NodeProcess::stop`], but returns the log.
-    ///
-    /// # Panics
-    /// The exit status is a failure.
     pub fn stop_with_log(self) -> String {
         self.interrupt();
         let (status, log) = self.finish();
@@ -91,9 +76,6 @@ impl NodeProcess {
     }
 
     /// Kills it with SIGKILL.
-    ///
-    /// # Panics
-    /// It cannot be killed.
     pub fn kill(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();

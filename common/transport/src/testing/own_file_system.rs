@@ -19,9 +19,6 @@ pub enum OwnFileSystem {
 
 impl OwnFileSystem {
     /// Gives the calling test, named `test`, a file system at `path` of this size, e.g. `16m`.
-    ///
-    /// # Panics
-    /// The test fails in the other process.
     #[must_use]
     pub fn of_test(test: &str, path: &str, size: &str) -> Self {
         if std::env::var_os(INSIDE).is_some() {

@@ -11,9 +11,6 @@ const TICK: Duration = Duration::from_millis(20);
 
 /// Waits for a message for which `take` returns a value, and returns that value. Meanwhile the
 /// test's own latched topics are served.
-///
-/// # Panics
-/// The graph fails.
 pub fn wait_for<T: Topic, R>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -35,9 +32,6 @@ pub fn wait_for<T: Topic, R>(
 }
 
 /// Waits for the next message and returns copies of its header and items.
-///
-/// # Panics
-/// See [`wait_for`].
 pub fn wait_for_next<T: Topic>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -48,9 +42,6 @@ pub fn wait_for_next<T: Topic>(
 }
 
 /// Waits for a message for which `is_awaited` is true.
-///
-/// # Panics
-/// See [`wait_for`].
 pub fn wait_until<T: Topic>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -62,9 +53,6 @@ pub fn wait_until<T: Topic>(
 }
 
 /// Waits for a health message for which `is_awaited` is true; returns it and its last error.
-///
-/// # Panics
-/// The graph fails, or the error is not UTF-8.
 pub fn wait_for_health(
     graph: &Graph,
     health: &Subscriber<topic::Health>,
@@ -76,9 +64,6 @@ pub fn wait_for_health(
 }
 
 /// Waits until a node reports that it is ready.
-///
-/// # Panics
-/// The graph fails.
 pub fn wait_until_ready(graph: &Graph, node: &str) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let is_ready = NodeState::Ready as u32;

@@ -16,9 +16,6 @@ pub(super) struct Set {
 
 impl Set {
     /// Checks a received set.
-    ///
-    /// # Errors
-    /// If the set is invalid, or the rules of one of its maps are.
     pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, Refused> {
         let set = MapSet::read(sample.header(), sample.items());
         let set = set.map_err(|error| Subject::Set(sample.header().set_id).refused(error))?;
@@ -30,9 +27,6 @@ impl Set {
     }
 
     /// Returns the jobs that prepare its maps.
-    ///
-    /// # Errors
-    /// Not expected for a set that has been checked.
     pub(super) fn jobs(&self) -> Result<Vec<Job>, Refused> {
         let header = self.sample.header();
         let set = MapSet::split(header, self.sample.items());

@@ -49,9 +49,6 @@ pub struct Echo {
 impl Echo {
     /// Returns the echoes of a scan whose transducers are all at the laser's position.
     /// `scan_from_laser` is the pose of the laser in the frame of the scan that is made.
-    ///
-    /// # Errors
-    /// If [`Scan::check`] rejects the scan.
     pub fn of<'s>(
         scan: &'s Scan<'_>,
         scan_from_laser: Pose,

@@ -1,8 +1,4 @@
 //! The node with known headings: only x and y are searched, and the intensity image is published.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,8 +1,4 @@
 //! Tests of the node as a process: its votes are compared with those of the engine.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use engine::vote_search::{Outcome, Prior};
 use messages::{

@@ -1,8 +1,4 @@
 //! Tests of the node with a set of maps.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::time::{Duration, Instant};
 

@@ -23,9 +23,6 @@ pub(crate) struct ManConfig {
 }
 
 /// Prints the completions for a shell.
-///
-/// # Errors
-/// If standard output cannot be written.
 pub(crate) fn completions(config: &CompletionsConfig) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(config.shell, &mut Cli::command(), "backcast", &mut script);
@@ -34,9 +31,6 @@ pub(crate) fn completions(config: &CompletionsConfig) -> anyhow::Result<ExitCode
 }
 
 /// Writes the manual pages.
-///
-/// # Errors
-/// If the folder cannot be written to.
 pub(crate) fn man(config: &ManConfig) -> anyhow::Result<ExitCode> {
     clap_mangen::generate_to(Cli::command(), &config.folder)
         .with_context(|| format!("cannot write manual pages to {}", config.folder.display()))?;

@@ -85,9 +85,6 @@ pub(crate) struct Config {
 }
 
 /// Writes the descriptor and checks it.
-///
-/// # Errors
-/// The laser does not answer, map or recording cannot be used, or the file exists already.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     // A laser or a robot takes seconds to answer, so it is asked last.
     let recording = config.replay.as_ref().map(Recording::open).transpose()?;

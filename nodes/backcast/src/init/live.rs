@@ -48,9 +48,6 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Records scans, odometry and map of the robot with this router, or of the one in the network, for
 /// `length` from its first scan.
-///
-/// # Errors
-/// No robot is found, or the recording graph cannot be started.
 pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
     let failed = |reason: String| anyhow!("the robot cannot be recorded: {reason}");
     say("looking for the robot's nodes");

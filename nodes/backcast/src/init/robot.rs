@@ -44,9 +44,6 @@ pub(crate) struct Robot {
 }
 
 /// Looks for the robot with this router, or for those in the network.
-///
-/// # Errors
-/// The gateway cannot be started or ends with an error.
 pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> anyhow::Result<Robot> {
     let failed = |reason: String| {
         anyhow!("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")

@@ -35,9 +35,6 @@ struct Device {
 }
 
 /// Probes the device at HOST or HOST:PORT; returns lines for the user, and a scan.
-///
-/// # Errors
-/// The device cannot be reached, is silent, or sends something else.
 pub(super) fn probe(target: &str) -> anyhow::Result<(Vec<String>, Seen)> {
     let mut device = find(target)?;
     let mut said = vec![format!(
@@ -63,9 +60,6 @@ pub(super) fn probe(target: &str) -> anyhow::Result<(Vec<String>, Seen)> {
 }
 
 /// Returns the options of `lms_reader` for the device at HOST or HOST:PORT.
-///
-/// # Errors
-/// See [`probe`].
 pub(super) fn reader_options(target: &str) -> anyhow::Result<Vec<String>> {
     let device = find(target)?;
     Ok(reader_options_of(&device.address, device.encoding))

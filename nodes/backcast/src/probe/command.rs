@@ -31,9 +31,6 @@ pub(crate) struct Config {
 }
 
 /// Probes the device and prints the result.
-///
-/// # Errors
-/// No device answers, or standard output cannot be written.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (said, seen) = match address(&config.device) {
         Some(address) => cola::probe(address)?,
@@ -46,9 +43,6 @@ pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
 
 /// Returns the options of `lms_reader` for the device at an address or on a serial line, one word
 /// each: the port and encoding on which it answers.
-///
-/// # Errors
-/// No device answers.
 pub(crate) fn reader_options(device: &str, is_serial: bool) -> anyhow::Result<Vec<String>> {
     match is_serial {
         false => cola::reader_options(address(device).unwrap_or(device)),

@@ -26,17 +26,11 @@ struct Device<'a> {
 }
 
 /// Checks that a device answers at any rate.
-///
-/// # Errors
-/// See [`probe`].
 pub(super) fn ask(path: &Path) -> anyhow::Result<()> {
     Device::open(path)?.find_rate().map(drop)
 }
 
 /// Probes the device on the line; returns lines for the user, and a scan.
-///
-/// # Errors
-/// The line cannot be opened, or no device answers at any rate.
 pub(super) fn probe(path: &Path) -> anyhow::Result<(Vec<String>, Seen)> {
     let mut device = Device::open(path)?;
     let baud = device.find_rate()?;

@@ -24,9 +24,6 @@ pub(crate) struct Config {
 }
 
 /// Shows the graph until `q`, Esc or Ctrl-C.
-///
-/// # Errors
-/// No monitor answers at the start, or the terminal fails.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let robot = source::find(&config.address, config.robot.as_deref())?;
     let known = source::snapshot(&config.address, &robot)?;

@@ -24,9 +24,6 @@ const TIMEOUT: Duration = Duration::from_secs(5);
 pub(super) type Update = Result<Message, String>;
 
 /// Returns the robot to watch.
-///
-/// # Errors
-/// No monitor answers, or it does not know the robot.
 pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String> {
     #[derive(Deserialize)]
     struct Robots {
@@ -44,9 +41,6 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String>
 }
 
 /// Returns the current state.
-///
-/// # Errors
-/// No monitor answers.
 pub(super) fn snapshot(address: &str, robot: &str) -> anyhow::Result<Known> {
     let mut known = Known::default();
     let update = ask(address, &format!("/api/v1/robots/{robot}"))?;
@@ -74,9 +68,6 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> anyhow::Res
 }
 
 /// Receives updates on a thread, which reconnects to a lost monitor.
-///
-/// # Errors
-/// The thread cannot be started.
 pub(super) fn follow(address: &str, robot: &str) -> anyhow::Result<Receiver<Update>> {
     let (updates, received) = sync_channel(WAITING);
     let (address, robot) = (address.to_owned(), robot.to_owned());

@@ -1,11 +1,6 @@
 //! Recordings from other sources: in folders, with growing maps, with several topics of a kind,
 //! with invalid transforms.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 
 use recording::Message;

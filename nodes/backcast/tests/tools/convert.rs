@@ -1,10 +1,5 @@
 //! Tests of `backcast convert` as a process, with logs of real robots.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;

@@ -1,10 +1,5 @@
 //! `backcast bench docs` as a process, on a checkout whose recordings are others than the pages say.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 use std::path::Path;
 

@@ -1,10 +1,5 @@
 //! Tests of `backcast evaluate` as a process, on drawn and on real recordings.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 use std::path::Path;
 

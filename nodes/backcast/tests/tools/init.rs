@@ -1,9 +1,5 @@
 //! Tests of `backcast init` and `check`: descriptors that are written can be run, and impossible
 //! options are refused with the reason.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::fs;
 use std::path::Path;

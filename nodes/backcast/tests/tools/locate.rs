@@ -1,10 +1,5 @@
 //! Tests of `backcast locate` as a process, on drawn and on real recordings.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs::File;
 use std::io::Read;
 

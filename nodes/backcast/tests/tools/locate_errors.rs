@@ -1,10 +1,5 @@
 //! Tests of `backcast locate` as a process, on bad scans, bad files and wrong use.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 
 use recording::Message;

@@ -1,11 +1,6 @@
 //! `backcast bench paper --quick` as a process: it writes the tables and pictures that
 //! `docs/paper.md` links.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,11 +1,6 @@
 //! Tests of `backcast plot` as a process: pictures of a drawn room and of a real recording, and
 //! messages for wrong use.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 use std::path::Path;
 

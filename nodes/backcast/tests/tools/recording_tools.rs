@@ -1,10 +1,5 @@
 //! Tests of `backcast info` and `doctor` as processes.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::fs;
 
 use recording::Message;

@@ -3,11 +3,6 @@
 //!
 //! `BACKCAST_ACCEPT=1 cargo test --release -p backcast --test tools schemas` writes them.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
-
 use std::collections::BTreeMap;
 use std::fs;
 

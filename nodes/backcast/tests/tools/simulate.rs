@@ -1,8 +1,4 @@
 //! Tests of `backcast simulate`: its recordings can be located, and impossible drives are refused.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use recording::Recording;
 use serde_json::Value;

@@ -64,9 +64,6 @@ pub(super) enum State {
 
 impl Member {
     /// Creates the member; it is due at `now`.
-    ///
-    /// # Errors
-    /// The node's `BACKCAST_ESSENTIAL` is neither `true` nor `false`.
     pub(super) fn new(node: Node, now: Instant) -> anyhow::Result<Self> {
         Ok(Member {
             essential: is_essential(&node)?,

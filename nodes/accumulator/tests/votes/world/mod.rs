@@ -1,9 +1,5 @@
 //! Drawn world and the node's neighbours: publishers of maps, boundaries and scans, and a
 //! subscriber to the votes.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::cell::Cell;
 
