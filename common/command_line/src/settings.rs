@@ -175,14 +175,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said_with_the_file() {
         for (text, expected) in [
-            (
-                "max_beam: 90",
-                "max_beam is not a setting that nodes share: allowed are scans, ",
-            ),
-            (
-                "max_beams: many",
-                "localization.yaml: error: invalid value 'many' for '--max-beams",
-            ),
+            ("max_beam: 90", "max_beam is not a setting that nodes"),
+            ("max_beams: many", "localization.yaml: error: invalid value"),
             ("max_beams: 90\nmax_beams: 80", "localization.yaml: "),
             ("max_beams: {a: 1}", "localization.yaml: "),
         ] {

@@ -4,14 +4,11 @@ use std::time::Duration;
 
 use crate::Place;
 
-/// A whole graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataflow {
-    /// Nodes in the order of the file.
     pub nodes: Vec<Node>,
 }
 
-/// One process of the graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// Name of the node, unique in the graph.
@@ -20,20 +17,17 @@ pub struct Node {
     pub path: String,
     /// Place of `path` in the file.
     pub path_place: Place,
-    /// Arguments, split into words.
     pub args: Vec<String>,
     /// Variables added to the environment of the node and of its build.
     pub env: Vec<(String, String)>,
     /// Build commands, run in this order before the node starts.
     pub build: Vec<Command>,
-    /// Topics that it subscribes to.
     pub inputs: Vec<Input>,
     /// Topics that it publishes, each once.
     pub outputs: Vec<String>,
     /// Suffixes of its outputs if it publishes several of a topic: `front` and `rear` for
     /// `scan_front` and `scan_rear`.
     pub streams: Vec<String>,
-    /// Behaviour when it ends.
     pub restart: Restart,
 }
 
@@ -47,7 +41,6 @@ impl Node {
     }
 }
 
-/// A command line, split into words.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Command {
     /// Program, looked up in `PATH` unless it has a slash.
@@ -66,7 +59,6 @@ impl std::fmt::Display for Command {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
     pub topic: String,
-    /// Id of the publishing node.
     pub from: String,
     /// Suffix, if that node publishes several of the topic; else empty.
     pub stream: String,
@@ -80,7 +72,6 @@ pub struct Restart {
     pub max_restarts: u32,
     /// Delay before the first restart; it doubles with each further restart.
     pub delay: Duration,
-    /// Largest delay before a restart.
     pub max_delay: Duration,
     /// Time after which a restart no longer counts.
     pub window: Duration,
@@ -108,7 +99,6 @@ impl Restart {
     };
 }
 
-/// Condition for a restart after a node has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RestartPolicy {
     Never,

@@ -4,7 +4,6 @@ use std::{fmt::Write as _, io, path::PathBuf};
 
 use crate::{MAX_FILE_BYTES, Problem};
 
-/// Error of a descriptor.
 #[derive(Debug, thiserror::Error)]
 pub enum DataflowError {
     #[error("cannot read {}", file.display())]

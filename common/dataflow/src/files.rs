@@ -5,7 +5,6 @@ use std::{fs::File, io::Read, os::unix::fs::PermissionsExt, path::Path};
 
 use crate::{Dataflow, DataflowError, MAX_FILE_BYTES, Node, Problem};
 
-/// Reads the text of the descriptor.
 pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
     let unreadable = |source| DataflowError::Unreadable {
         file: path.to_owned(),

@@ -43,11 +43,8 @@ pub use wiring::Topics;
 
 use std::path::Path;
 
-/// Largest size of a descriptor in bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
-/// Largest number of nodes in a graph.
 pub const MAX_NODES: usize = 64;
-/// Longest id of a node in bytes.
 pub const MAX_ID_BYTES: usize = 32;
 
 /// Reads and checks the descriptor at `path`.

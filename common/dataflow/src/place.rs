@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde_saphyr::Location;
 
-/// A position in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Place {
     /// Line, from 1.
@@ -14,7 +13,6 @@ pub struct Place {
 }
 
 impl Place {
-    /// Beginning of the text.
     pub const START: Place = Place { line: 1, column: 1 };
 }
 
@@ -34,7 +32,6 @@ impl fmt::Display for Place {
     }
 }
 
-/// An error at a position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     pub place: Place,

@@ -13,7 +13,6 @@ fn is_plain(text: &Text, source: &str) -> bool {
     rest_of_line(source, text.defined).starts_with(&text.value) && !text.value.is_empty()
 }
 
-/// Reads a whole number from 0, for `max_restarts`.
 pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, String> {
     let digits = text.value.bytes().all(|b| b.is_ascii_digit());
     let number = text.value.parse().ok().filter(|_| digits);
@@ -25,7 +24,6 @@ pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, String> {
         })
 }
 
-/// Reads seconds for `key`.
 pub(crate) fn read_seconds(
     key: &'static str,
     text: &Text,

@@ -7,10 +7,8 @@ use crate::{
     raw::{RawDataflow, RawNode, Text},
 };
 
-/// Topics that ports may name.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Topics<'a> {
-    /// All topics.
     pub names: &'a [&'a str],
     /// Topics that several nodes may publish.
     pub shared: &'a [&'a str],
@@ -191,7 +189,6 @@ mod tests {
         parse(&format!("nodes:\n{nodes}"), &TOPICS)
     }
 
-    /// Checks place and kind of each problem, and the offending value.
     fn check(nodes: &[&str], expected: &[&str]) {
         let said = read(nodes).unwrap_err();
         assert_eq!(said.len(), expected.len(), "{said:?}");
@@ -224,10 +221,7 @@ mod tests {
 
     #[test]
     fn ports_name_topics_once() {
-        let (scam, twice) = (
-            "2:32: there is no topic `scam`",
-            "2:44: the output `scan` is listed",
-        );
+        let (scam, twice) = ("2:32: there is no topic `scam`", "2:44: the output `scan`");
         check(&["id: a, outputs: [scam, scan, scan]"], &[scam, twice]);
         let sender = "id: a, outputs: [scan]";
         let image = "3:31: there is no topic `image`; allowed are scan, votes, health";
@@ -284,22 +278,10 @@ mod tests {
             let receiver = format!("id: b, inputs: {{{inputs}}}");
             check(&["id: a, outputs: [scan, votes]", &receiver], &[expected]);
         };
-        receiver(
-            "scan: a",
-            "3:37: the input `scan` comes from `a`; allowed is",
-        );
-        receiver(
-            "scan: c/scan",
-            "3:37: the input `scan` comes from `c`, which is no node",
-        );
-        receiver(
-            "health: a/health",
-            "3:39: the input `health` takes `health` from `a`",
-        );
-        receiver(
-            "scan: a/votes",
-            "3:37: the input `scan` takes the topic `votes`",
-        );
+        receiver("scan: a", "3:37: the input `scan` comes from `a`; allowed");
+        receiver("scan: c/scan", "3:37: the input `scan` comes from `c`");
+        receiver("health: a/health", "3:39: the input `health` takes");
+        receiver("scan: a/votes", "3:37: the input `scan` takes the topic");
         check(
             &["id: a, outputs: [scan], inputs: {scan: a/scan}"],
             &["2:54: the input `scan` of `a` comes from `a` itself"],

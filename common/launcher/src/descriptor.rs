@@ -9,7 +9,6 @@ use messages::{Topic, topic};
 
 use crate::{installed, run::supervision::is_essential};
 
-/// Default path of the descriptor.
 pub const DEFAULT_FILE: &str = "dataflow.yaml";
 
 /// Message of a process without a current directory.
@@ -26,7 +25,6 @@ const TOPICS: Topics = Topics {
 #[derive(Debug)]
 pub struct Descriptor {
     pub dataflow: Dataflow,
-    /// Path as given by the user.
     pub file: PathBuf,
     /// Absolute path of the folder of the descriptor; paths in the descriptor are relative to it.
     pub folder: PathBuf,
@@ -101,10 +99,7 @@ mod tests {
             "nodes: [{id: a, path: /bin/sh, outputs: [scam]}]",
             "g.yaml:1:42: there is no topic",
         );
-        check(
-            "nodes: [{id: a, path: nowhere}]",
-            "g.yaml:1:23: `nowhere` does not exist, and nothing builds it",
-        );
+        check("nodes: [{id: a, path: nowhere}]", "g.yaml:1:23: `nowhere`");
         check(
             "nodes: [{id: a, path: nowhere, build: make}]",
             "g.yaml:1:23: `nowhere` does not exist, and nothing builds it",

@@ -27,12 +27,10 @@ const NODES: [&str; 15] = [
     "tracker",
 ];
 
-/// True if the node's executable is one of our nodes.
 pub(crate) fn is_ours(node: &Node) -> bool {
     NODES.contains(&node.executable())
 }
 
-/// The descriptor of the demonstration, if there is one.
 pub(crate) fn demonstration() -> Option<PathBuf> {
     let file = prefix()?.join("share/backcast/dataflow.yaml");
     file.is_file().then_some(file)

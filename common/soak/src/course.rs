@@ -37,7 +37,6 @@ const LOOK: Duration = Duration::from_secs(1);
 /// Interval between checks while waiting.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Settings of a run.
 #[derive(Debug)]
 pub(super) struct Plan {
     /// Arguments of the launcher, after `run`.
@@ -53,7 +52,6 @@ pub(super) struct Plan {
     pub(super) record: Option<PathBuf>,
 }
 
-/// A running test.
 pub(super) struct Course {
     plan: Plan,
     maps: Maps,
@@ -72,10 +70,8 @@ pub(super) struct Course {
     stop: Arc<AtomicBool>,
 }
 
-/// Reason why watching has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Watched {
-    /// The condition is met.
     Enough,
     Late,
     /// The graph has ended, or the run is to stop.
@@ -83,7 +79,6 @@ enum Watched {
 }
 
 impl Course {
-    /// Starts the graph.
     pub(super) fn start(
         plan: Plan,
         maps: Maps,
@@ -193,7 +188,6 @@ impl Course {
         }
     }
 
-    /// Samples the usage of the processes.
     fn look(&mut self) {
         self.next_look = Instant::now() + LOOK;
         let Some(status) = self.status() else {

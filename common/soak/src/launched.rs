@@ -11,7 +11,6 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::{Deserialize, Serialize};
 
-/// A line of the launcher's output.
 #[derive(Debug, Deserialize)]
 pub(super) struct Printed {
     /// Pose of the tracker; `None` if there is none for the scan.
@@ -35,7 +34,6 @@ pub(super) struct SentPose {
     pub(super) sent_ns: i64,
 }
 
-/// Counts of the summary.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub(super) struct Losses {
     pub(super) scans: u64,
@@ -99,17 +97,14 @@ impl Launched {
         self.child.id().cast_signed()
     }
 
-    /// Requests a regular stop.
     pub(super) fn ask_to_stop(&self) -> anyhow::Result<()> {
         signal(self.pid(), Signal::SIGINT)
     }
 
-    /// Waits for its end.
     pub(super) fn wait(&mut self) -> anyhow::Result<ExitStatus> {
         self.child.wait().map_err(not_started)
     }
 
-    /// Kills it and waits for its end.
     pub(super) fn kill(&mut self) -> anyhow::Result<()> {
         self.child.kill().map_err(not_started)?;
         self.wait().map(drop)

@@ -40,7 +40,6 @@ use fault::Fault;
 use maps::Maps;
 
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
-/// Duration of a part of the recording.
 const PART: &str = "5m";
 
 /// Runs a graph for a long time under faults and checks that it recovers.
@@ -116,7 +115,6 @@ fn main() -> anyhow::Result<ExitCode> {
 }
 
 impl Config {
-    /// Arguments for the launcher, after `run`.
     fn arguments(&self, graph: &GraphName, maps: &Maps) -> Vec<String> {
         let text = |path: &Path| path.display().to_string();
         let mut arguments = vec![text(&self.dataflow), "--json".into(), "--loop".into()];

@@ -11,7 +11,6 @@ use anyhow::Context;
 use geometry::Pose;
 use map::{MapError, OccupancyGrid, UNKNOWN};
 
-/// Margin of the second map, metres.
 const MARGIN_M: f64 = 2.0;
 
 /// A map file in a separate folder, which contains one map or the other.
@@ -38,7 +37,6 @@ impl Maps {
         Ok(maps)
     }
 
-    /// Path of the map for the map server.
     pub(super) fn served(&self) -> &Path {
         &self.served
     }

@@ -6,7 +6,6 @@ use command_line::output;
 use recording::Recording;
 use serde::Serialize;
 
-/// Figures of all parts that could be read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub(super) struct Recorded {
     pub(super) parts: u64,

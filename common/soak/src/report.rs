@@ -7,12 +7,9 @@ use super::recorded::Recorded;
 use super::tally::{FaultFigures, Gap, PoseFigures};
 use super::usage::Usage;
 
-/// All figures of a run.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(super) struct Report {
-    /// Duration of the run.
     pub(super) seconds: f64,
-    /// Seed of the random numbers.
     pub(super) seed: u64,
     #[serde(flatten)]
     pub(super) poses: PoseFigures,
@@ -22,12 +19,10 @@ pub(super) struct Report {
     pub(super) faults: Vec<FaultFigures>,
     /// Time from the end of a killed launcher to that of its last node, in seconds.
     pub(super) nodes_ended_s: Gap,
-    /// Number of restarts of nodes.
     pub(super) restarts: u64,
     pub(super) usage: Usage,
     /// Figures of the recording; `None` without `--record`.
     pub(super) recorded: Option<Recorded>,
-    /// Files that were left after the end.
     pub(super) leftovers: Vec<String>,
     /// Failures in addition to wrong poses and leftovers.
     pub(super) failures: Vec<String>,

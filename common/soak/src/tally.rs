@@ -19,7 +19,6 @@ const MAX_WRONG_LISTED: usize = 20;
 const WINDOW: usize = 1_000_000;
 const NS_PER_S: f64 = 1e9;
 
-/// Poses and faults so far.
 #[derive(Debug)]
 pub(super) struct Tally {
     truths: BTreeMap<i64, Pose>,
@@ -35,7 +34,6 @@ pub(super) struct Tally {
     last_gap_s: f64,
 }
 
-/// A Unique pose that is wrong.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Wrong {
     /// Stamp of its scan, in nanoseconds since 1970.
@@ -75,14 +73,12 @@ pub(super) struct FaultFigures {
     pub(super) to_unique_s: Gap,
 }
 
-/// Duration in seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub(super) struct Gap {
     pub(super) median: Option<f64>,
     pub(super) max: Option<f64>,
 }
 
-/// Figures about poses.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct PoseFigures {
     /// Number of poses of scans, in any state.
@@ -93,7 +89,6 @@ pub(super) struct PoseFigures {
     pub(super) unique: u64,
     /// Number of Unique poses beyond 0.5 m or 10°.
     pub(super) wrong: u64,
-    /// The first wrong poses.
     pub(super) first_wrong: Vec<Wrong>,
     /// Latency from the scan's entry into the graph to its pose, for each tenth of the run.
     pub(super) latency_ms: Vec<Tail>,
@@ -132,7 +127,6 @@ impl Tally {
         });
     }
 
-    /// Adds the tracker's pose of a scan.
     pub(super) fn pose(&mut self, pose: &SentPose) {
         self.figures.poses += 1;
         let since_s = self.since_s(pose.sent_ns);

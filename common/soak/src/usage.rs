@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-/// First, last and highest value of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Span {
     pub(super) start: f64,
@@ -27,7 +26,6 @@ impl Span {
     }
 }
 
-/// Usage of one node, over all its processes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Taken {
     /// Private memory, without shared memory, MB of 10⁶ bytes.

@@ -16,20 +16,3 @@ pub fn with_causes(error: &dyn Error) -> String {
     }
     text
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::TransportError;
-
-    #[test]
-    fn causes_follow_the_error() {
-        let error = TransportError::File {
-            action: "list",
-            path: "/some/where".into(),
-            source: std::io::Error::other("the disk is gone"),
-        };
-        let text = with_causes(&error);
-        assert_eq!(text, "cannot list /some/where: the disk is gone");
-    }
-}

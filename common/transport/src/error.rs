@@ -7,7 +7,6 @@ use std::path::PathBuf;
 
 use crate::GraphName;
 
-/// Error of the transport.
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
     #[error(
@@ -53,16 +52,17 @@ pub enum TransportError {
         expected: String,
         found: String,
     },
-    #[error("cannot open topic {topic}: {reason}")]
-    Open { topic: &'static str, reason: String },
-    #[error("topic {topic} has {limit} publishers already, which is the maximum")]
-    TooManyPublishers { topic: &'static str, limit: usize },
-    #[error("topic {topic} has {limit} subscribers already, which is the maximum")]
-    TooManySubscribers { topic: &'static str, limit: usize },
-    #[error("cannot create the {port} of topic {topic}: {reason}")]
-    Port {
+    #[error("topic {topic} has {limit} {ports} already, which is the maximum")]
+    TooMany {
         topic: &'static str,
-        port: &'static str,
+        ports: &'static str,
+        limit: usize,
+    },
+    /// iceoryx2 failed; `action` is what was tried.
+    #[error("cannot {action} topic {topic}: {reason}")]
+    Topic {
+        topic: &'static str,
+        action: &'static str,
         reason: String,
     },
     #[error(
@@ -88,10 +88,6 @@ pub enum TransportError {
         items: usize,
         reason: String,
     },
-    #[error("cannot send on topic {topic}: {reason}")]
-    Send { topic: &'static str, reason: String },
-    #[error("cannot receive on topic {topic}: {reason}")]
-    Receive { topic: &'static str, reason: String },
     #[error("cannot wait for inputs: {reason}")]
     Wait { reason: String },
     #[error("cannot list the processes of graph {graph} under {}: {reason}", root.display())]

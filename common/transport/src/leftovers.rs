@@ -92,7 +92,6 @@ pub fn files_of(graph: &GraphName) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Folders that hold files of several graphs.
 fn shared_folders(membership: &Membership) -> [PathBuf; 4] {
     [
         PathBuf::from(SHARED_MEMORY),
@@ -185,7 +184,6 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, TransportError> {
     }
 }
 
-/// Ignores the error if the file is already gone.
 fn gone(path: &Path, outcome: std::io::Result<()>) -> Result<(), TransportError> {
     match outcome {
         Err(source) if source.kind() != ErrorKind::NotFound => Err(TransportError::File {

@@ -32,26 +32,6 @@
 //! }
 //! ```
 //!
-//! # Files
-//!
-//! | file | content |
-//! |---|---|
-//! | `graph_name`, `membership`, `root` | name of a graph; isolation; the user's folder |
-//! | `graph` | joining, and creating publishers and subscribers |
-//! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
-//! | `publisher` (`loan`), `idle` | sending; filling in place; late joiners |
-//! | `subscriber`, `gaps` | receiving; counting losses |
-//! | `peers` | subscribers of a publisher, publishers of a subscriber |
-//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, signals, other threads |
-//! | `health`, `clock` | health of a node; the clocks |
-//! | `node`, `log` | `main` of a node: logging, exit code |
-//! | `log_lines`, `log_sender`, `log_limit` | publishing log lines; limit on repeated ones |
-//! | `space`, `losses` | check for room in shared memory before use; samples lost without it |
-//! | `membership/alive`, `leftovers` | locks of living processes; removing files of dead graphs |
-//! | `descriptors` | limit on open files |
-//! | `error`, `causes` | errors; an error with its causes on one line |
-//! | `testing` | for tests of nodes: a graph of their own, the node as a process |
-//!
 //! # Invariants
 //!
 //! - **Nothing is copied.** A loan is filled in shared memory, and a sample is read there, in the

@@ -32,7 +32,6 @@ struct Recent {
     lines: u32,
 }
 
-/// Decision on a line.
 #[derive(Debug, PartialEq, Eq)]
 enum Fate {
     Written,

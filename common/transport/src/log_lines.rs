@@ -23,7 +23,11 @@ pub const CONSOLE_ONLY: &str = "console_only";
 /// losses.
 const CAPACITY: usize = topic::Log::DEPTH - 1;
 
-static WAITING: Mutex<Waiting> = Mutex::new(Waiting::none());
+static WAITING: Mutex<Waiting> = Mutex::new(Waiting {
+    kept: false,
+    lines: VecDeque::new(),
+    dropped: 0,
+});
 
 thread_local! {
     /// True while lines are being sent: lines logged meanwhile would be about these lines.
@@ -31,7 +35,7 @@ thread_local! {
 }
 
 /// A log line with its times and level.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) written_ns: i64,
     pub(crate) wall_ns: i64,
@@ -52,21 +56,12 @@ impl Line {
 
 #[derive(Debug)]
 struct Waiting {
-    /// True if lines are kept.
     kept: bool,
     lines: VecDeque<Line>,
     dropped: u64,
 }
 
 impl Waiting {
-    const fn none() -> Self {
-        Waiting {
-            kept: false,
-            lines: VecDeque::new(),
-            dropped: 0,
-        }
-    }
-
     fn put(&mut self, line: Line) {
         match self.lines.len() < CAPACITY {
             true => self.lines.push_back(line),
@@ -75,7 +70,6 @@ impl Waiting {
     }
 }
 
-/// Starts to keep lines, and returns the layer for it.
 pub(crate) fn keep() -> KeepLines {
     waiting().kept = true;
     KeepLines
@@ -90,7 +84,6 @@ pub fn log_in_graph(level: LogLevel, text: &str) {
     }
 }
 
-/// True if lines are kept.
 pub(crate) fn are_kept() -> bool {
     waiting().kept
 }
@@ -111,7 +104,6 @@ fn waiting() -> MutexGuard<'static, Waiting> {
     WAITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Layer that queues all events.
 #[derive(Debug)]
 pub(crate) struct KeepLines;
 
@@ -154,25 +146,5 @@ fn level(level: &Level) -> LogLevel {
         Level::WARN => LogLevel::Warn,
         Level::INFO => LogLevel::Info,
         Level::DEBUG | Level::TRACE => LogLevel::Debug,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn memory_is_bounded_and_what_does_not_fit_is_counted() {
-        let mut waiting = Waiting::none();
-        for number in 0..CAPACITY + 3 {
-            waiting.put(Line {
-                written_ns: 0,
-                wall_ns: 0,
-                level: LogLevel::Info,
-                text: number.to_string(),
-            });
-        }
-        assert_eq!((waiting.lines.len(), waiting.dropped), (CAPACITY, 3));
-        assert_eq!(waiting.lines[0].text, "0");
     }
 }

@@ -19,7 +19,6 @@ struct Inner {
 }
 
 impl Losses {
-    /// Number of samples lost since the process joined.
     pub(crate) fn count(&self) -> u64 {
         self.0.count.get()
     }

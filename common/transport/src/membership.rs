@@ -26,7 +26,6 @@ const CONTROL: &str = "control";
 /// process that died meanwhile never finishes.
 const CREATION_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Paths and prefix of one graph of one user.
 #[derive(Debug, Clone)]
 pub(crate) struct Membership {
     pub(crate) graph: GraphName,
@@ -44,7 +43,6 @@ impl Membership {
         }
     }
 
-    /// Sets the folder of the user.
     pub(crate) fn in_folder(self, root: PathBuf) -> Self {
         Membership { root, ..self }
     }

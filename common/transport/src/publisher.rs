@@ -72,9 +72,9 @@ impl<T: Topic> Publisher<T> {
             .create()
             .map_err(|error| match error {
                 PublisherCreateError::ExceedsMaxSupportedPublishers => {
-                    service::too_many_publishers::<T>()
+                    service::too_many::<T>("publishers", T::MAX_PUBLISHERS)
                 }
-                other => service::port_failed::<T>("publisher", &other),
+                other => service::failed::<T>("create the publisher of", &other),
             })?;
         Ok(Publisher {
             inner: Rc::new(Inner {
@@ -125,7 +125,7 @@ impl<T: Topic> Publisher<T> {
     /// Returns the current subscribers.
     #[must_use]
     pub fn subscribers(&self) -> Peers {
-        Peers::of(self.inner.subscribers())
+        Peers(self.inner.subscribers())
     }
 
     /// Returns true if every subscriber is done with the last sample sent, and so with all before
@@ -162,9 +162,7 @@ impl<T: Topic> Publisher<T> {
         }
         self.inner.wake()
     }
-}
 
-impl<T: Topic> Publisher<T> {
     /// Counts a sample that is not sent because of `full`.
     pub(crate) fn lost(&self, full: &TransportError) {
         let unsent = self.inner.unsent.get();
@@ -181,13 +179,13 @@ impl<T: Topic> Inner<T> {
         self.notifier
             .notify()
             .map(drop)
-            .map_err(|error| send_failed::<T>(&error))
+            .map_err(|error| service::failed::<T>("send on", &error))
     }
 
     fn update_connections(&self) -> Result<(), TransportError> {
         self.port
             .update_connections()
-            .map_err(|error| send_failed::<T>(&error))
+            .map_err(|error| service::failed::<T>("send on", &error))
     }
 
     fn subscribers(&self) -> Vec<u128> {
@@ -213,12 +211,5 @@ impl<T: Topic> Connects for Inner<T> {
         }
         self.served.replace(subscribers);
         Ok(())
-    }
-}
-
-pub(crate) fn send_failed<T: Topic>(error: &dyn std::fmt::Debug) -> TransportError {
-    TransportError::Send {
-        topic: T::NAME,
-        reason: format!("{error:?}"),
     }
 }

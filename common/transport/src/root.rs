@@ -18,25 +18,21 @@ use nix::unistd::{Uid, User};
 
 use crate::TransportError;
 
-/// Name of our folder within a folder of the user.
 const NAME: &str = "backcast";
 
 /// Longest path of the folder in bytes: a socket in it has a path of at most 107.
 pub(crate) const MAX_BYTES: usize = 27;
 
-/// Returns the effective user id of this process.
 pub(crate) fn current_user() -> u32 {
     nix::unistd::geteuid().as_raw()
 }
 
-/// Returns the folder of `user`, or the one in `/tmp` if there is none yet.
 pub(crate) fn path_for(user: u32) -> PathBuf {
     let places = Places::of(user);
     let found = places.all().find(|path| is_of(path, user));
     found.unwrap_or_else(|| places.temporary.clone())
 }
 
-/// Makes sure that `user` has a private folder, and returns it.
 pub(crate) fn prepare(user: u32) -> Result<PathBuf, TransportError> {
     Places::of(user).prepare()
 }
@@ -214,17 +210,6 @@ mod tests {
             let error = make(&path, current_user()).unwrap_err();
             assert!(matches!(error, TransportError::NotAFolder { path: p, .. } if p == path));
         }
-    }
-
-    #[test]
-    fn says_what_it_could_not_create() {
-        let parent = tempfile::tempdir().unwrap();
-        let path = parent.path().join("missing").join("mine");
-        let error = make(&path, current_user()).unwrap_err();
-        assert!(
-            matches!(&error, TransportError::File { path: p, .. } if *p == path),
-            "{error}"
-        );
     }
 
     /// Returns candidates in test folders: a shared one and a private one.

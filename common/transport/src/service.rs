@@ -26,7 +26,6 @@ pub(crate) type Samples<T> = publish_subscribe::PortFactory<
     Header<<T as Topic>::Header>,
 >;
 
-/// Opens the sample service of a topic, or creates it.
 pub(crate) fn open_samples<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Samples<T>, TransportError> {
@@ -46,7 +45,7 @@ pub(crate) fn open_samples<T: Topic>(
             OpenOrCreateError::PublishSubscribeOpenError(OpenError::IncompatibleTypes) => {
                 type_mismatch::<T>(node, &name)
             }
-            other => open_failed::<T>(&other),
+            other => failed::<T>("open", &other),
         })
 }
 
@@ -61,10 +60,9 @@ pub(crate) fn open_wakeups<T: Topic>(
         .max_nodes(max_nodes::<T>())
         .event_id_max_value(1)
         .open_or_create()
-        .map_err(|error| open_failed::<T>(&error))
+        .map_err(|error| failed::<T>("open", &error))
 }
 
-/// Creates the sending end of the wake-ups.
 pub(crate) fn notifier<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Notifier<ipc::Service>, TransportError> {
@@ -72,12 +70,13 @@ pub(crate) fn notifier<T: Topic>(
         .notifier_builder()
         .create()
         .map_err(|error| match error {
-            NotifierCreateError::ExceedsMaxSupportedNotifiers => too_many_publishers::<T>(),
-            other => port_failed::<T>("wake-up sender", &other),
+            NotifierCreateError::ExceedsMaxSupportedNotifiers => {
+                too_many::<T>("publishers", T::MAX_PUBLISHERS)
+            }
+            other => failed::<T>("create the wake-up sender of", &other),
         })
 }
 
-/// Creates the receiving end of the wake-ups.
 pub(crate) fn listener<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<Listener<ipc::Service>, TransportError> {
@@ -85,32 +84,29 @@ pub(crate) fn listener<T: Topic>(
         .listener_builder()
         .create()
         .map_err(|error| match error {
-            ListenerCreateError::ExceedsMaxSupportedListeners => too_many_subscribers::<T>(),
-            other => port_failed::<T>("wake-up receiver", &other),
+            ListenerCreateError::ExceedsMaxSupportedListeners => {
+                too_many::<T>("subscribers", T::MAX_SUBSCRIBERS)
+            }
+            other => failed::<T>("create the wake-up receiver of", &other),
         })
 }
 
-pub(crate) fn too_many_publishers<T: Topic>() -> TransportError {
-    TransportError::TooManyPublishers {
-        topic: T::NAME,
-        limit: T::MAX_PUBLISHERS,
+pub(crate) fn too_many<T: Topic>(ports: &'static str, limit: usize) -> TransportError {
+    let topic = T::NAME;
+    TransportError::TooMany {
+        topic,
+        ports,
+        limit,
     }
 }
 
-pub(crate) fn too_many_subscribers<T: Topic>() -> TransportError {
-    TransportError::TooManySubscribers {
-        topic: T::NAME,
-        limit: T::MAX_SUBSCRIBERS,
-    }
-}
-
-pub(crate) fn port_failed<T: Topic>(
-    port: &'static str,
+pub(crate) fn failed<T: Topic>(
+    action: &'static str,
     error: &dyn std::fmt::Debug,
 ) -> TransportError {
-    TransportError::Port {
+    TransportError::Topic {
         topic: T::NAME,
-        port,
+        action,
         reason: format!("{error:?}"),
     }
 }
@@ -122,14 +118,7 @@ fn max_nodes<T: Topic>() -> usize {
 }
 
 fn service_name<T: Topic>() -> Result<ServiceName, TransportError> {
-    ServiceName::new(T::NAME).map_err(|error| open_failed::<T>(&error))
-}
-
-fn open_failed<T: Topic>(error: &dyn std::fmt::Debug) -> TransportError {
-    TransportError::Open {
-        topic: T::NAME,
-        reason: format!("{error:?}"),
-    }
+    ServiceName::new(T::NAME).map_err(|error| failed::<T>("open", &error))
 }
 
 fn type_mismatch<T: Topic>(node: &Node<ipc::Service>, name: &ServiceName) -> TransportError {

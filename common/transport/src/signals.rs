@@ -67,7 +67,6 @@ impl Signals {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Returns a waker for another thread.
     pub(crate) fn waker(&self) -> Result<Waker, TransportError> {
         let end = self.waker.try_clone();
         end.map(Waker::new).map_err(TransportError::Signals)

@@ -63,12 +63,4 @@ mod tests {
         assert!(text.contains(&(RESERVE + 999).to_string()), "{text}");
         assert!(decide("map", u64::MAX, u64::MAX - 1).is_err());
     }
-
-    #[test]
-    fn asks_the_file_system() {
-        assert!(free_bytes(Path::new(SHARED_MEMORY)).unwrap() > 0);
-        let missing = Path::new("/nowhere/at/all");
-        let error = free_bytes(missing).unwrap_err();
-        assert!(matches!(error, TransportError::File { path, .. } if path == missing));
-    }
 }

@@ -36,9 +36,9 @@ impl<T: Topic> Subscriber<T> {
             .create()
             .map_err(|error| match error {
                 SubscriberCreateError::ExceedsMaxSupportedSubscribers => {
-                    service::too_many_subscribers::<T>()
+                    service::too_many::<T>("subscribers", T::MAX_SUBSCRIBERS)
                 }
-                other => service::port_failed::<T>("subscriber", &other),
+                other => service::failed::<T>("create the subscriber of", &other),
             })?;
         Ok(Subscriber {
             listener,
@@ -51,16 +51,12 @@ impl<T: Topic> Subscriber<T> {
     /// holds for each of them.
     ///
     /// # Errors
-    /// [`TransportError::Receive`] if [`Subscriber::MAX_HELD`] samples of the publisher are held
+    /// [`TransportError::Topic`] if [`Subscriber::MAX_HELD`] samples of the publisher are held
     /// already, or its memory cannot be mapped.
     pub fn receive(&self) -> Result<Option<Sample<T>>, TransportError> {
-        match self.port.receive() {
-            Ok(sample) => Ok(sample.map(|inner| Sample { inner })),
-            Err(error) => Err(TransportError::Receive {
-                topic: T::NAME,
-                reason: format!("{error:?}"),
-            }),
-        }
+        let received = self.port.receive();
+        let sample = received.map_err(|error| service::failed::<T>("receive on", &error))?;
+        Ok(sample.map(|inner| Sample { inner }))
     }
 
     /// Returns the current publishers.
@@ -71,7 +67,7 @@ impl<T: Topic> Subscriber<T> {
             ids.push(details.publisher_id.value());
             CallbackProgression::Continue
         });
-        Peers::of(ids)
+        Peers(ids)
     }
 
     #[must_use]

@@ -46,22 +46,6 @@ fn a_slow_subscriber_keeps_the_newest_and_can_count_the_rest() {
 }
 
 #[test]
-fn newest_skips_what_is_older() {
-    let isolated = Isolated::new("newest");
-    let graph = isolated.join("tester");
-    let (publisher, subscriber) = pair::<topic::OdometryTopic>(&graph);
-    assert!(subscriber.newest().unwrap().is_none());
-    for counter in 0..5 {
-        let mut loan = publisher.loan(0).unwrap();
-        loan.header_mut().stamp.counter = counter;
-        loan.send().unwrap();
-    }
-    let sample = subscriber.newest().unwrap().unwrap();
-    assert_eq!(sample.header().stamp.counter, 4);
-    assert!(subscriber.newest().unwrap().is_none());
-}
-
-#[test]
 fn a_publisher_is_settled_once_all_subscribers_are_done_with_what_it_sent() {
     let isolated = Isolated::new("settled");
     let graph = isolated.join("tester");

@@ -116,14 +116,7 @@ fn an_unsent_loan_is_given_back() {
     let _first = publisher.loan(1).unwrap();
     let _second = publisher.loan(1).unwrap();
     let third = publisher.loan(1).unwrap_err();
-    assert!(matches!(
-        third,
-        TransportError::Loan {
-            topic: "scan",
-            items: 1,
-            ..
-        }
-    ));
+    assert!(matches!(third, TransportError::Loan { items: 1, .. }));
 }
 
 #[test]
@@ -186,34 +179,16 @@ fn a_topic_has_no_more_publishers_and_subscribers_than_it_allows() {
     let publishers: Vec<_> = (0..topic::Scan::MAX_PUBLISHERS)
         .map(|_| graph.publisher::<topic::Scan>().unwrap())
         .collect();
-    let error = graph.publisher::<topic::Scan>().unwrap_err();
-    assert!(
-        matches!(
-            error,
-            TransportError::TooManyPublishers {
-                topic: "scan",
-                limit: 8
-            }
-        ),
-        "{error}"
-    );
+    let error = graph.publisher::<topic::Scan>().unwrap_err().to_string();
+    assert!(error.contains("topic scan has 8 publishers"), "{error}");
     drop(publishers);
     graph.publisher::<topic::Scan>().unwrap();
 
     let subscribers: Vec<_> = (0..topic::Scan::MAX_SUBSCRIBERS)
         .map(|_| graph.subscriber::<topic::Scan>().unwrap())
         .collect();
-    let error = graph.subscriber::<topic::Scan>().unwrap_err();
-    assert!(
-        matches!(
-            error,
-            TransportError::TooManySubscribers {
-                topic: "scan",
-                limit: 8
-            }
-        ),
-        "{error}"
-    );
+    let error = graph.subscriber::<topic::Scan>().unwrap_err().to_string();
+    assert!(error.contains("topic scan has 8 subscribers"), "{error}");
     drop(subscribers);
     graph.subscriber::<topic::Scan>().unwrap();
 }

@@ -46,7 +46,6 @@ struct Options {
     drive: DriveConfig,
 }
 
-/// Interpretation of echoes.
 #[derive(Debug, Clone, Copy)]
 enum Reading {
     /// Each echo on the axis of its transducer: the paper without σ_θ.
@@ -90,11 +89,9 @@ struct Taken {
     ranges: Vec<f32>,
 }
 
-/// Properties of the ring.
 struct Ring {
     bearings: Bearings,
     range_max_m: f32,
-    /// Half width of a cone, in radians.
     half_width: f64,
 }
 
@@ -120,7 +117,6 @@ impl Ring {
     }
 }
 
-/// Counts over the scans of a drive.
 #[derive(Debug, Default)]
 struct Tally {
     scans: usize,

@@ -3,9 +3,7 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
-use engine::grid::Grid;
 use engine::observation::Observation;
-use engine::search::BlockBounds;
 use engine::vote_search::{Outcome, VoteSearch, Workspace};
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
@@ -14,7 +12,6 @@ use crate::preparation::PreparedMap;
 /// Header and items of `votes`; the items are borrowed from the engine's workspace.
 pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 
-/// Header and items of `field`.
 pub type Image<'a> = (FieldHeader, &'a [u16]);
 
 /// Searches the maps, each in a workspace of its own. Returns the index of the leading map, or
@@ -67,15 +64,40 @@ pub fn image<'w>(
     workspace: &'w mut Workspace,
     scan: Observation<'_>,
 ) -> Result<Image<'w>, EngineError> {
+    // The heading stays 0 for bounds: they hold for all headings.
+    let header = FieldHeader {
+        stamp: votes.stamp,
+        map_id: votes.map_id,
+        highest_possible: votes.highest_possible,
+        ..FieldHeader::zeroed()
+    };
     if votes.heading_known == 1 {
-        let header = exact_header(votes, vote_search.grid());
+        let grid = vote_search.grid();
+        let header = FieldHeader {
+            // A side of a grid has at most 15 bits.
+            width: grid.width() as u32,
+            height: grid.height() as u32,
+            block: votes.pooling,
+            kind: FieldKind::Exact as u32,
+            best: votes.best,
+            heading: votes.known_heading,
+            ..header
+        };
         return Ok((header, workspace.intensities()));
     }
     let blocks = vote_search.block_bounds(workspace, scan)?;
-    Ok((bounds_header(votes, blocks), &blocks.bounds))
+    let header = FieldHeader {
+        // At most the number of cells along a side.
+        width: blocks.columns as u32,
+        height: blocks.rows() as u32,
+        block: blocks.side as u32 * votes.pooling,
+        kind: FieldKind::UpperBound as u32,
+        best: blocks.bounds.iter().copied().max().unwrap_or(0).into(),
+        ..header
+    };
+    Ok((header, &blocks.bounds))
 }
 
-/// Map that was searched, and the settings that the search used.
 struct Terms {
     map_id: u64,
     beams: BeamConfig,
@@ -98,7 +120,6 @@ fn votes_header(
         total: found.votes.len() as u64,
         engine_ns,
         poses_evaluated: found.poses_evaluated,
-        outcome: code as u32,
         floor: found.floor.into(),
         certified_floor: found.certified_floor.into(),
         best: found.best.into(),
@@ -115,73 +136,31 @@ fn votes_header(
         max_beams: beams.max_beams,
         pooling: terms.pooling,
         beam_arc_m: beams.beam_arc_m,
-        ..empty(scan, terms.map_id, outcome.headings)
+        ..unsearched(scan, code, terms.map_id, outcome.headings)
     }
 }
 
-/// Returns the header of the votes of a refused scan; `map_id` is 0 if there is no map.
+/// Returns the header of the votes of a scan without a search; `map_id` is 0 if there is no map.
 #[must_use]
-pub fn refused(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
-    VotesHeader {
-        outcome: SearchOutcome::Refused as u32,
-        ..empty(scan, map_id, headings)
-    }
-}
-
-/// Returns the header of the votes of a scan that is kept until a search is requested.
-#[must_use]
-pub fn kept(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
-    VotesHeader {
-        outcome: SearchOutcome::NotAsked as u32,
-        ..empty(scan, map_id, headings)
-    }
-}
-
-fn empty(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
+pub fn unsearched(
+    scan: &ScanHeader,
+    outcome: SearchOutcome,
+    map_id: u64,
+    headings: u32,
+) -> VotesHeader {
     VotesHeader {
         stamp: scan.stamp,
         map_id,
         headings,
+        outcome: outcome as u32,
         base_from_laser: scan.base_from_laser,
         mount_known: scan.mount_known,
         ..VotesHeader::zeroed()
     }
 }
 
-fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
-    FieldHeader {
-        stamp: votes.stamp,
-        map_id: votes.map_id,
-        // A side of a grid has at most 15 bits.
-        width: grid.width() as u32,
-        height: grid.height() as u32,
-        block: votes.pooling,
-        kind: FieldKind::Exact as u32,
-        best: votes.best,
-        highest_possible: votes.highest_possible,
-        heading: votes.known_heading,
-    }
-}
-
-/// The heading field is 0: the bounds hold for all headings.
-fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
-    FieldHeader {
-        stamp: votes.stamp,
-        map_id: votes.map_id,
-        // At most the number of cells along a side.
-        width: blocks.columns as u32,
-        height: blocks.rows() as u32,
-        block: blocks.side as u32 * votes.pooling,
-        kind: FieldKind::UpperBound as u32,
-        best: blocks.bounds.iter().copied().max().unwrap_or(0).into(),
-        highest_possible: votes.highest_possible,
-        heading: 0.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use engine::grid::CellRules;
     use engine::votes::VoteSet;
     use messages::{Pose2, Stamp};
 
@@ -289,65 +268,5 @@ mod tests {
         cut.found.cut = true;
         let votes = votes_header(&header(), &TERMS, &cut, 1234);
         assert_eq!(votes.truncated, VotesHeader::CUT);
-    }
-
-    #[test]
-    fn the_image_is_of_the_scan_and_as_large_as_the_map() {
-        let known = Outcome {
-            known_heading: Some(0.25),
-            ..outcome(100)
-        };
-        let votes = votes_header(&header(), &TERMS, &known, 1234);
-        let grid = Grid::new(3, 2, &[0; 6], CellRules::default()).unwrap();
-        let expected = FieldHeader {
-            stamp: header().stamp,
-            map_id: 77,
-            width: 3,
-            height: 2,
-            block: 2,
-            kind: FieldKind::Exact as u32,
-            best: 100,
-            highest_possible: 200,
-            heading: 0.25,
-        };
-        assert_eq!(exact_header(&votes, &grid), expected);
-    }
-
-    #[test]
-    fn the_image_of_bounds_has_a_pixel_for_each_block() {
-        let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
-        let blocks = BlockBounds {
-            side: 16,
-            columns: 3,
-            bounds: vec![0, 120, 0, 90, 0, 0],
-        };
-        let expected = FieldHeader {
-            stamp: header().stamp,
-            map_id: 77,
-            width: 3,
-            height: 2,
-            block: 32,
-            kind: FieldKind::UpperBound as u32,
-            best: 120,
-            highest_possible: 200,
-            heading: 0.0,
-        };
-        assert_eq!(bounds_header(&votes, &blocks), expected);
-    }
-
-    #[test]
-    fn a_scan_that_nothing_explains_has_no_votes() {
-        let votes = votes_header(&header(), &TERMS, &outcome(0), 1234);
-        assert_eq!(votes.outcome, SearchOutcome::NoVotes as u32);
-        assert_eq!((votes.total, votes.best, votes.beams_used), (0, 0, 11));
-    }
-
-    #[test]
-    fn a_refused_scan_keeps_its_stamp_and_mount() {
-        let votes = refused(&header(), 77, 360);
-        assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
-        assert_eq!((votes.stamp, votes.map_id), (header().stamp, 77));
-        assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
-        assert_eq!((votes.total, votes.engine_ns, votes.headings), (0, 0, 360));
     }
 }

@@ -22,7 +22,6 @@ impl<T: Send + 'static> Background<T> {
         Ok(Background { thread })
     }
 
-    /// Returns true if [`Background::finish`] would return at once.
     pub(crate) fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }

@@ -65,7 +65,6 @@ pub enum Searched {
 }
 
 impl Config {
-    /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
         settings::parse(|config: &Config| &config.file, Config::check)
@@ -85,7 +84,6 @@ impl Config {
         self.heading.source().prior()
     }
 
-    /// Checks rules that concern more than one option.
     fn check(&self) -> Result<(), String> {
         Directions::new(self.vote_search.headings).map_err(|error| error.to_string())?;
         let max_votes = self.vote_search.collect.max_votes;

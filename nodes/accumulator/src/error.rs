@@ -4,14 +4,12 @@ use engine::EngineError;
 use engine::heading::HeadingError;
 use transport::TransportError;
 
-/// Rejected scan or map, or failure of the node.
 #[derive(Debug, thiserror::Error)]
 pub enum AccumulatorError {
     #[error("a search is asked for, but the scan is not among the last 64, or was searched")]
     NotKept,
     #[error("there is no map yet")]
     NoMap,
-    /// The scan, the map or a setting cannot be used.
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]

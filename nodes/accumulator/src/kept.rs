@@ -8,7 +8,6 @@ use messages::{ScanHeader, Stamp};
 /// Number of scans kept, and of requests waiting for scans that have not arrived.
 const KEPT: usize = 64;
 
-/// Kept scan that may be searched.
 #[derive(Debug)]
 pub(crate) struct KeptScan {
     pub(crate) header: ScanHeader,
@@ -17,14 +16,12 @@ pub(crate) struct KeptScan {
     pub(crate) kept: Kept,
 }
 
-/// Recent scans, and requests to search them.
 #[derive(Debug, Default)]
 pub(crate) struct KeptScans {
     scans: VecDeque<KeptScan>,
     requests: VecDeque<Stamp>,
 }
 
-/// Next step with a request.
 #[derive(Debug)]
 pub(crate) enum Asked {
     Search(Box<KeptScan>),

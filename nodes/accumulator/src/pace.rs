@@ -1,6 +1,5 @@
 //! Limits the rate of an event. Pure: the time is an argument.
 
-/// Rate limiter: lets through at most one event per period.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pace {
     period_ns: i64,

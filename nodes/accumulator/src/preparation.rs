@@ -37,7 +37,6 @@ impl Key {
         Ok((map.map_id == boundary.map_id).then_some(key))
     }
 
-    /// Returns the key of a map of a set.
     pub fn in_set(map: &MapHeader) -> Result<Key, AccumulatorError> {
         Ok(Key {
             map_id: map.map_id,
@@ -47,7 +46,6 @@ impl Key {
     }
 }
 
-/// Map that is ready to be searched.
 #[derive(Debug, Clone)]
 pub struct PreparedMap {
     pub map_id: u64,
@@ -104,7 +102,6 @@ impl Job {
         })
     }
 
-    /// Returns the map's id and name, for messages.
     #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::map(&self.map)
@@ -149,7 +146,6 @@ mod tests {
 
     use super::*;
 
-    /// Messages of a map and its boundary.
     struct Pair {
         map: MapHeader,
         occupancy: Vec<u8>,
@@ -185,7 +181,6 @@ mod tests {
         }
     }
 
-    /// Prepares the room after `change` has modified it.
     fn prepare(change: impl FnOnce(&mut Pair)) -> Result<PreparedMap, AccumulatorError> {
         let mut pair = room();
         change(&mut pair);

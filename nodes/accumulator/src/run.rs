@@ -15,7 +15,7 @@ use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
 use engine::joined::{JoinConfig, Joiner, Kept, ODOMETRY_WAIT_MS, Role, Seen};
 use engine::vote_search::Workspace;
-use messages::{ScanHeader, VotesHeader, searched_id};
+use messages::{ScanHeader, SearchOutcome, VotesHeader, searched_id};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
@@ -88,14 +88,11 @@ struct Node {
     /// Content of the requested scan during its search.
     recalled: Option<Kept>,
     supply: Supply,
-    /// Maps to search; empty before the first map.
     maps: Vec<PreparedMap>,
     /// Window that collects sonar echoes, if the scans are from sonars.
     sonar: Option<Sonar>,
-    /// Workspaces, one for each map.
     workspaces: Vec<Workspace>,
     readings: Readings,
-    /// Gap counters by laser name.
     gaps: BTreeMap<String, GapCounter>,
     last_notes: String,
     last_refusal: String,
@@ -132,9 +129,7 @@ impl Node {
             match (&mut self.kept, brought) {
                 (Some(kept), Ok(lasers)) => {
                     kept.keep(&scan, lasers, &self.joiner.seen());
-                    let map_id = self.maps.first().map_or(0, |map| map.map_id);
-                    let votes = answer::kept(&scan, map_id, self.headings);
-                    self.outputs.votes(&votes, &[])?;
+                    self.send_unsearched(&scan, SearchOutcome::NotAsked)?;
                 }
                 (_, brought) => self.answer(&scan, brought)?,
             }
@@ -142,7 +137,6 @@ impl Node {
         Ok(Flow::Stop)
     }
 
-    /// Searches the next requested scan; returns false if there was none.
     fn answer_asked(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
         let (Some(kept), Some(attention)) = (&mut self.kept, &inputs.attention) else {
             return Ok(false);
@@ -174,7 +168,6 @@ impl Node {
         Ok(true)
     }
 
-    /// Takes the next scan; returns false if none has arrived.
     fn take_scan(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
         let Some(scan) = inputs.scans.receive()? else {
             return Ok(false);
@@ -287,7 +280,6 @@ impl Node {
         Ok(Some((leading, by_map.collect())))
     }
 
-    /// Returns the observation to search.
     fn seen(&self) -> Seen<'_> {
         match (&self.sonar, &self.recalled) {
             (Some(sonar), _) => Seen::Still(sonar.scan()),
@@ -340,15 +332,23 @@ impl Node {
         answer::image(votes, vote_search, workspace, self.seen().observation()).ok()
     }
 
+    fn send_unsearched(
+        &self,
+        scan: &ScanHeader,
+        outcome: SearchOutcome,
+    ) -> Result<(), TransportError> {
+        let map_id = self.maps.first().map_or(0, |map| map.map_id);
+        let votes = answer::unsearched(scan, outcome, map_id, self.headings);
+        self.outputs.votes(&votes, &[])
+    }
+
     /// Answers a refused scan, because its sender may be waiting, and reports the reason.
     fn refuse(
         &mut self,
         scan: &ScanHeader,
         error: &AccumulatorError,
     ) -> Result<(), TransportError> {
-        let map_id = self.maps.first().map_or(0, |map| map.map_id);
-        let votes = answer::refused(scan, map_id, self.headings);
-        self.outputs.votes(&votes, &[])?;
+        self.send_unsearched(scan, SearchOutcome::Refused)?;
         self.health.count_sent(1);
         self.health.count_refused(1);
         let (counter, reason) = (scan.stamp.counter, with_causes(error));

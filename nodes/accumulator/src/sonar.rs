@@ -22,7 +22,6 @@ pub struct Sonar {
 }
 
 impl Sonar {
-    /// Creates a sonar reader with this window.
     #[must_use]
     pub fn new(window: Window) -> Self {
         Sonar {
@@ -31,7 +30,6 @@ impl Sonar {
         }
     }
 
-    /// Adds a scan to the window.
     pub fn receive(
         &mut self,
         header: &ScanHeader,
@@ -45,7 +43,6 @@ impl Sonar {
         Ok(())
     }
 
-    /// Returns the combined scan.
     #[must_use]
     pub fn scan(&self) -> Scan<'_> {
         regions::scan_of(&self.ranges)

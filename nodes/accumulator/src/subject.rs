@@ -22,7 +22,6 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// Returns the subject for the map of a message.
     #[must_use]
     pub fn map(header: &MapHeader) -> Self {
         Subject::Map {
@@ -31,7 +30,6 @@ impl Subject {
         }
     }
 
-    /// Combines the subject with the reason for its refusal.
     #[must_use]
     pub(crate) fn refused(self, error: impl Into<AccumulatorError>) -> Refused {
         (self, Box::new(error.into()))
@@ -47,25 +45,5 @@ impl fmt::Display for Subject {
                 name => write!(f, "map {name} ({map_id:016x})"),
             },
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_map_of_a_set_is_called_by_its_name() {
-        let map = |name| {
-            let header = MapHeader {
-                map_id: 0x1f,
-                name: MapName::new(name),
-                ..MapHeader::default()
-            };
-            Subject::map(&header).to_string()
-        };
-        assert_eq!(map("ground"), "map ground (000000000000001f)");
-        assert_eq!(map(""), "map 000000000000001f");
-        assert_eq!(Subject::Set(1).to_string(), "set of maps 0000000000000001");
     }
 }

@@ -60,7 +60,6 @@ enum Command {
     OnTheSide(Box<OnTheSide>),
 }
 
-/// Runs the command of this process's command line.
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();

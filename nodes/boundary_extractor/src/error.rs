@@ -3,7 +3,6 @@
 use engine::EngineError;
 use transport::TransportError;
 
-/// Rejected map, or failure of the transport.
 #[derive(Debug, thiserror::Error)]
 pub enum BoundaryError {
     #[error(transparent)]

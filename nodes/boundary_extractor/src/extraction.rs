@@ -7,7 +7,6 @@ use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::BoundaryError;
 
-/// Message of topic `boundary`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Extraction {
     /// Header with the counts and the map id.

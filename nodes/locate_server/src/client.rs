@@ -45,7 +45,6 @@ pub fn ask(
     Ok(answer)
 }
 
-/// Encoded scan and the name of its encoding.
 struct Question {
     encoding: String,
     payload: Vec<u8>,

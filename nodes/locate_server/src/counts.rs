@@ -9,7 +9,6 @@ use zenoh::{Result as ZenohResult, Wait};
 
 use crate::LocateError;
 
-/// Counts since the last report.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
     received: AtomicU64,
@@ -35,7 +34,6 @@ impl Counts {
         counter.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Replies with the error and counts it.
     pub(crate) fn refuse(&self, query: &Query, error: &LocateError) {
         self.refuse_as(query, error, error.encoding());
     }

@@ -22,20 +22,16 @@ use crate::team::Team;
 
 /// Name of the parameter with the request's deadline.
 const DEADLINE: &str = "deadline_ms";
-/// Longest deadline of a request, milliseconds.
 const LONGEST_MS: u64 = 60_000;
 
-/// Accepted request.
 pub(crate) struct Job {
     pub(crate) query: Query,
-    /// Key of the answer.
     pub(crate) key: Arc<str>,
     /// True if another server forwarded the request.
     pub(crate) is_handed_on: bool,
     pub(crate) deadline: Deadline,
 }
 
-/// Time until which an answer is useful.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Deadline {
     due: Instant,

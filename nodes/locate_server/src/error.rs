@@ -10,7 +10,6 @@ use zenoh_session::{KeyError, NetworkError};
 
 use crate::request::ENCODINGS;
 
-/// Error of the service, with the value found and the values allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum LocateError {
     #[error("map {}", path.display())]

@@ -57,7 +57,6 @@ impl SearchedMap {
 }
 
 impl Locator {
-    /// Prepares a locator for one map.
     pub fn new(
         map: &OccupancyGrid,
         rules: CellRules,

@@ -19,7 +19,6 @@ pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2"
 /// Number of characters of an unknown encoding that an error shows.
 const SHOWN: usize = 80;
 
-/// Form of a request and its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Postcard in the format of the bridge; the answer repeats the request's preamble.
@@ -33,7 +32,6 @@ pub struct Request {
     pub form: Form,
     /// Header as in topic `scan`.
     pub header: ScanHeader,
-    /// Ranges, metres.
     pub ranges: Vec<f32>,
 }
 

@@ -26,7 +26,6 @@ const TICK: Duration = Duration::from_millis(200);
 /// Time to discover other servers before taking requests.
 const ACQUAINTANCE: Duration = Duration::from_millis(500);
 
-/// Answers requests until the stop flag is set.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;

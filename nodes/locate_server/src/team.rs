@@ -34,7 +34,6 @@ impl Team {
         self.others.remove(session);
     }
 
-    /// Returns true if this server is present.
     pub(crate) fn has(&self, session: &str) -> bool {
         self.others.contains_key(session)
     }

@@ -13,7 +13,6 @@ use crate::error::BUSY;
 use crate::locator::{Locator, Workspace};
 use crate::{LocateError, request};
 
-/// Answers requests until the dispatcher is closed.
 pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
     while let Some(job) = work_queue.next() {

@@ -25,14 +25,12 @@ use beams::judged;
 /// Buffers for answering, reused from scan to scan. It may serve any maps.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    /// Buffers for each map.
     maps: Vec<OnMap>,
     map_ids: Vec<u64>,
     merged: Merged,
     beams: Vec<Beam>,
 }
 
-/// Buffers for one map.
 #[derive(Debug, Default)]
 struct OnMap {
     peaks: peaks::Workspace,
@@ -43,7 +41,6 @@ struct OnMap {
 /// along x and y.
 type Extent = (u32, (f64, f64), usize, usize);
 
-/// Result for a scan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer<'a> {
     /// Header of `hypotheses`, without the times of extracting and sending.
@@ -53,7 +50,6 @@ pub struct Answer<'a> {
     /// Ids of the maps, indexed by the map numbers of places.
     pub map_ids: &'a [u64],
     pub beams_header: BeamsHeader,
-    /// Items of `beams`.
     pub beams: &'a [Beam],
     /// Frame whose poses the places are.
     pub target: Target,
@@ -130,7 +126,6 @@ fn said<'w>(
 }
 
 impl OnMap {
-    /// Finds the places on one map.
     fn judge(
         &mut self,
         header: &VotesHeader,
@@ -191,7 +186,6 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
 }
 
 impl Answer<'_> {
-    /// Returns the items of the message.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
         let (map_ids, target) = (self.map_ids, self.target);
         let places = self.places.iter();
@@ -217,7 +211,7 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use messages::{BeamFate, MapHeader, Pose2, ScanHeader, Stamp};
+    use messages::{MapHeader, Pose2, ScanHeader, Stamp};
 
     use super::testing::{cells, room, scans};
     use super::*;
@@ -285,60 +279,6 @@ mod tests {
     fn extract<'w>(header: &VotesHeader, workspace: &'w mut Workspace) -> Answer<'w> {
         let known = (&maps(&cells()), &scans(header.stamp));
         answer(header, &VOTES, known, &PeakConfig::default(), workspace).unwrap()
-    }
-
-    #[test]
-    fn the_header_shows_the_best_place() {
-        let mut workspace = Workspace::default();
-        let answer = extract(&header(), &mut workspace);
-        let best = answer.hypotheses().next().unwrap();
-        let weights = answer.beams.iter().map(|beam| beam.weight);
-        let hits = answer
-            .beams
-            .iter()
-            .filter(|beam| beam.fate == BeamFate::Hit as u32);
-        let inlier_share = hits.map(|beam| beam.weight).sum::<f32>() / weights.sum::<f32>();
-        // Sums of numbers of 32 bits, added in another order.
-        assert!((answer.header.inlier_share - inlier_share).abs() < 1e-5);
-        assert!(inlier_share > 0.9, "{inlier_share}");
-        let expected = HypothesesHeader {
-            stamp: header().stamp,
-            map_id: 7,
-            sent_ns: 0,
-            search_ns: 1234,
-            extract_ns: 0,
-            verdict: Verdict::Unique as u32,
-            alternatives: 0,
-            confidence: best.probability,
-            inlier_share: answer.header.inlier_share,
-            best: 100,
-            highest_possible: 125,
-            mount_known: 1,
-            searched: 9,
-            settings: 0,
-        };
-        assert_eq!(answer.header, expected);
-    }
-
-    #[test]
-    fn the_base_is_where_the_mount_puts_it() {
-        let mut workspace = Workspace::default();
-        let answer = extract(&header(), &mut workspace);
-        let hypotheses: Vec<Hypothesis> = answer.hypotheses().collect();
-        assert_eq!(hypotheses.len(), 2);
-        let laser = Pose::from(hypotheses[0].map_from_laser);
-        let base = Pose::from(hypotheses[0].map_from_base);
-        // The middle of cell (10, 5), from which the laser looks along map y; the fit finds it
-        // within a small part of a cell.
-        assert!(laser.is_within(Pose::new(-5.5, 10.5, FRAC_PI_2), 0.3, 0.02));
-        // The base is 0.75 m behind the laser, up to a few rounding errors of numbers around ten.
-        let behind = laser.then(Pose::new(-0.75, 0.0, 0.0));
-        assert!(base.is_within(behind, 1e-12, 1e-12));
-        assert!(hypotheses[0].score > 0.9, "{hypotheses:?}");
-        assert_eq!((hypotheses[0].intensity, hypotheses[0].support), (100, 1));
-        let spread = hypotheses[0].covariance;
-        // The deviation is less than half a cell.
-        assert!(spread[0] > 0.0 && spread[0] < 0.25, "{spread:?}");
     }
 
     #[test]

@@ -4,7 +4,6 @@ use engine::EngineError;
 use messages::{Pose2, Vote};
 use transport::TransportError;
 
-/// Rejected votes or map, or failure of the transport.
 #[derive(Debug, thiserror::Error)]
 pub enum PeakError {
     #[error(
@@ -28,7 +27,6 @@ pub enum PeakError {
         found: f64,
         allowed: &'static str,
     },
-    /// The engine rejected the map or the scan.
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]

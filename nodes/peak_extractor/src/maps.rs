@@ -14,7 +14,6 @@ use crate::PeakError;
 /// Map that scans can be compared with.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// Id of the map in messages.
     pub map_id: u64,
     /// Number of cells along x.
     pub width: u32,
@@ -28,7 +27,6 @@ pub struct Map {
     pub reach_m: f64,
 }
 
-/// Current and previous map or set of maps.
 #[derive(Debug, Clone, Default)]
 pub struct Maps {
     /// Known maps, newest first.
@@ -77,7 +75,6 @@ impl Maps {
         self.known.insert(0, maps);
     }
 
-    /// Returns the map with this id.
     pub fn get(&self, map_id: u64) -> Result<&Map, PeakError> {
         let found = self.known.iter().flatten().find(|map| map.map_id == map_id);
         found.ok_or_else(|| PeakError::UnknownMap {

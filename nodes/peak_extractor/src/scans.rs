@@ -15,7 +15,6 @@ pub struct Scans {
     kept: Ring<ScanHeader, f32>,
     /// Beams of scans that were joined or deskewed.
     readings: Ring<(), Reading>,
-    /// Vote headers by map.
     by_map: Ring<(), VotesHeader>,
 }
 
@@ -50,7 +49,6 @@ impl<H, T: Copy> Ring<H, T> {
 }
 
 impl Scans {
-    /// Stores a scan.
     pub fn receive(&mut self, header: &ScanHeader, ranges: &[f32]) {
         self.kept.push(header.stamp, *header, ranges);
     }
@@ -60,24 +58,20 @@ impl Scans {
         self.readings.push(stamp, (), readings);
     }
 
-    /// Returns the beams of the scan with this stamp.
     pub fn readings(&self, stamp: Stamp) -> Result<&[Reading], PeakError> {
         let found = self.readings.get(stamp);
         Ok(found.ok_or(PeakError::UnknownScan)?.1)
     }
 
-    /// Stores the headers of the votes on each map.
     pub fn take_by_map(&mut self, stamp: Stamp, maps: &[VotesHeader]) {
         self.by_map.push(stamp, (), maps);
     }
 
-    /// Returns the headers of the votes on each map of the scan with this stamp.
     pub fn by_map(&self, stamp: Stamp) -> Result<&[VotesHeader], PeakError> {
         let found = self.by_map.get(stamp);
         Ok(found.ok_or(PeakError::UnknownParts)?.1)
     }
 
-    /// Returns the scan with this stamp.
     pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
         let (header, ranges) = self.kept.get(stamp).ok_or(PeakError::UnknownScan)?;
         Ok(Scan::of(header, ranges))

@@ -22,13 +22,11 @@ use tests::drawn_room::{FRAME, MOUNT, ROOM, grid, map_header, occupancy, ranges,
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-/// Scan of the room and the engine's result for it.
 struct Searched {
     ranges: Vec<f32>,
     outcome: Outcome,
 }
 
-/// Scans the room from the given pose.
 fn searched(x: i64, y: i64, heading: usize) -> Searched {
     let ranges = ranges(&ROOM, x, y, heading);
     let config = VoteSearchConfig::default();
@@ -40,7 +38,6 @@ fn searched(x: i64, y: i64, heading: usize) -> Searched {
     }
 }
 
-/// Returns the engine's places on a map with this frame.
 fn expected(searched: &Searched, frame: GridFrame) -> Places {
     let distance_field =
         DistanceField::new(frame, (16, 9), &occupancy(&ROOM), CellRules::default()).unwrap();
@@ -53,7 +50,6 @@ fn expected(searched: &Searched, frame: GridFrame) -> Places {
     judged.unwrap().places.clone()
 }
 
-/// Neighbours of the node.
 struct World {
     graph: Graph,
     maps: Publisher<topic::Map>,
@@ -138,7 +134,6 @@ fn map_at(resolution_m: f64) -> MapHeader {
     header
 }
 
-/// Returns the id of the map with the frame's resolution.
 fn id() -> u64 {
     map_header(&ROOM).map_id
 }

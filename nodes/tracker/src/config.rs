@@ -51,7 +51,6 @@ pub struct Config {
 }
 
 impl Config {
-    /// Parses the command line; exits with code 2 if it is invalid.
     #[must_use]
     pub fn from_command_line() -> Self {
         settings::parse(|config: &Config| &config.file, |_| Ok(()))

@@ -3,10 +3,8 @@
 use engine::EngineError;
 use transport::TransportError;
 
-/// Rejected scan or map, unusable file, or failure of the transport.
 #[derive(Debug, thiserror::Error)]
 pub enum TrackerError {
-    /// The engine rejected the map or the scan.
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]

@@ -13,7 +13,6 @@ use crate::TrackerError;
 /// Largest size of a file in bytes; a pose takes a few hundred.
 const MAX_BYTES: u64 = 64 * 1024;
 
-/// Pose that the tracker believed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Remembered {
     /// Id of the map as in messages, in hexadecimal.
@@ -90,49 +89,29 @@ mod tests {
             covariance: Covariance::from_deviations(0.1, 0.1, 0.01).to_rows(),
         };
         memory.save(&pose).unwrap();
-        memory
-            .save(&Remembered {
-                stamp_ns: 8,
-                ..pose.clone()
-            })
-            .unwrap();
-        assert_eq!(
-            memory.load().unwrap(),
-            Some(Remembered {
-                stamp_ns: 8,
-                ..pose.clone()
-            })
-        );
+        let later = Remembered {
+            stamp_ns: 8,
+            ..pose.clone()
+        };
+        memory.save(&later).unwrap();
+        assert_eq!(memory.load().unwrap(), Some(later));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        let unsound = Remembered {
+            covariance: [0.0; 9],
+            ..pose.clone()
+        };
+        let unsound = serde_json::to_string(&unsound).unwrap();
         for (wrong, reason) in [
             ("{", "EOF"),
             ("{}", "missing field"),
-            (
-                &serde_json::to_string(&Remembered {
-                    covariance: [0.0; 9],
-                    ..pose
-                })
-                .unwrap(),
-                "is not valid",
-            ),
+            (&unsound, "is not valid"),
         ] {
             std::fs::write(&memory.file, wrong).unwrap();
             let error = memory.load().unwrap_err().to_string();
-            assert!(
-                error.contains(reason) && error.contains("pose.json"),
-                "{error}"
-            );
+            assert!(error.contains(reason), "{error}");
+            assert!(error.contains("pose.json"), "{error}");
         }
         let nowhere = Memory::new(Path::new("/nowhere/pose.json"));
-        assert!(
-            nowhere
-                .save(&Remembered {
-                    stamp_ns: 8,
-                    map_id: String::new(),
-                    map_from_base: Pose::IDENTITY,
-                    covariance: [0.0; 9]
-                })
-                .is_err()
-        );
+        assert!(nowhere.save(&pose).is_err());
     }
 }

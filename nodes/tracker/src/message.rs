@@ -7,7 +7,6 @@ use engine::tracking::Report;
 use geometry::Pose;
 use messages::{FrameName, MapName, PoseHeader, Stamp, TrackReason, TrackState};
 
-/// Tracking result of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tracked {
     pub(crate) stamp: Stamp,
@@ -16,7 +15,6 @@ pub(crate) struct Tracked {
     pub(crate) report: Report,
     /// Frame whose pose is reported.
     pub(crate) target: Target,
-    /// True if the mount of the laser on the base is known.
     pub(crate) mount_known: bool,
     /// Odometry of the target frame, and the name of the odometry frame.
     pub(crate) by_odometry: Option<(ByOdometry, FrameName)>,
@@ -31,7 +29,6 @@ impl Tracked {
         Some(self.report.pose?.then(at.odom_from_target.inverse()))
     }
 
-    /// Returns the message of the scan.
     #[must_use]
     pub(crate) fn header(&self) -> PoseHeader {
         self.header_at(self.stamp, true)

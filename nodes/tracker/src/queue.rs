@@ -7,7 +7,6 @@ use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp, Verdict};
 /// Number of scans and answers kept: two seconds of a fast laser.
 const KEPT: usize = 128;
 
-/// Waiting scans in order of arrival.
 #[derive(Debug, Default)]
 pub(crate) struct Scans {
     waiting: VecDeque<(ScanHeader, Vec<f32>)>,
@@ -38,7 +37,6 @@ impl Scans {
     }
 }
 
-/// Search result for a scan.
 #[derive(Debug)]
 pub(crate) struct Answer {
     of: Stamp,
@@ -83,7 +81,6 @@ impl Answers {
         kept.any(|answer| answer.of.entered_ns > stamp.entered_ns)
     }
 
-    /// Returns the result for a scan.
     pub(crate) fn of(&self, stamp: Stamp) -> Option<&Answer> {
         let mut newest_first = self.kept.iter().rev();
         newest_first.find(|answer| answer.of.is_of(stamp))

@@ -101,7 +101,6 @@ struct Node {
     tracker: PlaceTracker,
     scans: Scans,
     answers: Answers,
-    /// State of the current scan.
     turn: Turn,
     /// Number of times that the node has checked its inputs.
     looks: u32,
@@ -116,7 +115,6 @@ struct Node {
     before: Option<ByOdometry>,
     /// Initial pose received, to be used with the next scan.
     initial: Option<Initial>,
-    /// Result of the last scan.
     last: Option<Tracked>,
     candidates: Vec<Candidate>,
     gaps: GapCounter,
@@ -142,7 +140,6 @@ impl Node {
         self.remember(false)
     }
 
-    /// Receives all messages that have arrived.
     fn take(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
         // Messages sent before a scan have arrived when the scan has.
         while let Some(scan) = inputs.scans.receive()? {
@@ -322,7 +319,6 @@ impl Node {
         Ok(self.send(last.header(), &words)?)
     }
 
-    /// Logs changes of the state.
     fn log(&mut self, state: TrackState, words: &str) {
         if self.last_state != Some(state) {
             tracing::info!("{state}: {words}");

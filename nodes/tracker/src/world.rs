@@ -14,7 +14,6 @@ const HEADINGS: u32 = 360;
 
 /// Map that scans can be compared with.
 struct World {
-    /// Id of the map in messages.
     map_id: u64,
     /// Name of the map in its set; empty for a map that is served alone.
     name: MapName,
@@ -60,7 +59,6 @@ impl Worlds {
         })
     }
 
-    /// Prepares all maps of a set.
     pub(crate) fn of_set(set: &MapSet<'_>) -> Result<Self, (u64, EngineError)> {
         let reach_m = space::reach_m(set.maps.iter().map(|(header, _)| header));
         let maps = set.maps.iter().map(|(header, occupancy)| {
@@ -72,7 +70,6 @@ impl Worlds {
         })
     }
 
-    /// Returns true if there is no map yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.maps.is_empty()
     }
@@ -83,7 +80,6 @@ impl Worlds {
         map.map_or(0, |map| map.map_id)
     }
 
-    /// Returns the name of the map with this number.
     pub(crate) fn name(&self, number: u32) -> MapName {
         let map = self.maps.get(number as usize);
         map.map_or(MapName::new(""), |map| map.name)
@@ -94,7 +90,6 @@ impl Worlds {
         searched_id(self.maps.iter().map(|map| map.map_id))
     }
 
-    /// Returns the number of the map with this id.
     pub(crate) fn number(&self, map_id: u64) -> Option<u32> {
         let number = self.maps.iter().position(|map| map.map_id == map_id);
         number.map(|number| number as u32)
@@ -107,7 +102,6 @@ impl Worlds {
         number.map(|number| number as u32)
     }
 
-    /// Computes the end points of a scan's beams.
     pub(crate) fn find_ends(
         &mut self,
         scan: Observation<'_>,

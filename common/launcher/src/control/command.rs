@@ -64,7 +64,6 @@ enum RecordAction {
     Stop,
 }
 
-/// Prints the state of graphs and of their nodes.
 pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
     let graphs = match &config.graph {
         Some(graph) => vec![graph.clone()],
@@ -122,14 +121,12 @@ fn wait_while(what: &str, mut runs: impl FnMut() -> anyhow::Result<bool>) -> any
     Ok(())
 }
 
-/// Restarts a node.
 pub fn restart(config: &RestartConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let node = config.node.clone();
     done(&graph, &Question::Restart { node })
 }
 
-/// Returns the named graph, or the only one that is running.
 pub(super) fn the_graph(named: Option<&GraphName>) -> anyhow::Result<GraphName> {
     if let Some(graph) = named {
         return Ok(graph.clone());

@@ -39,7 +39,6 @@ pub struct LogsConfig {
     graph: Option<GraphName>,
 }
 
-/// Prints the last lines of each node and, with `--follow`, new lines as they come.
 pub fn logs(config: &LogsConfig) -> anyhow::Result<ExitCode> {
     let name = the_graph(config.graph.as_ref())?;
     let graph = Graph::join_named("logs", &name)?;
@@ -103,7 +102,6 @@ pub struct LogLine {
 }
 
 impl LogLine {
-    /// Converts a message of topic `log`.
     pub fn of(header: &LogHeader, text: &[u8]) -> Self {
         let level = match LogLevel::from_code(header.level) {
             Some(LogLevel::Debug) => "DEBUG",
@@ -133,24 +131,5 @@ impl LogLine {
             node, level, text, ..
         } = self;
         format!("{when} {level:>5} {node:>18} | {text}\n")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_says_when_who_and_what() {
-        let header = LogHeader {
-            node: messages::Name::new("tracker"),
-            wall_ns: 1_500_000_000,
-            level: LogLevel::Warn as u32,
-            ..bytemuck::Zeroable::zeroed()
-        };
-        let line = LogLine::of(&header, b"no map");
-        let expected = "1970-01-01T00:00:01.500Z  WARN            tracker | no map\n";
-        assert_eq!(line.text(), expected);
-        assert!(line.json().contains("\"level\":\"WARN\""));
     }
 }

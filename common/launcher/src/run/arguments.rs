@@ -5,20 +5,16 @@ use std::path::Path;
 use command_line::wrong_use;
 use dataflow::{Dataflow, Node};
 
-/// Node that plays recordings.
 pub const REPLAYER: &str = "replayer";
-/// Node that plays recordings as an emulated laser.
 pub const EMULATOR: &str = "emulator";
 /// Nodes that take --recording, --rate, --loop and --wait-for.
 pub const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
-/// Node that searches each scan.
 pub const ACCUMULATOR: &str = "accumulator";
 pub const TRACKER: &str = "tracker";
 pub const MAP_SERVER: &str = "map_server";
 
 const MONITOR: &str = "monitor";
 
-/// Removes the monitors.
 pub fn leave_out_monitors(dataflow: &mut Dataflow) {
     dataflow.nodes.retain(|node| node.executable() != MONITOR);
 }

@@ -43,7 +43,6 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the ids of the nodes without an executable.
 fn missing<'a>(nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> Vec<&'a str> {
     let without = nodes.filter(|node| !executable(node, folder).is_file());
     without.map(|node| node.id.as_str()).collect()

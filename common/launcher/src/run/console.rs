@@ -15,16 +15,13 @@ use transport::log_in_graph;
 /// fill our memory.
 const MAX_LINE_BYTES: u64 = 1 << 16;
 
-/// Name of the launcher on the console.
 pub const LAUNCHER: &str = "backcast";
 
-/// Logs a remark at level info, on the console and in the graph.
 pub fn note(line: &str) {
     say(LAUNCHER, line);
     log_in_graph(LogLevel::Info, line);
 }
 
-/// Logs a warning, on the console and in the graph.
 pub fn warn(line: &str) {
     say(LAUNCHER, line);
     log_in_graph(LogLevel::Warn, line);

@@ -18,38 +18,26 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use transport::Waker;
 
-/// Longest request, in bytes.
 const MAX_QUESTION: u64 = 4096;
 /// Timeout for a request to arrive, and for its answer to be given and sent.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Control request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
-    /// Get the state of the graph.
     Status,
-    /// Stop the graph in order.
     Stop,
-    /// End one node in order and start it again.
-    Restart {
-        /// Id of the node.
-        node: String,
-    },
-    /// Start or stop a recording.
+    Restart { node: String },
     Record { on: bool },
 }
 
-/// Answer to a control request.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
     Status(Status),
-    /// The request is being carried out.
     Done,
     /// The recording to this file begins or ends.
     Record(String),
-    /// The request is rejected, for this reason.
     Refused(String),
 }
 
@@ -101,7 +89,6 @@ pub struct NodeStatus {
     pub fails: Option<String>,
 }
 
-/// Control request with the channel for its answer.
 pub struct Asked {
     pub question: Question,
     pub answer: Sender<Answer>,
@@ -149,7 +136,6 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
     stream.write_all(text.as_bytes())
 }
 
-/// Sends a request to the launcher that listens at `path`.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
     stream.set_read_timeout(Some(2 * TIMEOUT))?;

@@ -33,7 +33,6 @@ const GRACE: Duration = Duration::from_millis(700);
 /// Time for the last lines of ended processes to reach the console. After that, only a process that
 /// left its group can still hold a pipe open.
 const LAST_LINES: Duration = Duration::from_millis(100);
-/// Polling interval while processes are ending.
 const STOP_POLL: Duration = Duration::from_millis(5);
 
 pub struct Crew {
@@ -89,7 +88,6 @@ impl Crew {
         Ok(any_ended)
     }
 
-    /// Records a health message of a process.
     pub fn received(&mut self, report: &HealthHeader, now: Instant) {
         let is_it = |member: &&mut Member| match &member.state {
             State::Running(process) => process.pid().cast_unsigned() == report.pid,
@@ -102,7 +100,6 @@ impl Crew {
         }
     }
 
-    /// Returns the state of each node at `now`.
     pub fn status(&self, now: Instant) -> Vec<NodeStatus> {
         self.members
             .iter()
@@ -135,7 +132,6 @@ impl Crew {
         Ok(())
     }
 
-    /// Ends a node in order, for good.
     pub fn end(&mut self, id: &str) -> anyhow::Result<()> {
         for member in self.members.iter_mut().filter(|m| m.node.id == id) {
             if let State::Running(process) = &member.state {
@@ -189,7 +185,6 @@ impl Crew {
         Ok(())
     }
 
-    /// Ids of the nodes whose exit code said that they lost data.
     pub fn nodes_with_data_loss(&self) -> Vec<String> {
         let nodes_with_data_loss = self.members.iter().filter(|member| member.lost_data);
         nodes_with_data_loss
@@ -221,7 +216,6 @@ impl Crew {
         Ok(())
     }
 
-    /// Returns the number of processes that have not ended.
     fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> anyhow::Result<usize> {
         let mut running = 0;
         for member in self.members.iter_mut().filter(|member| meant(&member.node)) {

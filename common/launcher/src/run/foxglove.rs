@@ -9,7 +9,6 @@ use super::added;
 
 const SERVER: &str = "foxglove_server";
 
-/// Adds the server to the graph.
 pub(crate) fn add(dataflow: &mut Dataflow) -> anyhow::Result<()> {
     added::check_new(dataflow, "--foxglove", SERVER)?;
     // It may be restarted, as viewers reconnect by themselves.
@@ -44,11 +43,5 @@ mod tests {
         }
         let node = added_to("{id: a, path: bin/a, build: make}").unwrap();
         assert!(node.build.is_empty());
-    }
-
-    #[test]
-    fn a_server_that_is_there_stays_alone() {
-        let error = added_to("{id: x, path: bin/foxglove_server}").unwrap_err();
-        assert!(error.to_string().contains("has one already"), "{error}");
     }
 }

@@ -30,35 +30,31 @@ pub(crate) struct Journal {
     json: bool,
     /// Frame of the poses in the table so far.
     frame: Option<Frame>,
-    /// Log files of the nodes, with `--log-folder`.
     logs: Option<LogFiles>,
 }
 
 impl Journal {
     /// Creates a journal on `output`, as a table or in JSON, for a graph with or without a tracker.
-    pub(crate) fn new(output: Output, json: bool, is_tracked: bool) -> Self {
+    pub(crate) fn new(
+        output: Output,
+        json: bool,
+        is_tracked: bool,
+        logs: Option<LogFiles>,
+    ) -> Self {
         Journal {
             report: Report::new(is_tracked),
             rows: is_tracked.then(Rows::default),
             output,
             json,
             frame: None,
-            logs: None,
+            logs,
         }
     }
 
-    /// Also writes the nodes' log to files.
-    pub(crate) fn with_logs(mut self, logs: Option<LogFiles>) -> Self {
-        self.logs = logs;
-        self
-    }
-
-    /// True if the nodes' log is written to files.
     pub(crate) fn has_logs(&self) -> bool {
         self.logs.is_some()
     }
 
-    /// Writes a line of a node's log to its file.
     pub(crate) fn log(&mut self, header: &LogHeader, text: &[u8]) {
         if let Some(logs) = &mut self.logs {
             logs.write(&LogLine::of(header, text));

@@ -58,11 +58,9 @@ const LAST_OUTPUT: Duration = Duration::from_millis(100);
 #[derive(Debug)]
 struct Course {
     end: End,
-    /// Nodes whose exit code said that they lost data.
     nodes_with_data_loss: Vec<String>,
 }
 
-/// Reason for an orderly end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     /// The sources are done and all scans are answered.
@@ -116,7 +114,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     let folder = config.options.log_folder.as_deref();
     let logs = folder.map(LogFiles::create).transpose()?;
-    let mut journal = Journal::new(output, config.options.json, is_tracked).with_logs(logs);
+    let mut journal = Journal::new(output, config.options.json, is_tracked, logs);
     let outcome = loop {
         let outcome = launch(&descriptor, &graph, &mut journal);
         let error = outcome.as_ref().err().and_then(|e| e.downcast_ref());
@@ -272,7 +270,6 @@ fn stay(
     Ok(end)
 }
 
-/// Control socket of the launcher.
 struct ControlPort {
     questions: Receiver<Asked>,
     graph: GraphName,

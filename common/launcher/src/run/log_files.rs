@@ -16,7 +16,6 @@ const MAX_BYTES: u64 = 10_000_000;
 /// Number of full files kept for each node.
 const KEPT: usize = 4;
 
-/// The log files of all nodes, in one folder.
 #[derive(Debug)]
 pub(crate) struct LogFiles {
     folder: PathBuf,

@@ -22,7 +22,6 @@ pub struct Config {
 }
 
 impl Config {
-    /// Combines the options with the descriptor of the current directory.
     pub fn with(options: Options) -> Self {
         let dataflow = DEFAULT_FILE.into();
         Config { dataflow, options }
@@ -159,10 +158,8 @@ fn random() -> u32 {
     (hasher.finish() >> 32) as u32
 }
 
-/// Playback speed of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
-    /// Factor of the recorded speed.
     Times(f64),
     /// As fast as answers come.
     Max,

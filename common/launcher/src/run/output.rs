@@ -19,7 +19,6 @@ pub(crate) struct Output {
     lost: u64,
 }
 
-/// State of the reader of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reader {
     Reads,
@@ -27,7 +26,6 @@ pub(crate) enum Reader {
 }
 
 impl Output {
-    /// Starts the thread that writes to `writer`.
     pub(crate) fn start(mut writer: impl Write + Send + 'static) -> anyhow::Result<Self> {
         let (lines, waiting) = sync_channel::<String>(CAPACITY);
         let (end, ended) = channel();
@@ -50,7 +48,6 @@ impl Output {
         })
     }
 
-    /// Queues a line.
     pub(crate) fn line(&mut self, mut line: String) -> Reader {
         line.push('\n');
         match self.lines.try_send(line) {

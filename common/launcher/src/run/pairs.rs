@@ -1,46 +1,49 @@
-//! Pairs each answer with the ground truth of the same scan; either may come first.
+//! Judges answers by the ground truth of the same scan; either may come first.
 
 use std::collections::VecDeque;
+
+use geometry::Pose;
+use statistics::{Accuracy, Answer, Figures};
 
 /// Largest number of waiting entries on each side. The oldest is dropped beyond it, since its
 /// counterpart may never come (no truth in the recording, a dropped scan).
 const CAPACITY: usize = 256;
 
-/// Answers and truths that wait for their counterpart, by time of measurement.
+/// Answers and truths that wait for their counterpart, by time of measurement, and the accuracy of
+/// those that met.
 #[derive(Debug)]
-pub(crate) struct Pairs<A, B> {
-    answers: VecDeque<(i64, A)>,
-    truths: VecDeque<(i64, B)>,
+pub(crate) struct Pairs {
+    answers: VecDeque<(i64, Answer)>,
+    truths: VecDeque<(i64, Pose)>,
+    accuracy: Accuracy,
 }
 
-impl<A, B> Pairs<A, B> {
-    pub(crate) fn new() -> Self {
+impl Pairs {
+    /// Creates empty figures. Errors keep the newest `window` values.
+    pub(crate) fn new(window: usize) -> Self {
         Pairs {
             answers: VecDeque::new(),
             truths: VecDeque::new(),
+            accuracy: Accuracy::new(window),
         }
     }
 
-    /// Adds an answer; returns the pair if its truth is known.
-    pub(crate) fn answer(&mut self, measured_ns: i64, answer: A) -> Option<(A, B)> {
+    pub(crate) fn answer(&mut self, measured_ns: i64, answer: Answer) {
         match take(&mut self.truths, measured_ns) {
-            Some(truth) => Some((answer, truth)),
-            None => {
-                keep(&mut self.answers, measured_ns, answer);
-                None
-            }
+            Some(truth) => self.accuracy.add(truth, &answer),
+            None => keep(&mut self.answers, measured_ns, answer),
         }
     }
 
-    /// Adds a truth; returns the pair if its answer is known.
-    pub(crate) fn truth(&mut self, measured_ns: i64, truth: B) -> Option<(A, B)> {
+    pub(crate) fn truth(&mut self, measured_ns: i64, truth: Pose) {
         match take(&mut self.answers, measured_ns) {
-            Some(answer) => Some((answer, truth)),
-            None => {
-                keep(&mut self.truths, measured_ns, truth);
-                None
-            }
+            Some(answer) => self.accuracy.add(truth, &answer),
+            None => keep(&mut self.truths, measured_ns, truth),
         }
+    }
+
+    pub(crate) fn figures(&self) -> Figures {
+        self.accuracy.figures()
     }
 }
 
@@ -63,31 +66,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pairs_in_either_order() {
-        let mut pairs = Pairs::new();
-        assert_eq!(pairs.answer(1, "a1"), None);
-        assert_eq!(pairs.truth(2, "t2"), None);
-        assert_eq!(pairs.truth(1, "t1"), Some(("a1", "t1")));
-        assert_eq!(pairs.answer(2, "a2"), Some(("a2", "t2")));
-        assert_eq!(pairs.answer(2, "again"), None, "each is used once");
-    }
-
-    #[test]
-    fn a_loop_repeats_its_times() {
-        let mut pairs = Pairs::new();
-        assert_eq!(pairs.truth(1, "first round, scan dropped"), None);
-        assert_eq!(pairs.truth(1, "second round"), None);
-        assert_eq!(pairs.answer(1, "a"), Some(("a", "second round")));
-        assert_eq!(pairs.answer(1, "a"), None);
-    }
-
-    #[test]
-    fn what_nobody_asks_for_is_forgotten() {
-        let mut pairs: Pairs<(), i64> = Pairs::new();
-        for ns in 0..=CAPACITY as i64 {
-            assert_eq!(pairs.truth(ns, ns), None);
-        }
-        assert_eq!(pairs.answer(0, ()), None);
-        assert_eq!(pairs.answer(1, ()), Some(((), 1)));
+    fn the_newest_of_a_time_counts_and_what_nobody_asks_for_is_forgotten() {
+        let mut waiting = VecDeque::new();
+        keep(&mut waiting, 0, "first round, scan dropped");
+        keep(&mut waiting, 0, "second round");
+        assert_eq!(take(&mut waiting, 0), Some("second round"));
+        assert_eq!(take(&mut waiting, 0), None, "each is used once");
+        (0..=CAPACITY as i64).for_each(|at| keep(&mut waiting, at, ""));
+        assert_eq!(waiting.len(), CAPACITY);
+        assert_eq!(take(&mut waiting, 0), None);
     }
 }

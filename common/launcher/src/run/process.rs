@@ -33,12 +33,10 @@ pub(crate) struct Process {
     pid: Pid,
 }
 
-/// Returns the path of a node's executable.
 pub(crate) fn executable(node: &Node, folder: &Path) -> PathBuf {
     folder.join(&node.path)
 }
 
-/// Message of a node that cannot be started.
 pub(crate) fn not_started(node: &Node, folder: &Path) -> String {
     let (id, path) = (&node.id, executable(node, folder));
     let (path, folder) = (path.display(), folder.display());
@@ -111,7 +109,6 @@ impl Process {
         self.child.wait().map(Some)
     }
 
-    /// Sends `signal` to the whole group.
     pub(crate) fn signal(&self, signal: Signal) -> io::Result<()> {
         match killpg(self.pid, signal) {
             // All processes of the group have ended.
@@ -120,7 +117,6 @@ impl Process {
         }
     }
 
-    /// Kills the group and waits for the process.
     pub(crate) fn kill(&mut self) -> io::Result<()> {
         self.signal(Signal::SIGKILL)?;
         self.child.wait().map(drop)
@@ -128,7 +124,6 @@ impl Process {
 }
 
 impl Drop for Process {
-    /// Kills the group if the process is still running.
     fn drop(&mut self) {
         // A process that was waited for is known to its handle; its id may be reused by now.
         if matches!(self.child.try_wait(), Ok(None)) {

@@ -19,7 +19,6 @@ use super::{
 };
 use crate::descriptor::Descriptor;
 
-/// The graph's recorder.
 pub(super) struct Recorder {
     /// Recorder of the descriptor or of `--record`; else one that only requests start.
     node: Node,
@@ -92,7 +91,6 @@ impl Recorder {
         Ok(Ok(file))
     }
 
-    /// Checks if a recorder could write.
     fn refused(&self) -> Option<String> {
         let (executable, folder) = (self.executable.display(), self.folder.display());
         if !self.executable.is_file() {

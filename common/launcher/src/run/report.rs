@@ -3,12 +3,11 @@
 
 use std::collections::HashMap;
 
-use geometry::Pose;
 use messages::{
     GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapSet, PoseHeader, Stamp, Verdict,
 };
 use pose_table::{ScanAnswer, TrackedPose};
-use statistics::{Accuracy, Answer, Distribution};
+use statistics::{Answer, Distribution};
 
 use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 
@@ -28,8 +27,7 @@ pub(crate) struct Report {
     is_tracked: bool,
     answered: u64,
     tracking: Tracking,
-    pairs: Pairs<Answer, Pose>,
-    accuracy: Accuracy,
+    pairs: Pairs,
     latency_ms: Distribution,
     cpu_ms: Distribution,
     graph_ms: Distribution,
@@ -38,7 +36,6 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Creates an empty report, for a graph with or without a tracker.
     pub(crate) fn new(is_tracked: bool) -> Self {
         Report {
             maps: HashMap::new(),
@@ -49,8 +46,7 @@ impl Report {
             is_tracked,
             answered: 0,
             tracking: Tracking::new(WINDOW),
-            pairs: Pairs::new(),
-            accuracy: Accuracy::new(WINDOW),
+            pairs: Pairs::new(WINDOW),
             latency_ms: Distribution::new(WINDOW),
             cpu_ms: Distribution::new(WINDOW),
             graph_ms: Distribution::new(WINDOW),
@@ -58,7 +54,6 @@ impl Report {
         }
     }
 
-    /// Records the maps of a set, whose names are printed.
     pub(crate) fn maps(&mut self, set: &MapSet<'_>) {
         let maps = set.maps.iter();
         self.maps = maps
@@ -83,7 +78,6 @@ impl Report {
         self.newest_scan = Some(stamp);
     }
 
-    /// Records the answer to a scan.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> ScanAnswer {
         let line = ScanAnswer::new(header, found, &|map_id| self.map(map_id));
         self.newest_answer = Some(header.stamp);
@@ -101,13 +95,10 @@ impl Report {
                 .collect(),
             verdict: Verdict::from_code(header.verdict),
         };
-        if let Some((answer, truth)) = self.pairs.answer(header.stamp.measured_ns, answer) {
-            self.accuracy.add(truth, &answer);
-        }
+        self.pairs.answer(header.stamp.measured_ns, answer);
         line
     }
 
-    /// Records the tracker's pose of a scan.
     pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> TrackedPose {
         let mut pose = TrackedPose::new(header, words);
         pose.place.map = pose.place.laser.and_then(|_| self.map(header.map_id));
@@ -116,13 +107,10 @@ impl Report {
         pose
     }
 
-    /// Records the true pose of a scan.
     pub(crate) fn truth(&mut self, truth: &GroundTruth) {
         let pose = truth.map_from_laser.into();
         self.tracking.truth(truth.stamp.measured_ns, pose);
-        if let Some((answer, truth)) = self.pairs.truth(truth.stamp.measured_ns, pose) {
-            self.accuracy.add(truth, &answer);
-        }
+        self.pairs.truth(truth.stamp.measured_ns, pose);
     }
 
     /// Records a node's health message; its counters are cumulative.
@@ -131,7 +119,6 @@ impl Report {
         self.losses.insert(health.pid, losses);
     }
 
-    /// True if any scan was answered.
     pub(crate) fn any_answer(&self) -> bool {
         self.answered > 0
     }
@@ -167,7 +154,7 @@ impl Report {
             tracking,
             dropped: sum(|losses| losses.0),
             refused: sum(|losses| losses.1),
-            accuracy: self.accuracy.figures(),
+            accuracy: self.pairs.figures(),
             latency_ms: self.latency_ms.tail(),
             cpu_ms: self.cpu_ms.tail(),
             graph_ms: self.graph_ms.tail(),
@@ -253,16 +240,6 @@ mod tests {
         header.stamp.entered_ns += 1_000;
         report.answer(&header, &found);
         assert!(report.all_answered());
-    }
-
-    #[test]
-    fn times_are_split_in_engine_and_graph() {
-        let mut report = Report::new(false);
-        answer(&mut report, 1, 0, Verdict::Unique);
-        let summary = report.summary();
-        assert_eq!(summary.latency_ms.median, Some(25.0));
-        assert_eq!(summary.cpu_ms.p99, Some(24.0));
-        assert_eq!(summary.graph_ms.median, Some(1.0));
     }
 
     #[test]

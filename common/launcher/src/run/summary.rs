@@ -74,7 +74,6 @@ impl Summary {
     }
 }
 
-/// Returns the lines on the tracker's poses.
 fn tracking_lines(tracking: &TrackingFigures) -> Vec<String> {
     let shares = STATES.map(|state| {
         let share = tracking.states.get(state.as_str()).copied();

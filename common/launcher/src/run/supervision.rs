@@ -27,7 +27,6 @@ pub fn is_essential(node: &Node) -> anyhow::Result<bool> {
     }
 }
 
-/// Way in which a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
     /// It succeeded.
@@ -40,18 +39,13 @@ pub enum Ended {
     Misused,
 }
 
-/// Decision after a process has ended by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AfterEnd {
-    /// It is restarted after this delay.
     Restart(Duration),
-    /// It has done its work.
     Done,
-    /// It failed for good.
     Failed,
 }
 
-/// Counts the restarts of one node and decides on the next.
 #[derive(Debug, Clone)]
 pub struct Restarts {
     rules: Restart,
@@ -75,12 +69,10 @@ impl Restarts {
         }
     }
 
-    /// Number of restarts within the window.
     pub fn recent(&self) -> u32 {
         u32::try_from(self.recent.len()).unwrap_or(u32::MAX)
     }
 
-    /// Number of restarts since the node last worked for a while.
     pub fn in_a_row(&self) -> u32 {
         self.in_a_row
     }
@@ -151,7 +143,6 @@ impl Pulse {
     /// Factor on the timeout for a busy node: five minutes instead of 15 s.
     const BUSY: u32 = 20;
 
-    /// Creates the state before the first report.
     pub fn new(timeout: Duration, is_expected: bool) -> Self {
         Pulse {
             timeout,
@@ -163,7 +154,6 @@ impl Pulse {
         }
     }
 
-    /// Resets it for a new process.
     pub fn started(&mut self, now: Instant) {
         *self = Pulse {
             silent_since: self.is_expected.then_some(now),
@@ -171,7 +161,6 @@ impl Pulse {
         };
     }
 
-    /// Records a report.
     pub fn received(&mut self, state: Option<NodeState>, now: Instant) {
         self.is_expected = true;
         (self.reported, self.silent_since) = (Some(now), Some(now));
@@ -198,7 +187,6 @@ impl Pulse {
         (silent > most).then_some(silent)
     }
 
-    /// Returns the age of the last report of the process.
     pub fn age(&self, now: Instant) -> Option<Duration> {
         Some(now.saturating_duration_since(self.reported?))
     }
@@ -218,7 +206,6 @@ pub const MEASUREMENTS: [&str; 3] = [
     topic::GroundTruthTopic::NAME,
 ];
 
-/// True if a node publishes measurements.
 pub fn is_source(node: &Node) -> bool {
     node.outputs
         .iter()
@@ -241,7 +228,6 @@ mod tests {
     use super::*;
     use crate::run::testing::parsed;
 
-    /// Restarts of a node, with a clock.
     struct Course {
         restarts: Restarts,
         now: Instant,

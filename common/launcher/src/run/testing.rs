@@ -2,7 +2,6 @@
 
 use dataflow::Dataflow;
 
-/// Parses a descriptor with the topics of the graph.
 pub(crate) fn parsed(text: &str) -> Dataflow {
     let topics = dataflow::Topics {
         names: messages::topic::NAMES,

@@ -9,7 +9,6 @@ use super::forward::plays_at_max;
 
 const SEARCH: &str = "--search";
 
-/// True if a node publishes tracked poses.
 pub fn has_tracker(dataflow: &Dataflow) -> bool {
     let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
     outputs.any(|output| output == topic::Tracked::NAME)

@@ -6,7 +6,7 @@ use geometry::Pose;
 use messages::{PoseHeader, TrackState, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
-use statistics::{Accuracy, Answer, Distribution, Figures, Tail};
+use statistics::{Answer, Distribution, Figures, Tail};
 
 use super::pairs::Pairs;
 
@@ -14,8 +14,7 @@ use super::pairs::Pairs;
 pub(crate) struct Tracking {
     states: BTreeMap<&'static str, u64>,
     scans: u64,
-    pairs: Pairs<Answer, Pose>,
-    accuracy: Accuracy,
+    pairs: Pairs,
     latency_ms: Distribution,
 }
 
@@ -39,17 +38,16 @@ impl Tracking {
         Tracking {
             states: BTreeMap::new(),
             scans: 0,
-            pairs: Pairs::new(),
-            accuracy: Accuracy::new(window),
+            pairs: Pairs::new(window),
             latency_ms: Distribution::new(window),
         }
     }
 
-    /// Records the pose of a scan, published `latency_ms` after it.
     pub(crate) fn pose(&mut self, header: &PoseHeader, latency_ms: f64) {
         let state = TrackState::from_code(header.state);
         self.scans += 1;
-        *self.states.entry(word(state)).or_default() += 1;
+        let word = state.map_or("?", TrackState::as_str);
+        *self.states.entry(word).or_default() += 1;
         self.latency_ms.add(latency_ms);
         let pose = header.laser().map(Into::into);
         let answer = Answer {
@@ -57,16 +55,11 @@ impl Tracking {
             // The statistics count confident poses that are wrong.
             verdict: (state == Some(TrackState::Unique)).then_some(Verdict::Unique),
         };
-        if let Some((answer, truth)) = self.pairs.answer(header.stamp.measured_ns, answer) {
-            self.accuracy.add(truth, &answer);
-        }
+        self.pairs.answer(header.stamp.measured_ns, answer);
     }
 
-    /// Records the true pose of a scan.
     pub(crate) fn truth(&mut self, measured_ns: i64, truth: Pose) {
-        if let Some((answer, truth)) = self.pairs.truth(measured_ns, truth) {
-            self.accuracy.add(truth, &answer);
-        }
+        self.pairs.truth(measured_ns, truth);
     }
 
     /// Returns the figures so far; `None` without poses.
@@ -78,14 +71,10 @@ impl Tracking {
             states: states
                 .map(|(state, count)| (*state, share(*count)))
                 .collect(),
-            accuracy: self.accuracy.figures(),
+            accuracy: self.pairs.figures(),
             latency_ms: self.latency_ms.tail(),
         })
     }
-}
-
-fn word(state: Option<TrackState>) -> &'static str {
-    state.map_or("?", TrackState::as_str)
 }
 
 #[cfg(test)]

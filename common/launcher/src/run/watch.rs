@@ -17,14 +17,12 @@ pub(crate) struct Watch {
     logs: Option<Subscriber<topic::Log>>,
 }
 
-/// Result of receiving all pending messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Received {
     /// True if any answer or pose came.
     pub answers: bool,
     /// Number of scans answered so far, by the counter of their player; 0 if no answer came now.
     pub taken: u64,
-    /// State of the reader of standard output.
     pub reader: Reader,
 }
 

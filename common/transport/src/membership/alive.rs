@@ -24,7 +24,6 @@ pub(crate) const LAUNCHER: &str = "launcher";
 /// Longest time for which a mere check may hold a claim's lock.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Lock on a file, held as long as this lives.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: Flock<File>,
@@ -61,7 +60,6 @@ impl Claim {
         }
     }
 
-    /// True if a launcher has claimed the name of `graph`.
     pub(crate) fn is_taken(graph: &GraphName) -> bool {
         let path = path(&Membership::of(graph), LAUNCHER);
         let mut options = OpenOptions::new();
@@ -82,7 +80,6 @@ impl LockedFiles {
         LockedFiles(read_to_string("/proc/locks").unwrap_or_default())
     }
 
-    /// True if `file` is locked.
     pub(crate) fn hold(&self, file: &Metadata) -> bool {
         let ending = format!(":{}", file.ino());
         self.0.lines().any(|line| {

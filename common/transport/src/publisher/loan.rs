@@ -8,8 +8,7 @@ use iceoryx2::sample_mut::SampleMut;
 use messages::Topic;
 
 use crate::header::Header;
-use crate::publisher::send_failed;
-use crate::{Publisher, TransportError, space};
+use crate::{Publisher, TransportError, service, space};
 
 /// Upper bound on the bytes of iceoryx2's header and padding.
 const OVERHEAD: usize = 256;
@@ -77,12 +76,14 @@ impl<'p, T: Topic> Loan<'p, T> {
     /// lost and counted.
     ///
     /// # Errors
-    /// [`TransportError::Send`] if a subscriber could not be reached.
+    /// [`TransportError::Topic`] if a subscriber could not be reached.
     pub fn send(self) -> Result<(), TransportError> {
         let address = self.address();
         match self.place {
             Place::Shared(sample) => {
-                sample.send().map_err(|error| send_failed::<T>(&error))?;
+                sample
+                    .send()
+                    .map_err(|error| service::failed::<T>("send on", &error))?;
                 self.publisher.sent(address)
             }
             Place::Private { full, .. } => {

@@ -42,13 +42,11 @@ impl Isolated {
         &self.name
     }
 
-    /// Joins the graph as `node`.
     #[must_use]
     pub fn join(&self, node: &str) -> Graph {
         Graph::join_named(node, &self.name).unwrap()
     }
 
-    /// Returns every file of the graph in any folder.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = Vec::new();

@@ -45,7 +45,6 @@ impl NodeProcess {
         Pid::from_raw(self.child.id().cast_signed())
     }
 
-    /// Sends SIGTERM.
     pub fn interrupt(&self) {
         kill(self.pid(), Signal::SIGTERM).unwrap();
     }
@@ -75,7 +74,6 @@ impl NodeProcess {
         log
     }
 
-    /// Kills it with SIGKILL.
     pub fn kill(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();

@@ -72,7 +72,6 @@ impl Member {
         kill(Pid::from_raw(self.process.id().cast_signed()), signal).unwrap();
     }
 
-    /// Kills it with SIGKILL.
     pub(crate) fn kill(mut self) {
         self.process.kill().unwrap();
         self.process.wait().unwrap();
@@ -149,7 +148,6 @@ impl Served {
         place
     }
 
-    /// Waits for a map and holds it; returns its id and the place of its cells.
     fn receive(&mut self) -> String {
         let subscriber = self.subscriber.as_ref().unwrap();
         let sample = wait_for_map(&self.graph, subscriber);
@@ -158,7 +156,6 @@ impl Served {
         answer
     }
 
-    /// Runs the event loop until a signal comes.
     fn idle(&self, tick_ms: u64) -> String {
         let tick = Duration::from_millis(tick_ms);
         let mut first = true;

@@ -7,15 +7,12 @@ use transport::Sample;
 use crate::preparation::{Job, Key};
 use crate::subject::{Refused, Subject};
 
-/// Set of maps that has been checked.
 pub(super) struct Set {
     sample: Sample<topic::Maps>,
-    /// Keys of its maps, in order.
     pub(super) keys: Vec<Key>,
 }
 
 impl Set {
-    /// Checks a received set.
     pub(super) fn read(sample: Sample<topic::Maps>) -> Result<Self, Refused> {
         let set = MapSet::read(sample.header(), sample.items());
         let set = set.map_err(|error| Subject::Set(sample.header().set_id).refused(error))?;
@@ -26,7 +23,6 @@ impl Set {
         Ok(Set { sample, keys })
     }
 
-    /// Returns the jobs that prepare its maps.
     pub(super) fn jobs(&self) -> Result<Vec<Job>, Refused> {
         let header = self.sample.header();
         let set = MapSet::split(header, self.sample.items());

@@ -35,7 +35,6 @@ pub(super) struct Supply {
     handed_out: Option<Order>,
 }
 
-/// Maps to prepare.
 #[derive(Debug, Clone, PartialEq)]
 struct Order {
     keys: Vec<Key>,
@@ -168,7 +167,6 @@ impl Supply {
         Ok(key.map(|key| vec![key]))
     }
 
-    /// Returns the jobs of the current order.
     fn jobs(&self) -> Result<Vec<Job>, Refused> {
         if let Some(set) = &self.set {
             return set.jobs();

@@ -42,7 +42,6 @@ pub fn scan_of(ranges: &[f32]) -> Scan<'_> {
 pub struct Echo {
     /// Pose of the transducer, looking along x, in the frame of the scan that is made.
     pub scan_from_transducer: Pose,
-    /// Range in metres.
     pub range_m: f64,
 }
 
@@ -116,16 +115,13 @@ pub struct Region {
     /// Distance from the frame's origin to the wall along that bearing, in metres: the mean of its
     /// echoes, which agree.
     pub depth_m: f64,
-    /// Indices of the echoes.
     pub echoes: Vec<usize>,
 }
 
 /// Echoes whose depths agree at a bearing.
 #[derive(Debug, Default)]
 struct Group {
-    /// Index of the bearing.
     bearing: usize,
-    /// Indices of the echoes.
     echoes: Vec<usize>,
     /// Difference between smallest and largest depth, in metres.
     spread_m: f64,
@@ -241,7 +237,6 @@ pub fn spread(echoes: &[Echo], half_width: f64) -> Vec<f32> {
     ranges.metres()
 }
 
-/// Converts the index of a bearing to radians.
 fn angle_of(bearing: usize) -> f64 {
     bearing as f64 * STEP - PI
 }

@@ -7,7 +7,7 @@ use engine::vote_search::Prior;
 use messages::{
     FieldHeader, FieldKind, FrameName, NodeState, Odometry, Pose2, SearchOutcome, Stamp, topic,
 };
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
+use transport::testing::{Isolated, wait_for_health, wait_for_next};
 
 use tests::drawn_room::{FRAME, MOUNT, ROOM, ranges, scan};
 
@@ -19,14 +19,6 @@ const HEADING: usize = 40;
 /// Returns the same heading in the map frame, radians.
 fn map_heading() -> f64 {
     (HEADING as f64).to_radians() + FRAME.map_from_grid.yaw
-}
-
-fn start(world: &World, arguments: &[&str]) -> NodeProcess {
-    let node = world.start(arguments);
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
-    world.wait_until(NodeState::Ready);
-    node
 }
 
 fn at(measured_ns: i64) -> Stamp {
@@ -49,7 +41,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     let isolated = Isolated::new("fixed");
     let world = World::new(&isolated);
     let degrees = map_heading().to_degrees().to_string();
-    let node = start(&world, &["--heading", &degrees, "--field-rate", "0.1"]);
+    let node = world.start_on(&ROOM, &["--heading", &degrees, "--field-rate", "0.1"]);
     let fields = world.graph.subscriber::<topic::Field>().unwrap();
     let ranges = ranges(&ROOM, 3, 3, HEADING);
     let (votes, poses) = world.ask(&ranges);
@@ -93,7 +85,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
 fn without_a_subscriber_no_image_is_sent() {
     let isolated = Isolated::new("nobody");
     let world = World::new(&isolated);
-    let node = start(&world, &["--heading", "0"]);
+    let node = world.start_on(&ROOM, &["--heading", "0"]);
     world.ask(&ranges(&ROOM, 3, 3, HEADING));
     node.stop();
     let (last, _) = world.wait_until(NodeState::Stopped);
@@ -106,7 +98,7 @@ fn headings_come_from_odometry_of_the_base() {
     let world = World::new(&isolated);
     let odometry = world.graph.publisher::<topic::OdometryTopic>().unwrap();
     let arguments = ["--heading-from", "odometry", "--heading-offset", "90"];
-    let node = start(&world, &arguments);
+    let node = world.start_on(&ROOM, &arguments);
     let ranges = ranges(&ROOM, 3, 3, HEADING);
 
     let (votes, _) = world.ask(&ranges);

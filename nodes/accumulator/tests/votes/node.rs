@@ -79,8 +79,7 @@ fn votes_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);
     // Both are published before the node starts, so the node is a late joiner.
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish(&ROOM);
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211), (9, 4, 0)] {
@@ -92,6 +91,7 @@ fn votes_are_those_of_the_engine() {
         assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
         assert_eq!(votes.total, poses.len() as u64);
         assert!(votes.engine_ns > 0 && votes.poses_evaluated > 0);
+        assert_eq!((votes.max_beams, votes.pooling), (180, 1));
         let best = poses[0];
         let found = (i64::from(best.x), i64::from(best.y), best.heading.into());
         assert_eq!(found, (x, y, heading));
@@ -109,8 +109,7 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
     let world = World::new(&isolated);
     let node = world.start(&["--field-rate", "0.1"]);
     let fields = world.graph.subscriber::<topic::Field>().unwrap();
-    world.publish_map(&HALL);
-    world.publish_boundary(id(&HALL), &HALL);
+    world.publish(&HALL);
     world.wait_until(NodeState::Ready);
     let ranges = ranges(&HALL, 35, 4, 211);
     let (votes, poses) = world.ask(&ranges);
@@ -159,8 +158,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
     assert_eq!(error, "scan 0 rejected: there is no map yet");
 
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish(&ROOM);
     world.wait_until(NodeState::Ready);
     let bad = [
         world.ask(&[]),
@@ -246,10 +244,7 @@ fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
 fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let isolated = Isolated::new("refuse");
     let world = World::new(&isolated);
-    let node = world.start(&[]);
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
-    world.wait_until(NodeState::Ready);
+    let node = world.start_on(&ROOM, &[]);
 
     // A wrong id would let data of one map be used for another one.
     world
@@ -287,15 +282,11 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
 fn a_map_that_is_taken_back_is_in_use_again() {
     let isolated = Isolated::new("back");
     let world = World::new(&isolated);
-    let node = world.start(&[]);
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
-    world.wait_until(NodeState::Ready);
+    let node = world.start_on(&ROOM, &[]);
     world.publish_map(&["####", "####"]);
     world.publish_boundary(id(&["####", "####"]), &["####", "#..#", "####"]);
     world.wait_until(NodeState::Degraded);
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish(&ROOM);
     world.wait_until(NodeState::Ready);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
     assert_eq!(votes.map_id, id(&ROOM));
@@ -325,8 +316,7 @@ fn a_requested_region_holds_until_it_is_taken_back() {
     let isolated = Isolated::new("region");
     let world = World::new(&isolated);
     let regions = world.graph.publisher::<topic::Region>().unwrap();
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish(&ROOM);
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     let ranges = ranges(&ROOM, 12, 6, 211);

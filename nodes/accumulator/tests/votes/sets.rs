@@ -16,7 +16,6 @@ use crate::world::{World, id};
 /// Name of a map, offset of its frame along x in metres, and its drawing.
 type Floor<'a> = (&'a str, f64, &'a [&'a str]);
 
-/// Two maps whose frames do not overlap.
 const BUILDING: [Floor<'_>; 2] = [("ground", 0.0, &ROOM), ("first", 1000.0, &CHANGED)];
 
 fn floor_header((name, along, rows): Floor<'_>) -> MapHeader {
@@ -73,7 +72,6 @@ fn is_of_building(votes: &VotesHeader, poses: &[Vote]) -> bool {
     votes.maps == 2 && votes.map_id == floor_header(BUILDING[0]).map_id && best == Some((12, 6))
 }
 
-/// Starts the node with the building and waits until it is ready.
 fn start(world: &World) -> (Publisher<topic::Maps>, NodeProcess) {
     let sets = world.graph.publisher().unwrap();
     publish_set(&sets, &BUILDING, |_| {});
@@ -89,8 +87,7 @@ fn a_map_that_is_served_alone_ends_the_set() {
     let (sets, node) = start(&world);
     ask_until(&world, is_of_building);
     // This is the map of the set that is displayed.
-    world.publish_map(&ROOM);
-    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish(&ROOM);
     for _ in 0..5 {
         ask_until(&world, is_of_building);
     }
@@ -99,8 +96,7 @@ fn a_map_that_is_served_alone_ends_the_set() {
     for _ in 0..5 {
         ask_until(&world, is_of_building);
     }
-    world.publish_map(&CHANGED);
-    world.publish_boundary(id(&CHANGED), &CHANGED);
+    world.publish(&CHANGED);
     ask_until(&world, |votes, _| {
         votes.maps == 0 && votes.map_id == id(&CHANGED)
     });

@@ -22,7 +22,6 @@ pub(crate) struct ManConfig {
     folder: PathBuf,
 }
 
-/// Prints the completions for a shell.
 pub(crate) fn completions(config: &CompletionsConfig) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(config.shell, &mut Cli::command(), "backcast", &mut script);
@@ -30,7 +29,6 @@ pub(crate) fn completions(config: &CompletionsConfig) -> anyhow::Result<ExitCode
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the manual pages.
 pub(crate) fn man(config: &ManConfig) -> anyhow::Result<ExitCode> {
     clap_mangen::generate_to(Cli::command(), &config.folder)
         .with_context(|| format!("cannot write manual pages to {}", config.folder.display()))?;

@@ -18,7 +18,6 @@ use recording::{Kind, Recording};
 use crate::init::descriptor::{Served, Source, descriptor_of};
 use crate::init::robot::{self, Lasers, Robot};
 
-/// Text below the options in the help.
 pub(crate) const NOTES: &str = "\
 Examples:
   backcast init --laser 192.168.0.1 --map map.yaml --mount 0.2,0,0 --out graph.yaml
@@ -84,7 +83,6 @@ pub(crate) struct Config {
     force: bool,
 }
 
-/// Writes the descriptor and checks it.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     // A laser or a robot takes seconds to answer, so it is asked last.
     let recording = config.replay.as_ref().map(Recording::open).transpose()?;
@@ -108,7 +106,6 @@ pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the file atomically.
 fn write(file: &Path, text: &str) -> io::Result<()> {
     let folder = output::folder_of(file);
     let mut written = tempfile::Builder::new()
@@ -219,7 +216,6 @@ fn not_written(file: &Path) -> String {
     format!("cannot write {}", file.display())
 }
 
-/// Checks the map and returns its absolute path.
 fn used_map(file: &Path) -> anyhow::Result<String> {
     if file.extension() == Some(OsStr::new("mcap")) {
         return Err(wrong_use(format!(

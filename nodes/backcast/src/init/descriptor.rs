@@ -4,17 +4,14 @@ use std::borrow::Cow;
 
 use ros::lasers;
 
-/// Source of scans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// A laser read by `lms_reader`.
     Laser {
         /// Options of `lms_reader` with the address and protocol, one word each.
         options: Vec<String>,
         /// Mount as `X,Y,YAW_DEG`.
         mount: Option<String>,
     },
-    /// A ROS 2 robot.
     Ros2 {
         /// Options of the gateway for middleware and topics.
         options: Vec<String>,
@@ -27,16 +24,12 @@ pub(crate) enum Source {
         /// True if the robot publishes the map.
         brings_map: bool,
     },
-    /// A recording.
     Recording {
-        /// Path of the recording.
         file: String,
-        /// True if it has odometry.
         has_odometry: bool,
     },
 }
 
-/// Restart settings of each node.
 const RESTARTS: &str = "    restart_policy: on-failure
     max_restarts: 15
     restart_window: 60
@@ -44,7 +37,6 @@ const RESTARTS: &str = "    restart_policy: on-failure
 ";
 
 impl Source {
-    /// Description for users.
     pub(crate) fn title(&self) -> String {
         match self {
             Source::Laser { options, .. } => format!("a laser (lms_reader {})", words(options)),
@@ -56,7 +48,6 @@ impl Source {
         }
     }
 
-    /// Id of the node that publishes scans.
     fn node(&self) -> &'static str {
         match self {
             Source::Laser { .. } => "lms_reader",
@@ -65,7 +56,6 @@ impl Source {
         }
     }
 
-    /// Id of the node that publishes the map.
     fn map_node(&self) -> &'static str {
         match self {
             Source::Ros2 {
@@ -75,7 +65,6 @@ impl Source {
         }
     }
 
-    /// The topics of scans in the graph.
     fn scans(&self) -> Vec<String> {
         match self {
             Source::Ros2 { scans, .. } if !scans.is_empty() => {
@@ -164,10 +153,8 @@ impl Source {
     }
 }
 
-/// Maps served by `map_server`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Served {
-    /// Map of this file.
     Map(String),
     /// Maps of this folder, or of a file that lists them.
     Set(String),

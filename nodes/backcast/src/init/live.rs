@@ -20,14 +20,12 @@ use crate::init::robot::{self, Lasers};
 
 /// A recording in a temporary folder, which is removed when this is dropped.
 pub(crate) struct Recorded {
-    /// Path of the recording.
     pub(crate) file: PathBuf,
     /// Warnings of the gateway about the robot.
     pub(crate) warnings: BTreeSet<String>,
     _folder: tempfile::TempDir,
 }
 
-/// A line of a node's log.
 #[derive(Deserialize)]
 struct Line {
     level: String,
@@ -43,7 +41,6 @@ struct Fields {
 /// Longest wait for the first scan from the start of the recording graph.
 const FIRST_SCAN: Duration = Duration::from_secs(30);
 
-/// Polling interval.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Records scans, odometry and map of the robot with this router, or of the one in the network, for

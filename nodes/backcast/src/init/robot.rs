@@ -21,7 +21,6 @@ pub(crate) struct Published {
     node: String,
 }
 
-/// Choice among the lasers of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lasers {
     /// `/scan` or the first one.
@@ -30,7 +29,6 @@ pub(crate) enum Lasers {
     All,
 }
 
-/// Result of looking for a robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Robot {
     /// Options of the gateway for middleware and topics.
@@ -74,7 +72,6 @@ pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> anyhow::Result<Robot
     Ok(robot_of(&published, lasers))
 }
 
-/// Message for a robot without a map.
 pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one";
 
 /// Chooses the options for the published topics.

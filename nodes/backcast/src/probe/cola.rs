@@ -1,7 +1,7 @@
 //! Probes a device that speaks CoLa, in both encodings and on its usual ports.
 
 use std::net::Ipv6Addr;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::Context;
 use sick::cola::{
@@ -22,7 +22,6 @@ const SCAN_TIMEOUT: Duration = Duration::from_secs(3);
 /// Lowest reading that is a distance; lower ones are codes.
 const FIRST_DISTANCE: u16 = 16;
 
-/// Connection to a device that has answered.
 struct Device {
     address: String,
     line: Line,
@@ -141,27 +140,18 @@ impl Device {
     ) -> anyhow::Result<Option<R>> {
         let mut bytes = Vec::new();
         self.encoding.frame(&Telegram::Command(command), &mut bytes);
-        let said = self.line.say(&bytes);
-        said.with_context(|| not_reached(&self.address))?;
-        let deadline = Instant::now() + patience;
-        let mut buffer = [0; 1 << 14];
-        loop {
-            while let Some(next) = self.framer.next_frame() {
-                if let Ok(frame) = next
-                    && let Some(found) = pick(&frame.telegram)
-                {
-                    return Ok(Some(found));
+        let (framer, received) = (&mut self.framer, &mut self.received);
+        let found = self.line.ask(&bytes, patience, |piece| {
+            *received += piece.len();
+            framer.push(piece);
+            while let Some(next) = framer.next_frame() {
+                if let Some(found) = next.ok().and_then(|frame| pick(&frame.telegram)) {
+                    return Some(found);
                 }
             }
-            let received = self.line.receive(&mut buffer, deadline);
-            match received.with_context(|| not_reached(&self.address))? {
-                Some(piece) => {
-                    self.received += piece.len();
-                    self.framer.push(piece);
-                }
-                None => return Ok(None),
-            }
-        }
+            None
+        });
+        found.with_context(|| not_reached(&self.address))
     }
 
     /// Describes a variable, or the reason why the device does not return it.

@@ -8,7 +8,6 @@ use sick::cola::Encoding;
 
 use super::{cola, lms2xx};
 
-/// Text below the options in the help.
 pub(crate) const NOTES: &str = "\
 Without a port, 2112 and 2111 are tried; on a serial line, 38400, 9600, 500000 and 19200 baud.
 
@@ -30,7 +29,6 @@ pub(crate) struct Config {
     width: Option<u16>,
 }
 
-/// Probes the device and prints the result.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (said, seen) = match address(&config.device) {
         Some(address) => cola::probe(address)?,

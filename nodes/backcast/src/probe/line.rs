@@ -8,14 +8,11 @@ use std::time::{Duration, Instant};
 use serialport::{ClearBuffer, SerialPort, TTYPort};
 use sick::lms2xx::Baud;
 
-/// Timeout of connecting.
 const ATTEMPT: Duration = Duration::from_secs(2);
-/// Timeout of a single read.
 const SLICE: Duration = Duration::from_millis(20);
 /// Gap between two bytes: an LMS2xx needs 55 µs when it receives.
 const BYTE_GAP: Duration = Duration::from_micros(60);
 
-/// Connection to a device.
 pub(super) enum Line {
     Socket(TcpStream),
     Serial(TTYPort),
@@ -53,7 +50,28 @@ impl Line {
         Ok(())
     }
 
-    pub(super) fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
+    /// Sends bytes and passes what is received to `take`, first nothing, until it finds something;
+    /// `None` after the deadline.
+    pub(super) fn ask<R>(
+        &mut self,
+        bytes: &[u8],
+        patience: Duration,
+        mut take: impl FnMut(&[u8]) -> Option<R>,
+    ) -> io::Result<Option<R>> {
+        self.say(bytes)?;
+        let deadline = Instant::now() + patience;
+        let mut buffer = [0; 1 << 14];
+        let mut received = Some(&buffer[..0]);
+        while let Some(piece) = received {
+            if let Some(found) = take(piece) {
+                return Ok(Some(found));
+            }
+            received = self.receive(&mut buffer, deadline)?;
+        }
+        Ok(None)
+    }
+
+    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
         match self {
             Line::Socket(stream) => stream.write_all(bytes),
             Line::Serial(port) => bytes.iter().try_for_each(|byte| {
@@ -65,7 +83,7 @@ impl Line {
     }
 
     /// Returns received bytes, at least one; `None` after the deadline.
-    pub(super) fn receive<'b>(
+    fn receive<'b>(
         &mut self,
         buffer: &'b mut [u8],
         deadline: Instant,

@@ -1,7 +1,7 @@
 //! Probes an LMS2xx at any baud rate.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::Context;
 use sick::lms2xx::{Answer, Baud, Command, DeviceStatus, Mode, Reply, ReplyFramer, Scan};
@@ -21,11 +21,9 @@ struct Device<'a> {
     path: &'a Path,
     line: Line,
     framer: ReplyFramer,
-    /// Number of bytes received.
     received: usize,
 }
 
-/// Checks that a device answers at any rate.
 pub(super) fn ask(path: &Path) -> anyhow::Result<()> {
     Device::open(path)?.find_rate().map(drop)
 }
@@ -95,28 +93,21 @@ impl<'a> Device<'a> {
     ) -> anyhow::Result<Option<R>> {
         let mut bytes = Vec::new();
         command.frame(&mut bytes);
-        let said = self.line.say(&bytes);
-        said.with_context(|| not_reached(&self.path.display()))?;
-        let deadline = Instant::now() + TIMEOUT;
-        let mut buffer = [0; 1 << 12];
-        loop {
-            while let Some(next) = self.framer.next_frame() {
+        let (framer, received) = (&mut self.framer, &mut self.received);
+        let found = self.line.ask(&bytes, TIMEOUT, |piece| {
+            *received += piece.len();
+            framer.push(piece);
+            while let Some(next) = framer.next_frame() {
                 if let Ok(frame) = next
                     && let Reply::Answer(answer, _) = frame.telegram
                     && let Some(found) = pick(&answer)
                 {
-                    return Ok(Some(found));
+                    return Some(found);
                 }
             }
-            let received = self.line.receive(&mut buffer, deadline);
-            match received.with_context(|| not_reached(&self.path.display()))? {
-                Some(piece) => {
-                    self.received += piece.len();
-                    self.framer.push(piece);
-                }
-                None => return Ok(None),
-            }
-        }
+            None
+        });
+        found.with_context(|| not_reached(&self.path.display()))
     }
 
     fn scan(&mut self, status: &DeviceStatus) -> anyhow::Result<Option<Seen>> {

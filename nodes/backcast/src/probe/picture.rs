@@ -14,7 +14,6 @@ const ROWS_PER_COLUMN: f64 = 0.5;
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) points: Vec<(f64, f64)>,
-    /// Description of the upward direction.
     pub(super) up: String,
 }
 

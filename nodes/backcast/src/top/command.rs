@@ -23,7 +23,6 @@ pub(crate) struct Config {
     once: bool,
 }
 
-/// Shows the graph until `q`, Esc or Ctrl-C.
 pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let robot = source::find(&config.address, config.robot.as_deref())?;
     let known = source::snapshot(&config.address, &robot)?;

@@ -17,22 +17,16 @@ const LATENCIES: usize = 120;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Message {
-    /// Complete state.
     Snapshot(Box<Snapshot>),
-    /// Answer to one scan.
     Answer(Answer),
-    /// Pose from the tracker.
     Pose(Box<Tracked>),
-    /// The map that is shown.
     Map(Map),
-    /// State of a node.
     Node(Node),
     /// Message that is not shown here.
     #[serde(other)]
     Other,
 }
 
-/// Complete state.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Snapshot {
@@ -74,7 +68,6 @@ pub(super) struct Answer {
     pub(super) hypotheses: Vec<Place>,
 }
 
-/// Pose from the tracker.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Tracked {
@@ -151,7 +144,6 @@ impl Age {
     }
 }
 
-/// State of the graph.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub(super) robot: String,
@@ -170,7 +162,6 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Handles a message received at `now`.
     pub(super) fn receive(&mut self, message: Message, now: Instant) {
         let age = |seconds: f64| Age::of(seconds, now);
         self.lost = None;

@@ -8,13 +8,11 @@ use ratatui::text::{Line, Span, Text};
 
 use super::known::{Answer, Known, Node, Place, Tracked};
 
-/// Number of places shown.
 const PLACES: usize = 5;
 
 /// Eight heights of a bar.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Formats the whole state at `now`.
 pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
     let mut lines = vec![title(known, now), Line::default()];
     if let Some(pose) = &known.pose {
@@ -50,7 +48,6 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
     Text::from(lines)
 }
 
-/// Formats the state without colours.
 pub(super) fn plain(known: &Known, now: Instant) -> String {
     let lines = text(known, now).lines;
     lines
@@ -101,7 +98,6 @@ fn color_of(state: &str) -> Color {
     }
 }
 
-/// Formats the tracker's pose and its reason.
 fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     let mut lines = vec![Line::from(format!("{}.", pose.says))];
     if let Some(shown) = pose.base.or(pose.laser) {

@@ -20,7 +20,6 @@ const UNUSABLE: &str = "cannot use the terminal";
 /// Redraw interval for ages without new data.
 const AGES: Duration = Duration::from_millis(500);
 
-/// Shows the state and its updates until the user quits.
 pub(super) fn show(mut known: Known, updates: &Receiver<Update>) -> anyhow::Result<()> {
     let mut terminal = ratatui::try_init().context(UNUSABLE)?;
     let shown = follow(&mut terminal, &mut known, updates);

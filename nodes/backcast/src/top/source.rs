@@ -14,7 +14,6 @@ use super::known::{Known, Message};
 /// Largest number of messages queued for the screen; the monitor queues more.
 const WAITING: usize = 256;
 
-/// Pause before reconnecting.
 const PAUSE: Duration = Duration::from_secs(1);
 
 /// Timeout of the monitor: its nodes report every second.
@@ -23,7 +22,6 @@ const TIMEOUT: Duration = Duration::from_secs(5);
 /// A message, or the reason for a lost connection.
 pub(super) type Update = Result<Message, String>;
 
-/// Returns the robot to watch.
 pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String> {
     #[derive(Deserialize)]
     struct Robots {
@@ -40,7 +38,6 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String>
     })
 }
 
-/// Returns the current state.
 pub(super) fn snapshot(address: &str, robot: &str) -> anyhow::Result<Known> {
     let mut known = Known::default();
     let update = ask(address, &format!("/api/v1/robots/{robot}"))?;

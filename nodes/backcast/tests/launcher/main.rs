@@ -11,7 +11,7 @@ mod processes;
 mod usage;
 
 use std::{
-    fs::{self, File, OpenOptions},
+    fs::{self, File},
     io::{BufRead, BufReader, Lines, Read},
     os::unix::net::UnixDatagram,
     os::unix::process::{CommandExt, ExitStatusExt},
@@ -30,7 +30,6 @@ use tests::needs::Need;
 use transport::testing::{wait_for_health, wait_until};
 use transport::{Graph, GraphName};
 
-/// Creates a folder with a descriptor of these nodes, one per line.
 fn graph(nodes: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let nodes: String = nodes
@@ -43,6 +42,18 @@ fn graph(nodes: &[&str]) -> TempDir {
     )
     .unwrap();
     folder
+}
+
+/// Creates a graph whose source says `up` and ends after [`let_go`].
+fn waiting_graph() -> TempDir {
+    let folder = graph(&["id: source, outputs: [scan], args: -c 'echo up; read line < pipe'"]);
+    mkfifo(&folder.path().join("pipe"), Mode::S_IRWXU).unwrap();
+    folder
+}
+
+/// Ends the node that reads from the pipe.
+fn let_go(folder: &TempDir) {
+    fs::write(folder.path().join("pipe"), "\n").unwrap();
 }
 
 fn launcher(folder: &Path, args: &[&str]) -> Command {
@@ -62,18 +73,20 @@ fn launcher(folder: &Path, args: &[&str]) -> Command {
 }
 
 /// Runs to the end; returns exit code, standard output and standard error.
-fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
-    let folder = graph(nodes);
+fn said_by(command: &mut Command) -> (i32, String, String) {
     let Output {
         status,
         stdout,
         stderr,
-    } = launcher(folder.path(), args).output().unwrap();
+    } = command.output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (status.code().unwrap(), text(stdout), text(stderr))
 }
 
-/// Running launcher and its output.
+fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
+    said_by(&mut launcher(graph(nodes).path(), args))
+}
+
 struct Running {
     child: Child,
     said: Lines<BufReader<ChildStderr>>,
@@ -100,6 +113,12 @@ impl Running {
     fn signal(&self, signal: Signal) {
         let pid = i32::try_from(self.child.id()).unwrap();
         kill(Pid::from_raw(pid), signal).unwrap();
+    }
+
+    /// Waits for the end, which must be in order.
+    fn end_well(self) {
+        let (status, said) = self.wait();
+        assert_eq!(status.code(), Some(0), "{said}");
     }
 
     fn wait(mut self) -> (ExitStatus, String) {

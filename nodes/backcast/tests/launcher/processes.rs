@@ -26,7 +26,7 @@ fn nodes_find_their_folder_graph_and_environment() {
     assert_eq!(running.receive("a"), "two words 7 test-env");
     let expected = folder.path().canonicalize().unwrap();
     assert_eq!(running.receive("a"), expected.to_str().unwrap());
-    assert!(running.wait().0.success());
+    running.end_well();
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_node_that_fails_each_time_is_shown_with_its_reason() {
     let status = String::from_utf8(status.output().unwrap().stdout).unwrap();
     assert!(status.contains("\n  loops ended "), "{status}");
     running.signal(Signal::SIGTERM);
-    assert!(running.wait().0.success());
+    running.end_well();
 }
 
 #[test]
@@ -79,8 +79,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
          args: \"-c 'echo up; exit 7'\"",
         "id: source, outputs: [scan], args: -c 'read line < pipe'",
     ]);
-    let pipe = folder.path().join("pipe");
-    mkfifo(&pipe, Mode::S_IRWXU).unwrap();
+    mkfifo(&folder.path().join("pipe"), Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
     let lost = loop {
         let line = running.receive("backcast");
@@ -101,10 +100,8 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
     });
     drop((health, member));
 
-    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
-    std::io::Write::write_all(&mut writer, b"\n").unwrap();
-    let (status, said) = running.wait();
-    assert_eq!(status.code(), Some(0), "{said}");
+    let_go(&folder);
+    running.end_well();
 }
 
 #[test]
@@ -126,8 +123,7 @@ fn a_signal_stops_even_what_does_not_want_to() {
             }
         }
         running.signal(signal);
-        let (status, said) = running.wait();
-        assert_eq!(status.code(), Some(0), "{said}");
+        running.end_well();
         for pid in &pids {
             assert!(has_ended(pid), "{pid} of {pids:?}");
         }

@@ -1,6 +1,5 @@
 //! Tests of `backcast convert` as a process, with logs of real robots.
 
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -19,10 +18,8 @@ fn a_destination_that_exists_or_is_no_recording_is_refused() {
     let convert = |arguments: &str| run(corridor.folder.path(), &format!("convert {arguments}"));
     let (code, _, said) = convert("a.log a.mcap");
     assert_eq!(code, 0, "{said}");
-    assert!(
-        said.contains("37 scans, 37 poses of the odometry"),
-        "{said}"
-    );
+    assert!(said.contains("37 scans, 37 poses of"), "{said}");
+    corridor.assert_same("a.mcap");
     let (code, _, said) = convert("a.log a.mcap");
     assert_eq!(code, 2, "what exists is kept");
     assert!(said.contains("a.mcap is there already"), "{said}");
@@ -118,137 +115,42 @@ impl Corridor {
         }
     }
 
-    /// Returns the log with the words of each scan changed, after the lines of `head`.
-    fn with(&self, head: &str, change: impl Fn(Vec<&str>) -> Vec<String>) -> String {
-        let line = |line: &str| match line.starts_with("FLASER ") {
-            true => change(line.split(' ').collect()).join(" "),
-            false => line.to_owned(),
-        };
-        let lines: Vec<String> = self.log.lines().map(line).collect();
-        format!("{head}\n{}\n", lines.join("\n"))
-    }
-
-    /// Converts a file `name` with `content`; returns the messages and the scans.
-    fn converted(&self, name: &str, content: &[u8]) -> (String, Vec<LaserScan>) {
-        let to = self.folder.path().join("to.mcap");
-        fs::write(self.folder.path().join(name), content).unwrap();
-        let (code, _, said) = run(self.folder.path(), &format!("convert {name} to.mcap"));
-        assert_eq!(code, 0, "{said}");
-        let scans = scans(&to);
-        fs::remove_file(to).unwrap();
-        (said, scans)
-    }
-
-    /// Asserts that these are the corridor's scans, each starting at beam `first`.
-    fn assert_same(&self, found: &[LaserScan], first: usize, what: &str) {
-        assert_eq!(found.len(), self.scans.len(), "{what}");
+    /// Asserts that a converted file has the corridor's scans.
+    fn assert_same(&self, file: &str) {
+        let found = scans(&self.folder.path().join(file));
+        assert_eq!(found.len(), self.scans.len());
         for (found, scan) in found.iter().zip(&self.scans) {
-            let last = first + found.ranges.len();
-            assert_eq!(found.ranges, scan.ranges[first..last], "{what}");
-            let start = scan.angle_min + first as f32 * scan.angle_increment;
+            assert_eq!(found.ranges, scan.ranges);
             // Logs give the step with six digits, and there are 360 steps.
-            assert!((found.angle_min - start).abs() < 4e-4, "{what}");
-            assert!(
-                (found.angle_increment - scan.angle_increment).abs() < 2e-6,
-                "{what}"
-            );
+            assert!((found.angle_min - scan.angle_min).abs() < 4e-4);
+            assert!((found.angle_increment - scan.angle_increment).abs() < 2e-6);
         }
     }
 }
 
-fn owned(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
-
-/// Returns the words of an old line with its readings in reverse order.
-fn reversed(words: &[&str]) -> Vec<String> {
-    let mut words = owned(words);
-    let readings = 2..2 + words[1].parse::<usize>().unwrap();
-    words[readings].reverse();
-    words
-}
-
-/// Converts an old line to a raw line.
-fn raw(words: &[&str], number: u8, start: f64, step: f64) -> Vec<String> {
-    let count: usize = words[1].parse().unwrap();
-    let head = format!("RAWLASER{number} 0 {start} 3.141593 {step} 81.9 0.01 0");
-    let time = &words[words.len() - 3..];
-    [
-        &[head],
-        &owned(&words[1..count + 2])[..],
-        &owned(&["0"]),
-        &owned(time),
-    ]
-    .concat()
-}
-
 #[test]
-fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
-    let corridor = Corridor::new();
-    for flipped in ["laser_front_laser_flipped 1", "laser_laser1_flipped on"] {
-        let head = format!("PARAM {flipped} nohost 0");
-        let log = corridor.with(&head, |words| reversed(&words));
-        let (said, scans) = corridor.converted("b.log", log.as_bytes());
-        corridor.assert_same(&scans, 0, flipped);
-        assert!(
-            said.contains("its beams run clockwise, and are turned about"),
-            "{said}"
-        );
-        let log = corridor.with(&head, |words| owned(&words));
-        let (said, scans) = corridor.converted("b.log", log.as_bytes());
-        corridor.assert_same(&scans, 0, flipped);
-        assert!(
-            said.contains("before they were logged, and are kept"),
-            "{said}"
-        );
-    }
-}
-
-#[test]
-fn several_lasers_become_topics_with_their_mounts() {
-    let corridor = Corridor::new();
-    let rear = corridor.with("PARAM robot_rearlaser_offset -0.4 nohost 0", |words| {
-        raw(&words, 2, -FRAC_PI_2, 0.008_727)
-    });
-    let log = [corridor.log.as_str(), &rear].concat();
-    let (code, _, said) = {
-        fs::write(corridor.folder.path().join("b.log"), log).unwrap();
-        run(corridor.folder.path(), "convert b.log b.mcap")
-    };
-    assert_eq!(code, 0, "{said}");
-    assert!(
-        said.contains("/scan_rear holds RAWLASER2: 37 scans"),
-        "{said}"
-    );
-    let recording = Recording::open(corridor.folder.path().join("b.mcap")).unwrap();
-    let mount = recording.base_from_laser("laser_rear").unwrap().unwrap();
-    // A rear laser looks backwards; the angle passes through a quaternion.
-    let back = Pose::new(-0.4, 0.0, PI);
-    assert!(
-        mount.base_from_laser.is_within(back, 1e-9, 1e-9),
-        "{mount:?}"
-    );
-}
-
-#[test]
-fn what_is_left_out_is_counted_and_named() {
+fn another_laser_has_its_topic_and_what_is_left_out_is_named() {
     let corridor = Corridor::new();
     let mut log = corridor.log.clone();
     log += "FLASER 361 1.0 2.0\nTRUEPOS 1 2 3 4 5 6 7 h 7\nTRUEPOS 1 2 3 4 5 6 8 h 8\n";
+    log += "PARAM robot_rearlaser_offset -0.4 nohost 0\n";
+    log += "RAWLASER2 0 -1.570796 3.141593 1.570796 81.9 0.01 0 3 1.0 2.0 3.0 0 9 h 9\n";
     fs::write(corridor.folder.path().join("b.log"), log).unwrap();
     let (code, _, said) = run(corridor.folder.path(), "convert b.log b.mcap");
     assert_eq!(code, 3, "{said}");
-    assert!(
-        said.contains(
-            "left out: 1 FLASER line cut short, 2 lines of kinds that are not converted (2 TRUEPOS)"
-        ),
-        "{said}"
-    );
-    assert!(
-        said.contains("FLASER: of 361 readings 2 are there"),
-        "{said}"
-    );
-    assert_eq!(scans(&corridor.folder.path().join("b.mcap")).len(), 37);
+    for part in [
+        "left out: 1 FLASER line cut short, 2 lines of kinds",
+        "(2 TRUEPOS)",
+        "FLASER: of 361 readings 2 are there",
+        "/scan_rear holds RAWLASER2",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let converted = corridor.folder.path().join("b.mcap");
+    assert_eq!(scans(&converted).len(), 37);
+    let recording = Recording::open(converted).unwrap();
+    let rear = recording.base_from_laser("laser_rear").unwrap().unwrap();
+    assert_eq!(rear.base_from_laser.x, -0.4);
 }
 
 #[test]

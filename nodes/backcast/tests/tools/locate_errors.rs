@@ -6,7 +6,6 @@ use recording::Message;
 use recording::write::{Packing, RecordingWriter};
 use ros::LaserScan;
 use serde_json::Value;
-use tempfile::TempDir;
 
 use crate::drawn::{
     HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word,
@@ -94,57 +93,31 @@ fn a_scan_that_does_not_decode_is_lost_data() {
 
 #[test]
 fn what_is_missing_or_broken_is_named() {
-    let fails = |folder: &TempDir, options: &str, expected: &str| {
-        let (code, stdout, stderr) = run(folder.path(), &format!("locate {options}"));
-        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-        assert!(stderr.starts_with("backcast: "), "{stderr}");
-        assert!(stderr.contains(expected), "{stderr}");
-        assert_eq!(stderr.lines().count(), 1, "{stderr}");
-    };
     let no_scan = folder(&[map_message(), truth_at(1, HERE)]);
-    fails(
-        &no_scan,
-        "--bag r.mcap",
-        "r.mcap has no sensor_msgs/msg/LaserScan; it has /map",
-    );
-    fails(
-        &no_scan,
-        "--bag nowhere.mcap",
-        "cannot read the recording nowhere.mcap: No such file",
-    );
     let no_map = folder(&[scan_at(1, HERE)]);
-    fails(
-        &no_map,
-        "--bag r.mcap",
-        "r.mcap has no map on /map: name one with --map map.yaml",
-    );
-    fails(
-        &no_map,
-        "--bag r.mcap --map r.mcap",
-        "r.mcap has no map on /map: name one with --map map.yaml",
-    );
-    fails(
-        &no_map,
-        "--bag r.mcap --map nowhere.yaml",
-        "cannot read the map description nowhere.yaml",
-    );
-    fails(
-        &no_map,
-        "--bag r.mcap --heading-from odometry",
-        "r.mcap has no nav_msgs/msg/Odometry; it has /scan",
-    );
     let empty = map::OccupancyGrid {
         cells: vec![0; 240],
         ..room()
     };
     map::save(&empty, no_map.path().join("empty.yaml")).unwrap();
-    fails(
-        &no_map,
-        "--bag r.mcap --map empty.yaml",
-        "empty.yaml cannot be searched: the map has no occupied cell",
-    );
     fs::write(no_map.path().join("text.mcap"), "no recording at all").unwrap();
-    fails(&no_map, "--bag text.mcap", "text.mcap");
+    let map_missing = "r.mcap has no map on /map: name one with --map map.yaml";
+    for (folder, options, expected) in [
+        (&no_scan, "r.mcap", "no sensor_msgs/msg/LaserScan; it has"),
+        (&no_scan, "nowhere.mcap", "nowhere.mcap: No such file"),
+        (&no_map, "r.mcap", map_missing),
+        (&no_map, "r.mcap --map r.mcap", map_missing),
+        (&no_map, "r.mcap --map nowhere.yaml", "nowhere.yaml"),
+        (&no_map, "r.mcap --heading-from odometry", "nav_msgs/msg"),
+        (&no_map, "r.mcap --map empty.yaml", "no occupied cell"),
+        (&no_map, "text.mcap", "text.mcap"),
+    ] {
+        let (code, stdout, stderr) = run(folder.path(), &format!("locate --bag {options}"));
+        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+        assert!(stderr.starts_with("backcast: "), "{stderr}");
+        assert!(stderr.contains(expected), "{expected}: {stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    }
 }
 
 #[test]

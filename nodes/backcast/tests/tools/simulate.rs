@@ -159,44 +159,28 @@ fn the_topics_are_those_of_a_robot() {
 #[test]
 fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
-    let cases = [
-        (
-            "--path '4,-10.5 400,0'",
-            1,
-            "corner 2 of the path, 400,0, is not on the map",
-        ),
-        (
-            "--path '4,-10.5 4,-14'",
-            1,
-            "from corner 1 to corner 2 meets an obstacle at 4.00,",
-        ),
-        ("--path '4,-10.5'", 2, "1 corners; allowed are 2 to 10000"),
-        (
-            "--path '4,-10.5 5,-10.5' --noise x",
-            2,
-            "\"x\" is not a noise",
-        ),
-        (
-            "--path '4,-10.5 5,-10.5' --sonar --beams 9",
-            2,
-            "cannot be used with",
-        ),
-        ("--path '4,-10.5 5,-10.5' --beam-width 9", 2, "--sonar"),
-        (
-            "--path '4,-10.5 5,-10.5' --laser a=0,0,0 --mount 0,0,0",
-            2,
-            "cannot be used with",
-        ),
-        (
-            "--path '4,-10.5 5,-10.5' --laser a=0,0,0 --laser a=1,0,0",
-            1,
-            "two lasers are called a",
-        ),
-    ];
-    for (options, expected, message) in cases {
+    const WAY: &str = "--path '4,-10.5 5,-10.5'";
+    let refused = |options: &str, expected: i32, message: &str| {
         let (code, _, stderr) = simulate(&folder, options);
         assert_eq!(code, expected, "{options}: {stderr}");
         assert!(stderr.contains(message), "{options}: {stderr}");
         assert!(!folder.path().join("r.mcap").exists(), "{options}");
+    };
+    refused("--path '4,-10.5 400,0'", 1, "corner 2 of the path, 400,0,");
+    refused("--path '4,-10.5 4,-14'", 1, "meets an obstacle at 4.00,");
+    refused("--path '4,-10.5'", 2, "1 corners; allowed are 2");
+    let both = "cannot be used with";
+    for (options, code, message) in [
+        ("--noise x", 2, "\"x\" is not a noise"),
+        ("--sonar --beams 9", 2, both),
+        ("--beam-width 9", 2, "--sonar"),
+        ("--laser a=0,0,0 --mount 0,0,0", 2, both),
+        (
+            "--laser a=0,0,0 --laser a=1,0,0",
+            1,
+            "two lasers are called a",
+        ),
+    ] {
+        refused(&format!("{WAY} {options}"), code, message);
     }
 }

@@ -26,7 +26,6 @@ use zenoh::{Session, Wait};
 /// Longer than any answer takes on any machine.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Server with a graph of its own.
 struct Server {
     process: NodeProcess,
     graph: Graph,
@@ -45,7 +44,6 @@ impl Server {
         Server::of(tag, &[&common, arguments].concat())
     }
 
-    /// Starts a server with these arguments.
     fn of(tag: &str, arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
@@ -75,7 +73,6 @@ impl Server {
     }
 }
 
-/// Returns the listening address for an isolated test.
 fn endpoint(isolated: &Isolated) -> String {
     format!("tcp/{}:7447", isolated.name().loopback())
 }
@@ -86,7 +83,6 @@ fn caller(servers: &[&Server]) -> Session {
     session(&[], &endpoints)
 }
 
-/// Opens a session that listens and connects at these endpoints.
 fn session(listen: &[String], connect: &[String]) -> Session {
     let mut config = zenoh::Config::default();
     let mut set = |key, value: &str| config.insert_json5(key, value).unwrap();

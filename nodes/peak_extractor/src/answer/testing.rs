@@ -29,7 +29,6 @@ const ROOM: [&str; 20] = [
     "##############################",
 ];
 
-/// Geometry of the room without id and pose.
 pub(super) fn room() -> MapHeader {
     MapHeader {
         width: 30,
@@ -39,7 +38,6 @@ pub(super) fn room() -> MapHeader {
     }
 }
 
-/// Occupancies of the room.
 pub(super) fn cells() -> Vec<u8> {
     let cells = ROOM.iter().rev().flat_map(|row| row.bytes());
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()

@@ -9,7 +9,6 @@ use super::{Node, TrackerError};
 /// Assumed error of an initial pose from the command line: standard deviations, metres and radians.
 const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
 
-/// Initial pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Initial {
     /// Pose of the base in the map, with its covariance.
@@ -19,7 +18,6 @@ pub(super) struct Initial {
 }
 
 impl Initial {
-    /// Creates the initial pose of the command line.
     pub(super) fn of_option(pose: Pose) -> Self {
         let (metres, radians) = INITIAL_ERROR;
         Initial {

@@ -108,7 +108,6 @@ impl Node {
         }
     }
 
-    /// Returns a tracker without knowledge of the pose.
     pub(super) fn nothing_known(&self) -> PlaceTracker {
         PlaceTracker::new(self.config.tracking).with_transitions(self.worlds.transitions.to_vec())
     }

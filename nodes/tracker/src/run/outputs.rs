@@ -22,23 +22,19 @@ impl Outputs {
         })
     }
 
-    /// Returns the processes that receive search requests.
     pub(super) fn asked(&self) -> Peers {
         self.attention.subscribers()
     }
 
-    /// Requests a search of a scan.
     pub(super) fn ask(&self, stamp: Stamp) -> Result<(), TransportError> {
         self.attention.send(AttentionHeader { stamp }, &[])
     }
 
-    /// Returns true if an extrapolated pose may be sent now.
     pub(super) fn is_due(&self) -> bool {
         let since_ns = monotonic_ns() - self.sent_ns;
         self.rate > 0.0 && since_ns as f64 >= 1e9 / self.rate
     }
 
-    /// Publishes a pose with its reason in words.
     pub(super) fn pose(
         &mut self,
         mut header: PoseHeader,

@@ -32,7 +32,6 @@ impl Searchers {
 }
 
 impl Node {
-    /// Requests a search of a scan.
     pub(super) fn ask(&mut self, inputs: &Inputs, stamp: Stamp) -> Result<(), TransportError> {
         // A process that starts later and misses the request is then detected as new.
         self.searchers = Searchers::now(inputs, &self.outputs);

@@ -10,7 +10,6 @@ use super::TICK;
 /// less. Later results are lost.
 pub(super) const SEARCH_WAIT: Duration = Duration::from_secs(5);
 
-/// Start of a wait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Since {
     at: Instant,
@@ -33,13 +32,13 @@ impl Since {
     }
 }
 
-/// State of the current scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Turn {
-    /// There is no current scan.
     Idle,
-    /// The scan waits for odometry.
-    Odometry { scan: ScanHeader, since: Since },
+    Odometry {
+        scan: ScanHeader,
+        since: Since,
+    },
     /// The scan waits for the search result of scan `of`.
     Search {
         scan: ScanHeader,

@@ -39,7 +39,6 @@ const CELL_M: f64 = FRAME.resolution_m;
 /// Row along which the robot drives, counted from below.
 const ROW: usize = 6;
 
-/// Map from a drawing.
 pub(crate) struct Drawn {
     pub(crate) name: &'static str,
     pub(crate) rows: Vec<&'static str>,
@@ -74,12 +73,10 @@ pub(crate) fn ids(maps: &[Drawn]) -> Vec<u64> {
     maps.iter().map(|map| map.header().map_id).collect()
 }
 
-/// Returns the id of a search on all of these maps.
 pub(crate) fn searched(maps: &[Drawn]) -> u64 {
     searched_id(ids(maps))
 }
 
-/// Result of a scan.
 pub(crate) struct Step {
     pub(crate) pose: PoseHeader,
     /// Poses before it that were extrapolated by odometry.
@@ -88,7 +85,6 @@ pub(crate) struct Step {
     pub(crate) was_asked: bool,
 }
 
-/// Neighbours of the node.
 pub(crate) struct World {
     sets: Option<Publisher<topic::Maps>>,
     maps: Publisher<topic::Map>,
@@ -119,7 +115,6 @@ impl World {
         }
     }
 
-    /// Creates a world with a map that is served alone.
     pub(crate) fn of_map(isolated: &Isolated, map: &Drawn) -> Self {
         let world = World::new(isolated, false);
         world.serve_map(map);
@@ -158,13 +153,11 @@ impl World {
         node
     }
 
-    /// Returns the robot's pose in this column.
     pub(crate) fn pose_at(&self, x: usize) -> Pose {
         let metres = |cell: usize| CELL_M * (cell as f64 + 0.5);
         Pose::new(metres(x), metres(ROW), 0.0)
     }
 
-    /// Publishes an initial pose in this column.
     pub(crate) fn say(&self, kind: InitialPoseKind, x: usize) {
         let header = InitialPose {
             kind: kind as u64,

@@ -35,12 +35,10 @@ pub(super) struct Member {
     pub(super) restarts: Restarts,
     pub(super) pulse: Pulse,
     pub(super) state: State,
-    /// Start of its last process.
     pub(super) started: Option<Instant>,
     /// Number of restarts, and exit status of the last process that ended.
     pub(super) restarted: u64,
     pub(super) last_end: Option<ExitStatus>,
-    /// Last line of standard error.
     pub(super) last_line: Arc<Mutex<String>>,
     /// Request of a user that follows the end of the process.
     pub(super) wanted: Option<Wanted>,
@@ -56,14 +54,12 @@ pub(super) enum Wanted {
 }
 
 pub(super) enum State {
-    /// To be started at this time.
     Due(Instant),
     Running(Process),
     Done,
 }
 
 impl Member {
-    /// Creates the member; it is due at `now`.
     pub(super) fn new(node: Node, now: Instant) -> anyhow::Result<Self> {
         Ok(Member {
             essential: is_essential(&node)?,
@@ -265,7 +261,6 @@ fn how_ended(status: ExitStatus) -> Ended {
     }
 }
 
-/// True if the exit code says that the process lost data.
 pub(super) fn lost_data(status: ExitStatus) -> bool {
     status.code() == Some(LOST_DATA.into())
 }

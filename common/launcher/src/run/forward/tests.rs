@@ -175,14 +175,6 @@ fn monitors_stay_unless_they_are_left_out() {
 }
 
 #[test]
-fn playing_at_max_is_seen_in_the_arguments() {
-    assert!(plays_at_max(&graph("--rate max", "")));
-    assert!(plays_at_max(&graph("--rate=max", "")));
-    assert!(!plays_at_max(&graph("--rate 2", "")));
-    assert!(!plays_at_max(&graph("max", "")));
-}
-
-#[test]
 fn a_point_cloud_goes_to_the_replayer_in_place_of_scans() {
     let mut options = Options {
         replay: vec!["/a.mcap".into()],

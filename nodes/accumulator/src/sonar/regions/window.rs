@@ -51,7 +51,6 @@ impl SonarConfig {
     }
 }
 
-/// Scans of the last metres driven.
 #[derive(Debug, Clone)]
 pub struct Window {
     way_m: f64,
@@ -71,7 +70,6 @@ struct Taken {
 }
 
 impl Window {
-    /// Creates an empty window over this many metres.
     #[must_use]
     pub fn new(way_m: f64, config: RegionConfig) -> Self {
         Window {
@@ -160,7 +158,6 @@ impl Window {
         (self.taken.back()).is_some_and(|newest| newest.way_m >= self.way_m)
     }
 
-    /// Returns all echoes in the frame of the newest scan.
     fn echoes(&self) -> Vec<Echo> {
         let newest = self.taken.back().map(|newest| newest.odom_from_laser);
         let newest_from_odom = newest.unwrap_or(Pose::IDENTITY).inverse();
@@ -205,7 +202,6 @@ mod tests {
         ranges.iter().filter(|range| range.is_finite()).count()
     }
 
-    /// Drives eleven steps of 0.1 m.
     fn driven(window: &mut Window) -> Vec<usize> {
         let steps = (0..=11i32).map(|i| read(window, i.into(), f64::from(i) / 10.0));
         steps.map(|ranges| readings(&ranges)).collect()

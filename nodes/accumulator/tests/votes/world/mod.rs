@@ -24,7 +24,6 @@ pub(crate) fn vote_search(rows: &[&str], prior: Prior) -> VoteSearch {
     VoteSearch::new(FRAME, grid, VoteSearchConfig::default(), prior).unwrap()
 }
 
-/// Neighbours of the node.
 pub(crate) struct World {
     pub(crate) graph: Graph,
     pub(crate) maps: Publisher<topic::Map>,
@@ -52,6 +51,20 @@ impl World {
 
     pub(crate) fn start(&self, arguments: &[&str]) -> NodeProcess {
         NodeProcess::start(env!("CARGO_BIN_EXE_accumulator"), &self.graph, arguments)
+    }
+
+    /// Starts the node and waits until it can search the drawing.
+    pub(crate) fn start_on(&self, rows: &[&str], arguments: &[&str]) -> NodeProcess {
+        let node = self.start(arguments);
+        self.publish(rows);
+        self.wait_until(NodeState::Ready);
+        node
+    }
+
+    /// Publishes a map and its boundary.
+    pub(crate) fn publish(&self, rows: &[&str]) {
+        self.publish_map(rows);
+        self.publish_boundary(id(rows), rows);
     }
 
     pub(crate) fn publish_map(&self, rows: &[&str]) {
@@ -107,7 +120,6 @@ impl World {
         answer
     }
 
-    /// Waits until the node reports `state`.
     pub(crate) fn wait_until(&self, state: NodeState) -> (HealthHeader, String) {
         wait_for_health(&self.graph, &self.health, |report| {
             report.state == state as u32

@@ -182,12 +182,10 @@ pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
     (status.code().unwrap(), text(stdout), text(stderr))
 }
 
-/// Returns the folder of the repository's recordings.
 pub(crate) fn recordings() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../recordings"))
 }
 
-/// Creates a folder with the recording `r.mcap`.
 pub(crate) fn folder(messages: &[(&str, Message)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     record(&folder.path().join("r.mcap"), messages);
@@ -209,7 +207,6 @@ pub(crate) fn objects(folder: &Path, options: &str) -> Vec<Value> {
     parsed.map(Result::unwrap).collect()
 }
 
-/// Returns the word in a column of a row.
 pub(crate) fn word(row: &str, column: usize) -> String {
     let word = row.split_whitespace().nth(column);
     word.unwrap().to_owned()
