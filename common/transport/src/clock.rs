@@ -1,13 +1,10 @@
-//! The monotonic clock for latencies, which counts from the host's start, and the wall clock for
-//! dates, which may be set.
+//! The monotonic clock for latencies, and the wall clock for dates.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use nix::time::{ClockId, clock_gettime};
 
-/// Returns `CLOCK_MONOTONIC` in nanoseconds: the same clock in every process of a host, started at
-/// boot, never set back.
-#[must_use]
+/// Returns `CLOCK_MONOTONIC` in nanoseconds, the same in every process of a host.
 pub fn monotonic_ns() -> i64 {
     // The clock exists on every Linux, and 292 years of nanoseconds fit.
     let now = clock_gettime(ClockId::CLOCK_MONOTONIC).expect("Linux has a monotonic clock");
@@ -15,7 +12,6 @@ pub fn monotonic_ns() -> i64 {
 }
 
 /// Returns the wall clock in nanoseconds since 1970; 0 if it is set before that.
-#[must_use]
 pub fn wall_ns() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.map_or(0, |since| {

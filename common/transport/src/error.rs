@@ -1,7 +1,4 @@
-//! Errors between a node and its graph.
-//!
-//! Each variant says what was tried, what was found and what is allowed. The text of iceoryx2 is
-//! the reason where only iceoryx2 knows more.
+//! Errors between a node and its graph, with the text of iceoryx2 where only it knows more.
 
 use std::path::PathBuf;
 

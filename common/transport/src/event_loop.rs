@@ -1,7 +1,4 @@
-//! Event loop: waits for inputs, ticks and signals.
-//!
-//! The process sleeps until there is something to do; it never polls faster than its tick. The node
-//! decides what to do then.
+//! Event loop: sleeps until there are inputs, ticks or signals.
 
 use std::time::{Duration, Instant};
 
@@ -14,8 +11,7 @@ use iceoryx2::prelude::{
 use crate::signals::Signals;
 use crate::{Graph, Input, TransportError};
 
-/// Longest sleep. The system call takes milliseconds, which overflow after 24 days; waking once a
-/// day costs nothing.
+/// Longest sleep; the system call takes milliseconds, which overflow after 24 days.
 const LONGEST_SLEEP: Duration = Duration::from_secs(86_400);
 
 /// Decision to continue or end an event loop.
@@ -36,18 +32,11 @@ pub struct Wake {
 }
 
 impl Graph {
-    /// Calls `step` at once, and then whenever one of `inputs` has a sample, a [`crate::Waker`]
-    /// wakes or a `tick` has passed. Returns when `step` returns [`Flow::Stop`] or an error, or
-    /// when the stop flag is set. In between it sleeps, unless `tick` is zero.
+    /// Calls `step` at once, and whenever an input has a sample, a [`crate::Waker`] wakes or a
+    /// `tick` has passed, until it returns [`Flow::Stop`] or an error, or the stop flag is set.
     ///
-    /// `step` should receive all samples of its subscribers; a sample left there waits for the next
-    /// input or tick. A signal ends the sleep at once; a stop flag set by the program itself is
-    /// seen at the next input or tick. Before each call, the publishers of this graph connect with
-    /// late joiners, so that these wait for a latched sample for a tick at most, or as long as
-    /// `step` takes. After each call, the process's log lines are published.
-    ///
-    /// # Errors
-    /// Errors of `step`, and [`TransportError`] if waiting or serving late joiners fails.
+    /// `step` should receive all samples; one left there waits for the next input or tick. Before
+    /// each call, the publishers connect with late joiners; after each, log lines are published.
     pub fn run<E: From<TransportError>>(
         &self,
         inputs: &[&dyn Input],
@@ -82,8 +71,7 @@ impl Graph {
     }
 }
 
-/// Time of the next tick; `None` if it is beyond the range of the clock. Missed ticks are not made
-/// up for.
+/// Time of the next tick; `None` beyond the range of the clock. Missed ticks are dropped.
 struct Ticks {
     period: Duration,
     due: Option<Instant>,
@@ -131,8 +119,7 @@ fn attach<'w, 'a>(
 }
 
 fn wait(waitset: &WaitSet<ipc::Service>, timeout: Duration) -> Result<(), TransportError> {
-    // It does not matter which input woke, as every call looks at all inputs. An interrupt by a
-    // signal is not an error either.
+    // Any input may wake, as every call looks at all; a signal is no error either.
     let ignore = |_: WaitSetAttachmentId<ipc::Service>| CallbackProgression::Continue;
     waitset
         .wait_and_process_once_with_timeout(ignore, timeout)
@@ -140,8 +127,7 @@ fn wait(waitset: &WaitSet<ipc::Service>, timeout: Duration) -> Result<(), Transp
         .map_err(|error| wait_failed(&error))
 }
 
-/// Clears the notifications before the samples are received: a later notification remains and ends
-/// the next sleep.
+/// Clears the notifications before samples are received, so that a later one ends the sleep.
 fn take_notifications(inputs: &[&dyn Input]) -> Result<bool, TransportError> {
     let mut any = false;
     for input in inputs {

@@ -1,24 +1,17 @@
-//! Computes losses from the counters of the received samples.
-//!
-//! A loss after the last sample is only detected when another sample comes.
+//! Computes losses from the counters of received samples.
 
-/// Counts the lost samples of one publisher. Pure: fed with the counters of the stamps, in the
-/// order of arrival.
+/// Counts the lost samples of one publisher from the counters of the stamps.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GapCounter {
     next: Option<u64>,
 }
 
 impl GapCounter {
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Returns the number of samples lost just before the one with `counter`.
-    ///
-    /// It is 0 for the first sample, as a subscriber may join late, and for a counter at or below
-    /// the last one, as the publisher has restarted.
+    /// Returns the samples lost just before `counter`: 0 for the first one and after a restart.
     pub fn lost_before(&mut self, counter: u64) -> u64 {
         let lost = self.next.map_or(0, |next| counter.saturating_sub(next));
         self.next = Some(counter.saturating_add(1));

@@ -1,7 +1,4 @@
-//! A process's membership of a graph.
-//!
-//! Creates what a node needs: publishers, subscribers, a health reporter, a stop flag. It neither
-//! sends nor waits by itself.
+//! A process's membership of a graph, which creates publishers, subscribers and health.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -26,8 +23,7 @@ use crate::{
     root,
 };
 
-/// Longest wait when joining, while another process cleans up after a dead one whose slot may be
-/// needed.
+/// Longest wait when joining, while another process frees a slot that may be needed.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);
 
 /// Membership of one process in one graph; it stays on the thread that joined.
@@ -54,11 +50,7 @@ impl Graph {
         Self::join_named(node_name, &GraphName::from_environment()?)
     }
 
-    /// Joins `graph` as `node_name`, and cleans up after dead members.
-    ///
-    /// # Errors
-    /// The name is invalid, this user's folder cannot be used, signals cannot be caught, or
-    /// iceoryx2 fails.
+    /// Joins `graph` as `node_name`, a valid name, and cleans up after dead members.
     pub fn join_named(node_name: &str, graph: &GraphName) -> Result<Graph, TransportError> {
         log::route_to_tracing();
         if node_name.is_empty() || node_name.len() > Name::CAPACITY {
@@ -109,41 +101,30 @@ impl Graph {
         Ok(graph)
     }
 
-    #[must_use]
     pub fn name(&self) -> &GraphName {
         &self.membership.graph
     }
 
     /// Name under which this process joined.
-    #[must_use]
     pub fn node_name(&self) -> &str {
         &self.node_name
     }
 
-    /// Creates a publisher of topic `T`.
-    ///
-    /// # Errors
-    /// The topic carries other types or has its maximum number of publishers, or shared memory is
-    /// full.
+    /// Creates a publisher of topic `T`; fails on other types, too many, or full memory.
     pub fn publisher<T: Topic>(&self) -> Result<Publisher<T>, TransportError> {
         // It grows with the requested samples, so it starts small.
         self.publisher_for::<T>(1)
     }
 
-    /// Creates a publisher of topic `T` for samples of up to `items` items. It avoids growing,
-    /// which would lose samples that a subscriber has not received yet when the publisher ends. It
-    /// still grows for larger samples.
+    /// Creates a publisher for samples of up to `items` items; growing for larger ones may lose
+    /// samples when the publisher ends.
     pub fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
         let publisher = Publisher::create(&self.node, items, self.losses.clone())?;
         self.publishers.add(publisher.for_event_loop());
         Ok(publisher)
     }
 
-    /// Creates a subscriber of topic `T`.
-    ///
-    /// # Errors
-    /// The topic carries other types or has its maximum number of subscribers, or shared memory is
-    /// full.
+    /// Creates a subscriber of topic `T`; fails on other types, too many, or full memory.
     pub fn subscriber<T: Topic>(&self) -> Result<Subscriber<T>, TransportError> {
         Subscriber::create(&self.node)
     }
@@ -162,21 +143,16 @@ impl Graph {
     }
 
     /// Flag that SIGINT, SIGTERM and SIGHUP set, to be polled in long computations.
-    #[must_use]
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         self.signals.flag()
     }
 
     /// Returns a handle with which another thread ends the sleep of [`Graph::run`].
-    ///
-    /// # Errors
-    /// The process has no free file descriptor.
     pub fn waker(&self) -> Result<Waker, TransportError> {
         self.signals.waker()
     }
 
-    /// Frees the slots of dead members and returns their number. To be called by a supervisor from
-    /// time to time.
+    /// Frees the slots of dead members, as a supervisor should, and returns their number.
     pub fn cleanup_dead_nodes(&self) -> u64 {
         let mut lock = self.root_lock.borrow_mut();
         if lock.is_none() {
@@ -186,20 +162,14 @@ impl Graph {
         self.node.try_cleanup_dead_nodes().cleanups
     }
 
-    /// Publishes the lines logged since the last call, if the process logs through
-    /// [`crate::node::start_logging`]. [`Graph::run`] calls this after each step. Lines that cannot
-    /// be sent are counted and reported later.
+    /// Publishes the lines logged since the last call, as [`Graph::run`] does after each step.
     pub fn send_log(&self) {
         if let Some(log) = &self.log {
             log.borrow_mut().send_waiting();
         }
     }
 
-    /// Checks that the files exist by which other processes find this one; cleaning of temporary
-    /// folders may have removed them.
-    ///
-    /// # Errors
-    /// [`TransportError::Vanished`] if one is missing.
+    /// Fails if files are gone by which others find this process, as [`TransportError::Vanished`].
     pub fn ensure_intact(&self) -> Result<(), TransportError> {
         let missing = |path: &PathBuf| matches!(path.try_exists(), Ok(false));
         if self.own_files.iter().any(missing) {

@@ -1,7 +1,4 @@
-//! Name of a graph, by which its processes find each other.
-//!
-//! Its characters and length are checked once, here; names derived from it (the prefix of files in
-//! shared memory) rely on that.
+//! Name of a graph, by which its processes find each other; checked once, here.
 
 use std::net::Ipv4Addr;
 
@@ -18,16 +15,12 @@ pub const GRAPH_VARIABLE: &str = "BACKCAST_GRAPH";
 pub struct GraphName(String);
 
 impl GraphName {
-    /// Longest name in bytes. Wake-up sockets have the name in their path, which is limited to 107
-    /// bytes, most of them used otherwise.
+    /// Longest name in bytes; the path of wake-up sockets, of at most 107 bytes, includes it.
     pub const CAPACITY: usize = 20;
     /// Graph that a process joins by default.
     pub const DEFAULT: &'static str = "backcast";
 
-    /// Checks `name`.
-    ///
-    /// # Errors
-    /// [`TransportError::GraphName`] if it is empty, too long, or has an invalid character.
+    /// Checks `name`; fails as [`TransportError::GraphName`].
     pub fn new(name: &str) -> Result<Self, TransportError> {
         let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b"-_".contains(&b);
         if name.is_empty() || name.len() > Self::CAPACITY || !name.bytes().all(allowed) {
@@ -37,9 +30,6 @@ impl GraphName {
     }
 
     /// Returns the name in [`GRAPH_VARIABLE`], or [`GraphName::DEFAULT`] if it is unset.
-    ///
-    /// # Errors
-    /// [`TransportError::GraphName`] if the variable is not a valid name.
     pub fn from_environment() -> Result<Self, TransportError> {
         match std::env::var_os(GRAPH_VARIABLE) {
             None => Self::new(Self::DEFAULT),
@@ -47,10 +37,8 @@ impl GraphName {
         }
     }
 
-    /// Returns the loopback address of this graph. Sockets of its nodes on this address do not
-    /// collide with those of another graph or another user's graph of this name. Two graphs share
-    /// one with a probability of 1 in 16 million.
-    #[must_use]
+    /// Returns the loopback address of this graph, on which sockets of its nodes do not collide
+    /// with another's (by 1 in 16 million).
     pub fn loopback(&self) -> Ipv4Addr {
         self.loopback_of(current_user())
     }
@@ -63,7 +51,6 @@ impl GraphName {
     }
 
     /// Replaces the host `graph` of HOST:PORT by [`GraphName::loopback`].
-    #[must_use]
     pub fn resolve(&self, address: &str) -> String {
         match address.strip_prefix("graph:") {
             Some(port) => format!("{}:{port}", self.loopback()),
@@ -71,7 +58,6 @@ impl GraphName {
         }
     }
 
-    #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }

@@ -3,9 +3,8 @@
 use iceoryx2::prelude::ZeroCopySend;
 use messages::Message;
 
-/// A topic's header with a default of zeros, which iceoryx2 writes into each loaned sample. It has
-/// the layout and type name of the header itself, so that programs without this wrapper can read
-/// the topic.
+/// A topic's header with a default of zeros for each loan, and the layout and type name of the
+/// header itself.
 #[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub(crate) struct Header<H>(pub(crate) H);

@@ -1,6 +1,4 @@
-//! Reports a node's health.
-//!
-//! It publishes the state that the node sets; only the node knows when it is ready or degraded.
+//! Reports a node's health, as the node sets it.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +10,6 @@ use crate::log_sender::LogSender;
 use crate::losses::Losses;
 use crate::{Publisher, TransportError, monotonic_ns, with_causes};
 
-/// Interval between two reports, in nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
 
 /// Counts what a node does and publishes it on topic `health`.
@@ -23,7 +20,6 @@ pub struct Health {
     last_error: String,
     /// Lost samples of all publishers of the process, because shared memory was full.
     losses: Losses,
-    /// Number of losses in the last report.
     losses_reported: u64,
     /// Log sender of the node, for nodes that do not use [`crate::Graph::run`].
     log: Option<Rc<RefCell<LogSender>>>,
@@ -58,8 +54,7 @@ impl Health {
         self.report.received += samples;
     }
 
-    /// Sets the number of received samples to `total` if that is more, and reports it at once, for
-    /// nodes that wait for it.
+    /// Raises the number of received samples to `total` and reports it at once.
     pub fn count_received_to(&mut self, total: u64) -> Result<(), TransportError> {
         if total <= self.report.received {
             return Ok(());
@@ -91,8 +86,7 @@ impl Health {
         self.send()
     }
 
-    /// Sets the last error and publishes it at once, cut to [`HealthHeader::ERROR_CAPACITY`] bytes
-    /// at a character boundary.
+    /// Publishes an error at once, cut to [`HealthHeader::ERROR_CAPACITY`] bytes.
     pub fn error(&mut self, error: &str) -> Result<(), TransportError> {
         let end = error.floor_char_boundary(HealthHeader::ERROR_CAPACITY);
         self.last_error.clear();

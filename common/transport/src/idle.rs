@@ -1,9 +1,5 @@
-//! Work of the event loop for idle publishers.
-//!
-//! iceoryx2 connects a publisher with new subscribers, and delivers the sample that it keeps, only
-//! when the publisher is used. The event loop does so for idle publishers: late joiners of a
-//! latched topic get the newest sample, and on other topics the first sample does not wait for the
-//! connection.
+//! Work of the event loop for idle publishers: iceoryx2 connects a publisher with new subscribers,
+//! and delivers the sample that it keeps, only when the publisher is used.
 
 use std::cell::RefCell;
 use std::rc::Weak;
@@ -12,8 +8,7 @@ use crate::TransportError;
 
 /// A publisher as seen by the event loop.
 pub(crate) trait Connects {
-    /// Connects with subscribers that came since the last call. If the topic is latched, delivers
-    /// the newest sample and wakes them.
+    /// Connects with new subscribers; if the topic is latched, sends them the newest sample.
     fn serve_late_joiners(&self) -> Result<(), TransportError>;
 }
 

@@ -1,7 +1,5 @@
-//! Removes the files that a graph has left after its last process.
-//!
-//! Processes that end in order remove all their files except a tiny one; killed ones leave all of
-//! theirs. Refuses to touch a graph that is still running, and never touches another graph's files.
+//! Removes the files that a graph has left after its last process. Killed ones leave all of theirs.
+//! A running graph is refused.
 
 use std::ffi::OsStr;
 use std::fs::{read_dir, remove_dir, remove_file};
@@ -20,13 +18,8 @@ use crate::{Claim, GraphName, TransportError, log, with_causes};
 /// Longest wait for another process that cleans up the same dead node.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);
 
-/// Removes every file of this user's `graph` after all its processes have ended. For the launcher,
-/// before it starts the first process of the graph and after the last one has ended; it must not be
-/// a member itself.
-///
-/// # Errors
-/// [`TransportError::StillRunning`] if a process of the graph is alive; then nothing is removed.
-/// [`TransportError::File`] if a file cannot be removed.
+/// Removes every file of this user's `graph`, which the caller must not have joined; fails with
+/// [`TransportError::StillRunning`] if a process of the graph is alive.
 pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
     log::route_to_tracing();
     let membership = Membership::of(graph);
@@ -49,10 +42,7 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
     remove_files(&membership)
 }
 
-/// Removes the files of all graphs of this user without a living process. For a launcher, before it
-/// starts.
-///
-/// Files that cannot be removed are logged and stay; they do not keep a graph from starting.
+/// Removes the files of this user's graphs without a living process; errors are logged.
 pub fn remove_dead_graphs() {
     let user = current_user();
     let names = match entries(Path::new(SHARED_MEMORY)) {
@@ -80,7 +70,6 @@ pub fn remove_dead_graphs() {
 }
 
 /// Returns every file of this user's `graph`, in shared memory and in the user's folder.
-#[must_use]
 pub fn files_of(graph: &GraphName) -> Vec<PathBuf> {
     let membership = Membership::of(graph);
     let nodes = entries(&membership.root.join("nodes")).unwrap_or_default();
@@ -168,7 +157,6 @@ fn remove_own(folder: &Path, membership: &Membership) -> Result<bool, TransportE
     Ok(any)
 }
 
-/// Lists the entries of `folder`; empty if it does not exist.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, TransportError> {
     let failed = |source| TransportError::File {
         action: "list",

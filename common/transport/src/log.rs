@@ -22,9 +22,6 @@ impl Log for ToTracing {
 }
 
 /// Routes iceoryx2's messages to `tracing`, at the level that is enabled there.
-///
-/// Messages are formatted before `tracing` can filter them, so iceoryx2 itself is set to drop those
-/// below this level.
 pub(crate) fn route_to_tracing() {
     set_logger(&ToTracing);
     set_log_level(match LevelFilter::current() {

@@ -1,6 +1,4 @@
-//! Keeps one message from filling a log, e.g. of a device that toggles its state thousands of times
-//! a second. Messages are compared by their whole text, including numbers: a text that differs each
-//! time is never limited.
+//! Keeps one message, by its whole text, from filling a log.
 
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;

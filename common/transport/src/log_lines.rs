@@ -1,7 +1,4 @@
-//! Queue of log lines until they can be published.
-//!
-//! Any thread may log, but only the one that joined a graph can publish. So lines wait here in a
-//! bounded queue; lines beyond its capacity are dropped and counted.
+//! Bounded queue of log lines of any thread, until the one that joined a graph publishes them.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -19,8 +16,7 @@ use crate::{monotonic_ns, wall_ns};
 /// Target of events that only the console may show, such as secrets.
 pub const CONSOLE_ONLY: &str = "console_only";
 
-/// Capacity of the queue: a subscriber has room for all its lines and for the one that reports
-/// losses.
+/// Capacity of the queue: a subscriber has room for all its lines and the report of losses.
 const CAPACITY: usize = topic::Log::DEPTH - 1;
 
 static WAITING: Mutex<Waiting> = Mutex::new(Waiting {
@@ -34,7 +30,6 @@ thread_local! {
     static SENDING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// A log line with its times and level.
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) written_ns: i64,
@@ -75,8 +70,7 @@ pub(crate) fn keep() -> KeepLines {
     KeepLines
 }
 
-/// Adds a line to topic `log` that is no `tracing` event, because the process has printed it
-/// already in another form. Does nothing if logging was not started.
+/// Adds a line to topic `log` that the process has printed already; needs started logging.
 pub fn log_in_graph(level: LogLevel, text: &str) {
     let mut waiting = waiting();
     if waiting.kept {
@@ -88,8 +82,7 @@ pub(crate) fn are_kept() -> bool {
     waiting().kept
 }
 
-/// Calls `send` for each waiting line, with the number of lines dropped since the process began.
-/// Lines that `send` logs are not kept.
+/// Calls `send` for each waiting line, with the number of lines dropped since the start.
 pub(crate) fn send_each(mut send: impl FnMut(Line, u64)) {
     let (lines, dropped) = {
         let mut waiting = waiting();
@@ -117,7 +110,6 @@ impl<S: Subscriber> Layer<S> for KeepLines {
     }
 }
 
-/// Returns the message of an event followed by its fields.
 pub(crate) fn text_of(event: &Event<'_>) -> String {
     let mut text = Text::default();
     event.record(&mut text);

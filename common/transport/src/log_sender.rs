@@ -5,7 +5,6 @@ use messages::{LogHeader, LogLevel, Name, topic};
 use crate::log_lines::{self, Line};
 use crate::{Publisher, TransportError};
 
-/// Publisher of topic `log` with its counters.
 #[derive(Debug)]
 pub(crate) struct LogSender {
     node: Name,
@@ -28,8 +27,7 @@ impl LogSender {
         }
     }
 
-    /// Sends the waiting lines, and a line about lost ones. Errors are only counted: logging must
-    /// not end a process.
+    /// Sends the waiting lines; errors are only counted, as logging must not end a process.
     pub(crate) fn send_waiting(&mut self) {
         let mut last = None;
         log_lines::send_each(|line, dropped| {

@@ -1,14 +1,11 @@
-//! Counts samples that were not sent because shared memory was full.
-//!
-//! A node continues without them, so that full shared memory does not end a graph. They are counted
-//! in the node's health and logged twice: when losses begin and when they end.
+//! Counts samples that were lost because shared memory was full, in the node's health, and logs
+//! when losses begin and end.
 
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use crate::TransportError;
 
-/// Handle to the losses of all publishers of one process.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Losses(Rc<Inner>);
 
@@ -23,7 +20,6 @@ impl Losses {
         self.0.count.get()
     }
 
-    /// Reason of the last loss; empty without one.
     pub(crate) fn reason(&self) -> String {
         self.0.reason.borrow().clone()
     }

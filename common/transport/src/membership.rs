@@ -1,5 +1,4 @@
-//! Separates one graph of one user from all others in iceoryx2: by the folder where its processes
-//! meet and the prefix of its files.
+//! Separates one graph of one user from all others by folder and prefix of its files.
 
 pub(crate) mod alive;
 
@@ -19,11 +18,9 @@ use alive::{LAUNCHER, LockedFiles};
 /// Mount point of POSIX shared memory on Linux.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";
 
-/// Suffix of the name of a launcher's socket.
 const CONTROL: &str = "control";
 
-/// Longest wait for another process that is creating a topic. A loaded machine takes its time; a
-/// process that died meanwhile never finishes.
+/// Longest wait for another process that creates a topic; one that died never finishes.
 const CREATION_TIMEOUT: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Clone)]
@@ -47,8 +44,7 @@ impl Membership {
         Membership { root, ..self }
     }
 
-    /// Fails if another user has files with this graph's prefix in shared memory, which all users
-    /// share.
+    /// Fails if another user has files with this graph's prefix in shared memory.
     pub(crate) fn refuse_foreign_files(&self, user: u32) -> Result<(), TransportError> {
         for path in self.shared_files() {
             let Ok(found) = path.symlink_metadata() else {
@@ -62,8 +58,7 @@ impl Membership {
         Ok(())
     }
 
-    /// Removes the access of others to files that iceoryx2 creates with access for all: a write of
-    /// another user could end every process of the graph.
+    /// Removes the access of others to files of iceoryx2: their writes could end every process.
     pub(crate) fn restrict_files(&self) {
         for path in self.shared_files() {
             let Ok(found) = path.symlink_metadata() else {
@@ -85,15 +80,13 @@ impl Membership {
         entries.filter(is_ours).map(|entry| entry.path())
     }
 
-    /// Returns the files that iceoryx2 has created for the node with this number.
     pub(crate) fn files_of_node(&self, node: u128) -> Vec<PathBuf> {
         let folder = self.root.join("nodes").join(node.to_string());
         let entries = read_dir(folder).into_iter().flatten().flatten();
         entries.map(|entry| entry.path()).collect()
     }
 
-    /// Returns the configuration for every node of the graph. Configuration files of the host are
-    /// ignored: two members that read different ones would not meet.
+    /// Returns the configuration of every node; members that read host files would not meet.
     pub(crate) fn config(&self) -> Config {
         // Both are short and have only valid characters.
         let root = IoxPath::new(self.root.as_os_str().as_encoded_bytes())
@@ -109,7 +102,6 @@ impl Membership {
 }
 
 /// Returns the path of the socket on which the launcher of `graph` receives control requests.
-#[must_use]
 pub fn control_socket(graph: &GraphName) -> PathBuf {
     let membership = Membership::of(graph);
     membership
@@ -118,13 +110,11 @@ pub fn control_socket(graph: &GraphName) -> PathBuf {
 }
 
 /// True if a launcher is running `graph`.
-#[must_use]
 pub fn is_launched(graph: &GraphName) -> bool {
     Claim::is_taken(graph)
 }
 
 /// Returns the graphs of this user that have a launcher, found by its socket.
-#[must_use]
 pub fn running_graphs() -> Vec<GraphName> {
     let user = current_user();
     let entries = read_dir(path_for(user)).into_iter().flatten().flatten();
@@ -138,9 +128,7 @@ pub fn running_graphs() -> Vec<GraphName> {
     names
 }
 
-/// Returns the graphs that other users run on this machine, with their user ids. Their files cannot
-/// be opened, but names, owners and locks are visible.
-#[must_use]
+/// Returns the graphs that other users run on this machine, with their user ids.
 pub fn graphs_of_others() -> Vec<(u32, GraphName)> {
     let locks = LockedFiles::now();
     let entries = read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
@@ -154,8 +142,7 @@ pub fn graphs_of_others() -> Vec<(u32, GraphName)> {
     graphs
 }
 
-/// Returns the prefix of the graph's files. It includes the user, as all users share one folder of
-/// shared memory. The dot ends it: no name contains one, so no graph's prefix begins another's.
+/// Returns the prefix of the graph's files with the user; no name has the dot that ends it.
 fn prefix(user: u32, graph: &GraphName) -> String {
     format!("bc{user}_{graph}.")
 }

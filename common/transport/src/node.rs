@@ -1,7 +1,4 @@
 //! The `main` function of nodes: logging, joining, running, exit code.
-//!
-//! The one place where an outcome becomes an exit code. The node itself parses its arguments
-//! before.
 
 use std::env::VarError;
 use std::error::Error;
@@ -23,21 +20,16 @@ use crate::{Graph, log_lines, with_causes};
 /// neither date, microseconds nor module path. Default: `short` on a terminal, else `text`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 
-/// Environment variable that makes a node exit after checking its arguments, before it joins a
-/// graph: with code 0, or 2 if they are wrong.
+/// Environment variable that makes a node exit after checking its arguments, with 0 or 2.
 pub const CHECK_ARGUMENTS_VARIABLE: &str = "BACKCAST_CHECK_ARGUMENTS";
 
-/// Runs one node: starts logging to standard error and topic `log`, joins the graph as `name` and
-/// calls `run`.
-///
-/// Returns 0 on success, 1 if joining or `run` failed, 2 if a logging variable has an invalid
-/// value.
+/// Runs one node: starts logging, joins the graph as `name` and calls `run`. Returns 1 if joining
+/// or `run` failed, 2 if a logging variable is invalid.
 pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(), E>) -> ExitCode {
     main_with_log(name, "", run)
 }
 
-/// Like [`main`], with `filter` in place of an unset `RUST_LOG`, for a node that logs more than
-/// `info` by default.
+/// Like [`main`], with `filter` in place of an unset `RUST_LOG`.
 pub fn main_with_log<E: Error + 'static>(
     name: &str,
     filter: &str,
@@ -67,12 +59,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
 }
 
 /// Sends events of `tracing` to standard error, and to topic `log` of a graph that is joined later.
-/// `RUST_LOG` filters them (default `info`), [`LOG_FORMAT_VARIABLE`] sets the format on standard
-/// error. Repetitions of a message beyond twenty within ten seconds are omitted and counted.
-///
-/// # Errors
-/// A sentence with the variable, its value and the allowed values, or that logging has been started
-/// already.
+/// Repetitions of a message beyond twenty within ten seconds are omitted and counted.
 pub fn start_logging() -> Result<(), String> {
     start_logging_by("")
 }
@@ -113,9 +100,7 @@ fn log_format() -> Result<String, String> {
     )
 }
 
-/// True if the log goes to a terminal, also through the launcher: only then can it show pictures
-/// made of characters.
-#[must_use]
+/// True if the log goes to a terminal, also through the launcher.
 pub fn logs_to_terminal() -> bool {
     log_format().is_ok_and(|format| format == "short")
 }

@@ -1,6 +1,4 @@
-//! Publisher of a topic.
-//!
-//! A subscriber that is too slow loses its oldest samples; the publisher never waits for it.
+//! Publisher of a topic, which never waits for slow subscribers.
 
 mod loan;
 
@@ -27,8 +25,7 @@ pub use loan::Loan;
 pub(crate) type Port<T> =
     IoxPublisher<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
 
-/// Publishes samples of topic `T`. After it is dropped, its memory is freed with the last sample
-/// that a subscriber holds.
+/// Publishes samples of topic `T`. Dropped, it leaves those that subscribers hold.
 #[derive(Debug)]
 pub struct Publisher<T: Topic> {
     inner: Rc<Inner<T>>,
@@ -41,9 +38,7 @@ struct Inner<T: Topic> {
     samples: Samples<T>,
     /// Subscribers at the time late joiners were last served.
     served: RefCell<Vec<u128>>,
-    /// Address of the last sample sent.
     last_sent: Cell<Option<usize>>,
-    /// Losses of the whole process.
     losses: Losses,
     /// Samples lost by this publisher since it last sent one.
     unsent: Cell<u64>,
@@ -53,8 +48,7 @@ impl<T: Topic> Publisher<T> {
     /// Largest number of samples being filled at the same time.
     pub const MAX_LOANED: usize = service::MAX_LOANED;
 
-    /// Creates a publisher whose first segment is for samples of up to `items` items; it grows when
-    /// needed.
+    /// Creates a publisher whose first segment is for samples of up to `items` items.
     pub(crate) fn create(
         node: &Node<ipc::Service>,
         items: usize,
@@ -89,21 +83,13 @@ impl<T: Topic> Publisher<T> {
         })
     }
 
-    /// Returns the handle for the event loop.
     pub(crate) fn for_event_loop(&self) -> Weak<dyn Connects> {
         let weak: Weak<Inner<T>> = Rc::downgrade(&self.inner);
         weak
     }
 
-    /// Loans memory for a sample of `items` items in shared memory. Header and items are zero, to
-    /// be filled in place.
-    ///
-    /// # Errors
-    /// [`TransportError::SharedMemoryFull`] if shared memory is full and the topic is latched, or
-    /// if private memory is full, too (without latching, the sample gets private memory, and is
-    /// lost and counted when it is sent), [`TransportError::TooLarge`] if the size exceeds any
-    /// possible memory, [`TransportError::Loan`] if [`Publisher::MAX_LOANED`] samples are loaned
-    /// already.
+    /// Loans zeroed memory for a sample of `items` items. If shared memory is full, a sample of a
+    /// latched topic is refused; others get private memory, and are lost and counted when sent.
     pub fn loan(&self, items: usize) -> Result<Loan<'_, T>, TransportError> {
         Loan::of(self, items)
     }
@@ -117,25 +103,19 @@ impl<T: Topic> Publisher<T> {
     }
 
     /// True if the topic has subscribers. A killed subscriber counts until it has been cleaned up.
-    #[must_use]
     pub fn has_subscribers(&self) -> bool {
         self.inner.samples.dynamic_config().number_of_subscribers() > 0
     }
 
     /// Returns the current subscribers.
-    #[must_use]
     pub fn subscribers(&self) -> Peers {
         Peers(self.inner.subscribers())
     }
 
-    /// Returns true if every subscriber is done with the last sample sent, and so with all before
-    /// it: has received and dropped it, or has left. A killed subscriber counts until it has been
-    /// cleaned up.
+    /// Returns true if every subscriber has dropped the last sample sent, or has left.
     ///
-    /// When a publisher ends, its samples are lost for subscribers that have not received them yet,
-    /// so a source that ends by itself waits for this before. The wait needs a time limit: if a
-    /// subscriber drops samples in another order than they came, this may stay false. A latched
-    /// topic keeps its newest sample and is never settled.
+    /// When a publisher ends, samples not yet received are lost, so a source waits for this, with a
+    /// time limit: it may stay false if samples are dropped out of order, or the topic is latched.
     pub fn is_settled(&self) -> Result<bool, TransportError> {
         const { assert!(!T::LATCHED, "a latched topic keeps its newest sample") };
         let Some(last) = self.inner.last_sent.get() else {

@@ -1,12 +1,6 @@
-//! The folder where the processes of one user's graphs meet.
-//!
-//! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that the first process
-//! creates; a second user would be locked out. So each user has their own folder, which is locked
-//! against the cleaning of /tmp.
-//!
-//! Another user can take a name in /tmp, so there are several candidates in a fixed order: the
-//! first existing folder of this user is used, or else the first that can be created. Thus a
-//! service and a shell of the same user find each other regardless of their environment.
+//! The folder where the processes of one user's graphs meet, each user with their own, locked
+//! against the cleaning of /tmp. As another user can take a name in /tmp, the first of several
+//! candidates that is the user's, or can be created, counts, in any environment.
 
 use std::fs::{DirBuilder, File, Permissions, symlink_metadata};
 use std::io::ErrorKind;
@@ -37,7 +31,6 @@ pub(crate) fn prepare(user: u32) -> Result<PathBuf, TransportError> {
     Places::of(user).prepare()
 }
 
-/// Candidates for a user's folder.
 struct Places {
     user: u32,
     /// Candidates in `$XDG_RUNTIME_DIR` and `/run/user`, if these are private folders of the user.
@@ -115,7 +108,6 @@ fn is_short(path: &Path) -> bool {
     path.as_os_str().len() <= MAX_BYTES && path.to_str().is_some()
 }
 
-/// Makes sure that `path` is a private folder of `user`.
 fn make(path: &Path, user: u32) -> Result<(), TransportError> {
     let failed = |action| {
         move |source| TransportError::File {
@@ -147,8 +139,7 @@ fn make(path: &Path, user: u32) -> Result<(), TransportError> {
     Ok(())
 }
 
-/// Locks `path`, as systemd does not clean a locked folder and its content. One process of the user
-/// is enough: `None` if another one holds the lock.
+/// Locks `path`, so that systemd does not clean it; `None` if a process of the user has done so.
 pub(crate) fn keep_from_cleaning(path: &Path) -> Option<Flock<File>> {
     let folder = File::open(path).ok()?;
     Flock::lock(folder, FlockArg::LockExclusiveNonblock).ok()

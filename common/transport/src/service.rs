@@ -1,6 +1,5 @@
-//! A topic in iceoryx2: a service for samples and one for wake-ups.
-//!
-//! The quality of service comes only from the [`Topic`], so that every process uses the same.
+//! A topic in iceoryx2, with the quality of service of the [`Topic`]: a service for samples and one
+//! for wake-ups.
 
 use iceoryx2::node::Node;
 use iceoryx2::port::listener::{Listener, ListenerCreateError};
@@ -49,7 +48,6 @@ pub(crate) fn open_samples<T: Topic>(
         })
 }
 
-/// Opens the wake-up service of a topic, or creates it.
 pub(crate) fn open_wakeups<T: Topic>(
     node: &Node<ipc::Service>,
 ) -> Result<event::PortFactory<ipc::Service>, TransportError> {
@@ -111,8 +109,7 @@ pub(crate) fn failed<T: Topic>(
     }
 }
 
-/// Largest number of nodes. A dead process counts until it has been cleaned up, so there is room
-/// for one more than can be alive.
+/// Largest number of nodes, including one that is dead and not yet cleaned up.
 fn max_nodes<T: Topic>() -> usize {
     T::MAX_PUBLISHERS + T::MAX_SUBSCRIBERS + 1
 }

@@ -1,8 +1,5 @@
-//! SIGINT, SIGTERM and SIGHUP as a flag and as an event to wait for.
-//!
-//! A flag alone would be seen a tick late, and a signal between checking the flag and falling
-//! asleep would interrupt nothing. So each signal also writes to a socket pair whose other end the
-//! event loop waits on. Other threads end its sleep in the same way.
+//! SIGINT, SIGTERM and SIGHUP as a flag and, by a socket pair, as an event to wait for; a flag
+//! alone would be seen a tick late. Other threads end the sleep in the same way.
 
 use std::io::Read;
 use std::os::fd::AsRawFd;
@@ -17,7 +14,6 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use crate::TransportError;
 use crate::waker::Waker;
 
-/// Catches the signals until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Signals {
     stop: Arc<AtomicBool>,
@@ -72,8 +68,7 @@ impl Signals {
         end.map(Waker::new).map_err(TransportError::Signals)
     }
 
-    /// Reads all bytes that signals and wakers wrote, so that the next wait can sleep. Returns true
-    /// if there were any.
+    /// Reads what signals and wakers wrote, so that the next wait sleeps; true if there was any.
     pub(crate) fn drain(&self) -> bool {
         let mut bytes = [0; 256];
         let mut any = false;

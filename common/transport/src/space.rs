@@ -1,7 +1,5 @@
-//! Checks that shared memory has room before it is written.
-//!
-//! Shared memory is allocated page by page on first touch. If no page is left, the touch kills the
-//! process with SIGBUS.
+//! Checks that shared memory has room before it is written, as a touch without a free page kills
+//! the process with SIGBUS.
 
 use std::path::Path;
 
@@ -10,17 +8,14 @@ use nix::sys::statvfs::statvfs;
 use crate::TransportError;
 use crate::membership::SHARED_MEMORY;
 
-/// Bytes that stay free in addition to the sample, for allocations of iceoryx2 itself: a connection
-/// to a new subscriber, the header of a segment.
+/// Bytes that stay free in addition to the sample, for allocations of iceoryx2 itself.
 pub(crate) const RESERVE: u64 = 1 << 20;
 
-/// Checks that `needed` bytes and the reserve are free.
 pub(crate) fn ensure_free(topic: &'static str, needed: u64) -> Result<(), TransportError> {
     decide(topic, needed, free_bytes(Path::new(SHARED_MEMORY))?)
 }
 
 /// True if there is room for a small sample; without it, no node can send a heartbeat.
-#[must_use]
 pub fn shared_memory_has_room() -> bool {
     ensure_free("", 0).is_ok()
 }

@@ -1,6 +1,4 @@
-//! Subscriber of a topic.
-//!
-//! Samples are read where the publisher wrote them. Waiting is done by the event loop.
+//! Subscriber of a topic; samples are read where the publisher wrote them.
 
 use iceoryx2::node::Node;
 use iceoryx2::port::listener::Listener;
@@ -21,9 +19,8 @@ pub struct Subscriber<T: Topic> {
 }
 
 impl<T: Topic> Subscriber<T> {
-    /// Largest number of samples of one publisher that may be held at the same time: the current
-    /// map, the one before while work on it ends, the newest received so far, and the next one
-    /// being received.
+    /// Largest number of samples of one publisher held at the same time: the current map, the one
+    /// before, the newest received and the next.
     pub const MAX_HELD: usize = service::MAX_BORROWED;
 
     pub(crate) fn create(node: &Node<ipc::Service>) -> Result<Self, TransportError> {
@@ -47,12 +44,7 @@ impl<T: Topic> Subscriber<T> {
         })
     }
 
-    /// Receives the oldest sample that was not received yet. With several publishers, the order
-    /// holds for each of them.
-    ///
-    /// # Errors
-    /// [`TransportError::Topic`] if [`Subscriber::MAX_HELD`] samples of the publisher are held
-    /// already, or its memory cannot be mapped.
+    /// Receives the oldest sample of a publisher; fails if [`Subscriber::MAX_HELD`] are held.
     pub fn receive(&self) -> Result<Option<Sample<T>>, TransportError> {
         let received = self.port.receive();
         let sample = received.map_err(|error| service::failed::<T>("receive on", &error))?;
@@ -60,7 +52,6 @@ impl<T: Topic> Subscriber<T> {
     }
 
     /// Returns the current publishers.
-    #[must_use]
     pub fn publishers(&self) -> Peers {
         let mut ids = Vec::new();
         self.samples.dynamic_config().list_publishers(|details| {
@@ -70,13 +61,11 @@ impl<T: Topic> Subscriber<T> {
         Peers(ids)
     }
 
-    #[must_use]
     pub fn has_publishers(&self) -> bool {
         self.samples.dynamic_config().number_of_publishers() > 0
     }
 
-    /// Receives all samples and returns the newest: for topics with one publisher whose samples
-    /// replace each other, like latched topics.
+    /// Receives all samples and returns the newest, for topics with one publisher.
     pub fn newest(&self) -> Result<Option<Sample<T>>, TransportError> {
         let mut newest = None;
         while let Some(sample) = self.receive()? {
@@ -86,20 +75,17 @@ impl<T: Topic> Subscriber<T> {
     }
 }
 
-/// A sample in the publisher's memory. It stays valid and unchanged while this lives, even if the
-/// publisher ends or is killed.
+/// A sample in the publisher's memory, which stays unchanged even if the publisher ends.
 #[derive(Debug)]
 pub struct Sample<T: Topic> {
     inner: IoxSample<ipc::Service, [T::Item], Header<T::Header>>,
 }
 
 impl<T: Topic> Sample<T> {
-    #[must_use]
     pub fn header(&self) -> &T::Header {
         &self.inner.user_header().0
     }
 
-    #[must_use]
     pub fn items(&self) -> &[T::Item] {
         self.inner.payload()
     }

@@ -1,7 +1,4 @@
-//! Ends the event loop's sleep from another thread.
-//!
-//! For events that do not come from the graph, e.g. a network library with callbacks on its own
-//! threads. It carries no data.
+//! Ends the event loop's sleep from another thread, e.g. that of a network library.
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
@@ -17,8 +14,7 @@ impl Waker {
 
     /// Makes [`crate::Graph::run`] call its step once more, at once or after the current one.
     pub fn wake(&self) {
-        // If the socket is full, wake-ups are pending already; if the other end is closed, there is
-        // no event loop.
+        // If the socket is full, wake-ups are pending already; if closed, there is no loop.
         let _ = (&self.0).write(&[0]);
     }
 }

@@ -6,7 +6,6 @@ use messages::{LogHeader, LogLevel, topic};
 use transport::testing::Isolated;
 use transport::{Flow, TransportError};
 
-/// Number of lines, 37 more than the capacity of the queue.
 const FLOOD: usize = 100;
 
 #[test]

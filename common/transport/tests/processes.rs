@@ -1,9 +1,6 @@
 //! Several processes in one graph: shared memory, and processes that come late, stop or are killed.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "helpers of tests fail the test, as tests do"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod member;
 

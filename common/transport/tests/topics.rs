@@ -1,9 +1,6 @@
 //! Every topic within one process: its types, its limits, its graph.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "helpers of tests fail the test, as tests do"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use bytemuck::{bytes_of, bytes_of_mut, cast_slice, cast_slice_mut};
 use messages::{MapHeader, ScanHeader, Topic, topic};

@@ -1,8 +1,5 @@
-//! Locks that show which processes are alive.
-//!
-//! Process ids mean nothing across containers that share `/dev/shm`, and the folder where iceoryx2
-//! keeps its nodes may differ there. A lock on a file in shared memory is visible to all of them,
-//! and the kernel releases it with the process.
+//! Locks that show which processes are alive: unlike process ids and iceoryx2's folder, a lock on a
+//! file in shared memory is seen by all containers that share it.
 
 use std::fs::{File, Metadata, OpenOptions, read_to_string, remove_file};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
@@ -29,8 +26,7 @@ pub(crate) struct Lock {
     _file: Flock<File>,
 }
 
-/// A launcher's exclusive right to a graph's name, across all containers that share this machine's
-/// shared memory.
+/// A launcher's exclusive right to a graph's name in this machine's shared memory.
 #[derive(Debug)]
 pub struct Claim {
     path: PathBuf,
@@ -38,11 +34,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims the name of `graph`.
-    ///
-    /// # Errors
-    /// [`TransportError::StillRunning`] if another launcher has it, [`TransportError::File`] if its
-    /// file cannot be used.
+    /// Claims the name of `graph`; [`TransportError::StillRunning`] if another launcher has it.
     pub fn take(graph: &GraphName) -> Result<Self, TransportError> {
         let path = path(&Membership::of(graph), LAUNCHER);
         let begin = Instant::now();
@@ -74,8 +66,7 @@ impl Claim {
 pub(crate) struct LockedFiles(String);
 
 impl LockedFiles {
-    /// Reads the locks of the system. Each line has number, kind, mode, access, process,
-    /// `major:minor:inode` and range.
+    /// Reads locks: number, kind, mode, access, process, `major:minor:inode` and range per line.
     pub(crate) fn now() -> Self {
         LockedFiles(read_to_string("/proc/locks").unwrap_or_default())
     }
@@ -96,7 +87,6 @@ impl Drop for Claim {
     }
 }
 
-/// Takes the shared lock of a member.
 pub(crate) fn as_member(membership: &Membership) -> Result<Lock, TransportError> {
     let path = path(membership, MEMBERS);
     let lock = lock(&path, FlockArg::LockShared)?;
@@ -117,7 +107,6 @@ pub(crate) fn path(membership: &Membership, whose: &str) -> PathBuf {
     Path::new(SHARED_MEMORY).join(format!("{}{whose}", membership.prefix))
 }
 
-/// Locks the file at `path`; `None` if a nonblocking lock is not available.
 fn lock(path: &Path, how: FlockArg) -> Result<Option<Lock>, TransportError> {
     let failed = |action: &'static str, source| TransportError::File {
         action,

@@ -1,7 +1,5 @@
-//! A sample between loan and send.
-//!
-//! The node fills it where its subscribers will read it: nothing is copied. If shared memory is
-//! full, it is filled in private memory and not sent; the publisher counts the loss.
+//! A sample between loan and send, filled where its subscribers will read it. If shared memory is
+//! full, it is in private memory, and is lost and counted.
 
 use iceoryx2::prelude::ipc;
 use iceoryx2::sample_mut::SampleMut;
@@ -72,11 +70,7 @@ impl<'p, T: Topic> Loan<'p, T> {
         }
     }
 
-    /// Sends the sample to every subscriber and wakes them. If shared memory is full, the sample is
-    /// lost and counted.
-    ///
-    /// # Errors
-    /// [`TransportError::Topic`] if a subscriber could not be reached.
+    /// Sends the sample to every subscriber; if shared memory is full, it is lost and counted.
     pub fn send(self) -> Result<(), TransportError> {
         let address = self.address();
         match self.place {
@@ -93,7 +87,6 @@ impl<'p, T: Topic> Loan<'p, T> {
         }
     }
 
-    /// Address of the sample in this process.
     pub(crate) fn address(&self) -> usize {
         match &self.place {
             Place::Shared(sample) => std::ptr::from_ref(sample.user_header()).addr(),
@@ -115,8 +108,7 @@ fn shared<T: Topic>(
     Ok(sample.write_from_fn(|_| bytemuck::Zeroable::zeroed()))
 }
 
-/// Returns an upper bound on the bytes of a sample. iceoryx2 rounds the size of its chunks up to a
-/// power of two, which must be representable.
+/// Returns an upper bound on the bytes of a sample, which iceoryx2 rounds up to a power of two.
 fn sample_bytes<T: Topic>(items: usize) -> Result<u64, TransportError> {
     size_of::<T::Item>()
         .checked_mul(items)

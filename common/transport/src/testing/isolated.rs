@@ -9,13 +9,11 @@ use crate::membership::SHARED_MEMORY;
 use crate::root::{current_user, path_for};
 use crate::{Graph, GraphName, remove_leftovers};
 
-/// A graph with a unique name. Its files are removed when this is dropped, and a test that hangs is
-/// ended. Declare it before everything that is in the graph, so that it is dropped last; in a
-/// struct, declare it as the last field.
+/// A graph with a unique name, whose files are removed when this is dropped, so declare it before
+/// everything in the graph; in a struct, as the last field.
 #[derive(Debug)]
 pub struct Isolated {
     name: GraphName,
-    /// Ends the watch when it is dropped.
     _watched: Option<Sender<()>>,
 }
 
@@ -37,7 +35,6 @@ impl Isolated {
         }
     }
 
-    #[must_use]
     pub fn name(&self) -> &GraphName {
         &self.name
     }
@@ -47,7 +44,6 @@ impl Isolated {
         Graph::join_named(node, &self.name).unwrap()
     }
 
-    #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = Vec::new();
         for folder in [Path::new(SHARED_MEMORY), &path_for(current_user())] {

@@ -20,8 +20,7 @@ pub struct NodeProcess {
 }
 
 impl NodeProcess {
-    /// Starts `executable` in `graph`; a test gets the path of its package's executable by
-    /// `env!("CARGO_BIN_EXE_…")`. Logging has its default settings.
+    /// Starts `executable`, as of `env!("CARGO_BIN_EXE_…")`, in `graph` with default logging.
     pub fn start<A: AsRef<OsStr>>(
         executable: &str,
         graph: &Graph,
@@ -40,7 +39,6 @@ impl NodeProcess {
         NodeProcess { child, log }
     }
 
-    #[must_use]
     pub fn pid(&self) -> Pid {
         Pid::from_raw(self.child.id().cast_signed())
     }

@@ -9,8 +9,7 @@ use crate::{Flow, Graph, Subscriber, TransportError};
 /// Tick of the test: a late joiner waits for its latched samples for that long.
 const TICK: Duration = Duration::from_millis(20);
 
-/// Waits for a message for which `take` returns a value, and returns that value. Meanwhile the
-/// test's own latched topics are served.
+/// Returns the first value of `take`; meanwhile the test's own latched topics are served.
 pub fn wait_for<T: Topic, R>(
     graph: &Graph,
     subscriber: &Subscriber<T>,
@@ -61,6 +60,15 @@ pub fn wait_for_health(
     wait_for(graph, health, |report, error| {
         is_awaited(report).then(|| (*report, String::from_utf8(error.to_vec()).unwrap()))
     })
+}
+
+/// Waits for a health message with this state; returns it and its last error.
+pub fn wait_for_state(
+    graph: &Graph,
+    health: &Subscriber<topic::Health>,
+    state: NodeState,
+) -> (HealthHeader, String) {
+    wait_for_health(graph, health, |report| report.state == state as u32)
 }
 
 /// Waits until a node reports that it is ready.

@@ -9,8 +9,7 @@ use nix::sys::signal::{Signal, raise};
 
 use crate::GraphName;
 
-/// Longest time of a test. It is many times the slowest test on a slow machine; a message that
-/// never comes would block all tests behind it.
+/// Longest time of a test; a message that never comes would block all tests behind it.
 const TIMEOUT: Duration = Duration::from_secs(300);
 
 /// Time from SIGTERM to the abort, which is for code that does not wait in a graph.
@@ -19,8 +18,7 @@ const GRACE: Duration = Duration::from_secs(10);
 /// Counts starts and ends of long work.
 static LONG_WORK: AtomicUsize = AtomicUsize::new(0);
 
-/// Runs long work that is not a hang, such as compiling; one at a time. Afterwards tests have their
-/// full time again.
+/// Runs long work that is not a hang, such as compiling; one at a time.
 pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     LONG_WORK.fetch_add(1, Ordering::Relaxed);
     let done = work();
@@ -28,8 +26,7 @@ pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     done
 }
 
-/// Ends the process if its test hangs, until the sender is dropped: waiting in a graph ends, and
-/// the test fails with the log of its nodes.
+/// Ends the process with the log of its nodes if its test hangs, until the sender is dropped.
 pub(super) fn watch(graph: GraphName) -> Sender<()> {
     let (watched, end) = channel();
     std::thread::spawn(move || {

@@ -1,5 +1,4 @@
-//! Another process in a test's graph: the test's own executable, which executes commands line by
-//! line. It can be killed.
+//! The test's own executable as another process, which executes commands line by line.
 
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::fs::MetadataExt;
@@ -13,10 +12,8 @@ use transport::{Flow, GRAPH_VARIABLE, Graph, GraphName, Publisher, Subscriber, T
 
 /// Environment variable of such a process: the name under which it joins.
 const NODE_VARIABLE: &str = "TRANSPORT_TEST_NODE";
-/// Marks answers in the output of the test harness.
 const ANSWER: &str = "answer:";
 
-/// The member as seen by the test.
 pub(crate) struct Member {
     process: Child,
     commands: Option<ChildStdin>,
@@ -24,8 +21,7 @@ pub(crate) struct Member {
 }
 
 impl Member {
-    /// Starts a process that joins `graph` as `node`. The test executable must
-    /// have a test `member` that calls [`serve_if_asked`].
+    /// Starts a process that joins `graph` as `node`, by a test `member` of this executable.
     pub(crate) fn start(graph: &GraphName, node: &str) -> Self {
         let mut process = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "member", "--nocapture"])
@@ -77,7 +73,6 @@ impl Member {
         self.process.wait().unwrap();
     }
 
-    /// Makes it leave the graph and end.
     pub(crate) fn end(mut self) {
         drop(self.commands.take());
         assert!(self.process.wait().unwrap().success());
@@ -92,8 +87,7 @@ impl Drop for Member {
     }
 }
 
-/// In a process started by [`Member::start`], executes commands until its input ends, and returns
-/// true. Returns false in the test itself.
+/// In a process of [`Member::start`], executes commands until the input ends; returns true.
 pub(crate) fn serve_if_asked() -> bool {
     let Ok(node) = std::env::var(NODE_VARIABLE) else {
         return false;
@@ -180,8 +174,7 @@ fn run_main(outcome: &str) -> ExitCode {
     })
 }
 
-/// Waits until a map comes. The tick is so long that only a wake-up can end the
-/// wait: a map that came without one would hang the test.
+/// Waits until a map comes; the tick is so long that only a wake-up can end the wait.
 pub(crate) fn wait_for_map(
     graph: &Graph,
     subscriber: &Subscriber<topic::Map>,
@@ -199,8 +192,7 @@ pub(crate) fn wait_for_map(
     received.unwrap()
 }
 
-/// Returns the location of bytes in a form that is equal in all processes: the mapped file and the
-/// offset in it.
+/// Returns the mapped file and the offset of bytes, equal in all processes.
 pub(crate) fn place_of(bytes: &[u8]) -> String {
     let address = bytes.as_ptr().addr();
     let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
