@@ -1,5 +1,4 @@
-//! Common parts of commands and nodes: exit codes, numbers in options, standard output, output
-//! files.
+//! Common parts of commands and nodes: exit codes, numbers in options, output.
 
 pub mod names;
 mod number;

@@ -2,10 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// Returns a name for each path, different from all others: the path relative to the common folder,
-/// without extension and with `_` for `/`, and with a number if another has the same; for a single
-/// path, its file name.
-#[must_use]
+/// Returns a different name for each path: relative to the common folder, with `_` for `/`.
 pub fn of(paths: &[PathBuf]) -> Vec<String> {
     let bare: Vec<PathBuf> = paths.iter().map(|path| path.with_extension("")).collect();
     let parts: Vec<Vec<&str>> = bare.iter().map(|path| parts(path)).collect();
@@ -26,7 +23,6 @@ pub fn of(paths: &[PathBuf]) -> Vec<String> {
     names
 }
 
-/// Components of a path; at least one.
 fn parts(path: &Path) -> Vec<&str> {
     let names = path.components().filter_map(|component| match component {
         Component::Normal(name) => Some(name.to_str().unwrap_or("drive")),

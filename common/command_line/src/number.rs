@@ -15,10 +15,7 @@ pub fn number(
     }
 }
 
-/// Checks that a number is within a range; NaN never is.
-///
-/// # Errors
-/// A message with the value and the range.
+/// Returns a message with value and range if `value` is outside or NaN.
 pub fn within(value: f64, allowed: &RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let (low, high) = (allowed.start(), allowed.end());
     match allowed.contains(&value) {

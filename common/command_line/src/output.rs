@@ -1,5 +1,4 @@
-//! Files and folders that commands write: made ready before the work starts, so that a failure costs
-//! none.
+//! Files and folders that commands write, made ready before the work starts.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -9,11 +8,7 @@ use anyhow::Context;
 
 use crate::wrong_use;
 
-/// Makes the folder of an output file, and checks that the file can be written there.
-///
-/// # Errors
-/// The folder cannot be made or written into, there is a folder in place of the file, or the file
-/// exists and is not to be overwritten, which is wrong use. The error names the file.
+/// Makes the folder of an output file; fails if the file cannot be written or may not be replaced.
 pub fn prepare(file: &Path, overwrites: bool) -> anyhow::Result<()> {
     let path = file.display();
     if file.exists() && !file.is_dir() {
@@ -31,10 +26,7 @@ pub fn prepare(file: &Path, overwrites: bool) -> anyhow::Result<()> {
     prepared.with_context(|| format!("cannot write {path}"))
 }
 
-/// Makes a folder and those above it, and checks that files can be written into it.
-///
-/// # Errors
-/// It cannot be made or written into.
+/// Makes a folder and those above it; fails if files cannot be written into it.
 pub fn make_folder(folder: &Path) -> io::Result<()> {
     if folder.exists() && !folder.is_dir() {
         return Err(ErrorKind::NotADirectory.into());
@@ -46,7 +38,6 @@ pub fn make_folder(folder: &Path) -> io::Result<()> {
 }
 
 /// Returns the folder that a file is in; for a bare name, the current one.
-#[must_use]
 pub fn folder_of(file: &Path) -> &Path {
     match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -55,7 +46,6 @@ pub fn folder_of(file: &Path) -> &Path {
 }
 
 /// Returns the existing files of this name and of [`with_number`], in any order.
-#[must_use]
 pub fn numbered(path: &Path) -> Vec<PathBuf> {
     let folder = folder_of(path);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -77,7 +67,6 @@ pub fn numbered(path: &Path) -> Vec<PathBuf> {
 }
 
 /// Returns the name with a number after its stem, as of a part: `drive_2.mcap`.
-#[must_use]
 pub fn with_number(path: &Path, number: u32) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let suffix = path

@@ -1,7 +1,5 @@
-//! The file of the settings that several nodes share: `--settings localization.yaml`.
-//!
-//! Its keys are options of these nodes without the dashes in front and with `_` for `-`. Each node
-//! takes the keys that are options of its own; an option on the command line wins.
+//! The file of the settings that several nodes share. Its keys are options with `_` for `-`; a node
+//! takes its own, and an option on the command line wins.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -49,10 +47,7 @@ enum Value {
     List(Vec<String>),
 }
 
-/// Reads the settings of a file, by key.
-///
-/// # Errors
-/// If the file cannot be read, is no YAML mapping of scalars and lists, or has an unknown key.
+/// Reads the settings of a file by key; all must be known, and scalars or lists.
 pub fn read(file: &Path) -> anyhow::Result<BTreeMap<String, String>> {
     let path = file.display();
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {path}"))?;

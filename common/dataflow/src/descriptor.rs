@@ -33,7 +33,6 @@ pub struct Node {
 
 impl Node {
     /// File name of the executable, by which options find their node.
-    #[must_use]
     pub fn executable(&self) -> &str {
         self.path
             .rsplit_once('/')

@@ -1,5 +1,4 @@
-//! Files of a descriptor: reads the descriptor and checks the executables that it names. It changes
-//! nothing.
+//! Reads the descriptor and checks the executables that it names; changes nothing.
 
 use std::{fs::File, io::Read, os::unix::fs::PermissionsExt, path::Path};
 
@@ -11,8 +10,7 @@ pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
         source,
     };
     let mut text = String::new();
-    // Reading one byte more than allowed detects a file that is too large, even without a known
-    // size, like a pipe.
+    // One byte more than allowed shows a file that is too large, even a pipe.
     File::open(path)
         .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_string(&mut text))
         .map_err(unreadable)?;
@@ -23,8 +21,7 @@ pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
     Ok(text)
 }
 
-/// Returns a problem for each node whose executable does not exist and is not built. `folder` is
-/// the descriptor's folder.
+/// Returns a problem for each node whose executable neither exists in `folder` nor is built.
 #[must_use]
 pub fn check_executables(dataflow: &Dataflow, folder: &Path) -> Vec<Problem> {
     let unbuilt = dataflow.nodes.iter().filter(|n| n.build.is_empty());

@@ -47,10 +47,7 @@ pub const MAX_FILE_BYTES: u64 = 1 << 20;
 pub const MAX_NODES: usize = 64;
 pub const MAX_ID_BYTES: usize = 32;
 
-/// Reads and checks the descriptor at `path`.
-///
-/// # Errors
-/// The file cannot be read, is larger than [`MAX_FILE_BYTES`], or has errors.
+/// Reads and checks the descriptor at `path`, of at most [`MAX_FILE_BYTES`].
 pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
     let text = files::read(path)?;
     parse(&text, topics).map_err(|problems| DataflowError::Wrong {
@@ -59,11 +56,7 @@ pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
     })
 }
 
-/// Checks the text of a descriptor.
-///
-/// # Errors
-/// All problems in the order of the text; only the first one if the text is not a descriptor at
-/// all.
+/// Checks a descriptor; returns its problems in the order of the text, or why it is none.
 pub fn parse(text: &str, topics: &Topics) -> Result<Dataflow, Vec<Problem>> {
     let raw = raw::parse(text).map_err(|problem| vec![problem])?;
     let mut problems = Vec::new();

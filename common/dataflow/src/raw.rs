@@ -1,5 +1,4 @@
-//! The descriptor as written in the file: texts with their places. Only the YAML is interpreted
-//! here.
+//! The descriptor as written in the file: texts with their places.
 
 use std::fmt;
 
@@ -11,7 +10,6 @@ use serde_saphyr::{Error, Location, MergeKeyPolicy, Spanned};
 
 use crate::{Place, Problem};
 
-/// A text with its place in the file.
 pub(crate) type Text = Spanned<String>;
 
 #[derive(Debug, Deserialize)]
@@ -20,8 +18,7 @@ pub(crate) struct RawDataflow {
     pub(crate) nodes: Spanned<Vec<Spanned<RawNode>>>,
 }
 
-/// An entry of `nodes`. Numbers and policies are kept as text, because this parser accepts more
-/// spellings than dora's.
+/// An entry of `nodes`, with numbers as text, as this parser accepts more spellings than dora's.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawNode {
@@ -54,12 +51,10 @@ pub(crate) struct RawNode {
 }
 
 impl RawNode {
-    /// Returns the id; empty if it is missing.
     pub(crate) fn id(&self) -> &str {
         self.id.as_ref().map_or("", |id| &id.value)
     }
 
-    /// Returns the input names with their sources.
     pub(crate) fn inputs(&self) -> &[(Text, Text)] {
         self.inputs.as_ref().map_or(&[], |inputs| &inputs.value.0)
     }
@@ -126,8 +121,7 @@ pub(crate) fn parse(text: &str) -> Result<RawDataflow, Problem> {
     Ok(raw)
 }
 
-/// Reports `null` as an error where the parser reads it as an empty list or map, because a value
-/// may have been forgotten.
+/// Refuses `null` where the parser reads an empty list, because a value may be forgotten.
 fn refuse_null(empty: bool, at: Location, opening: char, text: &str) -> Result<(), Problem> {
     if !empty || rest_of_line(text, at).starts_with(opening) {
         return Ok(());
@@ -148,7 +142,6 @@ pub(crate) fn rest_of_line(text: &str, at: Location) -> &str {
         .unwrap_or("")
 }
 
-/// Converts an error of the parser to our own messages.
 fn problem(error: &Error, text: &str) -> Problem {
     let at = error.location();
     let found = || match at.map_or("", |at| rest_of_line(text, at)).trim_end() {

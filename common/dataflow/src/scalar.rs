@@ -1,5 +1,4 @@
-//! Texts that dora converts: numbers and values of environment variables. Values that dora would
-//! rewrite are errors, so that a process gets the same value from both launchers.
+//! Texts that dora converts. Values that dora would rewrite are errors.
 
 use std::time::Duration;
 
@@ -117,18 +116,7 @@ mod tests {
         for good in ["0", "3", "4294967295"] {
             assert_eq!(count(good), None);
         }
-        for bad in [
-            "-1",
-            "1.0",
-            "\"5\"",
-            "5x",
-            "1_0",
-            "0x3",
-            "007",
-            "+5",
-            "4294967296",
-            "''",
-        ] {
+        for bad in "-1 1.0 \"5\" 5x 1_0 0x3 007 +5 4294967296 ''".split(' ') {
             let said = count(bad).expect(bad);
             assert!(said.starts_with("5:19: `max_restarts` is `"), "{said}");
         }
@@ -140,19 +128,7 @@ mod tests {
         for good in ["0", "1", "0.5", "12.25", "3600"] {
             assert_eq!(delay(good), None);
         }
-        for bad in [
-            "-1",
-            ".inf",
-            ".nan",
-            "1s",
-            "'1.5'",
-            "1_0.5",
-            "3601",
-            "007",
-            "1.",
-            "1.2.3",
-            "99999999999999999999",
-        ] {
+        for bad in "-1 .inf .nan 1s '1.5' 1_0.5 3601 007 1. 1.2.3 99999999999999999999".split(' ') {
             let said = delay(bad).expect(bad);
             assert!(said.starts_with("5:20: `restart_delay` is `"), "{said}");
         }

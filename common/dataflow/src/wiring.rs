@@ -161,7 +161,6 @@ fn check_source(
     Ok(())
 }
 
-/// Formats `a, b, c`, or `none`.
 fn list<'a>(items: impl Iterator<Item = &'a str>) -> String {
     let items: Vec<&str> = items.filter(|i| !i.is_empty()).collect();
     if items.is_empty() {
@@ -196,19 +195,6 @@ mod tests {
             let said = said.to_string();
             assert!(said.starts_with(expected), "{said}\n{expected}");
         }
-    }
-
-    #[test]
-    fn a_sound_graph_is_read_with_its_wires() {
-        let graph = read(&[
-            "id: a, outputs: [scan, health], inputs: {votes: b/votes}",
-            "id: b, outputs: [votes, health], inputs: {scan: a/scan}",
-        ])
-        .unwrap();
-        assert_eq!(graph.nodes[0].outputs, ["scan", "health"]);
-        assert_eq!(graph.nodes[1].inputs.len(), 1);
-        assert_eq!(graph.nodes[1].inputs[0].topic, "scan");
-        assert_eq!(graph.nodes[1].inputs[0].from, "a");
     }
 
     #[test]

@@ -1,10 +1,8 @@
-//! Splits command lines into words like dora: arguments by the quoting rules of a shell, build
-//! commands at spaces. There is no expansion.
+//! Splits command lines into words like dora, without expansion.
 
 use crate::Command;
 
-/// Splits `args` into words. As in a shell, a word that begins with `#` starts a comment until the
-/// end of the line.
+/// Splits `args` into words; as in a shell, `#` at the start of a word begins a comment.
 pub(crate) fn split_args(text: &str) -> Result<Vec<String>, String> {
     shlex::split(text)
         .filter(|_| !text.contains('\0'))
@@ -17,10 +15,7 @@ pub(crate) fn split_args(text: &str) -> Result<Vec<String>, String> {
         })
 }
 
-/// Splits `build` into commands, one per line.
-///
-/// dora handles only some of a shell's quotes here, so a quoted build line would mean one thing to
-/// a reader and another to dora; such lines are errors.
+/// Splits `build` into a command per line, without quotes, which dora reads unlike a shell.
 pub(crate) fn split_build(text: &str) -> Result<Vec<Command>, String> {
     if text.is_empty() {
         return Err(bad_build("", "is empty"));

@@ -1,6 +1,5 @@
-//! `backcast check`: reports all errors in a descriptor and in its nodes' arguments, and prints the
-//! graph as text. It builds and changes nothing; nodes are started only to check their arguments,
-//! and the map server also its maps.
+//! `backcast check`: reports all errors in a descriptor and in its nodes' arguments, which they
+//! check themselves, and prints the graph as text.
 
 use std::{
     fmt::Write as _,
@@ -30,12 +29,7 @@ pub struct Config {
     dataflow: PathBuf,
 }
 
-/// Checks the descriptor and prints the graph.
-///
-/// # Errors
-/// The descriptor is missing or wrong, a node rejects its arguments, or arguments are wrong that a
-/// node cannot judge by itself. Where the only problem is that nodes are not built, the graph is
-/// printed nevertheless.
+/// Checks the descriptor and what its nodes are told, and prints the graph.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let Descriptor {
         dataflow,
@@ -76,8 +70,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns a line for each argument of our nodes with a `~`, which only a shell would expand. The
-/// gateway is left out: to ROS, `~` is the namespace of a node.
+/// Returns a line for each argument with a `~` of our nodes but the gateway, where it is a name.
 fn tildes(dataflow: &Dataflow) -> impl Iterator<Item = String> {
     let nodes = dataflow.nodes.iter();
     let nodes = nodes.filter(|node| is_ours(node) && node.executable() != GATEWAY);
@@ -127,8 +120,7 @@ fn refused_arguments(node: &Node, folder: &Path) -> anyhow::Result<Option<String
     Ok(refused)
 }
 
-/// Returns a paragraph for each node: its inputs with their senders, its outputs with their
-/// receivers.
+/// Returns a paragraph for each node: inputs with their senders, outputs with their receivers.
 fn picture(dataflow: &Dataflow) -> String {
     let mut text = String::new();
     for node in &dataflow.nodes {

@@ -21,7 +21,6 @@ const TOPICS: Topics = Topics {
     several: &[topic::Scan::NAME],
 };
 
-/// A descriptor and its folder.
 #[derive(Debug)]
 pub struct Descriptor {
     pub dataflow: Dataflow,
@@ -33,14 +32,11 @@ pub struct Descriptor {
 /// Handling of the build commands in a descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Builds {
-    /// They are run.
     Run,
-    /// They are dropped, so the executables must exist.
     LeaveOut,
 }
 
-/// Reads and checks the descriptor `file`, including that its executables exist or are built. If
-/// [`DEFAULT_FILE`] is not in the current directory, the installed one is used.
+/// Reads and checks the descriptor `file`, or the installed one if [`DEFAULT_FILE`] is missing.
 pub fn load(file: &Path, builds: Builds) -> anyhow::Result<Descriptor> {
     let is_default = file == Path::new(DEFAULT_FILE) && !file.exists();
     let installed = is_default.then(installed::demonstration).flatten();

@@ -1,14 +1,10 @@
-//! Paths of an installation, relative to the folder of the command: nodes are in `../lib/backcast`,
-//! the demonstration in `../share/backcast`.
-//!
-//! In a cargo target folder, the nodes are next to the command.
+//! Paths of an installation, relative to the folder of the command.
 
 use std::env;
 use std::path::{Path, PathBuf};
 
 use dataflow::Node;
 
-/// The executables of our nodes.
 const NODES: [&str; 15] = [
     "accumulator",
     "boundary_extractor",
@@ -36,9 +32,8 @@ pub(crate) fn demonstration() -> Option<PathBuf> {
     file.is_file().then_some(file)
 }
 
-/// Returns the absolute path of the executable with a bare name: next to the command, in the
-/// installation's folder of nodes, or on the `PATH` (dora also searches there). `None` for a path
-/// with `/`, or if `folder`, the folder of the descriptor, has a file of this name.
+/// Returns the executable with a bare name, next to the command, among the installed nodes or on
+/// the `PATH`; `None` for a path, or a file in `folder`.
 pub(crate) fn find(path: &str, folder: &Path) -> Option<String> {
     if path.contains('/') || folder.join(path).exists() {
         return None;
@@ -66,7 +61,6 @@ fn prefix() -> Option<PathBuf> {
     Some(command()?.parent()?.parent()?.to_owned())
 }
 
-/// Path of the running command, with links resolved.
 fn command() -> Option<PathBuf> {
     env::current_exe().ok()?.canonicalize().ok()
 }

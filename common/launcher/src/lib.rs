@@ -1,6 +1,5 @@
-//! Starts and controls a graph for its user: `run` builds, starts and supervises the processes,
-//! `check` reports errors in the descriptor, and `control` talks to a running launcher. This crate
-//! localizes nothing and links none of the nodes.
+//! Starts and controls a graph: `run` supervises the processes, `check` reports errors in the
+//! descriptor, and `control` talks to a running launcher. Localizes nothing.
 
 pub mod check;
 pub mod control;
@@ -10,8 +9,6 @@ pub mod run;
 
 pub use installed::node;
 
-/// Schemas of what the commands print.
-#[must_use]
 pub fn schemas() -> Vec<json::schema::Named> {
     use json::schema::of_object;
 

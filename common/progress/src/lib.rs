@@ -1,5 +1,4 @@
-//! Progress bar of a command on standard error if that is a terminal, none otherwise. All other
-//! output goes through it, so that the bar does not break into a line.
+//! Progress bar of a command on a terminal; all other output goes through it.
 
 use std::io::{self, ErrorKind, Write};
 use std::ops::ControlFlow;
@@ -40,11 +39,7 @@ impl Progress {
         self.0.inc(1);
     }
 
-    /// Writes a line to standard output. Returns `Break` if the reader has closed it, which is no
-    /// error.
-    ///
-    /// # Errors
-    /// Writing failed for another reason.
+    /// Writes a line to standard output. Returns `Break` if the reader has closed it.
     pub fn print(&self, line: &str) -> Result<ControlFlow<()>, OutputError> {
         let written = self.0.suspend(|| {
             let mut stdout = io::stdout().lock();
@@ -59,9 +54,6 @@ impl Progress {
     }
 
     /// Writes text to standard output; a closed reader is no error.
-    ///
-    /// # Errors
-    /// Writing failed for another reason.
     pub fn write(&self, text: &str) -> Result<(), OutputError> {
         self.0.suspend(|| stdout::print(text))
     }

@@ -27,21 +27,16 @@ use super::report::Report;
 use super::tally::{Gap, Tally};
 use super::usage::Usage;
 
-/// Timeout for the first Unique pose, and for a pose after a fault, after which the run fails; the
-/// graph needs less for everything that it does by itself.
+/// Timeout for the first Unique pose, and for a pose after a fault.
 const TIMEOUT: Duration = Duration::from_secs(60);
 /// Longer gaps between poses are logged at once, so that they can be found in the log.
 const LONG_GAP_S: f64 = 0.5;
-/// Interval between samples of the processes.
 const LOOK: Duration = Duration::from_secs(1);
-/// Interval between checks while waiting.
 const TICK: Duration = Duration::from_millis(50);
 
 #[derive(Debug)]
 pub(super) struct Plan {
-    /// Arguments of the launcher, after `run`.
     pub(super) arguments: Vec<String>,
-    /// Nodes that are killed and stopped.
     pub(super) victims: Vec<String>,
     pub(super) graph: GraphName,
     pub(super) lasts: Duration,
@@ -74,7 +69,6 @@ pub(super) struct Course {
 enum Watched {
     Enough,
     Late,
-    /// The graph has ended, or the run is to stop.
     Over,
 }
 
@@ -108,7 +102,6 @@ impl Course {
         })
     }
 
-    /// Injects faults until the time is over, then stops the graph.
     pub(super) fn run(mut self) -> anyhow::Result<Report> {
         // The graph may be built first, which may take any time.
         while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
@@ -207,7 +200,6 @@ impl Course {
         self.usage.look_at_files(&files_of(&self.plan.graph));
     }
 
-    /// Asks the launcher for the status of its nodes; `None` while it does not answer.
     fn status(&self) -> Option<Status> {
         match ask(&control_socket(&self.plan.graph), &Question::Status) {
             Ok(Answer::Status(status)) => Some(status),

@@ -40,7 +40,6 @@ impl Fault {
         })
     }
 
-    /// Number of nodes affected.
     pub(crate) fn nodes(self) -> usize {
         match self {
             Fault::Kill | Fault::Stop => 1,
@@ -76,7 +75,6 @@ impl Draw {
         }
     }
 
-    /// Returns the next fault; `None` if there are no faults at all.
     pub(crate) fn fault(&mut self) -> Option<Fault> {
         if self.round.is_empty() {
             let shares = self.faults.iter();
@@ -88,7 +86,6 @@ impl Draw {
         self.round.pop()
     }
 
-    /// Chooses `count` different items, or all if there are fewer.
     pub(crate) fn some_of<'n, T>(&mut self, all: &'n [T], count: usize) -> Vec<&'n T> {
         all.sample(&mut self.random, count).collect()
     }

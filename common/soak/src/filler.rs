@@ -7,15 +7,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use nix::sys::statvfs::statvfs;
 
-/// Largest free space that may be filled, in bytes: a larger file system is shared with others, who
-/// would be harmed, and memory may end before a large /dev/shm does.
+/// Largest free space that may be filled, in bytes: a larger file system is shared with others.
 const MAX_FREE: u64 = 1 << 30;
 
-/// A file that fills its file system; removed on drop.
 #[derive(Debug)]
 pub(super) struct Filler(PathBuf);
 
-/// Rejects a file system with too much free space.
 pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
     let found = statvfs(folder).with_context(|| failed("look at", folder))?;
     let free = found
@@ -33,7 +30,6 @@ pub(super) fn check(folder: &Path) -> anyhow::Result<()> {
 }
 
 impl Filler {
-    /// Fills the file system of `folder`.
     pub(super) fn fill(folder: &Path) -> anyhow::Result<Self> {
         let path = folder.join(format!("backcast-soak-{}", std::process::id()));
         let mut file = File::create(&path).with_context(|| failed("create", &path))?;

@@ -21,7 +21,6 @@ pub(super) struct Printed {
     pub(super) summary: Option<Losses>,
 }
 
-/// The fields of a pose that matter here.
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct SentPose {
     /// Stamp of the scan, in nanoseconds since 1970.

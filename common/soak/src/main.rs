@@ -1,13 +1,7 @@
-//! Runs a graph for hours, injects random faults, and reports whether it met its guarantees.
-//!
-//! A recording is played again and again, and every pose that the tracker is sure of is compared
-//! with the recording's `/ground_truth`. The output of the graph is on standard error, the report as
-//! JSON on standard output. The exit code is 0 if all guarantees were met. The executables of the
-//! graph must be next to this one.
-//!
-//! `fault` defines the faults and draws the next one, `tally` counts the poses and the effect of
-//! each fault: these are pure. `launched` is the launcher as a child process, `usage` measures its
-//! processes, `maps` and `filler` implement two of the faults, `course` runs everything.
+//! Runs a graph for hours, injects random faults, and reports whether it met its guarantees: every
+//! pose that the tracker is sure of is compared with the recording's `/ground_truth`. The report is
+//! JSON; the exit code is 0 if all guarantees were met. The graph's executables must be next to
+//! this one.
 
 mod course;
 mod fault;
@@ -133,7 +127,6 @@ impl Config {
     }
 }
 
-/// Returns the file given, or else the one that the descriptor gives to one of these nodes.
 fn file(
     descriptor: &Descriptor,
     given: &Option<PathBuf>,
@@ -150,7 +143,6 @@ fn file(
     Ok(descriptor.folder.join(file))
 }
 
-/// Nodes that can be killed and stopped: those that are restarted.
 fn victims(descriptor: &Descriptor) -> Vec<String> {
     let nodes = descriptor.dataflow.nodes.iter();
     let again = nodes.filter(|node| node.restart.policy != RestartPolicy::Never);
@@ -165,7 +157,6 @@ fn truths(recording: &Path) -> anyhow::Result<BTreeMap<i64, Pose>> {
     Ok(truths.into_iter().map(pose).collect())
 }
 
-/// Checks that the file systems to be filled are small enough.
 fn check_room(config: &Config) -> anyhow::Result<()> {
     if config.faults.contains(&Fault::Shm) {
         filler::check(Path::new("/dev/shm"))?;

@@ -1,8 +1,5 @@
-//! Two maps of the same place, to be swapped.
-//!
-//! The second one has additional unknown cells at its lower left, and its origin there. A pose is
-//! the same on both; a node that mixed the cells of one with the origin of the other would be two
-//! metres off.
+//! Two maps of the same place, to be swapped. The second begins two metres further to the lower
+//! left, so that a node that mixes cells of one with the origin of the other is wrong.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +19,6 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    /// Prepares both variants of the map at `yaml` in `folder`.
     pub(super) fn new(yaml: &Path, folder: &Path) -> anyhow::Result<Self> {
         let grid = map::load(yaml)?;
         let variants = ["as_given.yaml", "larger.yaml"].map(|name| folder.join(name));
@@ -41,7 +37,6 @@ impl Maps {
         &self.served
     }
 
-    /// Replaces the map by the other one, atomically.
     pub(super) fn swap(&mut self) -> anyhow::Result<()> {
         self.current = 1 - self.current;
         let next = self.served.with_extension("next");

@@ -60,7 +60,6 @@ struct FaultEffect {
     to_unique_s: Distribution,
 }
 
-/// Effect of one kind of fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,
@@ -95,8 +94,7 @@ pub(super) struct PoseFigures {
 }
 
 impl Tally {
-    /// Tally for a recording with these truths; the run begins at `now_ns` of the monotonic clock,
-    /// and is planned to last `planned`.
+    /// Tally of a run that begins at `now_ns` of the monotonic clock, with these truths.
     pub(super) fn new(truths: BTreeMap<i64, Pose>, now_ns: i64, planned: Duration) -> Self {
         Tally {
             truths,
@@ -200,7 +198,6 @@ impl Tally {
         self.figures.unique > 0 && self.open.is_empty()
     }
 
-    /// Faults without a Unique pose since.
     pub(super) fn not_overcome(&self) -> Vec<Fault> {
         self.open.iter().map(|open| open.fault).collect()
     }

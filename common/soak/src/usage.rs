@@ -57,7 +57,6 @@ impl Usage {
         }
     }
 
-    /// Samples the graph's files in shared memory.
     pub(super) fn look_at_files(&mut self, files: &[PathBuf]) {
         let shared = files.iter().filter(|file| file.starts_with("/dev/shm"));
         let bytes = shared.map(|file| room_of(file)).sum::<u64>();

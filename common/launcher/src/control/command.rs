@@ -1,7 +1,6 @@
 //! Finds the requested graph, sends a request to its launcher and prints the answer.
 
 use std::{
-    path::PathBuf,
     process::ExitCode,
     thread,
     time::{Duration, Instant},
@@ -85,20 +84,17 @@ pub fn status(config: &StatusConfig) -> anyhow::Result<ExitCode> {
 /// Stops a graph in order and waits until it has ended and its name is free.
 pub fn stop(config: &StopConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
-    let code = done(&graph, &Question::Stop)?;
+    asked(&graph, &Question::Stop)?;
     wait_while(&format!("graph {graph}"), || Ok(is_launched(&graph)))?;
-    Ok(code)
+    Ok(ExitCode::SUCCESS)
 }
 
-/// Starts or stops a recording of a graph and prints its file. When a stopped one is printed, the
-/// file is complete.
+/// Starts or stops a recording of a graph and prints its file, complete once stopped.
 pub fn record(config: &RecordConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let on = config.action == RecordAction::Start;
-    let file = match asked(&graph, &Question::Record { on })? {
-        Answer::Record(file) => file,
-        Answer::Refused(why) => return Err(wrong_use(why)),
-        _ => return Err(wrong_use("unexpected answer")),
+    let Answer::Record(file) = asked(&graph, &Question::Record { on })? else {
+        return Err(wrong_use("unexpected answer"));
     };
     wait_while("the recorder", || {
         Ok(!on && status_of(&graph)?.recording.file.is_some())
@@ -124,7 +120,8 @@ fn wait_while(what: &str, mut runs: impl FnMut() -> anyhow::Result<bool>) -> any
 pub fn restart(config: &RestartConfig) -> anyhow::Result<ExitCode> {
     let graph = the_graph(config.graph.as_ref())?;
     let node = config.node.clone();
-    done(&graph, &Question::Restart { node })
+    asked(&graph, &Question::Restart { node })?;
+    Ok(ExitCode::SUCCESS)
 }
 
 pub(super) fn the_graph(named: Option<&GraphName>) -> anyhow::Result<GraphName> {
@@ -154,22 +151,13 @@ fn no_graph() -> anyhow::Error {
     anyhow!("no graph of this user is running{others}")
 }
 
-fn done(graph: &GraphName, question: &Question) -> anyhow::Result<ExitCode> {
-    match asked(graph, question)? {
-        Answer::Refused(why) => Err(wrong_use(why)),
-        _ => Ok(ExitCode::SUCCESS),
-    }
-}
-
 fn status_of(graph: &GraphName) -> anyhow::Result<Status> {
     match asked(graph, &Question::Status)? {
         Answer::Status(status) => Ok(status),
-        Answer::Refused(why) => Err(wrong_use(why)),
         _ => Err(wrong_use("unexpected answer")),
     }
 }
 
-/// Checks that the graph has this node.
 pub(super) fn known_node(graph: &GraphName, node: &str) -> anyhow::Result<()> {
     let nodes = status_of(graph)?.nodes;
     match nodes.iter().any(|known| known.id == node) {
@@ -178,9 +166,13 @@ pub(super) fn known_node(graph: &GraphName, node: &str) -> anyhow::Result<()> {
     }
 }
 
+/// Returns the answer of the graph's launcher; one that refuses is an error.
 fn asked(graph: &GraphName, question: &Question) -> anyhow::Result<Answer> {
-    let file: PathBuf = control_socket(graph);
-    ask(&file, question).with_context(|| {
+    let answer = ask(&control_socket(graph), question).with_context(|| {
         format!("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")
-    })
+    })?;
+    match answer {
+        Answer::Refused(why) => Err(wrong_use(why)),
+        answer => Ok(answer),
+    }
 }

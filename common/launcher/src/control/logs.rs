@@ -18,7 +18,6 @@ use crate::run::console::{LAUNCHER, say};
 /// Time to wait for the lines that nodes keep for late subscribers.
 const KEPT_LINES: Duration = Duration::from_millis(700);
 const TICK: Duration = Duration::from_millis(100);
-/// Interval between two checks that the graph is still running.
 const LOOK: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Args)]
@@ -119,7 +118,6 @@ impl LogLine {
         }
     }
 
-    /// Returns the line as a JSON object with a newline.
     pub fn json(&self) -> String {
         json::object(self) + "\n"
     }

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use crate::run::control::{NodeStatus, Status};
 
-/// Returns a paragraph: a line for the graph, then a line for each node.
 pub(super) fn status(status: &Status) -> String {
     let Status {
         graph,

@@ -19,7 +19,6 @@ pub(crate) fn node(dataflow: &Dataflow, id: &str, build: Vec<Command>) -> Node {
     }
 }
 
-/// Checks that the graph has no node of the executable `id`, which `option` adds.
 pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> anyhow::Result<()> {
     let is_same = |node: &Node| node.id == id || node.executable() == id;
     if dataflow.nodes.iter().any(is_same) {
@@ -30,7 +29,6 @@ pub(crate) fn check_new(dataflow: &Dataflow, option: &str, id: &str) -> anyhow::
     Ok(())
 }
 
-/// Returns the path of `executable` in the folder of the graph's first executable.
 fn path(dataflow: &Dataflow, executable: &str) -> String {
     let folder = dataflow
         .nodes
@@ -41,9 +39,8 @@ fn path(dataflow: &Dataflow, executable: &str) -> String {
     })
 }
 
-/// Returns the build command of the first node that cargo builds, extended by `executable`. All
-/// nodes with that command get the extended one, because cargo may rebuild shared dependencies for
-/// each set of packages that is built together.
+/// Returns the first cargo build command extended by `executable`, as cargo may rebuild shared
+/// dependencies for each set of packages.
 pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     let Some(like) = dataflow.nodes.iter().find(|n| n.build.iter().any(is_cargo)) else {
         return Vec::new();
@@ -65,8 +62,7 @@ pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     build
 }
 
-/// Returns the first cargo build command with `executable` as its only package: for an executable
-/// that takes long to build and is not built with the others.
+/// Returns the first cargo build command with `executable` as its only package.
 pub(crate) fn build_alone(dataflow: &Dataflow, executable: &str) -> Vec<Command> {
     let like = dataflow.nodes.iter().flat_map(|node| &node.build);
     let Some(mut build) = like.clone().find(|command| is_build(command)).cloned() else {
@@ -86,7 +82,6 @@ fn is_build(command: &Command) -> bool {
     command.program == "cargo" && command.args.first().is_some_and(|first| first == "build")
 }
 
-/// True if it is a cargo build of named packages.
 fn is_cargo(command: &Command) -> bool {
     is_build(command) && command.args.iter().any(names_package)
 }

@@ -55,7 +55,6 @@ pub fn find<'d>(
         })
 }
 
-/// Sets an option of a node, replacing earlier values.
 pub fn set(node: &mut Node, option: &str, value: Option<&str>) {
     unset(node, option, value.is_some());
     // With `=`, a negative number is not parsed as an option.
@@ -80,8 +79,7 @@ pub fn unset(node: &mut Node, option: &str, takes_value: bool) {
     node.args = kept;
 }
 
-/// Returns the value of an option, given as `--option value` or `--option=value`. The last one
-/// counts.
+/// Returns the last value of an option, given as `--option value` or `--option=value`.
 pub fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
     let after = |words: &'n [String]| (words[0] == option).then_some(words.get(1)).flatten();
     let joined = |word: &'n String| word.strip_prefix(option)?.strip_prefix('=');
@@ -136,17 +134,5 @@ mod tests {
         assert_eq!(args[0], ["--robot=hall"]);
         assert_eq!(args[1], ["--robot", "r7"]);
         assert!(args[2].is_empty());
-    }
-
-    #[test]
-    fn lists_grow_by_what_they_lack() {
-        let grown = |args: &str| {
-            let mut node = node(args);
-            add_to_list(&mut node, "--wait-for", "b");
-            node.args
-        };
-        assert_eq!(grown(""), ["--wait-for=b"]);
-        assert_eq!(grown("--wait-for a"), ["--wait-for=a,b"]);
-        assert_eq!(grown("--wait-for a,b x"), ["--wait-for", "a,b", "x"]);
     }
 }

@@ -13,9 +13,8 @@ use dataflow::{Command, Dataflow, Node};
 
 use super::{console::note, process::executable};
 
-/// Builds every node, in the order of the descriptor and in its `folder`. Two nodes with the same
-/// commands and environment are built once. Output of the builds goes to our standard error. If the
-/// build program is not installed, existing executables are used as they are.
+/// Builds every node in the descriptor's `folder`, the same command once. If the build program is
+/// not installed, existing executables are used as they are.
 pub fn build_all(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let with_build = || dataflow.nodes.iter().filter(|n| !n.build.is_empty());
     let ids: Vec<&str> = with_build().map(|n| n.id.as_str()).collect();
@@ -48,8 +47,7 @@ fn missing<'a>(nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> Vec<&'a 
     without.map(|node| node.id.as_str()).collect()
 }
 
-/// Runs the build commands of a node, up to the first one whose program is not installed; returns
-/// that command.
+/// Builds a node up to the first command whose program is not installed, which is returned.
 fn build<'n>(node: &'n Node, folder: &Path) -> anyhow::Result<Option<&'n Command>> {
     let id = &node.id;
     for command in &node.build {

@@ -1,6 +1,5 @@
-//! Writes our own remarks and the output of the nodes to standard error, each line whole and marked
-//! with its source. Standard output carries only poses. While the launcher is in the graph, its
-//! remarks are also published on topic `log`.
+//! Writes our remarks and the nodes' output to standard error, each line whole and with its source;
+//! in the graph, remarks are also published on `log`.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -11,8 +10,7 @@ use std::{
 use messages::LogLevel;
 use transport::log_in_graph;
 
-/// Longest line in bytes. Longer lines are broken, so that a node that never ends its line cannot
-/// fill our memory.
+/// Longest line in bytes; a longer one is broken, so that it cannot fill our memory.
 const MAX_LINE_BYTES: u64 = 1 << 16;
 
 pub const LAUNCHER: &str = "backcast";
@@ -33,8 +31,7 @@ pub fn say(who: &str, line: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Copies `stream` line by line to the console and to `also` until its end, on a new thread. Then
-/// it drops `open`.
+/// Copies the lines of `stream` to the console and `also` on a new thread, then drops `open`.
 pub fn forward(
     who: &str,
     stream: impl Read + Send + 'static,

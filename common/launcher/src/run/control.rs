@@ -1,7 +1,5 @@
-//! Control requests to a running launcher from another terminal, and its answers.
-//!
-//! Each is a line of JSON over a socket in this user's folder, which only this user can open. A
-//! thread receives the requests; the launcher answers them once per tick.
+//! Control requests to a running launcher: lines of JSON over a socket in this user's folder. A
+//! thread receives them; the launcher answers once per tick.
 
 use std::{
     fs::remove_file,
@@ -19,7 +17,6 @@ use serde::{Deserialize, Serialize};
 use transport::Waker;
 
 const MAX_QUESTION: u64 = 4096;
-/// Timeout for a request to arrive, and for its answer to be given and sent.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

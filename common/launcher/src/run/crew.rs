@@ -1,7 +1,5 @@
-//! Starts, watches, restarts and stops the processes of the graph.
-//!
-//! A node that fails for good ends the run if it is essential; otherwise the graph continues
-//! without it, and [`Crew::problems`] says so.
+//! Starts, watches, restarts and stops the processes of the graph. When a node fails for good, the
+//! run ends if it is essential, else [`Crew::problems`] says so.
 
 mod member;
 
@@ -27,11 +25,9 @@ use super::{
     supervision::{is_over, is_source},
 };
 
-/// Time for processes to end in order once they are asked to. It applies twice: first to nodes
-/// without outputs, then to all others. Each of the two stays below a second.
+/// Time to end in order once asked to: for nodes without outputs, then for all others.
 const GRACE: Duration = Duration::from_millis(700);
-/// Time for the last lines of ended processes to reach the console. After that, only a process that
-/// left its group can still hold a pipe open.
+/// Wait for the last lines of ended processes; a process that left its group may hold a pipe.
 const LAST_LINES: Duration = Duration::from_millis(100);
 const STOP_POLL: Duration = Duration::from_millis(5);
 
@@ -59,9 +55,8 @@ impl Crew {
         })
     }
 
-    /// Starts nodes that are due and handles processes that have ended. Returns true if any process
-    /// has ended since the last tick. Without `has_room`, shared memory is full: no process can
-    /// report, and failures do not count against it.
+    /// Starts nodes that are due and handles ended processes; true if there were any. Without
+    /// `has_room`, shared memory is full and failures do not count.
     pub fn tick(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(open) = &self.output_open else {
             return Ok(false);
@@ -107,8 +102,7 @@ impl Crew {
             .collect()
     }
 
-    /// Ends a node in order and starts it again at once, regardless of its restart policy. A node
-    /// that has ended is started. Returns true if there is such a node.
+    /// Ends a node in order and starts it again at once; returns true if there is such a node.
     pub fn restart(&mut self, id: &str, now: Instant) -> anyhow::Result<bool> {
         let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
             return Ok(false);
@@ -171,11 +165,8 @@ impl Crew {
         }))
     }
 
-    /// Ends every process, by SIGTERM and 0.7 s later by SIGKILL, and waits for its last output
-    /// to reach the console.
-    ///
-    /// Nodes without outputs go first: when a publisher ends, samples that are not yet received are
-    /// lost.
+    /// Ends every process, by SIGTERM and 0.7 s later by SIGKILL. Nodes without outputs go first:
+    /// when a publisher ends, samples that are not yet received are lost.
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.stop_those(|node| node.outputs.is_empty())?;
         self.stop_those(|_| true)?;

@@ -1,5 +1,4 @@
-//! Applies options of `run` to nodes: they become arguments of the node with that executable and
-//! replace those of the descriptor.
+//! Applies options of `run` to nodes as arguments, which replace those of the descriptor.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +21,6 @@ use crate::descriptor::NO_FOLDER;
 const RECORDED_MAP: &str = "--recorded";
 /// Option of `map_server`: recording that is played on another map than its own.
 const PLAYED: &str = "--played";
-/// Options of `map_server`: the set to serve, and which of its maps and floors to use.
 const MAPS: &str = "--maps";
 const ON: &str = "--on";
 const MAX_AGE: &str = "--heading-max-age-s";
@@ -74,7 +72,6 @@ pub(crate) fn apply(options: &Options, dataflow: &mut Dataflow, file: &Path) -> 
     forward_heading(&options.heading, dataflow, file)
 }
 
-/// Applies `--replay` and the topic options that go with it.
 fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> anyhow::Result<()> {
     if let Some(topic) = &options.map_topic {
         return Err(wrong_use(format!(
@@ -138,9 +135,8 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> anyhow::Result<
     Ok(())
 }
 
-/// Applies the heading options. They exclude or complete each other, so a new source replaces all
-/// that the descriptor says about the heading; only the maximum age of odometry stays if odometry
-/// is used.
+/// Applies the heading options; a new source replaces the descriptor's, but not the maximum age of
+/// odometry if that is used.
 fn forward_heading(
     heading: &HeadingConfig,
     dataflow: &mut Dataflow,
@@ -185,8 +181,7 @@ fn forward_heading(
     Ok(())
 }
 
-/// True if the graph is played at `--rate max`, by the option or by the descriptor, so that no data
-/// may be lost.
+/// True if the graph is played at `--rate max`, so that no data may be lost.
 pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
     let max = Rate::Max.to_string();
     let mut nodes = dataflow.nodes.iter();

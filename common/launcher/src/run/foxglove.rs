@@ -1,7 +1,4 @@
-//! `--foxglove`: adds a server for viewers to a graph.
-//!
-//! Its executable is next to those of the graph. It subscribes to every topic by itself and needs
-//! no wires; no node waits for it.
+//! `--foxglove`: adds a server for viewers to a graph, from an executable next to the others.
 
 use dataflow::Dataflow;
 

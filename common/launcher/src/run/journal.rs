@@ -34,7 +34,6 @@ pub(crate) struct Journal {
 }
 
 impl Journal {
-    /// Creates a journal on `output`, as a table or in JSON, for a graph with or without a tracker.
     pub(crate) fn new(
         output: Output,
         json: bool,
@@ -61,7 +60,6 @@ impl Journal {
         }
     }
 
-    /// Records an answer and prints it; with a tracker, it is printed together with the pose.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let answer = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
@@ -110,16 +108,13 @@ impl Journal {
         reader
     }
 
-    /// Prints the header of the table before the first pose, and before one of another frame; none
-    /// for JSON.
     fn show_header(&mut self, frame: Frame, header: fn(Frame) -> String) {
         if self.frame.replace(frame) != Some(frame) && !self.json {
             self.output.line(header(frame));
         }
     }
 
-    /// Prints the summary if `wanted`, and waits until all is printed, at most for `patience` if it
-    /// is given.
+    /// Prints the summary if `wanted`, and waits at most for `patience` until all is printed.
     pub(crate) fn finish(
         mut self,
         wanted: bool,

@@ -1,8 +1,5 @@
-//! Several lasers in one graph: names the senders of scans and tells the nodes that search and track
-//! which to join.
-//!
-//! Each `lms_reader` gets its name, and the accumulator and the tracker the lasers in the order of the
-//! accumulator's inputs. What the descriptor and the settings say has priority.
+//! Several lasers in one graph: names the `lms_reader`s, and tells accumulator and tracker which to
+//! join, in the order of the accumulator's inputs; descriptor and settings have priority.
 
 use std::path::Path;
 
@@ -16,8 +13,6 @@ const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
 
-/// Names readers and tells the nodes that join scans if a graph has several lasers. `folder` is that of
-/// the descriptor.
 pub(crate) fn name(dataflow: &mut Dataflow, folder: &Path) -> anyhow::Result<()> {
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);

@@ -43,12 +43,9 @@ use super::{
 };
 use crate::descriptor::{self, Builds, Descriptor};
 
-/// Interval between two looks at the processes.
 const TICK: Duration = Duration::from_millis(20);
-/// Interval between two cleanups of what dead processes left in shared memory.
 const CLEANUP_PERIOD: Duration = Duration::from_secs(1);
-/// Longest wait for the answers to the last scans once the sources are done. A scan takes seconds
-/// on a large map and a busy machine.
+/// Longest wait for the last answers: on a large map and a busy machine, each takes seconds.
 const LAST_ANSWERS: Duration = Duration::from_secs(20);
 /// Longest wait for nodes of an earlier launcher to end.
 const LAST_OF_BEFORE: Duration = Duration::from_secs(3);
@@ -69,11 +66,8 @@ enum End {
     Interrupted,
 }
 
-/// Runs the graph until it ends or is ended by a signal.
-///
-/// The exit code is 0, or 3 if a node's exit code said that it lost data, or if something was lost
-/// at `--rate max`. At the pace of the recording, a slow machine may drop scans; the summary counts
-/// them.
+/// Runs the graph until its end or a signal. The exit code is 3 if a node says that it lost data,
+/// or if anything was lost at `--rate max`.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     transport::node::start_logging().map_err(wrong_use)?;
     let graph = config.options.graph_name()?;
@@ -151,8 +145,6 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Joins the graph, starts its processes and stays until the end. All processes have ended when it
-/// returns.
 fn launch(
     descriptor: &Descriptor,
     name: &GraphName,
@@ -202,8 +194,7 @@ fn launch(
     })
 }
 
-/// Supervises the crew and records the received messages until the end. If `save` is set, recorders
-/// are asked to save.
+/// Supervises the crew until the end; if `save` is set, recorders are asked to save.
 fn stay(
     graph: &Graph,
     (watch, save, control_port): (&Watch, &AtomicBool, &ControlPort),
@@ -327,8 +318,7 @@ impl ControlPort {
     }
 }
 
-/// Removes leftovers of a graph of this name. Nodes of a launcher that was just killed are still
-/// ending, so it waits for them.
+/// Removes leftovers of a graph of this name, once nodes of a killed launcher have ended.
 fn make_way(graph: &GraphName) -> Result<(), TransportError> {
     let begin = Instant::now();
     loop {
@@ -363,8 +353,7 @@ fn foreign(path: PathBuf, source: io::Error) -> TransportError {
     }
 }
 
-/// Removes what the graph has left in shared memory. If tools that joined the graph by name are
-/// still running, it stays for them.
+/// Removes the graph from shared memory, unless tools that joined it are still running.
 fn clear(graph: &GraphName) -> Result<(), TransportError> {
     match remove_leftovers(graph) {
         Err(error @ TransportError::StillRunning { .. }) => {

@@ -1,5 +1,4 @@
-//! Writes the nodes' log to files: JSON lines, one file for each node, rotated when full. A write
-//! error, such as a full disk, costs lines but never ends the graph.
+//! Writes the nodes' log to JSON lines, rotated when full. A write error only costs lines.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, create_dir_all, rename};
@@ -11,9 +10,7 @@ use anyhow::Context;
 use super::console::{LAUNCHER, say};
 use crate::control::LogLine;
 
-/// Size at which a file is rotated, in bytes.
 const MAX_BYTES: u64 = 10_000_000;
-/// Number of full files kept for each node.
 const KEPT: usize = 4;
 
 #[derive(Debug)]
@@ -21,7 +18,6 @@ pub(crate) struct LogFiles {
     folder: PathBuf,
     max_bytes: u64,
     open: BTreeMap<String, LogFile>,
-    /// True if the last line could not be written.
     failed: bool,
 }
 
@@ -32,7 +28,6 @@ struct LogFile {
 }
 
 impl LogFiles {
-    /// Writes to `folder`, which is created if missing.
     pub(crate) fn create(folder: &Path) -> anyhow::Result<Self> {
         create_dir_all(folder)
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
@@ -44,7 +39,6 @@ impl LogFiles {
         })
     }
 
-    /// Appends a line to the file of its node. The first of several write errors is reported.
     pub(crate) fn write(&mut self, line: &LogLine) {
         let failed = self.try_write(line).err();
         if let (Some(error), false) = (&failed, self.failed) {
@@ -76,7 +70,6 @@ impl LogFiles {
         Ok(())
     }
 
-    /// Renames the files of a node to the next number; the oldest one is overwritten.
     fn rotate(&self, node: &str) -> io::Result<()> {
         for number in (0..KEPT).rev() {
             match rename(self.path(node, number), self.path(node, number + 1)) {

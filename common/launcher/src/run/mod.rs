@@ -1,9 +1,5 @@
 //! `backcast run`: builds the graph's nodes, starts and supervises their processes, and prints a
-//! pose for each scan.
-//!
-//! In the graph, the launcher only subscribes: it localizes nothing, and the graph runs without it.
-//! Decisions (restarts, the end of the run, figures and lines) are in pure files; `launch` does the
-//! I/O.
+//! pose for each scan. Decisions are in pure files; `launch` does the I/O.
 
 mod added;
 pub mod arguments;

@@ -161,7 +161,6 @@ fn random() -> u32 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
     Times(f64),
-    /// As fast as answers come.
     Max,
 }
 
@@ -195,10 +194,7 @@ mod tests {
 
     #[test]
     fn a_graph_that_nobody_names_has_a_name_of_its_own() {
-        let named = Options {
-            graph: GraphName::new("robot7").ok(),
-            ..Options::default()
-        };
+        let named = crate::run::testing::options("--graph robot7");
         assert_eq!(named.graph_name().unwrap().as_str(), "robot7");
         let own = || Options::default().graph_name().unwrap();
         assert!(own().as_str().starts_with("bc"));

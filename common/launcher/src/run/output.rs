@@ -1,5 +1,4 @@
-//! Standard output on a thread of its own: a reader that stops reading, such as a pager, must not
-//! block supervision.
+//! Standard output on a thread of its own, so that its reader cannot block supervision.
 
 use std::{
     io::{self, ErrorKind, Write},
@@ -60,8 +59,7 @@ impl Output {
         }
     }
 
-    /// Waits until all is written, at most for `patience` if it is given. Returns the number of
-    /// dropped lines.
+    /// Waits at most for `patience` until all is written; returns the number of dropped lines.
     pub(crate) fn finish(self, patience: Option<Duration>) -> anyhow::Result<u64> {
         drop(self.lines);
         let ended = match patience {
@@ -80,24 +78,7 @@ impl Output {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Read;
-
     use super::*;
-
-    #[test]
-    fn all_lines_arrive_in_order() {
-        let (mut reader, writer) = io::pipe().unwrap();
-        let mut output = Output::start(writer).unwrap();
-        for i in 0..100 {
-            assert_eq!(output.line(i.to_string()), Reader::Reads);
-        }
-        // The number of lines is below the capacity of the queue, so none is dropped.
-        assert!(output.finish(None).is_ok());
-        let mut text = String::new();
-        reader.read_to_string(&mut text).unwrap();
-        let expected: String = (0..100).map(|i| format!("{i}\n")).collect();
-        assert_eq!(text, expected);
-    }
 
     #[test]
     fn a_reader_that_stops_reading_blocks_nobody() {

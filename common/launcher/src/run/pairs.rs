@@ -5,12 +5,10 @@ use std::collections::VecDeque;
 use geometry::Pose;
 use statistics::{Accuracy, Answer, Figures};
 
-/// Largest number of waiting entries on each side. The oldest is dropped beyond it, since its
-/// counterpart may never come (no truth in the recording, a dropped scan).
+/// Largest number of waiting entries on each side, as a counterpart may never come.
 const CAPACITY: usize = 256;
 
-/// Answers and truths that wait for their counterpart, by time of measurement, and the accuracy of
-/// those that met.
+/// Answers and truths that wait for their counterpart, and the accuracy of those that met.
 #[derive(Debug)]
 pub(crate) struct Pairs {
     answers: VecDeque<(i64, Answer)>,

@@ -1,7 +1,5 @@
-//! The process of a node, in a process group of its own.
-//!
-//! Signals go to the group, so that children of a node end with it. If the launcher dies for any
-//! reason, the kernel ends the process.
+//! The process of a node, in a process group of its own, whose children end with it. If the
+//! launcher dies, the kernel ends the process.
 
 use std::{
     io::{self, IsTerminal},
@@ -25,8 +23,7 @@ use transport::{GRAPH_VARIABLE, GraphName, node::LOG_FORMAT_VARIABLE};
 
 use super::console;
 
-/// A started process. It must be started on the thread that lives longest: for the kernel, the end
-/// of that thread is the end of the launcher.
+/// A started process. It ends with the thread that started it.
 #[derive(Debug)]
 pub(crate) struct Process {
     child: Child,
@@ -44,8 +41,7 @@ pub(crate) fn not_started(node: &Node, folder: &Path) -> String {
 }
 
 impl Process {
-    /// Starts `node` in `folder` as a member of `graph`. Its output goes to our standard error, and
-    /// the last line of its standard error also to `last_line`. `open` is dropped when both streams
+    /// Starts `node` in `folder` as a member of `graph`; `open` is dropped when both its streams
     /// have ended.
     pub(crate) fn start(
         node: &Node,
@@ -132,8 +128,7 @@ impl Drop for Process {
     }
 }
 
-/// Requests SIGTERM for the child when we die. The child ignores SIGUSR1, which we pass on, until
-/// its program sets a handler.
+/// Requests SIGTERM for the child when we die; it ignores SIGUSR1 until it sets a handler.
 fn prepare_signals(command: &mut Command) {
     let parent = getpid();
     let ask = move || {

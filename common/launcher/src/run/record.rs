@@ -1,7 +1,5 @@
-//! `--record`: adds a recorder to a graph.
-//!
-//! Its executable is next to those of the graph and is built with them. It subscribes to every
-//! topic by itself and needs no wires; sources wait for it, so that nothing is missed.
+//! `--record`: adds a recorder to a graph, from an executable next to the others. Sources wait for
+//! it, so that nothing is missed.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +14,6 @@ use crate::descriptor::NO_FOLDER;
 
 pub(super) const RECORDER: &str = "recorder";
 
-/// Adds a recorder if the options ask for one. `file` and `folder` are those of the descriptor.
 pub(crate) fn add(
     options: &RecordOptions,
     dataflow: &mut Dataflow,
@@ -53,8 +50,7 @@ pub(crate) fn add(
     Ok(())
 }
 
-/// Creates a recorder that is not built, without an output. It may be restarted, and continues in
-/// another file.
+/// Creates a recorder that is not built; when restarted, it continues in another file.
 pub(super) fn node(dataflow: &Dataflow, file: &Path, folder: &Path) -> Node {
     let mut node = added::node(dataflow, RECORDER, Vec::new());
     let attached = attached(dataflow, file, folder).into_iter();
@@ -76,8 +72,7 @@ fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> anyhow:
     Ok(())
 }
 
-/// Returns the files to attach to the recording: the descriptor, the served map and its image.
-/// Missing files are left out; the map server reports a missing map.
+/// Returns the files to attach: the descriptor, the served map and its image, if they exist.
 fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
     let server = dataflow
         .nodes
@@ -95,7 +90,7 @@ fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::testing::parsed;
+    use crate::run::testing::{options, parsed};
 
     const GRAPH: &str = "nodes:
   - {id: r, path: bin/replayer, outputs: [scan], args: --wait-for a, build: cargo build --package replayer}
@@ -103,23 +98,19 @@ mod tests {
   - {id: o, path: bin/other, build: make}
 ";
 
-    fn options(record: &Path) -> RecordOptions {
-        RecordOptions {
-            record: Some(record.to_owned()),
-            ..RecordOptions::default()
-        }
+    fn added(line: &str, text: &str, folder: &Path) -> anyhow::Result<Dataflow> {
+        let mut dataflow = parsed(text);
+        let file = Path::new("g.yaml");
+        add(&options(line).record, &mut dataflow, file, folder)?;
+        Ok(dataflow)
     }
 
     #[test]
     fn the_recorder_joins_the_others_and_sources_wait_for_it() {
-        let mut dataflow = parsed(GRAPH);
         let folder = tempfile::TempDir::new().unwrap();
         let output = folder.path().join("no/such/folder/r.mcap");
-        let options = RecordOptions {
-            split_time: Some("10m".to_owned()),
-            ..options(&output)
-        };
-        add(&options, &mut dataflow, Path::new("g.yaml"), folder.path()).unwrap();
+        let line = format!("--record {} --split-time 10m", output.display());
+        let dataflow = added(&line, GRAPH, folder.path()).unwrap();
         let [replayer, accumulator, other, recorder] = &dataflow.nodes[..] else {
             panic!("{dataflow:?}");
         };
@@ -148,24 +139,22 @@ mod tests {
         let folder = tempfile::TempDir::new().unwrap();
         let existing = folder.path().join("r.mcap");
         std::fs::write(&existing, "").unwrap();
-        let refused = |options: &RecordOptions, text: &str| {
-            let mut dataflow = parsed(text);
-            let outcome = add(options, &mut dataflow, Path::new("g.yaml"), folder.path());
-            format!("{:#}", outcome.unwrap_err())
+        let add = |options: &str, text: &str| {
+            let line = format!("--record {}{options}", existing.display());
+            added(&line, text, folder.path())
         };
-        let exists = refused(&options(&existing), GRAPH);
-        assert!(exists.contains("r.mcap is there already"), "{exists}");
-        let below = refused(&options(&existing.join("s.mcap")), GRAPH);
-        assert!(below.contains("r.mcap/s.mcap: not a directory"), "{below}");
-        let forced = RecordOptions {
-            force: true,
-            ..options(&existing)
+        let refused = |options: &str, text: &str, expected: &str| {
+            let said = format!("{:#}", add(options, text).unwrap_err());
+            assert!(said.contains(expected), "{said}");
         };
-        let mut dataflow = parsed(GRAPH);
-        add(&forced, &mut dataflow, Path::new("g.yaml"), folder.path()).unwrap();
+        refused("", GRAPH, "r.mcap is there already");
+        refused("/s.mcap", GRAPH, "r.mcap/s.mcap: not a directory");
+        add(" --force", GRAPH).unwrap();
         assert!(!existing.exists());
-        let other = options(&folder.path().join("s.mcap"));
-        let twice = refused(&other, "nodes: [{id: x, path: bin/recorder}]");
-        assert!(twice.contains("has one already"), "{twice}");
+        refused(
+            "",
+            "nodes: [{id: x, path: bin/recorder}]",
+            "has one already",
+        );
     }
 }

@@ -23,7 +23,6 @@ pub(super) struct Recorder {
     /// Recorder of the descriptor or of `--record`; else one that only requests start.
     node: Node,
     executable: PathBuf,
-    /// Folder of the files: that of the node's output; without one, the current folder.
     folder: PathBuf,
 }
 
@@ -102,8 +101,7 @@ impl Recorder {
     }
 }
 
-/// Returns the file that was written last: `output`, or one with a number after its name, which is
-/// a part or was begun when the recorder started again.
+/// Returns the file that was written last: `output`, or one with a number after its name.
 fn newest(output: &Path) -> PathBuf {
     let written = |file: &PathBuf| file.metadata().and_then(|found| found.modified()).ok();
     let last = numbered(output).into_iter().max_by_key(written);

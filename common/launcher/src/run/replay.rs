@@ -1,5 +1,4 @@
-//! Puts a replayer in place of the sources of a graph (laser, emulator or other replayer), so that
-//! a recording can be replayed exactly through any graph.
+//! Puts a replayer in place of the sources of a graph.
 
 use std::path::PathBuf;
 
@@ -10,8 +9,7 @@ use super::added;
 use super::arguments::{REPLAYER, add_to_list, unset};
 use super::supervision::{MEASUREMENTS, is_source};
 
-/// Makes the graph's replayer play these recordings as one. If the graph has none, a replayer
-/// replaces its sources.
+/// Makes the graph's replayer, or one in place of its sources, play these recordings as one.
 pub fn play<'d>(dataflow: &'d mut Dataflow, recordings: &[PathBuf]) -> &'d mut Node {
     let at = dataflow
         .nodes

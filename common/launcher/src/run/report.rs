@@ -1,5 +1,4 @@
-//! Collects the messages of a run into figures. Pure: fed with messages in the order of their
-//! arrival.
+//! Collects the messages of a run into figures. Pure.
 
 use std::collections::HashMap;
 
@@ -11,8 +10,7 @@ use statistics::{Answer, Distribution};
 
 use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 
-/// Number of newest scans for percentiles: some hours, so that memory stays bounded in a run of
-/// months.
+/// Number of newest scans for percentiles, some hours, so that memory stays bounded.
 const WINDOW: usize = 200_000;
 
 pub(crate) struct Report {
@@ -65,7 +63,6 @@ impl Report {
         self.maps.get(&map_id).cloned()
     }
 
-    /// Records a scan. Scans before it may be missing here, as its counter includes them.
     pub(crate) fn scan(&mut self, stamp: Stamp) {
         if let Some(last) = self.newest_scan
             && stamp.counter <= last.counter
@@ -123,8 +120,7 @@ impl Report {
         self.answered > 0
     }
 
-    /// True if the newest scan has its answer. With a tracker, this is its pose, as not every scan
-    /// is searched then.
+    /// True if the newest scan has its answer, which is its pose if the graph has a tracker.
     pub(crate) fn all_answered(&self) -> bool {
         let newest = match self.is_tracked {
             true => self.newest_pose,

@@ -1,5 +1,4 @@
-//! Settings that nodes share: the tracker reads scans as the accumulator does, and compares them with
-//! the map as the peak_extractor does. They come from one file, `--settings`, or from options.
+//! Settings that several nodes share, from one file, `--settings`, or from options.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,14 +15,12 @@ use super::arguments::{ACCUMULATOR, TRACKER, value};
 
 const PEAK_EXTRACTOR: &str = "peak_extractor";
 
-/// Returns the value that a node is given for a setting; `None` if it has its default. `folder` is
-/// that of the descriptor.
+/// Returns the value that a node is given for a setting; `None` if it has its default.
 pub(crate) fn given(node: &Node, key: &str, folder: &Path) -> anyhow::Result<Option<String>> {
     Ok(all_given(node, folder)?.remove(key))
 }
 
-/// Returns the settings that a node is given, by key: those of its file, and those of its options,
-/// which win.
+/// Returns the settings that a node is given: those of its options, which win, and of its file.
 fn all_given(node: &Node, folder: &Path) -> anyhow::Result<BTreeMap<String, String>> {
     let mut given = match value(node, "--settings") {
         Some(file) => settings::read(&folder.join(file))?,
@@ -49,7 +46,6 @@ struct Shared {
     fit: FitConfig,
 }
 
-/// Checks that the tracker has the settings of the nodes before it.
 pub(crate) fn check(dataflow: &Dataflow, folder: &Path) -> anyhow::Result<()> {
     let find = |executable| {
         let mut nodes = dataflow.nodes.iter();
@@ -103,11 +99,8 @@ mod tests {
 
     fn checked(accumulator: &str, peaks: &str, tracker: &str) -> Result<(), String> {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(
-            folder.path().join("s.yaml"),
-            "max_beams: 90\nfit_sigma_m: 0.2\n",
-        )
-        .unwrap();
+        let settings = "max_beams: 90\nfit_sigma_m: 0.2\n";
+        std::fs::write(folder.path().join("s.yaml"), settings).unwrap();
         let text = format!(
             "nodes:
   - {{id: p, path: bin/peak_extractor, args: \"{peaks}\"}}
@@ -120,48 +113,24 @@ mod tests {
 
     #[test]
     fn nodes_with_other_settings_than_the_tracker_are_refused_by_name() {
-        let same = [
+        const FILE: &str = "--settings s.yaml";
+        for (accumulator, peaks, tracker) in [
             ("", "", ""),
-            (
-                "--max-beams 90 --headings 360",
-                "--particles 9",
-                "--max-beams=90 --rate 5",
-            ),
-            (
-                "--settings s.yaml",
-                "--settings=s.yaml",
-                "--settings s.yaml",
-            ),
-            (
-                "--settings s.yaml",
-                "--fit-sigma-m 0.2",
-                "--settings s.yaml",
-            ),
+            ("--max-beams 90 --headings 360", "", "--max-beams=90"),
+            (FILE, "--settings=s.yaml", FILE),
+            (FILE, "--fit-sigma-m 0.2", FILE),
             ("--max-beams 180 --deskew true", "--drawn-doubt 0.15", ""),
             ("--max-beams many", "", ""),
-        ];
-        for (accumulator, peaks, tracker) in same {
+        ] {
             assert_eq!(checked(accumulator, peaks, tracker), Ok(()), "{tracker}");
         }
+        let beams = "nodes a and t have to read scans alike, but max_beams is `90` at the one and \
+                     the default at the other";
+        let fit = "nodes p and t have to read scans alike, but fit_sigma_m is the default";
         for (accumulator, peaks, tracker, expected) in [
-            (
-                "--max-beams 90",
-                "",
-                "",
-                "nodes a and t have to read scans alike, but max_beams is `90` at the one and the default at the other",
-            ),
-            (
-                "--settings s.yaml",
-                "--settings s.yaml",
-                "",
-                "max_beams is `90`",
-            ),
-            (
-                "--settings s.yaml",
-                "",
-                "--settings s.yaml",
-                "nodes p and t have to read scans alike, but fit_sigma_m is the default",
-            ),
+            ("--max-beams 90", "", "", beams),
+            (FILE, FILE, "", "max_beams is `90`"),
+            (FILE, "", FILE, fit),
             ("--settings none.yaml", "", "", "none.yaml"),
         ] {
             let error = checked(accumulator, peaks, tracker).unwrap_err();

@@ -8,7 +8,6 @@ use statistics::{CLOSE_SUCCESS, Figures, SUCCESS, Tail};
 
 use super::tracking::TrackingFigures;
 
-/// Tracker states in the order of display, best first.
 const STATES: [TrackState; 4] = [
     TrackState::Unique,
     TrackState::Doubtful,
@@ -49,7 +48,6 @@ impl Summary {
         self.dropped > 0 || self.answered < self.scans
     }
 
-    /// Returns a few lines for people, without a final newline.
     pub(crate) fn text(&self) -> String {
         let counts = format!(
             "scans      {}, answered {}, dropped samples {}, refused {}",

@@ -14,8 +14,7 @@ const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
 /// Executables that are not needed for localization.
 const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 
-/// True if the graph ends when this node has failed for good: `BACKCAST_ESSENTIAL` in the node's
-/// `env` decides, or else its executable.
+/// True if the graph ends with this node: by `BACKCAST_ESSENTIAL`, or else its executable.
 pub fn is_essential(node: &Node) -> anyhow::Result<bool> {
     match node.env.iter().find(|(name, _)| name == ESSENTIAL) {
         None => Ok(!ONLY_SHOW.contains(&node.executable())),
@@ -29,7 +28,6 @@ pub fn is_essential(node: &Node) -> anyhow::Result<bool> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// It succeeded.
     Well,
     /// It failed; a restart may help.
     Badly,
@@ -49,7 +47,6 @@ pub enum AfterEnd {
 #[derive(Debug, Clone)]
 pub struct Restarts {
     rules: Restart,
-    /// Times of the restarts within the window.
     recent: VecDeque<Instant>,
     /// Number of restarts since it last worked for a while.
     in_a_row: u32,
@@ -77,14 +74,12 @@ impl Restarts {
         self.in_a_row
     }
 
-    /// Number of restarts that count against the limit after a failure: the larger of those within
-    /// the window and those since it last worked.
+    /// Number of restarts that count: within the window or since it last worked, the larger.
     pub fn used(&self) -> u32 {
         self.recent().max(self.in_a_row)
     }
 
-    /// Decides at `now`, after the end of a process that was at work for `worked`, and counts the
-    /// restart.
+    /// Decides after the end of a process that was at work for `worked`; counts the restart.
     pub fn after_end(&mut self, ended: Ended, worked: Duration, now: Instant) -> AfterEnd {
         let wanted = match (self.rules.policy, ended) {
             (RestartPolicy::Never, _) | (_, Ended::Misused) => false,
@@ -129,13 +124,11 @@ pub struct Pulse {
     timeout: Duration,
     /// True if the node has to report: it is one of ours, or has reported before.
     is_expected: bool,
-    /// Time of the last report of its process.
     reported: Option<Instant>,
     /// Start of the current silence: the last report, or an event that excuses a missing one.
     silent_since: Option<Instant>,
     /// Time at which its process first reported `Ready` or `Degraded`.
     at_work_since: Option<Instant>,
-    /// True if its last report was `Busy`.
     is_busy: bool,
 }
 
@@ -199,7 +192,6 @@ impl Pulse {
     }
 }
 
-/// Topics of measurements, the inputs of the graph.
 pub const MEASUREMENTS: [&str; 3] = [
     topic::Scan::NAME,
     topic::OdometryTopic::NAME,
@@ -394,16 +386,5 @@ mod tests {
         assert!(!over(&[(true, true), (true, false), (false, true)]));
         assert!(!over(&[(false, true), (false, false)]));
         assert!(over(&[(false, true), (false, true)]));
-    }
-
-    #[test]
-    fn sources_are_recognized_by_what_they_send() {
-        let text = "nodes:
-  - {id: a, path: x, outputs: [odometry]}
-  - {id: b, path: x, outputs: [map]}
-";
-        let nodes = parsed(text).nodes;
-        assert!(is_source(&nodes[0]));
-        assert!(!is_source(&nodes[1]));
     }
 }

@@ -1,6 +1,9 @@
-//! Helper shared by the tests of several files.
+//! Helpers shared by the tests of several files.
 
+use clap::Parser;
 use dataflow::Dataflow;
+
+use super::options::Options;
 
 pub(crate) fn parsed(text: &str) -> Dataflow {
     let topics = dataflow::Topics {
@@ -9,4 +12,14 @@ pub(crate) fn parsed(text: &str) -> Dataflow {
         several: &[],
     };
     dataflow::parse(text, &topics).unwrap()
+}
+
+#[derive(Parser)]
+struct Line {
+    #[command(flatten)]
+    options: Options,
+}
+
+pub(crate) fn options(line: &str) -> Options {
+    Line::parse_from(["run"].into_iter().chain(line.split(' '))).options
 }

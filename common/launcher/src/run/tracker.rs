@@ -1,5 +1,4 @@
-//! The tracker of a graph. If it is wired to request searches, the accumulator waits for its
-//! requests.
+//! The tracker of a graph, for whose requests the accumulator may wait.
 
 use dataflow::{Dataflow, Node};
 use messages::{Topic, topic};

@@ -33,7 +33,6 @@ pub(crate) struct TrackingFigures {
 }
 
 impl Tracking {
-    /// Creates empty figures. Errors and times keep the newest `window` values.
     pub(crate) fn new(window: usize) -> Self {
         Tracking {
             states: BTreeMap::new(),
@@ -62,7 +61,6 @@ impl Tracking {
         self.pairs.truth(measured_ns, truth);
     }
 
-    /// Returns the figures so far; `None` without poses.
     pub(crate) fn figures(&self) -> Option<TrackingFigures> {
         let share = |count: u64| count as f64 / self.scans as f64;
         let states = self.states.iter();

@@ -27,8 +27,7 @@ pub(crate) struct Received {
 }
 
 impl Watch {
-    /// Subscribes; to be called before any node publishes. With several lasers, answers are for the
-    /// scans of `first_laser`. `logs` also subscribes to the nodes' log.
+    /// Subscribes, before any node publishes; answers are for the scans of `first_laser`.
     pub(crate) fn new(
         graph: &Graph,
         first_laser: Option<String>,

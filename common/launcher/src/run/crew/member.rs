@@ -28,7 +28,6 @@ const FAILURES_SHOWN: u32 = 3;
 /// Longest part of its last line that is shown, in bytes.
 const LINE_SHOWN: usize = 400;
 
-/// A node with the history of its processes.
 pub(super) struct Member {
     pub(super) node: Node,
     pub(super) essential: bool,
@@ -124,8 +123,7 @@ impl Member {
         Err(source).with_context(|| not_started(&self.node, folder))
     }
 
-    /// Returns true if the process has ended, after deciding what follows. `has_room` says that
-    /// shared memory is not full.
+    /// Returns true if the process has ended, after deciding what follows.
     pub(super) fn look_after(&mut self, now: Instant, has_room: bool) -> anyhow::Result<bool> {
         let Some(status) = self.poll()? else {
             self.end_if_hung(now)?;
@@ -172,8 +170,7 @@ impl Member {
         Ok(true)
     }
 
-    /// Time for which the process has been at work. If it does not report, or has lived for the
-    /// whole restart window, its lifetime counts.
+    /// Time at work; the lifetime if it does not report or is older than the restart window.
     fn worked(&self, now: Instant) -> Duration {
         let lived = self.started.map_or(Duration::ZERO, |started| now - started);
         match self.pulse.at_work_for(now) {
@@ -182,7 +179,6 @@ impl Member {
         }
     }
 
-    /// Returns a sentence if the node has failed several times in a row and has not recovered.
     pub(super) fn fails(&self, now: Instant) -> Option<String> {
         let is_running = matches!(self.state, State::Running(_));
         let has_recovered = is_running && self.worked(now) >= Restarts::RECOVERED_AFTER;
@@ -223,7 +219,6 @@ impl Member {
         }
     }
 
-    /// Kills the process if its health messages are overdue: it hangs or is stopped.
     fn end_if_hung(&mut self, now: Instant) -> anyhow::Result<()> {
         let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
         else {
