@@ -60,7 +60,6 @@ enum Command {
     OnTheSide(Box<OnTheSide>),
 }
 
-#[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     match cli.command {

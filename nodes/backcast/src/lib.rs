@@ -1,8 +1,5 @@
-//! The command `backcast`: the launcher of a graph and the tools around it.
-//!
-//! Each command has a `Config` for clap and a function that does the work and returns the exit
-//! code, here or in a crate under `common`; in `cli` the commands get their names. Without the
-//! feature `tools`, only the launcher is included, for use on a robot.
+//! The command `backcast`: the launcher of a graph and the tools around it, each with a `Config`
+//! for clap and a function that does the work, here or in a crate under `common`.
 
 pub mod cli;
 #[cfg(feature = "tools")]

@@ -1,5 +1,4 @@
-//! Commands that do not need a running graph. They and their dependencies are omitted without the
-//! feature `tools`.
+//! Commands that do not need a running graph, with the feature `tools`.
 
 use std::process::ExitCode;
 
@@ -75,7 +74,6 @@ impl OnRecordings {
     }
 }
 
-/// Checks recordings, or a live robot by way of a recording made from it.
 fn doctor(config: &doctor::Config) -> ExitCode {
     let Some((router, length)) = config.live() else {
         return end(doctor::run(config));

@@ -186,8 +186,7 @@ fn reader_options(config: &Config, device: &str) -> anyhow::Result<Vec<String>> 
     })
 }
 
-/// Checks the mount and returns it as one word. Zeros get a fourth one, which says that they are
-/// meant.
+/// Returns the checked mount as one word; zeros get a fourth one, which says they are meant.
 fn mount(text: &str) -> anyhow::Result<String> {
     let mount: Result<Mount, _> = text.parse();
     let mount = mount.map_err(|error| wrong_use(format!("--mount {text:?}: {error}")))?;

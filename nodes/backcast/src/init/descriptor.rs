@@ -13,7 +13,6 @@ pub(crate) enum Source {
         mount: Option<String>,
     },
     Ros2 {
-        /// Options of the gateway for middleware and topics.
         options: Vec<String>,
         /// Topics of the scans of several lasers; empty with one laser.
         scans: Vec<String>,
@@ -158,7 +157,6 @@ pub(crate) enum Served {
     Map(String),
     /// Maps of this folder, or of a file that lists them.
     Set(String),
-    /// Last map in this recording.
     Recorded(String),
 }
 
@@ -283,7 +281,6 @@ nodes:
     )
 }
 
-/// Joins words for `args`, each quoted if needed.
 fn words(words: &[String]) -> String {
     let words: Vec<String> = words.iter().map(|text| word(text)).collect();
     words.join(" ")
@@ -306,39 +303,30 @@ mod tests {
 
     use super::*;
 
-    const NODES: [&str; 9] = [
-        "lms_reader",
-        "ros2_gateway",
-        "replayer",
-        "map_server",
-        "boundary_extractor",
-        "accumulator",
-        "peak_extractor",
-        "tracker",
-        "monitor",
-    ];
+    const NODES: &str = "lms_reader ros2_gateway replayer map_server boundary_extractor \
+                         accumulator peak_extractor tracker monitor";
+
+    fn list<const N: usize>(words: [&str; N]) -> Vec<String> {
+        words.map(str::to_owned).to_vec()
+    }
 
     fn sources() -> Vec<Source> {
         let mount = Some("0.2,0,-90".to_owned());
         let router = Some("tcp/robot:7447".to_owned());
         let laser = |mount| Source::Laser {
-            options: ["--serial", "/dev/a laser"].map(str::to_owned).to_vec(),
+            options: list(["--serial", "/dev/a laser"]),
             mount,
         };
         let robot = |router, brings_map| Source::Ros2 {
-            options: ["--rmw", "dds", "--scan", "/r2/scan"]
-                .map(str::to_owned)
-                .to_vec(),
+            options: list(["--rmw", "dds", "--scan", "/r2/scan"]),
             scans: Vec::new(),
             router,
             mount: mount.clone(),
             brings_map,
         };
         let lasers = Source::Ros2 {
-            options: ["--scan", "/front/scan", "--scan", "/rear/scan"]
-                .map(str::to_owned)
-                .to_vec(),
-            scans: ["/front/scan", "/rear/scan"].map(str::to_owned).to_vec(),
+            options: list(["--scan", "/front/scan", "--scan", "/rear/scan"]),
+            scans: list(["/front/scan", "/rear/scan"]),
             router: None,
             mount: None,
             brings_map: true,
@@ -371,7 +359,7 @@ mod tests {
             let text = descriptor_of(&source, map);
             let file = folder.path().join("graph.yaml");
             std::fs::write(&file, &text).unwrap();
-            for node in NODES {
+            for node in NODES.split(' ') {
                 std::fs::copy("/bin/true", folder.path().join(node)).unwrap();
             }
             let descriptor = load(&file, Builds::Run).unwrap_or_else(|e| panic!("{e}\n{text}"));

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use anyhow::anyhow;
+use anyhow::{Context, bail};
 use messages::topic;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -16,12 +16,11 @@ use transport::node::LOG_FORMAT_VARIABLE;
 use transport::{Flow, Graph, GraphName, TransportError, control_socket, with_causes};
 
 use crate::init::descriptor::quoted;
-use crate::init::robot::{self, Lasers};
+use crate::init::robot::{self, Lasers, Robot};
 
 /// A recording in a temporary folder, which is removed when this is dropped.
 pub(crate) struct Recorded {
     pub(crate) file: PathBuf,
-    /// Warnings of the gateway about the robot.
     pub(crate) warnings: BTreeSet<String>,
     _folder: tempfile::TempDir,
 }
@@ -43,20 +42,22 @@ const FIRST_SCAN: Duration = Duration::from_secs(30);
 
 const TICK: Duration = Duration::from_millis(50);
 
-/// Records scans, odometry and map of the robot with this router, or of the one in the network, for
-/// `length` from its first scan.
+/// Records the robot of this router, or of the network, for `length` from its first scan.
 pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
-    let failed = |reason: String| anyhow!("the robot cannot be recorded: {reason}");
     say("looking for the robot's nodes");
     let seen = robot::look(router, Lasers::First)?;
     seen.said.iter().for_each(|said| say(said));
     if seen.lacks_map {
         say(robot::NO_MAP);
     }
+    record_seen(seen, router, length).context("the robot cannot be recorded")
+}
+
+fn record_seen(seen: Robot, router: Option<&str>, length: Duration) -> anyhow::Result<Recorded> {
     if seen.options.is_empty() {
-        return Err(failed("none of its nodes publishes laser scans".to_owned()));
+        bail!("none of its nodes publishes laser scans");
     }
-    let folder = tempfile::tempdir().map_err(|error| failed(error.to_string()))?;
+    let folder = tempfile::tempdir()?;
     let (descriptor, file) = (
         folder.path().join("graph.yaml"),
         folder.path().join("r.mcap"),
@@ -81,15 +82,13 @@ pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<R
         gateway = quoted(&shlex::try_join(args.iter().map(String::as_str)).unwrap_or_default()),
         recorder = quoted(&format!("--output {}", file.display())),
     );
-    std::fs::write(&descriptor, text).map_err(|error| failed(error.to_string()))?;
+    std::fs::write(&descriptor, text)?;
     say(&format!(
         "recording the robot for {} s",
         length.as_secs_f64()
     ));
-    let name = GraphName::new(&format!("doctor_{}", std::process::id()));
-    let name = name.map_err(|error| failed(error.to_string()))?;
-    let command = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
-    let mut graph = Command::new(command)
+    let name = GraphName::new(&format!("doctor_{}", std::process::id()))?;
+    let mut graph = Command::new(std::env::current_exe()?)
         .arg("run")
         .arg(&descriptor)
         .args(["--no-build", "--no-monitor", "--graph"])
@@ -98,8 +97,7 @@ pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<R
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|error| failed(error.to_string()))?;
+        .spawn()?;
     let log = graph.stderr.take().map(BufReader::new);
     let reading = std::thread::spawn(move || {
         let lines = log.into_iter().flat_map(BufRead::lines);
@@ -110,14 +108,12 @@ pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<R
     }
     std::thread::sleep(length);
     let pid = Pid::from_raw(graph.id().cast_signed());
-    kill(pid, Signal::SIGTERM).map_err(|error| failed(error.to_string()))?;
-    graph.wait().map_err(|error| failed(error.to_string()))?;
+    kill(pid, Signal::SIGTERM)?;
+    graph.wait()?;
     let lines = reading.join().unwrap_or_default();
     if !file.is_file() {
         let last = lines.last().map_or("", String::as_str);
-        return Err(failed(format!(
-            "nothing was recorded; the graph's last words: {last}"
-        )));
+        bail!("nothing was recorded; the graph's last words: {last}");
     }
     Ok(Recorded {
         file,
@@ -126,8 +122,7 @@ pub(crate) fn record(router: Option<&str>, length: Duration) -> anyhow::Result<R
     })
 }
 
-/// Waits until a scan has entered a graph that is starting, at most for [`FIRST_SCAN`], or until
-/// its launcher has ended.
+/// Waits for the first scan in a graph that starts, for [`FIRST_SCAN`] or its launcher's life.
 fn wait_for_scan(name: &GraphName, launcher: &mut Child) -> Result<(), TransportError> {
     let begin = Instant::now();
     let mut is_over =

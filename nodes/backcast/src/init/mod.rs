@@ -1,6 +1,5 @@
-//! `backcast init`: writes a commented descriptor for a laser, a ROS 2 robot or a recording, and
-//! its map. Everything in it is checked before: the laser's protocol is detected, the robot's
-//! topics are listed, the map is loaded. `live` records such a robot for `backcast doctor`.
+//! `backcast init`: writes a commented descriptor for a laser, a ROS 2 robot or a recording, after
+//! checking all in it. `live` records such a robot for `backcast doctor`.
 
 mod command;
 mod descriptor;

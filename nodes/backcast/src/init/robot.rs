@@ -31,17 +31,14 @@ pub(crate) enum Lasers {
 
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Robot {
-    /// Options of the gateway for middleware and topics.
     pub(crate) options: Vec<String>,
     /// Topics of the scans of several lasers; empty with one laser.
     pub(crate) scans: Vec<String>,
     /// True if its nodes publish scans but no map.
     pub(crate) lacks_map: bool,
-    /// Sentences for the user on what was found.
     pub(crate) said: Vec<String>,
 }
 
-/// Looks for the robot with this router, or for those in the network.
 pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> anyhow::Result<Robot> {
     let failed = |reason: String| {
         anyhow!("the robot cannot be looked at: {reason}; --no-probe writes the descriptor without")
@@ -74,7 +71,6 @@ pub(crate) fn look(router: Option<&str>, lasers: Lasers) -> anyhow::Result<Robot
 
 pub(crate) const NO_MAP: &str = "no node publishes a map: --map FILE serves one";
 
-/// Chooses the options for the published topics.
 fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
     let mut robot = Robot {
         said: list(published),
@@ -144,7 +140,6 @@ fn robot_of(published: &[Published], lasers: Lasers) -> Robot {
     robot
 }
 
-/// Lists the topics of each node, one sentence a node.
 fn list(published: &[Published]) -> Vec<String> {
     let mut nodes: BTreeMap<_, Vec<&str>> = BTreeMap::new();
     for one in published {
@@ -158,8 +153,7 @@ fn list(published: &[Published]) -> Vec<String> {
     nodes.into_iter().map(sentence).collect()
 }
 
-/// The topics of several lasers of one robot, with names that tell these apart; none where one
-/// topic is that of all. Who has odometry of its own in its namespace is another robot.
+/// Returns the topics of several lasers of one robot with odometry; none if they are others'.
 fn of_lasers(scans: &BTreeSet<String>, odometry: &BTreeSet<String>) -> Vec<String> {
     let space = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
     let robots: BTreeSet<_> = odometry.iter().map(|topic| space(topic)).collect();

@@ -27,9 +27,7 @@ struct Device {
     line: Line,
     encoding: Encoding,
     framer: Framer,
-    /// Number of bytes received.
     received: usize,
-    /// Angle convention by its name.
     angles: DeviceAngles,
 }
 
@@ -203,8 +201,7 @@ impl Device {
     }
 }
 
-/// Describes how `lms_reader` interprets the angles; returns the convention for the picture and its
-/// upward direction.
+/// Describes how `lms_reader` reads the angles, and the way that is up in the picture.
 fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention, String) {
     match angles.convention(field) {
         Ok(convention) => {

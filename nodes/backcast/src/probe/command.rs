@@ -13,7 +13,6 @@ Without a port, 2112 and 2111 are tried; on a serial line, 38400, 9600, 500000 a
 
 Exit codes: 0 a device answered, 1 none did, 2 wrong use";
 
-/// Default width of the picture in characters.
 const COLUMNS: usize = 80;
 
 /// Options of `backcast probe`.
@@ -39,8 +38,7 @@ pub(crate) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the options of `lms_reader` for the device at an address or on a serial line, one word
-/// each: the port and encoding on which it answers.
+/// Returns the options of `lms_reader` for the port and encoding on which a device answers.
 pub(crate) fn reader_options(device: &str, is_serial: bool) -> anyhow::Result<Vec<String>> {
     match is_serial {
         false => cola::reader_options(address(device).unwrap_or(device)),
@@ -49,7 +47,6 @@ pub(crate) fn reader_options(device: &str, is_serial: bool) -> anyhow::Result<Ve
 }
 
 /// Returns the options for a device with factory settings, without contacting it.
-#[must_use]
 pub(crate) fn default_reader_options(device: &str, is_serial: bool) -> Vec<String> {
     if is_serial {
         return ["--serial", device].map(str::to_owned).to_vec();
@@ -58,8 +55,6 @@ pub(crate) fn default_reader_options(device: &str, is_serial: bool) -> Vec<Strin
     cola::reader_options_of(&cola::addresses(address)[0], Encoding::Binary)
 }
 
-/// Returns the address of a device on the network; `None` for a serial line, which is a path or the
-/// name of an existing file.
 fn address(device: &str) -> Option<&str> {
     if let Some(address) = device.strip_prefix("tcp://") {
         return Some(address.trim_end_matches('/'));

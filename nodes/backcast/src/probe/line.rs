@@ -50,8 +50,7 @@ impl Line {
         Ok(())
     }
 
-    /// Sends bytes and passes what is received to `take`, first nothing, until it finds something;
-    /// `None` after the deadline.
+    /// Sends bytes and passes what is received to `take` until it finds something, or too late.
     pub(super) fn ask<R>(
         &mut self,
         bytes: &[u8],

@@ -65,8 +65,7 @@ impl<'a> Device<'a> {
         })
     }
 
-    /// Finds the baud rate with a command that is answered in every mode and stops continuous
-    /// scans.
+    /// Finds the baud rate with a command that every mode answers and that stops scans.
     fn find_rate(&mut self) -> anyhow::Result<Baud> {
         for baud in RATES {
             let switched = self.line.switch(baud);

@@ -1,8 +1,5 @@
-//! `backcast probe`: shows the type, settings and a scan of a laser.
-//!
-//! `cola` and `lms2xx` ask the device, over a `line`; `picture` draws a scan with characters. No
-//! setting of the device is changed; its baud rate is found by trying. An LMS2xx is left waiting
-//! for commands.
+//! `backcast probe`: shows the type, settings and a scan of a laser. No setting of the device is
+//! changed; an LMS2xx is left waiting for commands.
 
 mod cola;
 mod command;

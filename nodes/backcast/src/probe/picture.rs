@@ -1,5 +1,4 @@
-//! Draws a scan in characters of two by four dots (Unicode's Braille patterns). Pure. The laser is
-//! in the middle; ahead is up if it is known.
+//! Draws a scan in Braille patterns of two by four dots, with the laser in the middle. Pure.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -18,7 +17,6 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Draws a picture `columns` characters wide, with a legend below.
     pub(super) fn draw(&self, columns: usize) -> String {
         let rows = ((columns as f64 * ROWS_PER_COLUMN) as usize).max(2);
         let reach_m = self.reach();
@@ -63,8 +61,7 @@ impl Seen {
         )
     }
 
-    /// Returns the distance from the centre to the nearest side in metres. Nine tenths of the
-    /// points are within, so that a single far one does not shrink the rest.
+    /// Returns the distance from the centre to the nearest side in metres, for nine in ten points.
     fn reach(&self) -> f64 {
         let mut ranges: Vec<f64> = self.points.iter().map(|(_, range)| *range).collect();
         ranges.sort_unstable_by(f64::total_cmp);

@@ -1,5 +1,4 @@
-//! State received from the monitor, and its age. Missing fields have default values. Pure: times
-//! are passed in.
+//! State received from the monitor, and its age, at times that are passed in.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -22,7 +21,6 @@ pub(super) enum Message {
     Pose(Box<Tracked>),
     Map(Map),
     Node(Node),
-    /// Message that is not shown here.
     #[serde(other)]
     Other,
 }
@@ -112,7 +110,6 @@ pub(super) struct Node {
 }
 
 impl Tracked {
-    /// Returns the covariance of the pose that is shown: that of the base, if it is known.
     pub(super) fn covariance(&self) -> Option<Covariance> {
         let rows = match self.base {
             Some(_) => self.base_covariance,
@@ -157,7 +154,6 @@ pub(super) struct Known {
     pose_age: Option<Age>,
     pub(super) nodes: BTreeMap<String, Node>,
     pub(super) latencies_ms: VecDeque<f64>,
-    /// Reason why the connection is lost.
     pub(super) lost: Option<String>,
 }
 
@@ -199,7 +195,6 @@ impl Known {
         }
     }
 
-    /// Returns a warning if no new data came for a while before `now`.
     pub(super) fn silence(&self, now: Instant) -> Option<String> {
         let quiet = |age: Option<Age>, what: &str| {
             let age = age?.at(now);
@@ -217,8 +212,7 @@ impl Known {
         Some(&*map.name).filter(|name| !name.is_empty())
     }
 
-    /// True if the state shown belongs to a scan: between scans the tracker's counter is that of
-    /// odometry.
+    /// True if the state shown is a scan's; between scans the tracker counts odometry.
     pub(super) fn is_of_scan(&self) -> bool {
         self.pose.as_ref().is_none_or(|pose| pose.from_scan)
     }

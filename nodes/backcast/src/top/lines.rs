@@ -10,7 +10,6 @@ use super::known::{Answer, Known, Node, Place, Tracked};
 
 const PLACES: usize = 5;
 
-/// Eight heights of a bar.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
@@ -216,31 +215,35 @@ mod tests {
         known
     }
 
+    /// Checks that these lines are shown, within 80 columns.
+    fn check(messages: &[&str], lines: &[&str]) {
+        let text = plain(&known(messages), Instant::now());
+        for expected in lines {
+            assert!(text.contains(expected), "{expected:?} in\n{text}");
+        }
+        let fits = text.lines().all(|line| line.chars().count() <= 80);
+        assert!(fits, "{text}");
+    }
+
     #[test]
     fn a_graph_fits_a_terminal_of_80_columns() {
-        let known = known(&[
+        let messages = [
             r#"{"type":"snapshot","robot":"r7","nodes":[
                 {"name":"boundary_extractor","state":"degraded","received_hz":12345.6,
                  "dropped":12345,"refused":1234567,"restarts":3,"last_error":"no map"}]}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place, fit 0.90",
                 "latency_ms":20.5,"search_cpu_ms":15.0,"extract_cpu_ms":4.0,"hypotheses":[
                 {"laser":{"x":-1234.5,"y":2.0,"yaw":-3.1},"score":0.97,"probability":1.0}]}"#,
-        ]);
-        let text = plain(&known, Instant::now());
-        for expected in [
+        ];
+        let lines = [
             "r7  Unique  scan 7\n",
             "one place, fit 0.90.\n",
             "-1234.500     2.000      -177.62   0.97      100.0 %",
             "scan to pose 20.5 ms",
             "   boundary_extractor    degraded",
             "     no map\n",
-        ] {
-            assert!(text.contains(expected), "{expected:?} in\n{text}");
-        }
-        assert!(
-            text.lines().all(|line| line.chars().count() <= 80),
-            "{text}"
-        );
+        ];
+        check(&messages, &lines);
     }
 
     #[test]
@@ -254,34 +257,28 @@ mod tests {
 
     #[test]
     fn a_pose_stands_before_the_single_scan() {
-        let known = known(&[
+        let messages = [
             r#"{"type":"answer","counter":7,"verdict":"Ambiguous","says":"2 places fit",
                 "latency_ms":20.5,"search_cpu_ms":15.0,"extract_cpu_ms":4.0,"hypotheses":[]}"#,
             r#"{"type":"pose","counter":7,"from_scan":true,"state":"Doubtful",
                 "says":"the scans do not fit where the robot should be","probability":0.875,
                 "score":0.5,"latency_ms":21.5,"laser":{"x":1.5,"y":-2.0,"yaw":0.5},
                 "laser_covariance":[0.0625,0,0,0,0.01,0,0,0,0.0001]}"#,
-        ]);
-        let text = plain(&known, Instant::now());
-        for expected in [
+        ];
+        let lines = [
             "  Doubtful  scan 7\n",
             "the scans do not fit where the robot should be.\n",
             "laser: x 1.500 m, y -2.000 m, heading 28.65 deg +- 0.612 m, 1.12 deg (95 %)\n",
             "probability 87.5 %, score 0.50\n",
             "This scan alone, Ambiguous: 2 places fit.\n",
             "scan to pose 21.5 ms",
-        ] {
-            assert!(text.contains(expected), "{expected:?} in\n{text}");
-        }
-        assert!(
-            text.lines().all(|line| line.chars().count() <= 80),
-            "{text}"
-        );
+        ];
+        check(&messages, &lines);
     }
 
     #[test]
     fn poses_are_those_of_the_base_where_it_is_known_and_the_map_is_named() {
-        let known = known(&[
+        let messages = [
             r#"{"type":"snapshot","robot":"r7","map":{"map_id":"0a","name":"ground"}}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place","hypotheses":[
                 {"laser":{"x":1,"y":0,"yaw":0},"base":{"x":2,"y":0,"yaw":0}}]}"#,
@@ -289,16 +286,14 @@ mod tests {
                 "laser":{"x":1,"y":0,"yaw":0},"base":{"x":2.5,"y":0,"yaw":0},
                 "laser_covariance":[9,0,0,0,9,0,0,0,9],
                 "base_covariance":[0.0625,0,0,0,0.01,0,0,0,0]}"#,
-        ]);
-        let text = plain(&known, Instant::now());
-        for expected in [
+        ];
+        let lines = [
             "r7  Unique  on ground\n",
             "base: x 2.500 m, y 0.000 m, heading 0.00 deg +- 0.612 m",
             "   place   base x m  base y m  heading deg",
             "       1      2.000     0.000",
-        ] {
-            assert!(text.contains(expected), "{expected:?} in\n{text}");
-        }
+        ];
+        check(&messages, &lines);
     }
 
     #[test]

@@ -1,7 +1,4 @@
 //! `backcast top`: shows a running graph in the terminal, with the API of its monitor.
-//!
-//! `known` parses the monitor's messages, `lines` formats them, both pure; `source` connects to the
-//! monitor, `screen` draws.
 
 mod command;
 mod known;

@@ -19,7 +19,6 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Timeout of the monitor: its nodes report every second.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// A message, or the reason for a lost connection.
 pub(super) type Update = Result<Message, String>;
 
 pub(super) fn find(address: &str, robot: Option<&str>) -> anyhow::Result<String> {
@@ -83,7 +82,6 @@ pub(super) fn follow(address: &str, robot: &str) -> anyhow::Result<Receiver<Upda
     Ok(received)
 }
 
-/// Forwards all messages; returns when the receiver is gone.
 fn listen(address: &str, robot: &str, updates: &SyncSender<Update>) -> Result<(), String> {
     let stream = TcpStream::connect(address).map_err(|error| error.to_string())?;
     let patience = stream.set_read_timeout(Some(TIMEOUT));

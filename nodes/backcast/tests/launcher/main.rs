@@ -1,10 +1,6 @@
-//! Tests of the launcher as a process, with small shell scripts as nodes. They wait for output or
-//! for the ends of pipes, never for time.
+//! The launcher as a process, with small shell scripts as nodes.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails by panicking, helpers of tests too"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod graphs;
 mod processes;
@@ -51,7 +47,6 @@ fn waiting_graph() -> TempDir {
     folder
 }
 
-/// Ends the node that reads from the pipe.
 fn let_go(folder: &TempDir) {
     fs::write(folder.path().join("pipe"), "\n").unwrap();
 }
@@ -87,6 +82,15 @@ fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
     said_by(&mut launcher(graph(nodes).path(), args))
 }
 
+/// Asserts the exit code and a part of standard error.
+#[track_caller]
+fn assert_ends((code, _, stderr): (i32, String, String), expected: i32, part: &str) {
+    assert!(
+        code == expected && stderr.contains(part),
+        "{code}: {stderr}"
+    );
+}
+
 struct Running {
     child: Child,
     said: Lines<BufReader<ChildStderr>>,
@@ -99,7 +103,6 @@ impl Running {
         Running { child, said }
     }
 
-    /// Waits for a line of output of `node` and returns it.
     fn receive(&mut self, node: &str) -> String {
         let mark = format!("{node} | ");
         let all = self.said.by_ref().map(Result::unwrap);
@@ -115,7 +118,6 @@ impl Running {
         kill(Pid::from_raw(pid), signal).unwrap();
     }
 
-    /// Waits for the end, which must be in order.
     fn end_well(self) {
         let (status, said) = self.wait();
         assert_eq!(status.code(), Some(0), "{said}");
@@ -128,8 +130,7 @@ impl Running {
     }
 }
 
-/// Returns true if a process has ended. An orphan stays a zombie if no process reaps it, as in a
-/// container.
+/// Returns true if a process has ended, or is a zombie that no process reaps.
 fn has_ended(pid: &str) -> bool {
     fs::read_to_string(format!("/proc/{pid}/stat")).map_or(true, |stat| stat.contains(") Z "))
 }

@@ -1,5 +1,4 @@
-//! Tests of `backcast init` and `check`: descriptors that are written can be run, and impossible
-//! options are refused with the reason.
+//! Tests of `backcast init` and `check`.
 
 use std::fs;
 use std::path::Path;

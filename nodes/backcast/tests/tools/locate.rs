@@ -50,32 +50,25 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
 fn poses_are_searched_within_limits() {
     let folder = folder(&[map_message(), scan_at(7, HERE)]);
     let here = map_from_laser(HERE);
-    let (x, y, degrees) = (here.x, here.y, here.yaw.to_degrees());
-    let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
     let found = |limits: &str| pose(&objects(folder.path(), limits)[0]["laser"]);
-    assert_near(
-        found(&format!("--region '{left},{bottom} {right},{top}'")),
-        here,
-    );
-    assert_near(
+    let around = |Pose { x, y, .. }| {
+        let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
+        found(&format!("--region '{left},{bottom} {right},{top}'"))
+    };
+    let turned = |from: f64, to: f64| {
+        let degrees = here.yaw.to_degrees();
         found(&format!(
             "--headings-within {},{}",
-            degrees - 5.0,
-            degrees + 5.0
-        )),
-        here,
-    );
+            degrees + from,
+            degrees + to
+        ))
+    };
+    assert_near(around(here), here);
+    assert_near(turned(-5.0, 5.0), here);
     // The other place is 2.3 m away, more than refining moves a pose.
-    let there = map_from_laser(THERE);
-    let (x, y) = (there.x, there.y);
-    let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
-    let elsewhere = found(&format!("--region '{left},{bottom} {right},{top}'"));
+    let elsewhere = around(map_from_laser(THERE));
     assert!(elsewhere.distance_to(here) > 1.0, "{elsewhere:?}");
-    let turned = found(&format!(
-        "--headings-within {},{}",
-        degrees + 100.0,
-        degrees + 170.0
-    ));
+    let turned = turned(100.0, 170.0);
     assert!(turned.angle_to(here) > 60f64.to_radians(), "{turned:?}");
     // The pillar is three cells of 0.25 m away, and the walls are at least as far.
     assert_near(found("--robot-radius 0.7"), here);
@@ -111,15 +104,7 @@ fn an_object_shows_votes_and_hypotheses() {
     assert_eq!(votes["headings"], 360);
     assert_eq!(votes["known_heading"], Value::Null);
     let best = &object["hypotheses"][0];
-    for key in [
-        "map_id",
-        "map",
-        "laser",
-        "base",
-        "base_covariance",
-        "score",
-        "probability",
-    ] {
+    for key in "map_id map laser base base_covariance score probability".split(' ') {
         assert_eq!(best[key], object[key], "{key}");
     }
     for key in ["laser_covariance", "base_covariance"] {
@@ -146,8 +131,7 @@ fn particles_gather_around_the_place_the_same_with_a_seed() {
     assert_eq!(poses.len(), 50);
     let base = map_from_laser(HERE).then(BASE_FROM_LASER.inverse());
     for particle in poses {
-        // The place is unique, with a spread of about half a cell and a degree; the base is half a
-        // metre from the laser.
+        // A unique place spreads by half a cell and a degree, half a metre from the laser.
         assert!(pose(particle).is_within(base, 1.0, 0.2), "{particle}");
     }
     let lines = lines(folder.path(), "--particles 2");

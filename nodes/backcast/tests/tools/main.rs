@@ -1,10 +1,6 @@
-//! Tests of the tools as processes: their output, files and errors. They share one executable,
-//! because each would link the engine and all formats of recordings.
+//! Tests of the tools as processes, in one executable, as each would link all formats.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bags;
 mod convert;

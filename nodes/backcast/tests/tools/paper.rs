@@ -1,5 +1,4 @@
-//! `backcast bench paper --quick` as a process: it writes the tables and pictures that
-//! `docs/paper.md` links.
+//! `backcast bench paper --quick` writes what `docs/paper.md` links.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -105,32 +105,6 @@ fn a_lidar_tracks_as_well_as_its_middle_ring() {
 }
 
 #[test]
-fn a_recording_is_the_same_byte_for_byte_by_its_seed() {
-    let bytes = |seed: u32| {
-        let options = format!("--path '4,-10.5 5,-10.6' --people 2 --outliers 0.1 --seed {seed}");
-        std::fs::read(simulated(&options).path().join("r.mcap")).unwrap()
-    };
-    assert_eq!(bytes(7), bytes(7));
-    assert_ne!(bytes(7), bytes(8));
-}
-
-#[test]
-fn a_file_that_is_there_is_overwritten_only_by_force() {
-    let options = "--path '4,-10.5 5,-10.6' --rate 1";
-    let folder = simulated(options);
-    let bytes = || std::fs::read(folder.path().join("r.mcap")).unwrap();
-    let before = bytes();
-    let other = format!("{options} --seed 8");
-    let (code, stdout, stderr) = simulate(&folder, &other);
-    assert_eq!((code, stdout.as_str()), (2, ""), "{stderr}");
-    assert!(stderr.contains("--force"), "{stderr}");
-    assert_eq!(bytes(), before);
-    let (code, ..) = simulate(&folder, &format!("{other} --force"));
-    assert_eq!(code, 0);
-    assert_ne!(bytes(), before);
-}
-
-#[test]
 fn the_topics_are_those_of_a_robot() {
     let folder = simulated("--path '4,-10.5 5,-10.6' --rate 2 --sonar --mount 0.1,0,0");
     let recording = Recording::open(folder.path().join("r.mcap")).unwrap();

@@ -9,9 +9,6 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use engine::grid::{CellRules, Grid, GridFrame};
-use engine::reference;
-use engine::space::Space;
 use geometry::Pose;
 use map::OccupancyGrid;
 use recording::Message;
@@ -19,25 +16,25 @@ use recording::write::{Packing, RecordingWriter};
 use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 use tempfile::TempDir;
+use tests::drawn_room::{FRAME, occupancy, ranges};
 
-/// An L-shaped room with a pillar, lowest y first, in which no two poses look alike.
+/// An L-shaped room with a pillar, in which no two poses look alike.
 const ROOM: [&str; 12] = [
-    "####################",
-    "#..................#",
-    "#..................#",
-    "#...........##.....#",
-    "#...........##.....#",
-    "#..................#",
-    "#.......############",
-    "#.......#...........",
+    "#########...........",
     "#.......#...........",
     "#..#....#...........",
     "#.......#...........",
-    "#########...........",
+    "#.......#...........",
+    "#.......############",
+    "#..................#",
+    "#...........##.....#",
+    "#...........##.....#",
+    "#..................#",
+    "#..................#",
+    "####################",
 ];
 
-pub(crate) const RESOLUTION_M: f64 = 0.25;
-pub(crate) const MAP_FROM_GRID: Pose = Pose::new(3.0, -1.0, 0.5);
+pub(crate) const RESOLUTION_M: f64 = FRAME.resolution_m;
 pub(crate) const BASE_FROM_LASER: Pose = Pose::new(0.5, 0.0, 0.25);
 /// Offset from the yaw of the odometry to the heading in the map, degrees.
 pub(crate) const ODOMETRY_OFFSET_DEG: f64 = 30.0;
@@ -50,41 +47,26 @@ pub(crate) const HERE: Place = (5, 3, 40);
 pub(crate) const THERE: Place = (14, 1, 200);
 
 pub(crate) fn room() -> OccupancyGrid {
-    let cells = ROOM.iter().flat_map(|row| row.bytes());
-    let cells = cells.map(|cell| if cell == b'#' { 100 } else { 0 });
     let (width, height) = (ROOM[0].len() as u32, ROOM.len() as u32);
-    OccupancyGrid::from_parts(width, height, RESOLUTION_M, MAP_FROM_GRID, cells.collect()).unwrap()
+    let cells = occupancy(&ROOM);
+    OccupancyGrid::from_parts(width, height, RESOLUTION_M, FRAME.map_from_grid, cells).unwrap()
 }
 
 /// Returns the true pose of the laser at the centre of a cell.
 pub(crate) fn map_from_laser((x, y, heading): Place) -> Pose {
-    let frame = GridFrame {
-        resolution_m: RESOLUTION_M,
-        map_from_grid: MAP_FROM_GRID,
-    };
     let heading = (heading as f64).to_radians();
-    frame.map_from_cells(x as f64 + 0.5, y as f64 + 0.5, heading)
+    FRAME.map_from_cells(x as f64 + 0.5, y as f64 + 0.5, heading)
 }
 
 /// Returns the scan of a laser with one beam per degree all around, without noise.
 pub(crate) fn scan(second: i32, (x, y, heading): Place) -> LaserScan {
-    let room = room();
-    let (width, height) = (room.width as usize, room.height as usize);
-    let grid = Grid::new(width, height, &room.cells, CellRules::default()).unwrap();
-    let space = Space::new(360, RESOLUTION_M, width, height).unwrap();
-    let reading = |beam| {
-        let direction = space.directions.get(heading + 180 + beam);
-        let steps = reference::range(&grid, x, y, direction).map(f64::from);
-        let metres = steps.map(|steps| steps / direction.steps_per_cell * RESOLUTION_M);
-        metres.map_or(f32::INFINITY, |metres| metres as f32)
-    };
     LaserScan {
         header: header(second, "laser"),
         angle_min: -std::f32::consts::PI,
         angle_max: 179f32.to_radians(),
         angle_increment: 1f32.to_radians(),
         range_max: 30.0,
-        ranges: (0..360).map(reading).collect(),
+        ranges: ranges(&ROOM, x, y, heading),
         ..LaserScan::default()
     }
 }
@@ -141,13 +123,8 @@ pub(crate) fn mount_message() -> (&'static str, Message) {
 }
 
 fn header(second: i32, frame: &str) -> ros::Header {
-    ros::Header::new(
-        ros::Time {
-            sec: second,
-            nanosec: 0,
-        },
-        frame,
-    )
+    let (sec, nanosec) = (second, 0);
+    ros::Header::new(ros::Time { sec, nanosec }, frame)
 }
 
 /// Records the messages one second apart.
@@ -159,7 +136,6 @@ pub(crate) fn record(path: &Path, messages: &[(&str, Message)]) {
     writer.finish().unwrap();
 }
 
-/// Returns the command with these shell arguments, and with pipes for its output.
 pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_backcast"));
     command
@@ -171,7 +147,6 @@ pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
     command
 }
 
-/// Runs to the end; returns exit code, standard output and standard error.
 pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
     let Output {
         status,
@@ -180,6 +155,15 @@ pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
     } = backcast(folder, arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+/// Asserts the exit code and a part of standard error.
+#[track_caller]
+pub(crate) fn assert_ends((code, _, stderr): (i32, String, String), expected: i32, part: &str) {
+    assert!(
+        code == expected && stderr.contains(part),
+        "{code}: {stderr}"
+    );
 }
 
 pub(crate) fn recordings() -> &'static Path {
@@ -200,7 +184,6 @@ pub(crate) fn lines(folder: &Path, options: &str) -> Vec<String> {
     stdout.lines().map(ToOwned::to_owned).collect()
 }
 
-/// Like [`lines`], parsed from JSON.
 pub(crate) fn objects(folder: &Path, options: &str) -> Vec<Value> {
     let lines = lines(folder, &format!("--json {options}"));
     let parsed = lines.iter().map(|line| serde_json::from_str(line));
