@@ -96,7 +96,6 @@ struct Ring {
 }
 
 impl Ring {
-    /// Returns all echoes of a window of scans, in the frame of the last scan.
     fn echoes(&self, window: &[Taken]) -> Result<Vec<Echo>, EngineError> {
         let mut echoes = Vec::new();
         let Some(last) = window.last() else {

@@ -14,12 +14,8 @@ pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 
 pub type Image<'a> = (FieldHeader, &'a [u16]);
 
-/// Searches the maps, each in a workspace of its own. Returns the index of the leading map, or
-/// `None` if `stop` interrupted the search. The maps must be prepared for a known heading if and
-/// only if there is one.
-///
-/// # Panics
-/// If there is no map.
+/// Searches the maps, at least one, each in its workspace; returns the leading map's index, or
+/// `None` if `stop` interrupted. A known heading needs maps prepared for it.
 pub fn ask(
     maps: &[PreparedMap],
     workspaces: &mut Vec<Workspace>,
@@ -40,7 +36,6 @@ pub fn ask(
 }
 
 /// Returns the message about a scan for which the engine took `engine_ns`.
-#[must_use]
 pub fn answered<'w>(
     scan: &ScanHeader,
     map: &PreparedMap,
@@ -56,8 +51,7 @@ pub fn answered<'w>(
     (votes, &outcome.found.votes)
 }
 
-/// Returns the image of the scan that was last searched in this workspace: the intensities of all
-/// cells if the heading was known, else the upper bound of each block.
+/// Returns the image of the last search: all intensities, or the bounds of blocks.
 pub fn image<'w>(
     votes: &VotesHeader,
     vote_search: &VoteSearch,
@@ -141,7 +135,6 @@ fn votes_header(
 }
 
 /// Returns the header of the votes of a scan without a search; `map_id` is 0 if there is no map.
-#[must_use]
 pub fn unsearched(
     scan: &ScanHeader,
     outcome: SearchOutcome,
@@ -162,111 +155,28 @@ pub fn unsearched(
 #[cfg(test)]
 mod tests {
     use engine::votes::VoteSet;
-    use messages::{Pose2, Stamp};
 
     use super::*;
 
-    const MOUNT: Pose2 = Pose2 {
-        x: 0.78,
-        y: 0.0,
-        yaw: 0.1,
-    };
-
-    fn header() -> ScanHeader {
-        ScanHeader {
-            stamp: Stamp {
-                measured_ns: 1,
-                entered_ns: 2,
-                counter: 3,
-            },
-            angle_min: -1.5,
-            angle_increment: 0.5,
-            range_min_m: 0.1,
-            range_max_m: 30.0,
-            base_from_laser: MOUNT,
-            mount_known: 1,
-            ..Zeroable::zeroed()
-        }
-    }
-
-    const TERMS: Terms = Terms {
-        map_id: 77,
-        beams: BeamConfig {
-            max_beams: 90,
-            beam_arc_m: 0.5,
-        },
-        pooling: 2,
-    };
-
-    fn outcome(best: u16) -> Outcome {
-        let vote = Vote {
-            x: 1,
-            y: 2,
-            heading: 3,
-            intensity: best,
-        };
-        Outcome {
-            found: VoteSet {
-                votes: vec![vote; usize::from(best > 0)],
-                floor: best,
-                certified_floor: 7,
-                best,
-                truncated: true,
-                cut: false,
-                poses_evaluated: 99,
-            },
-            lead: 9,
-            highest_possible: 200,
-            beams_used: 11,
-            beams_silent: 4,
-            bearing_rounding: 0.001,
-            headings: 360,
-            known_heading: None,
-        }
-    }
-
     #[test]
-    fn an_answer_carries_all_that_the_engine_said() {
-        let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
-        let expected = VotesHeader {
-            maps: 0,
-            searched: 0,
-            settings: 0,
-            stamp: header().stamp,
+    fn a_search_that_was_cut_says_so() {
+        let terms = Terms {
             map_id: 77,
-            total: 1,
-            engine_ns: 1234,
-            poses_evaluated: 99,
-            outcome: SearchOutcome::Found as u32,
-            headings: 360,
-            floor: 100,
-            certified_floor: 7,
-            best: 100,
-            highest_possible: 200,
-            truncated: 1,
-            beams_used: 11,
-            heading_known: 0,
-            beams_silent: 4,
-            known_heading: 0.0,
-            bearing_rounding: 0.001,
-            base_from_laser: MOUNT,
-            mount_known: 1,
-            max_beams: 90,
+            beams: BeamConfig::default(),
             pooling: 2,
-            beam_arc_m: 0.5,
-            has_readings: 0,
-            lasers_used: 0,
         };
-        assert_eq!(votes, expected);
-        let known = Outcome {
-            known_heading: Some(0.25),
-            ..outcome(100)
+        let truncated = |cut| {
+            let found = VoteSet {
+                truncated: true,
+                cut,
+                ..VoteSet::default()
+            };
+            let outcome = Outcome {
+                found,
+                ..Outcome::default()
+            };
+            votes_header(&ScanHeader::zeroed(), &terms, &outcome, 1234).truncated
         };
-        let votes = votes_header(&header(), &TERMS, &known, 1234);
-        assert_eq!((votes.heading_known, votes.known_heading), (1, 0.25));
-        let mut cut = outcome(100);
-        cut.found.cut = true;
-        let votes = votes_header(&header(), &TERMS, &cut, 1234);
-        assert_eq!(votes.truncated, VotesHeader::CUT);
+        assert_eq!((truncated(false), truncated(true)), (1, VotesHeader::CUT));
     }
 }

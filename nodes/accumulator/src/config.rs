@@ -14,8 +14,7 @@ use crate::sonar::regions::SonarConfig;
 /// Largest number of votes in a message, for which readers of `votes` are built.
 const MAX_VOTES: u32 = 65_536;
 
-/// Default limit of steps after which a search ends, millions: about five seconds. No scan of
-/// `docs/accuracy.md` takes a tenth of that.
+/// Default work limit in millions of steps, about five seconds.
 const WORK_LIMIT: f64 = 5_000.0;
 
 /// Searches the poses at which each scan fits the map and publishes them as
@@ -32,15 +31,12 @@ pub struct Config {
     #[command(flatten)]
     pub index_cache: IndexCacheConfig,
 
-    /// Source of the heading, if it is known.
     #[command(flatten)]
     pub heading: HeadingConfig,
 
-    /// Lasers to join, and the source of their motion.
     #[command(flatten)]
     pub join: JoinConfig,
 
-    /// Settings for scans of sonars.
     #[command(flatten)]
     pub sonar: SonarConfig,
 
@@ -65,13 +61,11 @@ pub enum Searched {
 }
 
 impl Config {
-    #[must_use]
     pub fn from_command_line() -> Self {
         settings::parse(|config: &Config| &config.file, Config::check)
     }
 
-    /// Returns the settings of the localizer, with a default work limit so that even clutter does
-    /// not block the robot.
+    /// Returns the settings of the localizer, with a default work limit against clutter.
     pub(crate) fn vote_search(&self) -> VoteSearchConfig {
         let mut vote_search = self.vote_search.clone();
         vote_search.collect.work_limit.get_or_insert(WORK_LIMIT);
@@ -79,7 +73,6 @@ impl Config {
     }
 
     /// Returns the prior knowledge of the heading: none, or a known heading.
-    #[must_use]
     pub fn prior(&self) -> Prior {
         self.heading.source().prior()
     }

@@ -49,8 +49,7 @@ impl KeptScans {
         self.requests.push_back(stamp);
     }
 
-    /// Returns the next request that can be answered or has to be refused. Requests for scans that
-    /// have not arrived keep waiting.
+    /// Returns the next request that can be answered or has to be refused; others keep waiting.
     pub(crate) fn next(&mut self) -> Option<Asked> {
         let newest = self.scans.back()?.header.stamp.counter;
         let at = self

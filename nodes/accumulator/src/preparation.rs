@@ -1,6 +1,4 @@
 //! Prepares a localizer from a map and its boundary, or from each map of a set.
-//!
-//! Rays end in the cells of the boundary. The map says where poses may be and what is unknown.
 
 use engine::Map;
 use engine::grid::{CellRules, GridFrame};
@@ -23,8 +21,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// Returns the key of a map and a boundary; `None` if the boundary belongs to another map, so
-    /// that the right one is still to come.
+    /// Returns the key of a map and a boundary; `None` if the boundary belongs to another map.
     pub fn of(
         map: &MapHeader,
         (boundary, cells): (&BoundaryHeader, &[BoundaryCell]),
@@ -66,8 +63,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Copies a map of a set on which beams count up to `reach_m` metres. Its boundary is extracted
-    /// here, because topic `boundary` covers only one map.
+    /// Copies a map of a set with beams up to `reach_m` metres, and extracts its boundary.
     pub fn in_set(
         map: &MapHeader,
         occupancy: &[u8],
@@ -102,7 +98,6 @@ impl Job {
         })
     }
 
-    #[must_use]
     pub fn subject(&self) -> Subject {
         Subject::map(&self.map)
     }
@@ -193,14 +188,6 @@ mod tests {
     fn refused(expected: &str, change: impl FnOnce(&mut Pair)) {
         let error = prepare(change).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
-    }
-
-    #[test]
-    fn a_map_and_its_boundary_make_a_localizer() {
-        let prepared = prepare(|pair| pair.map.map_from_grid.x = 3.0).unwrap();
-        assert_eq!(prepared.map_id, 77);
-        assert_eq!(prepared.vote_search.frame().map_from_grid.x, 3.0);
-        assert_eq!(prepared.vote_search.grid().free_cells(), 8);
     }
 
     #[test]

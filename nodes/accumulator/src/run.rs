@@ -28,19 +28,13 @@ use inputs::Inputs;
 use outputs::Outputs;
 use supply::Supply;
 
-/// Longest time before a prepared map is used while no scan arrives; also the interval at which a
-/// scan waiting for odometry is checked.
+/// Longest time before a prepared map is used, and interval of checks for odometry.
 const TICK: Duration = Duration::from_millis(25);
 
-/// Number of readings of each kind kept to interpolate headings and poses: ten seconds of odometry
-/// at 100 Hz.
+/// Readings of each kind kept for interpolation: ten seconds of odometry at 100 Hz.
 const POSES_KEPT: usize = 1024;
 
-/// Publishes the votes of each scan until the stop flag is set.
-///
-/// # Errors
-/// If the transport fails, or the thread that prepares a map panics. A rejected scan or map is
-/// reported in `health`.
+/// Publishes the votes of each scan; a rejected scan or map is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let source = config.heading.source();
     let inputs = Inputs::open(graph, config)?;
@@ -89,7 +83,6 @@ struct Node {
     recalled: Option<Kept>,
     supply: Supply,
     maps: Vec<PreparedMap>,
-    /// Window that collects sonar echoes, if the scans are from sonars.
     sonar: Option<Sonar>,
     workspaces: Vec<Workspace>,
     readings: Readings,
@@ -102,8 +95,7 @@ struct Node {
 }
 
 impl Node {
-    /// Processes the inputs; checks for new maps between any two scans, because a search may take
-    /// long.
+    /// Processes the inputs; checks for new maps between any two scans, as a search takes long.
     fn step(&mut self, inputs: &Inputs) -> Result<Flow, AccumulatorError> {
         while !self.stopped() {
             if let Some(prepared) = self.supply.poll(inputs, &mut self.health)? {
@@ -212,8 +204,7 @@ impl Node {
         done
     }
 
-    /// Joins the scan with those of the other lasers at a common time, or adds it to the sonar
-    /// window. Returns the number of joined lasers.
+    /// Joins the scan with other lasers' or the sonar window; returns the number joined.
     fn bring(&mut self, scan: &ScanHeader) -> Result<u32, AccumulatorError> {
         let brought = self.joiner.bring()?;
         if let Some(sonar) = &mut self.sonar
@@ -306,7 +297,6 @@ impl Node {
         Ok(())
     }
 
-    /// Publishes the image of the last answered scan, if one is due.
     fn send_field(
         &mut self,
         searched: (usize, &mut Workspace),
@@ -321,8 +311,6 @@ impl Node {
         Ok(())
     }
 
-    /// Returns the image of an answered scan on the map with this index; errors are not possible
-    /// for a scan that was searched.
     fn image<'w>(
         &self,
         (map, workspace): (usize, &'w mut Workspace),

@@ -1,6 +1,4 @@
-//! Combines the recent echoes of a ring of sonars into one scan.
-//!
-//! This module looks up the robot's poses; `regions` interprets the echoes.
+//! Combines the recent echoes of a ring of sonars, at the robot's poses, into one scan.
 
 pub mod regions;
 
@@ -14,7 +12,6 @@ use crate::AccumulatorError;
 /// Largest age of odometry relative to its scan, nanoseconds.
 const MAX_AGE_NS: i64 = 200_000_000;
 
-/// Echoes of the last metres and the ranges derived from them.
 #[derive(Debug, Clone)]
 pub struct Sonar {
     window: Window,
@@ -22,7 +19,6 @@ pub struct Sonar {
 }
 
 impl Sonar {
-    #[must_use]
     pub fn new(window: Window) -> Self {
         Sonar {
             window,
@@ -43,7 +39,6 @@ impl Sonar {
         Ok(())
     }
 
-    #[must_use]
     pub fn scan(&self) -> Scan<'_> {
         regions::scan_of(&self.ranges)
     }

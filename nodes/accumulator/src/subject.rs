@@ -22,7 +22,6 @@ pub enum Subject {
 }
 
 impl Subject {
-    #[must_use]
     pub fn map(header: &MapHeader) -> Self {
         Subject::Map {
             map_id: header.map_id,

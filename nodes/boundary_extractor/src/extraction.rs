@@ -9,18 +9,12 @@ use crate::BoundaryError;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Extraction {
-    /// Header with the counts and the map id.
     pub header: BoundaryHeader,
     /// Boundary cells, ordered by (y, x).
     pub cells: Vec<BoundaryCell>,
 }
 
-/// Extracts the boundary of a map with the cells `occupancy`.
-///
-/// # Errors
-/// If the grid's sides, resolution or origin are out of range, the number of cells does not match
-/// the sides, or the map has no free cell, no occupied cell, or no occupied cell that a ray can
-/// reach.
+/// Extracts the boundary of a map with the cells `occupancy`; fails if it has none.
 pub fn extract(map: &MapHeader, occupancy: &[u8]) -> Result<Extraction, BoundaryError> {
     // The boundary does not need the frame, but its users do: an unusable map should be rejected
     // before other nodes prepare for it.

@@ -1,7 +1,4 @@
-//! Node `boundary_extractor`: finds the obstacle cells that a laser can hit, from `map` to
-//! `boundary`.
-//!
-//! `extraction` is the node without a graph; `run` receives and publishes. An unusable map is
+//! Node `boundary_extractor`: finds the obstacle cells that a laser can hit. An unusable map is
 //! refused, and the previous boundary stays published.
 
 mod config;

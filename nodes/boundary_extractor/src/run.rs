@@ -11,7 +11,6 @@ use crate::extraction::{Extraction, extract};
 /// Longest time that a late joiner waits for the boundary.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Publishes the boundary of each map until the stop flag is set.
 pub fn run(graph: &Graph) -> Result<(), BoundaryError> {
     let maps = graph.subscriber::<topic::Map>()?;
     let boundaries = graph.publisher::<topic::Boundary>()?;

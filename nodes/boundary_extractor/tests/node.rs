@@ -1,13 +1,10 @@
 //! Tests of the node as a process: maps go in, boundaries come out.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use engine::boundary;
 use engine::grid::{CellRules, Grid};
-use messages::{BoundaryCell, MapHeader, NodeState, Pose2, Stamp, topic};
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_for_next};
+use messages::{BoundaryCell, MapHeader, NodeState, Stamp, topic};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_next, wait_for_state};
 use transport::{Graph, Publisher};
 
 /// A room with a pillar; `#` occupied, `.` free.
@@ -22,7 +19,6 @@ fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-/// Publishes the map of a drawing and returns its id.
 fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
     let cells = occupancy(rows);
     let mut header = MapHeader {
@@ -30,15 +26,9 @@ fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
             counter,
             ..Stamp::default()
         },
-        map_id: 0,
         width: rows[0].len() as u32,
         height: rows.len() as u32,
         resolution_m: 0.1,
-        map_from_grid: Pose2 {
-            x: 0.0,
-            y: 0.0,
-            yaw: 0.0,
-        },
         ..MapHeader::default()
     };
     header.map_id = header.id_of(&cells);
@@ -59,11 +49,7 @@ fn each_map_is_answered_with_its_boundary() {
     let boundaries = graph.subscriber::<topic::Boundary>().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
     let node = start(&graph);
-    let (waiting, _) = wait_for_health(&graph, &health, |_| true);
-    assert_eq!(
-        NodeState::from_code(waiting.state),
-        Some(NodeState::Waiting)
-    );
+    wait_for_state(&graph, &health, NodeState::Waiting);
 
     let maps = graph.publisher::<topic::Map>().unwrap();
     let smaller = &ROOM[..4];
@@ -74,11 +60,9 @@ fn each_map_is_answered_with_its_boundary() {
         assert_eq!(header.boundary_cells, cells.len() as u64);
         assert_eq!(cells, expected(rows));
     }
-    let ready = |state: u32| state == NodeState::Ready as u32;
-    wait_for_health(&graph, &health, |report| ready(report.state));
+    wait_for_state(&graph, &health, NodeState::Ready);
     node.stop();
-    let stopped = |state: u32| state == NodeState::Stopped as u32;
-    let (last, _) = wait_for_health(&graph, &health, |report| stopped(report.state));
+    let (last, _) = wait_for_state(&graph, &health, NodeState::Stopped);
     assert_eq!((last.received, last.sent, last.refused), (2, 2, 0));
 }
 
@@ -91,21 +75,13 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     let room = publish(&maps, 5, &ROOM);
     let node = start(&graph);
     // The map was published before the node started; it is delivered to late joiners.
-    wait_for_health(&graph, &health, |report| {
-        report.state == NodeState::Ready as u32
-    });
+    wait_for_state(&graph, &health, NodeState::Ready);
 
     let empty = publish(&maps, 6, &["....", "...."]);
-    let (report, error) = wait_for_health(&graph, &health, |report| {
-        report.state == NodeState::Degraded as u32
-    });
+    let (report, error) = wait_for_state(&graph, &health, NodeState::Degraded);
     assert_eq!((report.refused, report.sent), (1, 1));
-    assert!(
-        error.starts_with(&format!(
-            "map {empty:016x} rejected: the map has no occupied cell"
-        )),
-        "{error}"
-    );
+    let expected = format!("map {empty:016x} rejected: the map has no occupied cell");
+    assert!(error.starts_with(&expected), "{error}");
     let late = graph.subscriber::<topic::Boundary>().unwrap();
     let map_id = wait_for(&graph, &late, |header, _| Some(header.map_id));
     assert_eq!(map_id, room);
@@ -115,8 +91,6 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
         (header.map_id != room).then_some(header.map_id)
     });
     assert_eq!(map_id, other);
-    wait_for_health(&graph, &health, |report| {
-        report.state == NodeState::Ready as u32
-    });
+    wait_for_state(&graph, &health, NodeState::Ready);
     node.stop();
 }

@@ -18,63 +18,23 @@ use crate::error::REFUSED;
 /// Pause between two attempts, if no server answers or all are busy.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Time without a reply after which a further attempt is made in parallel; it doubles with each
-/// open attempt, so that slow servers are not asked again and again.
-///
-/// When a server disappears, Zenoh ends the requests sent to it, except those sent while the server
-/// is being forgotten, which are never ended. Therefore one attempt must not take the whole
-/// deadline.
+/// Time without a reply after which a parallel attempt is made; it doubles with each. Zenoh never
+/// ends requests sent while a server is being forgotten.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Asks the servers of this map where a scan was taken. Repeats the request until the deadline, so
-/// that a server that dies meanwhile costs no answer.
-/// # Errors
-/// [`LocateError::Late`] if there was no answer in time, [`LocateError::Refused`] if a server
-/// rejects the request for good, or another error if the scan or an answer is invalid.
+/// Asks the servers of this map where a scan was taken, and repeats that until the deadline.
 pub fn ask(
     session: &Session,
     map: &str,
     (header, ranges): (&ScanHeader, &[f32]),
     deadline: Duration,
 ) -> Result<Received<topic::Hypotheses>, LocateError> {
-    let encoding = network_payload::encoding::<topic::Scan>();
-    let question = Question::new(session, (header, ranges), &encoding)?;
-    let (encoding, payload) = ask_bytes(session, map, &question, deadline)?;
-    let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
-    answer.rebase(monotonic_ns());
-    Ok(answer)
-}
-
-struct Question {
-    encoding: String,
-    payload: Vec<u8>,
-}
-
-impl Question {
-    fn new(
-        session: &Session,
-        (header, ranges): (&ScanHeader, &[f32]),
-        encoding: &str,
-    ) -> Result<Self, LocateError> {
-        let preamble = Preamble {
-            sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
-            sequence: header.stamp.counter,
-            clock_ns: monotonic_ns(),
-        };
-        Ok(Question {
-            encoding: encoding.to_owned(),
-            payload: network_payload::encode::<topic::Scan>(&preamble, header, ranges)?,
-        })
-    }
-}
-
-/// Returns encoding and payload of the answer to a question.
-fn ask_bytes(
-    session: &Session,
-    map: &str,
-    question: &Question,
-    deadline: Duration,
-) -> Result<(String, Vec<u8>), LocateError> {
+    let preamble = Preamble {
+        sender: u128::from_le_bytes(session.zid().to_le_bytes()) as u64,
+        sequence: header.stamp.counter,
+        clock_ns: monotonic_ns(),
+    };
+    let payload = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
     // Number of open attempts, and time of the next one.
@@ -86,7 +46,7 @@ fn ask_bytes(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            attempt(session, map, question, due - now, events.clone())?;
+            attempt(session, map, &payload, due - now, events.clone())?;
             // Deadlines are too short for this to overflow.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
@@ -95,8 +55,11 @@ fn ask_bytes(
         };
         match event {
             Some(Ok(sample)) => {
-                let payload = sample.payload().to_bytes().into_owned();
-                return Ok((sample.encoding().to_string(), payload));
+                let (encoding, payload) =
+                    (sample.encoding().to_string(), sample.payload().to_bytes());
+                let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
+                answer.rebase(monotonic_ns());
+                return Ok(answer);
             }
             Some(Err(error)) => refusal(&error).map_or(Ok(()), Err)?,
             None => {
@@ -110,7 +73,6 @@ fn ask_bytes(
 /// Result of an attempt; `None` at the end, when no further reply can arrive.
 type Event = Option<Result<Sample, ReplyError>>;
 
-/// Open attempt, until Zenoh drops it.
 struct Attempt(Sender<Event>);
 
 impl Attempt {
@@ -130,7 +92,7 @@ impl Drop for Attempt {
 fn attempt(
     session: &Session,
     map: &str,
-    question: &Question,
+    payload: &[u8],
     remaining: Duration,
     events: Sender<Event>,
 ) -> Result<(), LocateError> {
@@ -139,8 +101,8 @@ fn attempt(
     let attempt = Attempt(events);
     session
         .get(format!("{key}?deadline_ms={milliseconds}"))
-        .payload(question.payload.as_slice())
-        .encoding(Encoding::from(question.encoding.as_str()))
+        .payload(payload)
+        .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
         .timeout(remaining)
         .callback(move |reply| attempt.deliver(Some(reply.into_result())))
         .wait()
@@ -153,12 +115,4 @@ fn refusal(error: &ReplyError) -> Option<LocateError> {
     (error.encoding().to_string() == REFUSED).then(|| LocateError::Refused {
         says: String::from_utf8_lossy(&error.payload().to_bytes()).into_owned(),
     })
-}
-
-fn first_bytes(bytes: &[u8]) -> [u8; 8] {
-    let mut first = [0; 8];
-    for (to, from) in first.iter_mut().zip(bytes) {
-        *to = *from;
-    }
-    first
 }

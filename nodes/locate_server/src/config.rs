@@ -55,7 +55,6 @@ pub struct Config {
     #[command(flatten)]
     pub(crate) network: zenoh_session::Options,
 
-    /// Rules for reading the map's cells
     #[command(flatten)]
     pub(crate) cells: CellRules,
 
@@ -67,7 +66,6 @@ pub struct Config {
 }
 
 impl Config {
-    #[must_use]
     pub fn from_command_line() -> Self {
         command_line::parse(|config: &Config| {
             let headings = Directions::new(config.vote_search.headings);
@@ -75,7 +73,6 @@ impl Config {
         })
     }
 
-    /// Returns the map files with their names.
     pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
         let all = match (&self.maps, &*self.map) {
             (Some(set), _) => map::set_of_noting(set, |line| tracing::info!("{line}")),
@@ -93,8 +90,6 @@ impl Config {
         Ok(all?.select(&self.on)?.maps)
     }
 
-    /// Returns the name of the map or the set of maps.
-    #[must_use]
     pub fn name(&self) -> String {
         let folder = || {
             let path = self.maps.as_ref().or(self.map.first())?;
@@ -107,8 +102,6 @@ impl Config {
         given.unwrap_or_else(|| "map".to_owned())
     }
 
-    /// Returns the number of scans that are searched in parallel.
-    #[must_use]
     pub fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
         self.workers.map_or_else(cores, usize::from)

@@ -15,7 +15,6 @@ pub(crate) struct Counts {
     sent: AtomicU64,
     busy: AtomicU64,
     refused: AtomicU64,
-    /// Reason for the last refusal.
     problem: Mutex<Option<String>>,
 }
 

@@ -1,7 +1,5 @@
-//! Receives requests: accepts, forwards or rejects them.
-//!
-//! Zenoh calls it on its own threads, which never block here: accepted requests go into a bounded
-//! queue for the workers. The cost of each request is bounded before it is parsed.
+//! Accepts, forwards or rejects requests. Zenoh calls it on its own threads, which never block
+//! here; the cost of each request is bounded before it is parsed.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -20,7 +18,6 @@ use crate::counts::Counts;
 use crate::error::REFUSED;
 use crate::team::Team;
 
-/// Name of the parameter with the request's deadline.
 const DEADLINE: &str = "deadline_ms";
 const LONGEST_MS: u64 = 60_000;
 
@@ -58,7 +55,6 @@ impl Deadline {
     }
 }
 
-/// Receiver of requests on any thread.
 pub(crate) struct Dispatcher {
     session: Session,
     /// `backcast/locate/<map>`.
@@ -66,10 +62,8 @@ pub(crate) struct Dispatcher {
     jobs: Sender<Job>,
     returned: Sender<Job>,
     workers: usize,
-    /// Number of requests that wait or are being searched.
     busy: Arc<AtomicUsize>,
     team: Mutex<Team>,
-    /// Requests that were forwarded to other servers.
     handed_on: Mutex<Vec<Weak<Handed>>>,
     default_deadline: Duration,
     counts: Arc<Counts>,
@@ -84,8 +78,7 @@ pub(crate) struct WorkQueue {
 }
 
 impl WorkQueue {
-    /// Waits for the next request, preferring those that came back from other servers. Returns
-    /// `None` when the dispatcher is closed.
+    /// Waits for the next request, first those that came back; `None` when closed.
     pub(crate) fn next(&self) -> Option<Job> {
         let job = crossbeam::channel::select_biased! {
             recv(self.returned) -> job => job,
@@ -96,7 +89,6 @@ impl WorkQueue {
 }
 
 impl Dispatcher {
-    /// Creates a dispatcher for `workers`, each with room for `waiting` requests.
     pub(crate) fn new(
         session: &Session,
         key: &str,
@@ -128,7 +120,6 @@ impl Dispatcher {
         (Arc::new(dispatcher), work_queue)
     }
 
-    /// Returns the other servers and the number of requests forwarded to each.
     pub(crate) fn team(&self) -> MutexGuard<'_, Team> {
         // A panic cannot leave it inconsistent: each change is a single number.
         self.team.lock().unwrap_or_else(PoisonError::into_inner)
@@ -140,8 +131,7 @@ impl Dispatcher {
         handed_on.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Removes a server that is gone and takes its requests back. A request sent while Zenoh is
-    /// forgetting that server would otherwise never be answered or ended.
+    /// Removes a gone server and takes back its requests, which Zenoh may never end.
     pub(crate) fn leave(&self, other: &str) {
         self.team().leave(other);
         let handed_on: Vec<_> = self.handed_on().iter().filter_map(Weak::upgrade).collect();
@@ -172,8 +162,7 @@ impl Dispatcher {
         }
     }
 
-    /// Reads the deadline of a request; refuses the request if that is invalid, or if the request is
-    /// too long to be kept until a worker is free.
+    /// Reads the deadline of a request; refuses an invalid or too long one.
     fn open(&self, query: Query, key: Arc<str>, is_handed_on: bool) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
@@ -233,8 +222,7 @@ impl Dispatcher {
             job: Mutex::new(Some(job)),
         });
         self.handed_on().push(Arc::downgrade(&handed));
-        // The server may have left before this entry was added, and its leaving is reported only
-        // once.
+        // The server may have left before this entry was added, which is reported only once.
         if !self.team().has(&handed.other) {
             return;
         }
@@ -243,8 +231,7 @@ impl Dispatcher {
     }
 }
 
-/// Request forwarded to another server. Zenoh drops it when no answer can come any more: it was
-/// answered, the other server is gone, or the time is over.
+/// Request forwarded to another server; Zenoh drops it when no answer can come any more.
 struct Handed {
     dispatcher: Arc<Dispatcher>,
     other: String,
@@ -289,7 +276,6 @@ impl Drop for Handed {
     }
 }
 
-/// Returns true if the error concerns the request itself, not a busy server or Zenoh.
 fn is_about_the_request(encoding: &Encoding) -> bool {
     encoding.to_string() == REFUSED
 }

@@ -29,7 +29,6 @@ pub enum LocateError {
     Encoding { found: String },
     #[error("a request of {found} bytes: allowed are at most {most}")]
     TooLong { found: usize, most: usize },
-    /// A postcard request or an answer is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
     #[error("the request is not a scan in JSON")]
@@ -54,8 +53,6 @@ pub const LATE: &str = "text/plain;backcast.Late/v1";
 pub const REFUSED: &str = "text/plain;backcast.Refused/v1";
 
 impl LocateError {
-    /// Returns the encoding of the error reply for this error.
-    #[must_use]
     pub fn encoding(&self) -> &'static str {
         match self {
             LocateError::Busy { .. } => BUSY,

@@ -1,13 +1,7 @@
 //! Localization as a service: any Zenoh client sends a scan to `backcast/locate/<map>` and receives
-//! its places on that map.
-//!
-//! Any number of servers may answer for one map, on any machines. Zenoh delivers a request to one
-//! of them, which forwards it if it has no free worker; the client gets one answer. Each server
-//! accepts as many requests as its queue holds and answers "busy" beyond that; a request that
-//! cannot be answered before its deadline is not searched. Servers keep no state between requests;
-//! for tracking, run the graph.
-//!
-//! A server with several maps searches them together.
+//! its places on that map. Any number of servers may answer for one map; Zenoh delivers a request
+//! to one of them, which forwards it if it has no free worker, or answers "busy" if its queue is
+//! full. Servers keep no state between requests.
 
 mod client;
 mod config;

@@ -1,5 +1,4 @@
-//! Core of the node: turns a scan into the message that the graph's peak extractor would send.
-//! Pure: no socket, no clock, no file.
+//! Turns a scan into the message that the graph's peak extractor would send. Pure.
 
 use bytemuck::Zeroable;
 use engine::EngineError;
@@ -12,7 +11,6 @@ use engine::scan::Scan;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, searched_id};
 
-/// One or several maps that any number of threads can search.
 #[derive(Debug)]
 pub struct Locator {
     /// Ids and names of the maps, in the order of the set.
@@ -20,7 +18,6 @@ pub struct Locator {
     localizer: Localizer,
 }
 
-/// Map of a set, ready to be searched.
 #[derive(Debug)]
 pub struct SearchedMap {
     id: u64,
@@ -66,7 +63,6 @@ impl Locator {
         Locator::of_set(vec![map])
     }
 
-    /// Creates a locator that searches several maps together.
     pub fn of_set(maps: Vec<SearchedMap>) -> Result<Self, EngineError> {
         let (ids, prepared) = maps
             .into_iter()
@@ -79,13 +75,11 @@ impl Locator {
     }
 
     /// Returns the id of the map; for several maps an id that depends on the maps and their order.
-    #[must_use]
     pub fn map_id(&self) -> u64 {
         searched_id(self.maps.iter().map(|&(id, _)| id))
     }
 
     /// Returns the name of a map if there are several maps.
-    #[must_use]
     pub fn name_of(&self, map_id: u64) -> Option<&str> {
         let mut maps = self.maps.iter().filter(|_| self.maps.len() > 1);
         let found = maps.find(|&&(id, _)| id == map_id);

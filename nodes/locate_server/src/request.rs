@@ -1,8 +1,5 @@
-//! Binary form of requests and answers.
-//!
-//! A request is a scan in postcard, in the format of the bridge, or in JSON; the answer has the
-//! form of the request. Postcard is for programs with the Rust types. JSON is for all others: any
-//! language can write it, and new message fields do not break it.
+//! Binary form of requests and answers: a scan in postcard for Rust, in the format of the bridge,
+//! or in JSON for all others; the answer has the form of the request.
 
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
 use network_payload::{Preamble, Wire};
@@ -10,11 +7,8 @@ use network_payload::{Preamble, Wire};
 use crate::LocateError;
 use crate::json;
 
-/// Encoding of a request in JSON.
 pub const JSON: &str = "application/json;backcast.Scan/v1";
-/// Encoding of an answer in JSON.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v3";
-/// Encodings accepted for requests.
 pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
 /// Number of characters of an unknown encoding that an error shows.
 const SHOWN: usize = 80;
@@ -30,7 +24,6 @@ pub enum Form {
 pub struct Request {
     /// Form of the request, which is also that of the answer.
     pub form: Form,
-    /// Header as in topic `scan`.
     pub header: ScanHeader,
     pub ranges: Vec<f32>,
 }
@@ -64,8 +57,7 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
     })
 }
 
-/// Returns encoding and bytes of an answer in this form; `now_ns` is the monotonic clock at
-/// sending. Map names are included if several maps are searched.
+/// Returns encoding and bytes of an answer sent at `now_ns`, with names of several maps.
 pub fn write(
     form: Form,
     header: &HypothesesHeader,

@@ -135,10 +135,8 @@ impl Service {
         Ok(service)
     }
 
-    /// Takes the requests to all servers if this server is the leader. If several took them, Zenoh
-    /// would deliver each request to the server that routes it and to another one as well. When a
-    /// server gives them up, a request in transit is lost until its deadline; this happens only if
-    /// two servers did not know each other.
+    /// Takes the requests to all servers if this server is the leader; else Zenoh would deliver
+    /// each request to several. A request in transit at a change is lost until its deadline.
     fn follow_team(&mut self) -> Result<(), LocateError> {
         let me = self.session.zid().to_string();
         let is_first = self.dispatcher.team().is_led_by(self.since, &me);
@@ -168,7 +166,6 @@ fn answer(
     })
 }
 
-/// Maintains the dispatcher's list of servers with the same map.
 fn meet(
     session: &Session,
     key: &str,
@@ -224,7 +221,6 @@ fn tried<T>(
     Ok(attempt(key.to_owned()).map_err(KeyError::when(action, key))?)
 }
 
-/// Contents of a server's liveliness token.
 #[derive(Debug, PartialEq, Eq)]
 struct Other<'a> {
     session: &'a str,
@@ -234,7 +230,6 @@ struct Other<'a> {
 }
 
 impl<'a> Other<'a> {
-    /// Parses a token; `None` if it has another format.
     fn of(key: &'a str) -> Option<Self> {
         let mut parts = key.rsplit('/');
         let workers = parts.next()?.parse().ok()?;

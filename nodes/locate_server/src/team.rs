@@ -1,7 +1,5 @@
-//! Servers of one map and the choice of the one that takes a request. Pure.
-//!
-//! Each server knows how many requests it has forwarded to each other one, but not their total
-//! load: an overloaded server says so, and the request comes back.
+//! Servers of one map and the choice of the one that takes a request. Each knows only what it has
+//! forwarded; an overloaded one says so. Pure.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +14,6 @@ struct Other {
     /// Start time by its own clock, nanoseconds since 1970.
     since: u64,
     workers: usize,
-    /// Number of requests forwarded to it and not yet answered.
     pending: usize,
 }
 
@@ -38,16 +35,14 @@ impl Team {
         self.others.contains_key(session)
     }
 
-    /// Returns true if a server started at `since` leads, that is, takes the requests to all
-    /// servers. The oldest server leads, so that a new one never takes over from another.
+    /// True if a server started at `since` leads: the oldest, so that a new one never takes over.
     pub(crate) fn is_led_by(&self, since: u64, session: &str) -> bool {
         let mut others = self.others.iter();
         others.all(|(name, other)| (since, session) < (other.since, name.as_str()))
     }
 
-    /// Returns the server that should take the next request, and counts the request for it: the one
-    /// with the lowest load per worker, if that is below the load here, where `busy` requests share
-    /// `workers`.
+    /// Returns the server with the lowest load per worker, if that is below the load here, where
+    /// `busy` requests share `workers`, and counts a request for it.
     pub(crate) fn hand_on(&mut self, busy: usize, workers: usize) -> Option<String> {
         // With a free worker here, no other server is faster.
         if busy < workers {
@@ -63,7 +58,6 @@ impl Team {
         Some(session.clone())
     }
 
-    /// Counts a forwarded request as finished or cancelled.
     pub(crate) fn done(&mut self, session: &str) {
         if let Some(other) = self.others.get_mut(session) {
             other.pending = other.pending.saturating_sub(1);

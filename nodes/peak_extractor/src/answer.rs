@@ -37,8 +37,7 @@ struct OnMap {
     space: Option<(Extent, Space)>,
 }
 
-/// Parameters of a space: headings per turn, side of a cell and reach in metres, number of cells
-/// along x and y.
+/// Headings per turn, side of a cell and reach in metres, number of cells along x and y.
 type Extent = (u32, (f64, f64), usize, usize);
 
 #[derive(Debug, Clone, PartialEq)]
@@ -51,17 +50,12 @@ pub struct Answer<'a> {
     pub map_ids: &'a [u64],
     pub beams_header: BeamsHeader,
     pub beams: &'a [Beam],
-    /// Frame whose poses the places are.
     pub target: Target,
     /// Grid frame of the best place's map; `None` if there is no result.
     pub frame: Option<GridFrame>,
 }
 
-/// Finds the places of a scan from its votes and from the scan.
-///
-/// # Errors
-/// If the votes are rejected, see [`check`] and [`mount`], or their scan is not known; [`nothing`]
-/// is then the message to send.
+/// Finds the places of a scan from its votes; on an error, [`nothing`] is to be sent.
 pub fn answer<'w>(
     header: &VotesHeader,
     votes: &[Vote],
@@ -161,7 +155,6 @@ fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&S
 }
 
 /// Returns the answer to votes that are empty or rejected: it counts as no search.
-#[must_use]
 pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
     let header = HypothesesHeader {
         stamp: votes.stamp,
@@ -322,14 +315,14 @@ mod tests {
     }
 
     #[test]
-    fn scans_without_votes_have_no_hypotheses() {
+    fn scans_without_votes_need_no_map_and_have_no_hypotheses() {
         for (outcome, searched) in [(SearchOutcome::NoVotes, 9), (SearchOutcome::Refused, 0)] {
             let empty = VotesHeader {
                 outcome: outcome as u32,
                 best: 0,
                 ..header()
             };
-            let known = (&maps(&[0; 30 * 20]), &Scans::default());
+            let known = (&Maps::default(), &Scans::default());
             let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
             let said = answer(&empty, &[], known, &config, &mut workspace).unwrap();
             let mut expected = nothing(&empty);

@@ -1,7 +1,4 @@
-//! Validation of votes.
-//!
-//! They come from another process: a heading out of range, a cell off the map or an unexpected
-//! order would make the engine compute nonsense.
+//! Validation of votes: with a wrong heading, cell or order, the engine would compute nonsense.
 
 use std::cmp::Reverse;
 
@@ -26,10 +23,6 @@ pub struct Checked<'a> {
 }
 
 /// Validates the votes of a scan; returns `None` if the scan was refused or has no votes.
-///
-/// # Errors
-/// If the header contradicts itself or the votes, the map is not known, or a vote is outside the
-/// search space or out of order.
 pub fn check<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
@@ -45,8 +38,7 @@ pub fn check<'a>(
     check_on_map(header, votes, maps, lead).map(Some)
 }
 
-/// Validates the votes on one map, which may be one of several that were searched together; `lead`
-/// is the vote share of the best pose on all of them.
+/// Validates the votes on one map; `lead` is the best pose's vote share on all maps.
 pub fn check_on_map<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
@@ -265,17 +257,6 @@ mod tests {
         };
         let checked = check(&known, &votes, &maps).unwrap().unwrap();
         assert_eq!(checked.input.known_heading, Some(0.5));
-    }
-
-    #[test]
-    fn scans_without_votes_need_no_map() {
-        for outcome in [SearchOutcome::NoVotes, SearchOutcome::Refused] {
-            let empty = VotesHeader {
-                outcome: outcome as u32,
-                ..Zeroable::zeroed()
-            };
-            assert!(check(&empty, &[], &maps()).unwrap().is_none());
-        }
     }
 
     #[test]

@@ -21,7 +21,6 @@ pub struct Config {
 }
 
 impl Config {
-    #[must_use]
     pub fn from_command_line() -> Self {
         settings::parse(|config: &Config| &config.file, |_| Ok(()))
     }

@@ -1,10 +1,7 @@
-//! Node `peak_extractor`: finds the places where the robot may be from the votes of a scan; from
-//! `votes`, `scan` and `map` to `hypotheses` and, if requested, `particles`.
-//!
-//! Each message of `votes` is answered by exactly one of `hypotheses`, even if it is empty or
-//! refused. The engine combines votes into places; `maps` and `scans` store the data that votes
-//! refer to, `check` validates votes, `answer` builds the messages. Only `run` uses the graph and
-//! the clock.
+//! Node `peak_extractor`: finds the places where the robot may be from the votes of a scan. Each
+//! message of `votes` is answered by exactly one of `hypotheses`. `maps` and `scans` store the data
+//! that votes refer to, `check` validates votes, `answer` builds the messages. Only `run` uses the
+//! graph and the clock.
 
 pub mod answer;
 pub mod check;

@@ -1,7 +1,4 @@
-//! Last two maps, or sets of maps, ready for the fit of scans.
-//!
-//! Votes refer to cells of the map that was searched, and votes in transit during a map change
-//! belong to the previous map.
+//! Last two maps, or sets, ready for the fit of scans, as votes in transit are of the old one.
 
 use engine::EngineError;
 use engine::fit::DistanceField;
@@ -11,15 +8,11 @@ use messages::{MapHeader, MapSet};
 
 use crate::PeakError;
 
-/// Map that scans can be compared with.
 #[derive(Debug, Clone)]
 pub struct Map {
     pub map_id: u64,
-    /// Number of cells along x.
     pub width: u32,
-    /// Number of cells along y.
     pub height: u32,
-    /// Grid of the map in the map frame.
     pub frame: GridFrame,
     /// Distances to obstacles, according to the map's cell rules.
     pub distance_field: DistanceField,
@@ -29,7 +22,6 @@ pub struct Map {
 
 #[derive(Debug, Clone, Default)]
 pub struct Maps {
-    /// Known maps, newest first.
     known: Vec<Vec<Map>>,
 }
 
@@ -50,10 +42,6 @@ impl Map {
 
 impl Maps {
     /// Stores a map that is searched alone; a rejected one changes nothing.
-    ///
-    /// # Errors
-    /// If the grid's sides, resolution, origin or rules are out of range, or the number of cells
-    /// does not match the sides.
     pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
         self.replace(vec![Map::new(header, occupancy, 0.0)?]);
         Ok(())

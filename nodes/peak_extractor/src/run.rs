@@ -18,7 +18,6 @@ use crate::{Config, PeakError, particles};
 /// Longest delay of a health report.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Answers each message of votes with its hypotheses until the stop flag is set.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
     let scans = graph.subscriber::<topic::Scan>()?;

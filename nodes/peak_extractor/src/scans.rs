@@ -13,7 +13,6 @@ const KEPT: usize = 64;
 #[derive(Debug, Default)]
 pub struct Scans {
     kept: Ring<ScanHeader, f32>,
-    /// Beams of scans that were joined or deskewed.
     readings: Ring<(), Reading>,
     by_map: Ring<(), VotesHeader>,
 }
@@ -53,7 +52,6 @@ impl Scans {
         self.kept.push(header.stamp, *header, ranges);
     }
 
-    /// Stores the beams of a scan that was joined or deskewed.
     pub fn take_readings(&mut self, stamp: Stamp, readings: &[Reading]) {
         self.readings.push(stamp, (), readings);
     }

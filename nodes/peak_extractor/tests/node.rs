@@ -1,8 +1,5 @@
 //! Tests of the node as a process: votes go in, hypotheses come out.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::cell::Cell;
 
@@ -19,7 +16,7 @@ use messages::{
     Stamp, Verdict, Vote, VotesHeader, topic,
 };
 use tests::drawn_room::{FRAME, MOUNT, ROOM, grid, map_header, occupancy, ranges, scan};
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next, wait_for_state};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
 struct Searched {
@@ -86,8 +83,7 @@ impl World {
             .unwrap();
     }
 
-    /// Publishes a scan and its votes and waits for the hypotheses; fails if those of other votes
-    /// arrive.
+    /// Publishes a scan and its votes and waits for the hypotheses of these votes.
     fn ask(
         &self,
         header: VotesHeader,
@@ -119,9 +115,7 @@ impl World {
     }
 
     fn wait_until(&self, state: NodeState) {
-        wait_for_health(&self.graph, &self.health, |report| {
-            report.state == state as u32
-        });
+        wait_for_state(&self.graph, &self.health, state);
     }
 }
 
@@ -287,9 +281,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     assert_eq!(said.verdict, Verdict::Unique as u32);
     assert!(!hypotheses.is_empty());
     node.stop();
-    let (last, _) = wait_for_health(&world.graph, &world.health, |report| {
-        report.state == NodeState::Stopped as u32
-    });
+    let (last, _) = wait_for_state(&world.graph, &world.health, NodeState::Stopped);
     let counts = (last.received, last.sent, last.dropped, last.refused);
     assert_eq!(counts, (13, 6, 0, 3), "a map, six scans and their votes");
 }

@@ -37,21 +37,17 @@ pub struct Config {
     #[arg(long, value_name = "X,Y,DEGREES", allow_hyphen_values = true, value_parser = pose)]
     pub initial_pose: Option<Pose>,
 
-    /// Lasers to join, and the source of their motion.
     #[command(flatten)]
     pub join: JoinConfig,
 
-    /// Selection of the beams that are compared with the map.
     #[command(flatten)]
     pub beams: BeamConfig,
 
-    /// Settings of the fit between beams and map.
     #[command(flatten)]
     pub fit: FitConfig,
 }
 
 impl Config {
-    #[must_use]
     pub fn from_command_line() -> Self {
         settings::parse(|config: &Config| &config.file, |_| Ok(()))
     }

@@ -1,13 +1,7 @@
-//! Node `tracker`: tracks the robot's pose over time, from `scan`, `odometry`, `map` and
-//! `hypotheses` to `pose`; requests searches on `attention`.
-//!
-//! The engine decides which place is believed (`engine::tracking`). Here, `world` holds the maps,
-//! `queue` the waiting scans and answers, `message` builds the output, and `memory` stores the last
-//! pose on disk. Only `run` uses the graph and the clock.
-//!
-//! Each scan is answered by exactly one pose, in the order of the scans. If a scan needs a search,
-//! it waits for its hypotheses, and later scans wait behind it, so that the same scans, odometry
-//! and hypotheses give the same poses regardless of timing.
+//! Node `tracker`: tracks the robot's pose over time and requests searches on `attention`. Each
+//! scan is answered by exactly one pose, in the order of the scans; later scans wait behind a
+//! search, so that the poses do not depend on timing. `world` holds the maps, `queue` the waiting
+//! scans and answers. Only `run` uses the graph and the clock.
 
 mod config;
 mod error;

@@ -31,7 +31,6 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    #[must_use]
     pub(crate) fn new(file: &Path) -> Self {
         Memory { file: file.into() }
     }

@@ -13,7 +13,6 @@ pub(crate) struct Tracked {
     pub(crate) map_id: u64,
     pub(crate) map_name: MapName,
     pub(crate) report: Report,
-    /// Frame whose pose is reported.
     pub(crate) target: Target,
     pub(crate) mount_known: bool,
     /// Odometry of the target frame, and the name of the odometry frame.
@@ -22,21 +21,16 @@ pub(crate) struct Tracked {
 }
 
 impl Tracked {
-    /// Returns the pose of the odometry frame in the map.
-    #[must_use]
     pub(crate) fn map_from_odom(&self) -> Option<Pose> {
         let (at, _) = self.by_odometry?;
         Some(self.report.pose?.then(at.odom_from_target.inverse()))
     }
 
-    #[must_use]
     pub(crate) fn header(&self) -> PoseHeader {
         self.header_at(self.stamp, true)
     }
 
-    /// Extrapolates the result to the newest odometry; `None` if odometry was reset since the scan.
-    /// The odometry frame stays in place in the map.
-    #[must_use]
+    /// Extrapolates the result to the newest odometry; `None` if odometry was reset since.
     pub(crate) fn carried(&self, newest: ByOdometry, odometry_error: f64) -> Option<Self> {
         let (at, frame) = self.by_odometry?;
         let moved = newest.moved_since(&at)?;
@@ -48,7 +42,6 @@ impl Tracked {
     }
 
     /// Returns the message with this stamp, of a scan or between scans.
-    #[must_use]
     pub(crate) fn header_at(&self, stamp: Stamp, from_scan: bool) -> PoseHeader {
         let report = &self.report;
         let map_from_target = report.pose.unwrap_or_default();
@@ -86,8 +79,6 @@ impl Tracked {
     }
 }
 
-/// Returns the message of a scan about which nothing can be said.
-#[must_use]
 pub(crate) fn nothing(stamp: Stamp, map_id: u64, reason: TrackReason) -> PoseHeader {
     PoseHeader {
         stamp,

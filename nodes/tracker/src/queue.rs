@@ -28,7 +28,6 @@ impl Scans {
         u64::from(is_full)
     }
 
-    /// Removes the next scan and passes it to `take`.
     pub(crate) fn pop<R>(&mut self, take: impl FnOnce(&ScanHeader, &[f32]) -> R) -> Option<R> {
         let (header, room) = self.waiting.pop_front()?;
         let taken = take(&header, &room);
@@ -52,8 +51,7 @@ pub(crate) struct Answers {
 }
 
 impl Answers {
-    /// Adds a search result. The first search of a scan counts: asked again, a searcher may answer
-    /// that it no longer keeps that scan.
+    /// Adds a search result; only the first of a scan counts, as its votes may be forgotten.
     pub(crate) fn push(&mut self, header: &HypothesesHeader, hypotheses: &[Hypothesis]) {
         let (of, searched) = (header.stamp, header.searched);
         let is_late = |before: &Answer| searched == 0 || searched == before.searched;

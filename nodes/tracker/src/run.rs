@@ -31,17 +31,11 @@ use turn::{Since, Turn};
 /// Interval at which a scan waiting for odometry is checked while nothing arrives.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Interval for saving the last pose.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
 const OTHER_SETTINGS: &str = "accumulator and peak_extractor read scans by other settings than this \
     tracker, so what they find is left out: start all three with the same --settings FILE";
 
-/// Tracks the robot until the stop flag is set.
-///
-/// # Errors
-/// If the transport fails, or the last pose cannot be saved at the end. A scan, map or saved pose
-/// that cannot be used is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
     let inputs = Inputs::open(graph)?;
     let memory = config.remember.as_deref().map(Memory::new);
@@ -93,7 +87,6 @@ struct Node {
     settings: u64,
     /// Newest scans, and the motion of the robot.
     joiner: Joiner,
-    /// Maps, with the current scan on each of them.
     worlds: Worlds,
     served: Option<Served>,
     /// Id of the map of a set that is displayed.
@@ -108,8 +101,7 @@ struct Node {
     asked: Option<Stamp>,
     /// Processes that could answer when a search was last requested.
     searchers: Searchers,
-    /// True if a search timed out and no search has been answered since: further ones are requested
-    /// but not awaited, so that poses continue.
+    /// True if a search timed out and none was answered since: further ones are not awaited.
     is_silent: bool,
     /// Odometry of the target frame at the previous scan.
     before: Option<ByOdometry>,
@@ -181,8 +173,7 @@ impl Node {
         Ok(())
     }
 
-    /// Continues with the current scan or the next one; returns true if there is more to do at
-    /// once.
+    /// Continues with the current scan or the next; returns true if there is more to do.
     fn go_on(&mut self, inputs: &Inputs) -> Result<bool, TrackerError> {
         match self.turn {
             Turn::Idle => self.next_scan(),
@@ -217,7 +208,6 @@ impl Node {
         Ok(true)
     }
 
-    /// Tracks the robot to a scan, and requests a search if one is needed.
     fn begin(&mut self, inputs: &Inputs, scan: &ScanHeader) -> Result<(), TrackerError> {
         let start = Instant::now();
         self.turn = Turn::Idle;

@@ -12,13 +12,11 @@ use messages::{MapHeader, MapName, MapSet, Transition, searched_id};
 /// Headings per turn for which beams are selected, as in the search by default.
 const HEADINGS: u32 = 360;
 
-/// Map that scans can be compared with.
 struct World {
     map_id: u64,
     /// Name of the map in its set; empty for a map that is served alone.
     name: MapName,
     distance_field: DistanceField,
-    /// Space for which beams are selected.
     space: Space,
     /// End points of the last scan's beams, in cells.
     ends: Ends,
@@ -47,11 +45,6 @@ impl World {
 }
 
 impl Worlds {
-    /// Prepares one map.
-    ///
-    /// # Errors
-    /// If the grid's sides, resolution, origin or rules are out of range, or the number of cells
-    /// does not match the sides.
     pub(crate) fn of_map(header: &MapHeader, occupancy: &[u8]) -> Result<Self, EngineError> {
         Ok(Worlds {
             maps: vec![World::new(header, occupancy, 0.0)?],
@@ -85,7 +78,6 @@ impl Worlds {
         map.map_or(MapName::new(""), |map| map.name)
     }
 
-    /// Returns the id of a search on all of the maps.
     pub(crate) fn searched(&self) -> u64 {
         searched_id(self.maps.iter().map(|map| map.map_id))
     }
@@ -95,8 +87,7 @@ impl Worlds {
         number.map(|number| number as u32)
     }
 
-    /// Returns the number of the map with this name; names are unique in a set, and a map keeps its
-    /// name when it is edited.
+    /// Returns the number of the map with this name, which is unique and kept by edits.
     pub(crate) fn number_of_name(&self, name: MapName) -> Option<u32> {
         let number = self.maps.iter().position(|map| map.name == name);
         number.map(|number| number as u32)

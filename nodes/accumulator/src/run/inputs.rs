@@ -12,12 +12,9 @@ use crate::config::Searched;
 pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) maps: Subscriber<topic::Map>,
-    /// Sets of maps that are searched together.
     pub(super) sets: Subscriber<topic::Maps>,
     pub(super) boundaries: Subscriber<topic::Boundary>,
-    /// Requests for a search region.
     pub(super) regions: Subscriber<topic::Region>,
-    /// Requests for scans to search; `None` if all scans are searched.
     pub(super) attention: Option<Subscriber<topic::Attention>>,
     odometry: Subscriber<topic::OdometryTopic>,
     truths: Option<Subscriber<topic::GroundTruthTopic>>,
@@ -55,7 +52,6 @@ impl Inputs {
         always.into_iter().chain(truths).chain(attention).collect()
     }
 
-    /// Records all odometry and ground truth received.
     pub(super) fn take_poses(
         &self,
         joiner: &mut Joiner,

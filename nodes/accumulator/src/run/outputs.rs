@@ -8,14 +8,15 @@ use messages::{
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
 use crate::Config;
-use crate::pace::Pace;
 
 pub(super) struct Outputs {
     votes: Publisher<topic::Votes>,
     by_map: Publisher<topic::VotesByMap>,
     readings: Publisher<topic::Readings>,
     field: Publisher<topic::Field>,
-    field_pace: Pace,
+    field_period_ns: i64,
+    /// Time at which the next image is due; `None` before the first one.
+    field_due_ns: Option<i64>,
     /// Id of the settings by which scans are read.
     settings: u64,
 }
@@ -28,7 +29,8 @@ impl Outputs {
             // Enough for the default number of beams; the publisher grows for more.
             readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
-            field_pace: Pace::new(config.field_rate),
+            field_period_ns: (1e9 / config.field_rate) as i64,
+            field_due_ns: None,
             settings: reading_id(&config.join, &config.vote_search.votes.beams),
         })
     }
@@ -85,7 +87,13 @@ impl Outputs {
 
     /// Returns true if `field` has a subscriber and an image is due, and counts it as sent.
     pub(super) fn is_field_due(&mut self) -> bool {
-        self.field.has_subscribers() && self.field_pace.pass(monotonic_ns())
+        let now_ns = monotonic_ns();
+        let is_due = self.field_due_ns.is_none_or(|due| now_ns >= due);
+        if is_due && self.field.has_subscribers() {
+            self.field_due_ns = Some(now_ns.saturating_add(self.field_period_ns));
+            return true;
+        }
+        false
     }
 
     pub(super) fn field(

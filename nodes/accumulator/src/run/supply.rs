@@ -1,6 +1,8 @@
 //! Preparation of localizers from received maps and boundaries.
 
+use std::any::Any;
 use std::error::Error;
+use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use engine::limits::Region;
@@ -11,16 +13,13 @@ use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use super::inputs::Inputs;
 use super::set::Set;
-use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
 use crate::subject::{Refused, Subject};
 use crate::{AccumulatorError, Config};
 
-/// Received maps and the state of their preparation. One map or all maps of a set are prepared at a
-/// time, always for the newest input.
+/// Received maps and the state of their preparation, one at a time for the newest input.
 pub(super) struct Supply {
     config: VoteSearchConfig,
-    /// Search region unless another one is requested.
     configured: Option<Region>,
     prior: Prior,
     cache: Option<IndexCache>,
@@ -28,7 +27,6 @@ pub(super) struct Supply {
     boundary: Option<Sample<topic::Boundary>>,
     /// Set of maps, which takes precedence; `map` is then the one of its maps that is displayed.
     set: Option<Set>,
-    /// Order to prepare next.
     wanted: Option<Order>,
     under_way: Option<UnderWay>,
     /// Order of the maps returned last.
@@ -44,7 +42,7 @@ struct Order {
 struct UnderWay {
     order: Order,
     since: Instant,
-    work: Background<Prepared>,
+    work: JoinHandle<Prepared>,
 }
 
 /// All ordered maps with allowed poses, or the map that cannot be used.
@@ -71,12 +69,7 @@ impl Supply {
         }
     }
 
-    /// Processes new inputs and starts or ends a preparation; returns the maps to search from now
-    /// on once they are prepared.
-    ///
-    /// # Errors
-    /// If the transport or a preparing thread fails. A rejected map or boundary is reported in
-    /// `health`.
+    /// Processes new inputs and prepares maps; returns those to search from now on.
     pub(super) fn poll(
         &mut self,
         inputs: &Inputs,
@@ -117,8 +110,7 @@ impl Supply {
         Ok(came > 0)
     }
 
-    /// Applies a request for a search region; an empty one restores the configured region. An
-    /// invalid one is refused and changes nothing.
+    /// Applies a requested search region; empty restores the configured one, invalid is refused.
     fn on_region(
         &mut self,
         regions: &Subscriber<topic::Region>,
@@ -193,8 +185,11 @@ impl Supply {
         };
         let map_id = order.keys.first().map_or(0, |key| key.map_id);
         let outcome = work
-            .finish()
-            .map_err(|reason| AccumulatorError::PreparationDied { map_id, reason })?;
+            .join()
+            .map_err(|panic| AccumulatorError::PreparationDied {
+                map_id,
+                reason: words_of(&*panic),
+            })?;
         let all = match outcome {
             Ok(all) => all,
             Err(refused) => {
@@ -221,8 +216,7 @@ impl Supply {
         Ok(Some(maps))
     }
 
-    /// Refuses the region instead of the maps if the new region leaves no pose of maps that could
-    /// be searched before.
+    /// Refuses the region, not the maps, if it leaves no pose of maps searched before.
     fn refuse_order(
         &mut self,
         order: &Order,
@@ -265,7 +259,9 @@ impl Supply {
         }
         let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
         let prepare = move || prepare(jobs, &config, prior, cache.as_ref());
-        let work = Background::start("prepare map", prepare);
+        let work = thread::Builder::new()
+            .name("prepare map".into())
+            .spawn(prepare);
         let map_id = order.keys.first().map_or(0, |key| key.map_id);
         self.under_way = Some(UnderWay {
             order,
@@ -285,8 +281,13 @@ fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
     Region::new(&corners).map(Some)
 }
 
-/// Reports problems with a cached index and saves a new one on another thread, so that scans are
-/// answered meanwhile.
+fn words_of(panic: &(dyn Any + Send)) -> String {
+    let literal = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let words = literal.or_else(|| panic.downcast_ref::<String>().cloned());
+    words.unwrap_or_else(|| "it panicked without a message".into())
+}
+
+/// Reports problems with a cached index and saves a new one on another thread.
 fn keep(kept: Kept) {
     let warn = |problem: &dyn Error| tracing::warn!("cached index: {}", with_causes(problem));
     if let Some(problem) = kept.problem {
@@ -294,7 +295,7 @@ fn keep(kept: Kept) {
     }
     let Some(unsaved) = kept.unsaved else { return };
     let save = move || unsaved.save().unwrap_or_else(|problem| warn(&problem));
-    if let Err(problem) = Background::start("keep index", save) {
+    if let Err(problem) = thread::Builder::new().name("keep index".into()).spawn(save) {
         warn(&problem);
     }
 }

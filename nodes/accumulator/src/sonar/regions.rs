@@ -17,15 +17,13 @@ use geometry::{Pose, angle_between};
 
 pub use window::{SonarConfig, Window};
 
-/// Number of bearings per turn at which regions are searched, and of the scans made here, which
-/// begin behind the robot: one per degree.
+/// Number of bearings per turn of the search and of the scans made, from behind the robot.
 pub const BEARINGS: usize = 360;
 
 /// Angle from one bearing to the next, in radians.
 const STEP: f64 = TAU / BEARINGS as f64;
 
 /// Makes the scan with ranges at these bearings, in metres.
-#[must_use]
 pub fn scan_of(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -PI,
@@ -46,8 +44,7 @@ pub struct Echo {
 }
 
 impl Echo {
-    /// Returns the echoes of a scan whose transducers are all at the laser's position.
-    /// `scan_from_laser` is the pose of the laser in the frame of the scan that is made.
+    /// Returns the echoes of a scan, with the laser's pose in the frame of the scan that is made.
     pub fn of<'s>(
         scan: &'s Scan<'_>,
         scan_from_laser: Pose,
@@ -69,8 +66,7 @@ impl Echo {
         (x + self.range_m * cos, y + self.range_m * sin)
     }
 
-    /// Distance from the frame's origin to a wall whose normal has this bearing, if that wall made
-    /// the echo, in metres.
+    /// Distance in metres to a wall with a normal of this bearing, if that wall made the echo.
     fn depth(&self, bearing: f64) -> f64 {
         let (x, y) = self.point(bearing);
         x * bearing.cos() + y * bearing.sin()
@@ -82,7 +78,6 @@ impl Echo {
     }
 }
 
-/// Definition of a region of constant depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegionConfig {
     /// Half of the width of a cone, in radians.
@@ -91,8 +86,7 @@ pub struct RegionConfig {
     pub depth_m: f64,
     /// Smallest number of echoes of a region.
     pub least_echoes: usize,
-    /// Largest uncertainty of the bearing: the width of all bearings at which the depths agree, in
-    /// radians. Readings repeated from one place agree everywhere in the cone.
+    /// Width of all bearings at which the depths agree in radians, at most.
     pub known_within: f64,
 }
 
@@ -107,18 +101,15 @@ impl Default for RegionConfig {
     }
 }
 
-/// Echoes of one wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Bearing of the wall's normal, away from the robot, in radians.
     pub bearing: f64,
-    /// Distance from the frame's origin to the wall along that bearing, in metres: the mean of its
-    /// echoes, which agree.
+    /// Mean distance in metres from the frame's origin to the wall along that bearing.
     pub depth_m: f64,
     pub echoes: Vec<usize>,
 }
 
-/// Echoes whose depths agree at a bearing.
 #[derive(Debug, Default)]
 struct Group {
     bearing: usize,
@@ -127,12 +118,8 @@ struct Group {
     spread_m: f64,
 }
 
-/// Finds the regions of constant depth among echoes, those with most echoes first; each echo is in
-/// at most one.
-///
-/// Along the normal of a wall, all its echoes have the same depth, from any pose of the robot.
-/// Along other bearings they differ once the robot has moved or turned.
-#[must_use]
+/// Finds the regions of constant depth, those with most echoes first. Along the normal of a wall,
+/// its echoes have the same depth from any pose; along other bearings, they differ.
 pub fn regions(echoes: &[Echo], config: &RegionConfig) -> Vec<Region> {
     let mut left: Vec<usize> = (0..echoes.len()).collect();
     let mut regions = Vec::new();
@@ -175,8 +162,7 @@ fn largest(echoes: &[Echo], left: &[usize], config: &RegionConfig) -> Group {
     best
 }
 
-/// Makes the region of a group if it determines the wall's bearing, which is the middle of the
-/// bearings at which the group agrees.
+/// Makes the region of a group at the middle of its bearings, if these are few enough.
 fn region(echoes: &[Echo], group: Group, config: &RegionConfig) -> Option<Region> {
     let agrees = |offset: i64| {
         let bearing = (group.bearing as i64 + offset).rem_euclid(BEARINGS as i64);
@@ -204,9 +190,7 @@ fn region(echoes: &[Echo], group: Group, config: &RegionConfig) -> Option<Region
     })
 }
 
-/// Makes a scan of the echoes that are in regions, each at the point where its region met the wall.
-/// Ranges in metres, NaN at bearings without any.
-#[must_use]
+/// Makes a scan of the echoes where their regions met the wall: metres, else NaN.
 pub fn at_regions(echoes: &[Echo], regions: &[Region]) -> Vec<f32> {
     let mut ranges = Ranges::default();
     for region in regions {
@@ -217,12 +201,9 @@ pub fn at_regions(echoes: &[Echo], regions: &[Region]) -> Vec<f32> {
     ranges.metres()
 }
 
-/// Makes a scan of the echoes, each at all bearings within `half_width` radians of its transducer's
-/// axis, so that a pose gets its vote wherever in the cone the surface is: Eq. 1 with a box instead
-/// of the Gaussian over φ. If several echoes are at a bearing, the one nearest to its axis counts,
-/// on a tie the shortest. With half-width 0, all echoes are on their axes. Ranges in metres, NaN at
-/// bearings without any.
-#[must_use]
+/// Makes a scan of the echoes, each at all bearings within `half_width` radians of its axis: Eq. 1
+/// with a box instead of the Gaussian over φ. At a bearing, the echo nearest to its axis counts, on
+/// a tie the shortest. Ranges in metres, NaN at bearings without any.
 pub fn spread(echoes: &[Echo], half_width: f64) -> Vec<f32> {
     let reach = (half_width / STEP)
         .floor()

@@ -1,9 +1,6 @@
 //! Tests of the accumulator as a process.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod known_heading;
 mod node;

@@ -1,5 +1,6 @@
 //! Tests of the node as a process: its votes are compared with those of the engine.
 
+use engine::beams::BeamConfig;
 use engine::vote_search::{Outcome, Prior};
 use messages::{
     BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, RegionHeader,
@@ -56,18 +57,29 @@ fn searched(rows: &[&str], ranges: &[f32]) -> Outcome {
 fn assert_equals(votes: &VotesHeader, poses: &[Vote], outcome: &Outcome) {
     let found = &outcome.found;
     assert_eq!(poses, found.votes);
-    assert_eq!(votes.outcome, SearchOutcome::Found as u32);
-    let levels = (votes.floor, votes.certified_floor, votes.best);
-    let expected = (found.floor, found.certified_floor, found.best);
-    assert_eq!(
-        levels,
-        (expected.0.into(), expected.1.into(), expected.2.into())
-    );
-    let beams = (votes.beams_used, votes.beams_silent);
-    assert_eq!(beams, (outcome.beams_used, outcome.beams_silent));
-    assert_eq!(votes.highest_possible, outcome.highest_possible);
-    assert_eq!(votes.headings, outcome.headings);
-    assert_eq!(votes.bearing_rounding, outcome.bearing_rounding);
+    let expected = VotesHeader {
+        total: poses.len() as u64,
+        poses_evaluated: found.poses_evaluated,
+        outcome: SearchOutcome::Found as u32,
+        headings: outcome.headings,
+        floor: found.floor.into(),
+        certified_floor: found.certified_floor.into(),
+        best: found.best.into(),
+        highest_possible: outcome.highest_possible,
+        truncated: found.truncated.into(),
+        beams_used: outcome.beams_used,
+        beams_silent: outcome.beams_silent,
+        heading_known: 0,
+        known_heading: 0.0,
+        bearing_rounding: outcome.bearing_rounding,
+        base_from_laser: MOUNT,
+        mount_known: 1,
+        max_beams: 180,
+        pooling: 1,
+        beam_arc_m: BeamConfig::default().beam_arc_m,
+        ..*votes
+    };
+    assert_eq!(*votes, expected);
 }
 
 fn is_refused(votes: &VotesHeader) -> bool {
@@ -87,11 +99,8 @@ fn votes_are_those_of_the_engine() {
         let (votes, poses) = world.ask(&ranges);
         let outcome = searched(&ROOM, &ranges);
         assert_equals(&votes, &poses, &outcome);
-        assert_eq!((votes.map_id, votes.heading_known), (id(&ROOM), 0));
-        assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
-        assert_eq!(votes.total, poses.len() as u64);
+        assert_eq!(votes.map_id, id(&ROOM));
         assert!(votes.engine_ns > 0 && votes.poses_evaluated > 0);
-        assert_eq!((votes.max_beams, votes.pooling), (180, 1));
         let best = poses[0];
         let found = (i64::from(best.x), i64::from(best.y), best.heading.into());
         assert_eq!(found, (x, y, heading));
@@ -135,8 +144,7 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
         assert!(vote.intensity <= bounds[pixel as usize], "{vote:?}");
     }
 
-    // The next image is due in ten seconds, but each scan is answered. An image would be sent
-    // before the answer to the next scan.
+    // The next image is due in ten seconds and would be sent before the answer.
     for _ in 0..3 {
         world.ask(&ranges);
     }
@@ -200,8 +208,7 @@ fn scans_that_never_came_are_counted_as_dropped() {
     node.stop();
 }
 
-/// Asks until a scan is matched with `map_id`; until then each answer must be that of the map named
-/// in it.
+/// Asks until a scan is matched with `map_id`; each answer must be that of the map it names.
 fn ask_until_swapped(world: &World, map_id: u64) {
     let scanned = ranges(&CHANGED, 3, 3, 40);
     loop {
@@ -293,7 +300,6 @@ fn a_map_that_is_taken_back_is_in_use_again() {
     node.stop();
 }
 
-/// Publishes a request for a region with corners in grid cells.
 pub(crate) fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
     let corner = |&(x, y): &(f64, f64)| {
         let side = FRAME.resolution_m;
@@ -301,14 +307,8 @@ pub(crate) fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]
         Corner { x, y }
     };
     let corners: Vec<Corner> = corners.iter().map(corner).collect();
-    regions
-        .send(
-            RegionHeader {
-                stamp: Stamp::default(),
-            },
-            &corners,
-        )
-        .unwrap();
+    let stamp = Stamp::default();
+    regions.send(RegionHeader { stamp }, &corners).unwrap();
 }
 
 #[test]

@@ -1,8 +1,5 @@
 //! Tests of the server as a process, over loopback connections.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod handed_on;
 mod set;
@@ -77,7 +74,6 @@ fn endpoint(isolated: &Isolated) -> String {
     format!("tcp/{}:7447", isolated.name().loopback())
 }
 
-/// Opens a client session that is connected to all of these servers.
 fn caller(servers: &[&Server]) -> Session {
     let endpoints: Vec<_> = servers.iter().map(|server| server.endpoint()).collect();
     session(&[], &endpoints)
@@ -252,8 +248,7 @@ fn beyond_its_queue_a_server_is_busy() {
     server.process.stop();
 }
 
-/// Sends requests on several threads until `stop` is set, each until it is answered, and counts the
-/// answers.
+/// Sends requests on several threads until `stop` is set, and counts the answers.
 fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
     let scans = scans();
     std::thread::scope(|scope| {

@@ -10,8 +10,7 @@ use crate::check::{check_on_map, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
 
-/// Finds the places from votes on several maps that were searched together, with the same result as
-/// the engine's `Localizer` in one process.
+/// Finds the places on several maps, as the engine's `Localizer` in one process.
 pub(super) fn on_several<'w>(
     header: &VotesHeader,
     votes: &[Vote],

@@ -56,7 +56,6 @@ impl Node {
         Ok(())
     }
 
-    /// Forgets the pose: the next scan is searched as after a start.
     fn start_over(&mut self) -> Result<(), TrackerError> {
         tracing::info!("asked to start over: the pose is forgotten");
         if let Turn::Search { scan, .. } = self.turn {
@@ -73,8 +72,7 @@ impl Node {
         Ok(())
     }
 
-    /// Applies the initial pose, if there is one. Returns true if the tracker is set to a believed
-    /// pose at the current scan and tracks from there.
+    /// Applies the initial pose; returns true if it is believed at the current scan.
     pub(super) fn begin_at_initial(&mut self) -> bool {
         let Some(Initial { base, is_believed }) = self.initial.take() else {
             return false;

@@ -7,7 +7,6 @@ pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) odometry: Subscriber<topic::OdometryTopic>,
     pub(super) maps: Subscriber<topic::Map>,
-    /// Sets of maps that are tracked on together.
     pub(super) sets: Subscriber<topic::Maps>,
     pub(super) hypotheses: Subscriber<topic::Hypotheses>,
     pub(super) initial_poses: Subscriber<topic::InitialPoseTopic>,

@@ -13,7 +13,6 @@ use crate::message::Tracked;
 use crate::world::Worlds;
 
 impl Node {
-    /// Uses a map that is served alone.
     pub(super) fn take_map(
         &mut self,
         header: &MapHeader,
@@ -29,7 +28,6 @@ impl Node {
         self.start_on(served, worlds.map_err(|error| (header.map_id, error)))
     }
 
-    /// Uses maps that are served together.
     pub(super) fn take_set(
         &mut self,
         header: &MapsHeader,
@@ -67,8 +65,7 @@ impl Node {
         }
     }
 
-    /// Resets the tracker for new maps but keeps the pose as expected pose, since most new maps
-    /// show the same building.
+    /// Resets the tracker for new maps; the pose is expected, as most show the same building.
     fn start_anew(&mut self) {
         let believed = self
             .last
@@ -118,7 +115,6 @@ impl Node {
         last.unwrap_or(0)
     }
 
-    /// Returns the number of the map that is displayed.
     pub(super) fn shown_map(&self) -> u32 {
         let shown = self.shown.and_then(|map_id| self.worlds.number(map_id));
         shown.unwrap_or_else(|| self.current_map())

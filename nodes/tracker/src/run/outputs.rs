@@ -6,9 +6,7 @@ use transport::{Graph, Peers, Publisher, TransportError, monotonic_ns};
 pub(super) struct Outputs {
     poses: Publisher<topic::Tracked>,
     attention: Publisher<topic::Attention>,
-    /// Largest number of extrapolated poses per second.
     rate: f64,
-    /// Time of the last pose sent.
     sent_ns: i64,
 }
 

@@ -10,8 +10,7 @@ use super::outputs::Outputs;
 use super::turn::{SEARCH_WAIT, Since, Turn};
 use super::{Node, TrackerError};
 
-/// Processes that take part in a search: those that receive requests, and those that send results.
-/// A search ends with any of them, and a process that replaces it does not know the request.
+/// Processes that take part in a search, which ends with any of them.
 #[derive(Debug, Default)]
 pub(super) struct Searchers {
     asked: Peers,
@@ -38,8 +37,7 @@ impl Node {
         self.outputs.ask(stamp)
     }
 
-    /// Continues with a scan once the search for scan `of` is answered, or will not be; returns
-    /// true if it did.
+    /// Continues with a scan once scan `of` is searched, or will not be; true if it did.
     pub(super) fn wait_for_search(
         &mut self,
         inputs: &Inputs,

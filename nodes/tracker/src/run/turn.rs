@@ -6,14 +6,12 @@ use messages::{ScanHeader, Stamp};
 
 use super::TICK;
 
-/// Longest wait for a search: even on a slow computer, the slowest search of the largest map takes
-/// less. Later results are lost.
+/// Longest wait for a search: even on a slow computer, the slowest one takes less.
 pub(super) const SEARCH_WAIT: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Since {
     at: Instant,
-    /// Number of checks at that time.
     looks: u32,
 }
 
@@ -23,9 +21,8 @@ impl Since {
         Since { at, looks }
     }
 
-    /// Returns true if the wait is over by the clock and by the number of checks since its start,
-    /// at least two. After a suspend the clock alone would say so, although no process had time to
-    /// send anything.
+    /// True if the wait is over by the clock and after two checks; after a suspend, the clock alone
+    /// would say so.
     pub(super) fn is_over(&self, wait: Duration, looks: u32) -> bool {
         let least = (wait.as_millis() / TICK.as_millis() / 4).max(2) as u32;
         self.at.elapsed() >= wait && looks.wrapping_sub(self.looks) >= least

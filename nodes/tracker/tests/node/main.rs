@@ -1,8 +1,5 @@
 //! Tests of the node as a process: scans, odometry and search results go in, poses come out.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod world;
 
@@ -31,12 +28,7 @@ fn a_pose_that_nobody_searched_for_is_not_unique() {
         assert!(was_asked && !pose.is_unique(), "{number}: {pose:?}");
     }
     // A search without results still counts as a search.
-    let states = [22, 24, 26].map(|x| world.step(x, id, None).pose.state);
-    assert_eq!(
-        states.last(),
-        Some(&(TrackState::Unique as u32)),
-        "{states:?}"
-    );
+    assert!(world.is_found(&[22, 24, 26], id, None));
     node.stop();
 }
 
@@ -80,15 +72,8 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
             let error = String::from_utf8_lossy(error);
             error.contains("the robot is searched everywhere") && error.contains("the last pose in")
         });
-        let states = (6..30)
-            .step_by(2)
-            .map(|x| world.step(x, id, Some(id)).pose.state);
-        assert_eq!(
-            states.last(),
-            Some(TrackState::Unique as u32),
-            "{}",
-            file.display()
-        );
+        let columns: Vec<usize> = (6..30).step_by(2).collect();
+        assert!(world.is_found(&columns, id, Some(id)), "{file:?}");
         match kept {
             true => node.stop(),
             // A failure to write at the end gives a non-zero exit code.
@@ -99,11 +84,8 @@ fn a_file_of_the_last_pose_that_cannot_be_used_is_named_and_the_robot_is_searche
         }
         assert_eq!(file.is_file(), kept);
     }
-    assert!(
-        std::fs::read_to_string(&cut)
-            .unwrap()
-            .contains("map_from_base")
-    );
+    let saved = std::fs::read_to_string(&cut).unwrap();
+    assert!(saved.contains("map_from_base"), "{saved}");
 }
 
 fn hall(name: &'static str) -> Drawn {
@@ -113,12 +95,10 @@ fn hall(name: &'static str) -> Drawn {
     }
 }
 
-/// Returns two floors that look alike.
 fn floors() -> Vec<Drawn> {
     vec![hall("ground"), hall("first")]
 }
 
-/// Returns the floors after the one with this number was edited.
 fn edited(number: usize) -> Vec<Drawn> {
     let mut floors = floors();
     floors[number].rows = with_a_box(&HALL);
@@ -132,12 +112,7 @@ fn what_was_found_on_the_set_before_makes_no_pose_unique() {
     let node = world.start(&[]);
     let before = searched(&floors());
     let ground = ids(&floors())[0];
-    let states = [6, 8, 10, 12].map(|x| world.step(x, before, Some(ground)).pose.state);
-    assert_eq!(
-        states.last(),
-        Some(&(TrackState::Unique as u32)),
-        "{states:?}"
-    );
+    assert!(world.is_found(&[6, 8, 10, 12], before, Some(ground)));
     world.serve_set(&edited(1));
     // The search still uses the old maps until all new ones are prepared.
     for x in [14, 16, 18, 20, 22] {
@@ -147,12 +122,7 @@ fn what_was_found_on_the_set_before_makes_no_pose_unique() {
         assert!(was_asked && !pose.is_unique(), "{x}: {pose:?}");
     }
     let now = searched(&edited(1));
-    let states = [24, 26, 28].map(|x| world.step(x, now, Some(ground)).pose.state);
-    assert_eq!(
-        states.last(),
-        Some(&(TrackState::Unique as u32)),
-        "{states:?}"
-    );
+    assert!(world.is_found(&[24, 26, 28], now, Some(ground)));
     node.stop();
 }
 

@@ -44,7 +44,6 @@ pub(crate) struct Drawn {
     pub(crate) rows: Vec<&'static str>,
 }
 
-/// Returns the same rows with a box in a corner.
 pub(crate) fn with_a_box(rows: &[&'static str]) -> Vec<&'static str> {
     let mut rows = rows.to_vec();
     rows[1] = "#....................................###";
@@ -204,8 +203,7 @@ impl World {
         stamp
     }
 
-    /// Publishes odometry and the scan in a column. A requested search is answered with the id
-    /// `searched` and the robot's place on map `found_on`, or no place.
+    /// Publishes odometry and the scan in a column; a search gets id `searched` and this place.
     pub(crate) fn step(&self, x: usize, searched: u64, found_on: Option<u64>) -> Step {
         self.counter.set(self.counter.get() + 1);
         self.send_odometry(x, 0);
@@ -237,6 +235,12 @@ impl World {
             carried,
             was_asked,
         }
+    }
+
+    /// Takes a step in each column; returns true if the last pose is Unique.
+    pub(crate) fn is_found(&self, xs: &[usize], searched: u64, found_on: Option<u64>) -> bool {
+        let step = |&x| self.step(x, searched, found_on).pose.is_unique();
+        xs.iter().fold(false, |_, x| step(x))
     }
 
     fn answer(

@@ -2,8 +2,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::*;
 
-/// Echo of a transducer whose axis is this many degrees from ahead, from a wall whose normal is at
-/// `normal` degrees and `depth_m` from the frame's origin.
+/// Echo of a transducer with this axis from a wall with this normal (degrees) and depth.
 fn echo(x: f64, y: f64, axis: f64, (normal, depth_m): (f64, f64)) -> Echo {
     let (sin, cos) = normal.to_radians().sin_cos();
     Echo {

@@ -1,7 +1,4 @@
-//! A window over the scans of the last metres driven, read as one scan.
-//!
-//! This module only decides which echoes are kept. A scan whose path is not yet driven has no
-//! readings; scans without odometry must not be added.
+//! A window over the scans with odometry of the last metres driven, read as one scan.
 
 use std::collections::VecDeque;
 use std::f64::consts::PI;
@@ -40,8 +37,6 @@ pub struct SonarConfig {
 }
 
 impl SonarConfig {
-    /// Returns the window for reading scans; `None` without `sonar_way`.
-    #[must_use]
     pub fn window(&self) -> Option<Window> {
         let config = RegionConfig {
             half_width: self.sonar_cone.to_radians() / 2.0,
@@ -70,7 +65,6 @@ struct Taken {
 }
 
 impl Window {
-    #[must_use]
     pub fn new(way_m: f64, config: RegionConfig) -> Self {
         Window {
             way_m,
@@ -79,12 +73,8 @@ impl Window {
         }
     }
 
-    /// Adds a scan, and drops scans that are then behind the window. A scan measured before the
-    /// last one empties the window first, because the recording is played again.
-    ///
-    /// # Errors
-    /// If [`Scan::check`] rejects the scan, it has more readings than any ring of sonars, or the
-    /// odometry is not finite; the window stays as it was.
+    /// Adds a scan, and drops scans that are then behind the window; on error it stays as it was. A
+    /// scan older than the last one empties the window, as the recording is played again.
     pub fn add(
         &mut self,
         scan: &Scan<'_>,
@@ -118,9 +108,7 @@ impl Window {
         Ok(())
     }
 
-    /// Returns the scan that the newest one is read as: the range in metres at each whole degree,
-    /// starting behind, to the point where a region's echo met its wall; NaN without one.
-    #[must_use]
+    /// Returns the range in metres at each whole degree from behind; NaN without an echo.
     pub fn ranges(&self) -> Vec<f32> {
         let echoes = if self.is_driven() {
             self.echoes()
@@ -134,8 +122,7 @@ impl Window {
         self.taken.back().map(|newest| newest.measured_ns)
     }
 
-    /// Drops the newest scan if both it and this pose are near the scan before: the new scan
-    /// replaces it.
+    /// Drops the newest scan if both it and this pose are near the scan before.
     fn leave_out_if_near(&mut self, odom_from_laser: Pose) {
         let mut newest_first = self.taken.iter().rev().map(|taken| taken.odom_from_laser);
         let (Some(newest), Some(before)) = (newest_first.next(), newest_first.next()) else {
@@ -177,8 +164,7 @@ mod tests {
     use super::super::scan_of;
     use super::*;
 
-    /// Scan of a sonar that looks left at a wall two metres from the line along x on which the
-    /// robot drives.
+    /// Scan of a sonar that looks left at a wall two metres from the robot's line along x.
     fn read(window: &mut Window, measured_ns: i64, x: f64) -> Vec<f32> {
         let scan = Scan {
             angle_min: PI / 2.0,
@@ -212,8 +198,7 @@ mod tests {
         let mut window = window();
         let readings = driven(&mut window);
         assert_eq!(readings[..10], [0; 10]);
-        // Rounding decides if ten tenths are a metre; echoes from the far end of the path are
-        // nearer to each other than a degree.
+        // Rounding decides if ten tenths are a metre; far echoes share degrees.
         assert!(readings[11] >= 8, "{readings:?}");
         let ranges = window.ranges();
         // The wall is found to the left and, from earlier echoes, behind; nothing is ahead.

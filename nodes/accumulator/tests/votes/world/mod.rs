@@ -1,5 +1,4 @@
-//! Drawn world and the node's neighbours: publishers of maps, boundaries and scans, and a
-//! subscriber to the votes.
+//! Drawn world and the node's neighbours.
 
 use std::cell::Cell;
 
@@ -12,13 +11,12 @@ use messages::{
 use tests::drawn_room::{FRAME, MOUNT, grid, map_header, occupancy, scan};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_for_next};
+use transport::testing::{Isolated, NodeProcess, wait_for_next, wait_for_state};
 
 pub(crate) fn id(rows: &[&str]) -> u64 {
     map_header(rows).map_id
 }
 
-/// Returns the engine's localizer for comparison.
 pub(crate) fn vote_search(rows: &[&str], prior: Prior) -> VoteSearch {
     let grid = grid(rows);
     VoteSearch::new(FRAME, grid, VoteSearchConfig::default(), prior).unwrap()
@@ -31,7 +29,6 @@ pub(crate) struct World {
     pub(crate) scans: Publisher<topic::Scan>,
     pub(crate) votes: Subscriber<topic::Votes>,
     pub(crate) health: Subscriber<topic::Health>,
-    /// Counter of the next scan.
     pub(crate) counter: Cell<u64>,
 }
 
@@ -61,7 +58,6 @@ impl World {
         node
     }
 
-    /// Publishes a map and its boundary.
     pub(crate) fn publish(&self, rows: &[&str]) {
         self.publish_map(rows);
         self.publish_boundary(id(rows), rows);
@@ -90,7 +86,6 @@ impl World {
         self.ask_with(ranges, |_| {})
     }
 
-    /// Like [`World::ask`], with a header modified by `change`.
     pub(crate) fn ask_with(
         &self,
         ranges: &[f32],
@@ -121,8 +116,6 @@ impl World {
     }
 
     pub(crate) fn wait_until(&self, state: NodeState) -> (HealthHeader, String) {
-        wait_for_health(&self.graph, &self.health, |report| {
-            report.state == state as u32
-        })
+        wait_for_state(&self.graph, &self.health, state)
     }
 }
