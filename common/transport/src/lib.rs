@@ -61,15 +61,11 @@
 //!
 //! # Memory
 //!
-//! A publisher has one segment in `/dev/shm` for `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2 + 1`
-//! chunks, each as large as its largest sample so far, rounded up to a power of two. The file is
-//! sparse: chunks are reused last in, first out, so only the largest number of chunks ever in use
-//! at the same time takes memory. For a map of 8 million cells these are 43 chunks of 8 MiB: the
-//! file has a size of 344 MiB, but takes 8 MiB at first, 16 MiB once a second map was filled while
-//! the first was held, and 8 MiB more for each further map that a subscriber holds. The worst case,
-//! the whole size of the file, needs every subscriber to hold four different maps. A larger sample
-//! begins a new segment; the old one is freed with its last sample. Wake-ups and connections take
-//! about 20 KiB for each pair of publisher and subscriber.
+//! A publisher has one sparse segment in `/dev/shm` for `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2
+//! + 1` chunks of its largest sample so far, rounded up to a power of two; only as many as are ever
+//! in use at the same time take memory. A map of 8 million cells takes 8 MiB, and 8 MiB more for each
+//! further map that a subscriber holds. A larger sample begins a new segment; the old one is freed
+//! with its last sample. Each pair of publisher and subscriber takes about 20 KiB.
 
 mod causes;
 mod clock;

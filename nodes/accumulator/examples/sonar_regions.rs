@@ -6,7 +6,6 @@
 //! ```
 
 use std::error::Error;
-use std::fmt;
 use std::path::PathBuf;
 
 use accumulator::sonar::regions::{self, Echo, RegionConfig};
@@ -55,15 +54,11 @@ enum Reading {
     Regions,
 }
 
-impl fmt::Display for Reading {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Reading::Axes => "axes",
-            Reading::Cones => "cones",
-            Reading::Regions => "regions",
-        })
-    }
-}
+const READINGS: [(&str, Reading); 3] = [
+    ("axes", Reading::Axes),
+    ("cones", Reading::Cones),
+    ("regions", Reading::Regions),
+];
 
 impl Reading {
     fn ranges(self, echoes: &[Echo], half_width: f64) -> Vec<f32> {
@@ -126,7 +121,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn print(&self, way_m: f64, reading: Reading) {
+    fn print(&self, way_m: f64, reading: &str) {
         let scans = self.scans.max(1) as f64;
         let percent = |count: usize| 100.0 * count as f64 / scans;
         println!(
@@ -156,8 +151,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let vote_search = vote_search(&map, options.sigma)?;
     println!("way_m  echoes  read_as   beams  right_%  in_five_%  scans");
     for &way_m in &options.ways {
-        for reading in [Reading::Axes, Reading::Cones, Reading::Regions] {
-            tally(&vote_search, &ring, (&drive, way_m), reading)?.print(way_m, reading);
+        for (name, reading) in READINGS {
+            tally(&vote_search, &ring, (&drive, way_m), reading)?.print(way_m, name);
         }
     }
     Ok(())

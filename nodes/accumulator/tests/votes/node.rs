@@ -59,7 +59,6 @@ fn assert_equals(votes: &VotesHeader, poses: &[Vote], outcome: &Outcome) {
     assert_eq!(poses, found.votes);
     let expected = VotesHeader {
         total: poses.len() as u64,
-        poses_evaluated: found.poses_evaluated,
         outcome: SearchOutcome::Found as u32,
         headings: outcome.headings,
         floor: found.floor.into(),
