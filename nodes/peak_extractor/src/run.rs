@@ -201,7 +201,7 @@ impl Node {
         self.send_particles(answer)?;
         // The beams are only for display.
         if self.beams.has_subscribers() {
-            self.send_beams(answer)?;
+            self.beams.send(answer.beams_header, answer.beams)?;
         }
         Ok(())
     }
@@ -211,17 +211,10 @@ impl Node {
             return Ok(());
         };
         let seed = self.config.particles.particles_seed;
-        let (header, particles) = match particles::draw(answer, *count, seed) {
-            Ok(message) => message,
-            Err(error) => {
-                return self.refuse(answer.header.stamp.counter, &error.into());
-            }
-        };
-        publisher.send(header, &particles)
-    }
-
-    fn send_beams(&self, answer: &Answer<'_>) -> Result<(), TransportError> {
-        self.beams.send(answer.beams_header, answer.beams)
+        match particles::draw(answer, *count, seed) {
+            Ok((header, particles)) => publisher.send(header, &particles),
+            Err(error) => self.refuse(answer.header.stamp.counter, &error.into()),
+        }
     }
 
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {

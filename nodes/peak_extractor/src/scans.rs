@@ -28,16 +28,11 @@ impl<H, T> Default for Ring<H, T> {
 }
 
 impl<H, T: Copy> Ring<H, T> {
-    /// Stores a message, reusing the buffer of the oldest one.
     fn push(&mut self, stamp: Stamp, header: H, items: &[T]) {
-        let oldest = match self.0.len() {
-            KEPT => self.0.pop_front(),
-            _ => None,
-        };
-        let mut room = oldest.map_or_else(Vec::new, |(_, _, room)| room);
-        room.clear();
-        room.extend_from_slice(items);
-        self.0.push_back((stamp, header, room));
+        if self.0.len() == KEPT {
+            self.0.pop_front();
+        }
+        self.0.push_back((stamp, header, items.to_vec()));
     }
 
     fn get(&self, stamp: Stamp) -> Option<(&H, &[T])> {

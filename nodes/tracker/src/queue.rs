@@ -8,31 +8,17 @@ use messages::{HypothesesHeader, Hypothesis, ScanHeader, Stamp, Verdict};
 const KEPT: usize = 128;
 
 #[derive(Debug, Default)]
-pub(crate) struct Scans {
-    waiting: VecDeque<(ScanHeader, Vec<f32>)>,
-    /// Buffers of processed scans, for reuse.
-    spare: Vec<Vec<f32>>,
-}
+pub(crate) struct Scans(VecDeque<(ScanHeader, Vec<f32>)>);
 
 impl Scans {
     /// Adds a scan and drops the oldest one if the queue is full; returns the number dropped.
     pub(crate) fn push(&mut self, header: &ScanHeader, ranges: &[f32]) -> u64 {
-        let mut room = self.spare.pop().unwrap_or_default();
-        room.clear();
-        room.extend_from_slice(ranges);
-        self.waiting.push_back((*header, room));
-        let is_full = self.waiting.len() > KEPT;
-        if is_full && let Some((_, room)) = self.waiting.pop_front() {
-            self.spare.push(room);
-        }
-        u64::from(is_full)
+        self.0.push_back((*header, ranges.to_vec()));
+        u64::from(self.0.len() > KEPT && self.0.pop_front().is_some())
     }
 
-    pub(crate) fn pop<R>(&mut self, take: impl FnOnce(&ScanHeader, &[f32]) -> R) -> Option<R> {
-        let (header, room) = self.waiting.pop_front()?;
-        let taken = take(&header, &room);
-        self.spare.push(room);
-        Some(taken)
+    pub(crate) fn pop(&mut self) -> Option<(ScanHeader, Vec<f32>)> {
+        self.0.pop_front()
     }
 }
 
@@ -58,18 +44,14 @@ impl Answers {
         if self.of(of).is_some_and(is_late) {
             return;
         }
-        let oldest = match self.kept.len() {
-            KEPT => self.kept.pop_front(),
-            _ => None,
-        };
-        let mut found = oldest.map_or_else(Vec::new, |answer| answer.found);
-        found.clear();
-        found.extend_from_slice(hypotheses);
+        if self.kept.len() == KEPT {
+            self.kept.pop_front();
+        }
         self.kept.push_back(Answer {
             of,
             searched,
             verdict: Verdict::from_code(header.verdict),
-            found,
+            found: hypotheses.to_vec(),
         });
     }
 
@@ -110,8 +92,8 @@ mod tests {
             dropped += scans.push(&header, &[counter as f32]);
         }
         assert_eq!(dropped, 2);
-        let next = scans.pop(|header, ranges| (header.stamp.counter, ranges.to_vec()));
-        assert_eq!(next, Some((2, vec![2.0])));
+        let (header, ranges) = scans.pop().unwrap();
+        assert_eq!((header.stamp.counter, &*ranges), (2, &[2.0][..]));
     }
 
     fn header(stamp: Stamp, searched: u64) -> HypothesesHeader {

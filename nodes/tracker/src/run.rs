@@ -190,14 +190,10 @@ impl Node {
     }
 
     fn next_scan(&mut self) -> Result<bool, TrackerError> {
-        let joiner = &mut self.joiner;
-        let taken = self
-            .scans
-            .pop(|header, ranges| (joiner.on_scan(header, ranges), *header));
-        let Some((role, scan)) = taken else {
+        let Some((scan, ranges)) = self.scans.pop() else {
             return Ok(false);
         };
-        if role == Role::Trigger {
+        if self.joiner.on_scan(&scan, &ranges) == Role::Trigger {
             let lost = self.gaps.lost_before(scan.stamp.counter);
             self.health.count_dropped(lost);
             self.turn = Turn::Odometry {
