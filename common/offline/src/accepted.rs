@@ -25,9 +25,7 @@ impl Accepted {
     }
 
     /// Fails if every scan was rejected.
-    ///
-    /// # Errors
-    /// Every scan was rejected; names the first reason.
+    /// Fails if every scan was rejected; names the first reason.
     pub fn check(self, file: &Path) -> anyhow::Result<()> {
         match self.first_refusal {
             Some(reason) if self.refused == self.scans => Err(anyhow!(

@@ -6,9 +6,6 @@ use anyhow::Context;
 use nix::time::{ClockId, clock_gettime};
 
 /// Runs `work` and returns its result, with its CPU time in milliseconds.
-///
-/// # Errors
-/// The CPU clock cannot be read.
 pub fn timed<T>(work: impl FnOnce() -> T) -> anyhow::Result<(T, f64)> {
     let start = thread_time()?;
     let done = work();
@@ -29,8 +26,7 @@ mod tests {
 
     #[test]
     fn the_work_of_other_threads_is_theirs() {
-        // The other thread stops once its own clock has advanced, so our first reading is before
-        // its work and our second one after it.
+        // The other thread stops once its own clock has advanced, within our two readings.
         let (theirs, ours) = timed(|| {
             let spin = || {
                 let work = || while thread_time().unwrap() < Duration::from_millis(20) {};
@@ -39,8 +35,7 @@ mod tests {
             std::thread::spawn(spin).join().unwrap()
         })
         .unwrap();
-        // Starting and joining a thread takes a fraction of a millisecond; the whole process has
-        // worked longer than the other thread.
+        // Starting and joining a thread takes a fraction of a millisecond.
         assert!(ours < theirs, "{ours} {theirs}");
     }
 }

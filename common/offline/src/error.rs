@@ -13,7 +13,6 @@ pub struct NoUsableMap {
     pub(crate) reason: String,
 }
 
-/// Error for a recording without true poses.
 pub fn no_truths(file: &Path) -> anyhow::Error {
     let file = file.display();
     anyhow!("{file} has no true poses on /ground_truth: nothing to compare with")

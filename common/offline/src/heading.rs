@@ -18,15 +18,11 @@ use super::topics::concerns_other;
 pub(crate) struct Headings {
     source: HeadingSource,
     history: History,
-    /// Notes about messages that cannot be used.
     notes: Vec<String>,
 }
 
 impl Headings {
     /// Reads the data that the configured source needs.
-    ///
-    /// # Errors
-    /// The data does not exist, or one of its messages cannot be used.
     pub(crate) fn of(
         config: &HeadingConfig,
         motion: &MotionConfig,
@@ -56,9 +52,6 @@ impl Headings {
     }
 
     /// Heading of the laser at the time of `scan`, in radians; `None` if it is to be searched.
-    ///
-    /// # Errors
-    /// There is no heading for the time of the scan.
     pub(crate) fn of_scan(&self, scan: &TakenScan) -> Result<Option<f64>, HeadingError> {
         let header = ScanHeader {
             stamp: measured(scan.stamp_ns),
@@ -100,11 +93,7 @@ fn read_odometry(
     })
 }
 
-/// Passes each odometry message of a channel to `take`; returns a note about messages that cannot
-/// be used: their number, and the reason of the first.
-///
-/// # Errors
-/// The file cannot be read.
+/// Passes each message of a channel to `take`; returns a note about those that cannot be used.
 pub fn each_odometry(
     recording: &Recording,
     topic: &Arc<str>,

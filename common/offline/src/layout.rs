@@ -5,9 +5,7 @@ use engine::grid::{CellRules, Grid, GridFrame};
 use map::OccupancyGrid;
 
 /// Checks that a map can be searched, without preparing it.
-///
-/// # Errors
-/// Errors of the engine: invalid sides, or no occupied or no free cell.
+/// Fails with errors of the engine: invalid sides, or no occupied or no free cell.
 pub fn check_map(map: &OccupancyGrid, rules: CellRules) -> Result<(), EngineError> {
     let (width, height) = sides_of(map);
     let grid = Grid::new(width, height, &map.cells, rules)?;
@@ -25,7 +23,6 @@ pub fn frame_of(map: &OccupancyGrid) -> GridFrame {
     }
 }
 
-/// Number of cells along x and y.
 pub fn sides_of(map: &OccupancyGrid) -> (usize, usize) {
     (map.width as usize, map.height as usize)
 }

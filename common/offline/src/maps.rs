@@ -40,10 +40,6 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// Uses the maps of a recording.
-    ///
-    /// # Errors
-    /// Several topics contain maps.
     pub(super) fn recorded(recording: &'a Recording) -> Result<Self, RecordingError> {
         Ok(Maps {
             given: None,
@@ -59,7 +55,6 @@ impl<'a> Maps<'a> {
         maps.peekable()
     }
 
-    /// True if there is no map at all.
     pub(super) fn is_empty(&mut self) -> bool {
         self.given.is_none() && self.recorded.peek().is_none()
     }
@@ -98,9 +93,7 @@ fn grid<'a>(recorded: Recorded) -> Result<Cow<'a, OccupancyGrid>, String> {
 
 #[derive(Debug, Default)]
 pub(super) struct Arrived<'a> {
-    /// The newest usable map.
     pub(super) map: Option<Cow<'a, OccupancyGrid>>,
-    /// Reasons why other maps cannot be used.
     pub(super) refusals: Vec<String>,
 }
 
@@ -119,9 +112,7 @@ impl<'a> Arrived<'a> {
 }
 
 /// Returns the newest map of a recording.
-///
-/// # Errors
-/// It contains no map, or one that cannot be used.
+/// Fails if it contains no map, or one that cannot be used.
 pub fn map_in(recording: &Recording) -> anyhow::Result<OccupancyGrid> {
     recording.map()?.ok_or_else(|| no_map(recording))
 }

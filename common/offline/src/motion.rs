@@ -1,5 +1,4 @@
-//! Transforms the scans of a recording to one time, with the code of the graph's accumulator, but
-//! with all odometry available.
+//! Transforms scans to one time, as the graph's accumulator but with all odometry available.
 
 use std::sync::Arc;
 
@@ -25,7 +24,6 @@ pub(crate) struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// Joins the scans of the lasers with these topics.
     pub(crate) fn of(recording: &'a Recording, topics: &[Arc<str>], motion: &MotionConfig) -> Self {
         let scans = match topics {
             [_] => Vec::new(),
@@ -46,9 +44,6 @@ impl<'a> Motion<'a> {
     }
 
     /// Adds a scan, and the scans of other lasers since the previous one.
-    ///
-    /// # Errors
-    /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
     pub(crate) fn take(&mut self, scan: &TakenScan) -> anyhow::Result<()> {
         let takes_time = self.joiner.targets_base() || scan.message.time_increment != 0.0;
         if takes_time && self.deskews {
@@ -62,9 +57,6 @@ impl<'a> Motion<'a> {
     }
 
     /// Reads the odometry on the first call.
-    ///
-    /// # Errors
-    /// The recording cannot be read.
     pub(crate) fn read_odometry(&mut self) -> Result<(), RecordingError> {
         if std::mem::replace(&mut self.is_read, true) {
             return Ok(());
@@ -92,17 +84,12 @@ impl<'a> Motion<'a> {
         self.is_read = true;
     }
 
-    /// Transforms the added scans to the time of the newest.
-    ///
-    /// # Errors
-    /// The scan is rejected.
     pub(crate) fn bring(&mut self) -> Result<(), EngineError> {
         let brought = self.joiner.bring()?;
         self.notes.extend(brought.notes(self.joiner.flows()));
         Ok(())
     }
 
-    /// Returns the notes since the last call.
     pub(crate) fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }

@@ -46,7 +46,6 @@ pub struct Options {
     pub index_cache: IndexCacheConfig,
 }
 
-/// One map of a set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedMap {
     pub name: String,
@@ -69,9 +68,7 @@ pub struct EngineOptions {
 
 impl Options {
     /// Checks relations between options, and that there is at most one map; opens no file.
-    ///
-    /// # Errors
-    /// Names the option and what is allowed.
+    /// Errors name the option and what is allowed.
     pub fn check(&self) -> anyhow::Result<()> {
         let maps = self.map.len();
         if maps > 1 {
@@ -83,17 +80,13 @@ impl Options {
     }
 
     /// Like [`Options::check`], but allows several maps.
-    ///
-    /// # Errors
-    /// Names the option and what is allowed.
+    /// Errors name the option and what is allowed.
     pub fn check_settings(&self) -> anyhow::Result<()> {
         let headings = Directions::new(self.engine.vote_search.headings);
         headings.map_err(|error| wrong_use(error.to_string()))?;
         self.heading.check().map_err(wrong_use)
     }
 
-    /// The same options with this map.
-    #[must_use]
     pub fn with_map(&self, file: &Path) -> Self {
         Options {
             map: vec![file.to_owned()],
@@ -101,11 +94,7 @@ impl Options {
         }
     }
 
-    /// Loads the map given by `--map`, if any. `recordings` are the files to be searched; they help
-    /// to detect that map and recording were swapped.
-    ///
-    /// # Errors
-    /// The map cannot be read.
+    /// Loads the map of `--map`. `recordings` help to detect that map and recording were swapped.
     pub fn load_map(&self, recordings: &[PathBuf]) -> anyhow::Result<Option<OccupancyGrid>> {
         let file = self.map.first();
         file.map(|file| self.load(file, recordings)).transpose()
@@ -114,9 +103,8 @@ impl Options {
     /// Loads several maps: those given by `--map`, or those of a set, which is a folder or a file
     /// that lists them; empty if there are not several. `on` selects maps by the names of maps or
     /// floors.
-    ///
-    /// # Errors
-    /// A map or the set cannot be read, or it contains no map and no floor of a name in `on`.
+    /// Fails if a map or the set cannot be read, or it contains no map and no floor of a name in
+    /// `on`.
     pub fn load_set(
         &self,
         set: Option<&Path>,
@@ -154,9 +142,7 @@ impl Options {
         map_in(&recording)
     }
 
-    /// Separates maps from recordings among files given in any order; returns the options with
-    /// these maps, and the recordings. Where all look like maps, they are taken for recordings.
-    #[must_use]
+    /// Separates maps, for the options, from recordings; if all look like maps, all are recordings.
     pub fn sorted(&self, files: &[PathBuf]) -> (Self, Vec<PathBuf>) {
         let (maps, recordings): (Vec<_>, Vec<_>) = files.iter().cloned().partition(|f| is_map(f));
         let mut options = self.clone();
@@ -168,17 +154,11 @@ impl Options {
     }
 
     /// Opens a recording, which may consist of several files.
-    ///
-    /// # Errors
-    /// It cannot be read, or does not contain a given channel.
     pub fn open(&self, paths: &[PathBuf]) -> anyhow::Result<Recording> {
         let mut recording = Recording::open_all(paths)?;
         // With `--map`, the map's topic belongs to that file.
-        let map_topic = self
-            .topics
-            .map_topic
-            .clone()
-            .filter(|_| self.map.is_empty());
+        let map_topic = self.topics.map_topic.clone();
+        let map_topic = map_topic.filter(|_| self.map.is_empty());
         let topics = TopicOptions {
             map_topic,
             ..self.topics.clone()
@@ -188,8 +168,7 @@ impl Options {
     }
 }
 
-/// True if the file has an extension of maps and is not a recording, or looks like a map of another
-/// kind.
+/// True if the file looks like a map, and is not a recording.
 fn is_map(path: &Path) -> bool {
     let endings = ["yaml", "yml", "pgm", "png", "bmp"];
     let ending = path.extension().and_then(|ending| ending.to_str());

@@ -16,12 +16,9 @@ use super::topics::concerns_other;
 pub struct TakenScan {
     /// Time of measurement, in nanoseconds since 1970.
     pub stamp_ns: i64,
-    /// Log time, in nanoseconds since 1970.
     pub log_time_ns: i64,
-    /// Mount of the laser, if known.
     pub base_from_laser: Option<Pose>,
-    /// True if the laser is mounted upside down, so that its beams turn the other way as seen from
-    /// above.
+    /// True if the laser is mounted upside down, so that its beams turn the other way.
     pub upside_down: bool,
     pub message: LaserScan,
     /// Name of the laser; empty if there is only one.
@@ -36,9 +33,7 @@ impl TakenScan {
     }
 
     /// Converts to the header of a graph message.
-    ///
-    /// # Errors
-    /// The frame's name is longer than a message can hold.
+    /// Fails if the frame's name is longer than a message can hold.
     pub fn header(&self) -> Result<ScanHeader, ConversionError> {
         let frame = measurements::frame(self.frame())?;
         let mount = self.base_from_laser.map(|base_from_laser| Mount {
@@ -65,8 +60,7 @@ impl TakenScan {
     }
 }
 
-/// Iterator over the scans. A scan that cannot be decoded is an error in its place; damage of the
-/// file is the last item.
+/// Iterator over the scans; an undecodable one is an error in its place, damage the last item.
 pub struct Scans<'a> {
     recording: &'a Recording,
     records: Records<'a>,
@@ -81,8 +75,7 @@ pub struct Scans<'a> {
 }
 
 impl<'a> Scans<'a> {
-    /// Returns each `every`-th scan of the first channel, with the scans of the other channels
-    /// since the previous one; `every` is at least 1.
+    /// Returns each `every`-th scan of the first channel, with those of the others before it.
     pub fn of(recording: &'a Recording, topics: Vec<Arc<str>>, every: u64) -> Self {
         Scans {
             recording,
@@ -172,8 +165,7 @@ impl Iterator for Scans<'_> {
             };
             let record = match record {
                 Ok(record) => record,
-                // Reports the error even for a scan that is not selected, since the file is not
-                // sound.
+                // Reports the error even for a scan that is not selected.
                 Err(error) => {
                     self.take_next();
                     return Some(Err(error));

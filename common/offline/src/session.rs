@@ -24,7 +24,6 @@ use super::scans::Scans;
 use super::world::{Answer, World, unusable};
 use super::{NoUsableMap, Options, TakenScan, cpu};
 
-/// State of reading and searching a recording.
 pub struct Session<'a> {
     pub scans: Scans<'a>,
     /// CPU time of preparing maps, in milliseconds.
@@ -43,7 +42,6 @@ pub struct Session<'a> {
     motion: Motion<'a>,
 }
 
-/// A map that is ready to be searched.
 struct Prepared<'a> {
     map: Cow<'a, OccupancyGrid>,
     /// Id of the original map, before any cells were erased.
@@ -57,11 +55,9 @@ pub struct View {
     pub ends: Ends,
     /// Pose of the target frame by odometry.
     pub by_odometry: Option<ByOdometry>,
-    /// Frame whose pose is searched.
     pub target: Target,
 }
 
-/// Result of one scan.
 pub struct Reply<'a> {
     /// The map's id, as in the graph's messages; 0 without a map.
     pub map_id: u64,
@@ -73,10 +69,8 @@ pub struct Reply<'a> {
 
 impl<'a> Session<'a> {
     /// Opens a session on the given map, else on the maps of the recording.
-    ///
-    /// # Errors
-    /// Data is missing, or the given map cannot be used. If data is missing in a damaged file, the
-    /// damage is the error.
+    /// Fails if data is missing, or the given map cannot be used. If data is missing in a damaged
+    /// file, the damage is the error.
     pub fn open(
         recording: &'a Recording,
         options: &Options,
@@ -107,6 +101,7 @@ impl<'a> Session<'a> {
         let topics = options.topics.scans(recording).map_err(damage)?;
         let headings =
             Headings::of(&options.heading, &options.motion, recording).map_err(damage)?;
+        let map_file = options.map.first().map(PathBuf::as_path);
         Ok(Session {
             motion: Motion::of(recording, &topics, &options.motion),
             scans: Scans::of(recording, topics, options.every),
@@ -116,11 +111,7 @@ impl<'a> Session<'a> {
             refusal: String::new(),
             notes: headings.notes().to_vec(),
             said: BTreeSet::new(),
-            map_file: options
-                .map
-                .first()
-                .map_or(recording.path(), PathBuf::as_path)
-                .to_owned(),
+            map_file: map_file.unwrap_or(recording.path()).to_owned(),
             engine: options.engine.clone(),
             cache: options.index_cache.open(CachePlace::Off)?,
             headings,
@@ -128,9 +119,6 @@ impl<'a> Session<'a> {
     }
 
     /// Opens a session that searches several maps together for each scan.
-    ///
-    /// # Errors
-    /// Fails like [`Session::open`].
     pub fn open_on(
         recording: &'a Recording,
         options: &Options,
@@ -156,17 +144,10 @@ impl<'a> Session<'a> {
     }
 
     /// Map of the last scan that was searched.
-    ///
-    /// # Errors
-    /// There is no usable map.
     pub fn map(&self) -> anyhow::Result<&OccupancyGrid> {
         Ok(&self.prepared()?.map)
     }
 
-    /// Returns the map prepared for searches.
-    ///
-    /// # Errors
-    /// Fails like [`Session::map`].
     pub fn world(&self) -> anyhow::Result<&World> {
         Ok(&self.prepared()?.world)
     }
@@ -233,9 +214,6 @@ impl<'a> Session<'a> {
     }
 
     /// Prepares the map of a scan again with all cells within `radius_m` of `centre` unknown.
-    ///
-    /// # Errors
-    /// The remaining map cannot be used.
     pub fn erase(&mut self, scan: &TakenScan, centre: Pose, radius_m: f64) -> anyhow::Result<()> {
         self.turn_to(scan)?;
         let prior = self.headings.source().prior();
@@ -256,32 +234,22 @@ impl<'a> Session<'a> {
     }
 
     /// Reads the odometry even if no option needs it.
-    ///
-    /// # Errors
-    /// The recording cannot be read.
     pub fn read_odometry(&mut self) -> anyhow::Result<()> {
         Ok(self.motion.read_odometry()?)
     }
 
-    /// Drops all scans, and uses this odometry in place of the recorded one; for another search of
-    /// the drive with something changed.
+    /// Drops all scans, and uses this odometry, for another search of the drive.
     pub fn begin_again(&mut self, odometry: &[Odometry]) {
         self.motion.begin_again(odometry);
     }
 
     /// Pose of the target frame by odometry at a scan, without searching the scan.
-    ///
-    /// # Errors
-    /// The scan cannot be converted to a message of the graph, or the recording cannot be read.
     pub fn by_odometry(&mut self, scan: &TakenScan) -> anyhow::Result<Option<ByOdometry>> {
         self.motion.take(scan)?;
         Ok(self.motion.joiner.by_odometry())
     }
 
     /// Tracker input of the last scan that was searched.
-    ///
-    /// # Errors
-    /// The scan is rejected.
     pub fn view(&self, scan: &TakenScan) -> anyhow::Result<View> {
         let seen = self.motion.joiner.seen();
         let ends = self.world()?.ends(seen.observation());
@@ -293,36 +261,25 @@ impl<'a> Session<'a> {
     }
 
     /// Searches the place of a scan.
-    ///
-    /// # Errors
-    /// The CPU clock cannot be read. A rejected scan is a reply.
+    /// Fails if the CPU clock cannot be read. A rejected scan is a reply.
     pub fn ask(&mut self, scan: &TakenScan) -> anyhow::Result<Reply<'_>> {
         self.turn_to(scan)?;
+        let refused = |map_id, refusal| Reply {
+            map_id,
+            cpu_ms: 0.0,
+            answer: Err(refusal),
+        };
         let Some(prepared) = &mut self.prepared else {
-            return Ok(Reply {
-                map_id: 0,
-                cpu_ms: 0.0,
-                answer: Err(no_usable_map(&self.map_file, &self.refusal)),
-            });
+            return Ok(refused(0, no_usable_map(&self.map_file, &self.refusal)));
         };
         let mut map_id = prepared.world.map_id;
         let heading = match self.headings.of_scan(scan) {
             Ok(heading) => heading,
-            Err(refusal) => {
-                return Ok(Reply {
-                    map_id,
-                    cpu_ms: 0.0,
-                    answer: Err(refusal.into()),
-                });
-            }
+            Err(refusal) => return Ok(refused(map_id, refusal.into())),
         };
         let motion = &mut self.motion;
         if let Err(refusal) = motion.take(scan) {
-            return Ok(Reply {
-                map_id,
-                cpu_ms: 0.0,
-                answer: Err(refusal),
-            });
+            return Ok(refused(map_id, refusal));
         }
         let target = Target::of(scan.base_from_laser, motion.joiner.targets_base());
         let (found, cpu_ms) = cpu::timed(|| {

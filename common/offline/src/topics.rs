@@ -28,9 +28,7 @@ pub struct TopicOptions {
 
 impl TopicOptions {
     /// Selects these topics in the recording.
-    ///
-    /// # Errors
-    /// The recording does not contain one of them, or not the mount of the point cloud.
+    /// Fails if the recording does not contain one of them, or not the mount of the point cloud.
     pub fn apply(&self, recording: &mut Recording) -> Result<(), RecordingError> {
         recording.take_cloud(&self.cloud)?;
         // Last, the first one, which is used where only one topic can be.
@@ -47,9 +45,7 @@ impl TopicOptions {
     }
 
     /// Returns the topics of the scans: the given ones or the default.
-    ///
-    /// # Errors
-    /// There are no scans, or several topics contain scans.
+    /// Fails if there are no scans, or several topics contain scans.
     pub fn scans(&self, recording: &Recording) -> Result<Vec<Arc<str>>, RecordingError> {
         let mut topics: Vec<Arc<str>> = Vec::new();
         for topic in &self.scan_topic {

@@ -41,16 +41,11 @@ pub struct KnownMap {
     cells: u64,
 }
 
-/// Result of searching a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer<'a> {
-    /// The votes, and search statistics.
     pub outcome: &'a Outcome,
-    /// Places with the verdict.
     pub places: &'a Places,
-    /// Geometry of the map's cells.
     pub frame: GridFrame,
-    /// The map of the best place.
     pub map: &'a KnownMap,
     /// All maps that were searched; places refer to them by index.
     pub maps: &'a [KnownMap],
@@ -74,15 +69,13 @@ pub struct BeamEnd {
 }
 
 impl BeamEnd {
-    /// Distance from a pose, in metres.
     pub fn distance_to(&self, pose: Pose) -> f64 {
         (self.at.0 - pose.x).hypot(self.at.1 - pose.y)
     }
 }
 
 impl ScanAt {
-    /// Distance from a pose within which this share (0..=1) of the beams ends, in metres; 0 without
-    /// beams.
+    /// Distance from a pose within which this share of the beams ends, in metres; 0 without beams.
     pub fn reach_m(&self, pose: Pose, share: f64) -> f64 {
         let ends = self.ends.iter();
         let mut distances: Vec<f64> = ends.map(|end| end.distance_to(pose)).collect();
@@ -98,7 +91,6 @@ impl ScanAt {
 pub struct Field {
     /// Geometry of the cells, which can be larger than the map's.
     pub frame: GridFrame,
-    /// Number of cells along x and y.
     pub sides: (usize, usize),
     /// Row by row from the lowest y.
     pub intensities: Vec<u16>,
@@ -107,9 +99,7 @@ pub struct Field {
 
 impl World {
     /// Prepares a map as the graph's accumulator and peak extractor do.
-    ///
-    /// # Errors
-    /// The map has no occupied or no free cell, or a setting is out of range.
+    /// Fails if the map has no occupied or no free cell, or a setting is out of range.
     pub fn prepare(
         map: &OccupancyGrid,
         options: &EngineOptions,
@@ -119,9 +109,6 @@ impl World {
     }
 
     /// Like [`World::prepare`], with an index cache.
-    ///
-    /// # Errors
-    /// Fails like [`World::prepare`].
     pub fn prepare_with(
         map: &OccupancyGrid,
         options: &EngineOptions,
@@ -134,9 +121,6 @@ impl World {
     }
 
     /// Like [`World::prepare_with`], for several maps that are searched together.
-    ///
-    /// # Errors
-    /// Fails like [`World::prepare`], with the map's name.
     pub fn of_set(
         maps: &[NamedMap],
         options: &EngineOptions,
@@ -164,12 +148,10 @@ impl World {
         })
     }
 
-    /// The only or first map.
     fn map(&self) -> &PreparedMap {
         &self.localizer.maps()[0]
     }
 
-    /// Number of cells of all maps.
     pub fn cells(&self) -> u64 {
         self.maps.iter().map(|map| map.cells).sum()
     }
@@ -179,7 +161,6 @@ impl World {
         self.map().vote_search().searchable_cells() as u64
     }
 
-    /// Size of the search index of the map.
     pub fn index_bytes(&self) -> u64 {
         self.map().vote_search().index_bytes() as u64
     }
@@ -189,15 +170,11 @@ impl World {
         self.map().distance_field()
     }
 
-    /// Settings of the second stage.
     pub fn peaks(&self) -> &PeakConfig {
         self.map().peaks()
     }
 
     /// Prepares the beams of a scan for the second stage.
-    ///
-    /// # Errors
-    /// The scan is rejected.
     pub fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
         self.map().ends(scan)
     }
@@ -206,9 +183,6 @@ impl World {
     /// world must be prepared with the corresponding prior.
     ///
     /// The places are poses of the first laser, even if the base is searched.
-    ///
-    /// # Errors
-    /// The scan is rejected.
     pub fn locate(
         &mut self,
         scan: Observation<'_>,
@@ -236,39 +210,29 @@ impl World {
     }
 
     /// Compares a scan with the map at a pose.
-    ///
-    /// # Errors
-    /// The scan is rejected.
     pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
         let pose = GridPose::of(self.distance_field().frame, map_from_laser);
-        let classes = self
-            .distance_field()
-            .classes(&ends, pose, &self.peaks().fit);
+        let (field, fit) = (self.distance_field(), &self.peaks().fit);
+        let classes = field.classes(&ends, pose, fit);
         let beams = ends.judged(&classes).map(|beam| BeamEnd {
             at: end_of(map_from_laser, beam),
             class: beam.class,
         });
         Ok(ScanAt {
-            score: self.distance_field().score(&ends, pose, &self.peaks().fit),
+            score: field.score(&ends, pose, fit),
             ends: beams.collect(),
         })
     }
 
-    /// Votes of all positions at a heading in the map, in radians; the world must be prepared for
-    /// known headings.
-    ///
-    /// # Errors
-    /// The scan is rejected.
+    /// Votes of all positions at a heading, in radians, in a world prepared for known headings.
     pub fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
-        let found = self
-            .map()
-            .vote_search()
-            .search_at(scan, heading, &|| false)?;
+        let search = self.map().vote_search();
+        let found = search.search_at(scan, heading, &|| false)?;
         let (outcome, intensities) = found.expect("a search that nothing stops ends");
-        let grid = self.map().vote_search().grid();
+        let grid = search.grid();
         Ok(Field {
-            frame: self.map().vote_search().frame(),
+            frame: search.frame(),
             sides: (grid.width(), grid.height()),
             intensities,
             outcome,
