@@ -1,5 +1,4 @@
-//! A drive as an animation: each scan at its places, one picture after the other, as long
-//! as the robot took from scan to scan.
+//! A drive as an animation: each scan at its places, as long as from scan to scan.
 
 use std::time::Duration;
 
@@ -25,7 +24,6 @@ const LAST_SHOWN: Duration = Duration::from_secs(2);
 /// Where the robot was, in what it has found out, to the moment that is shown.
 const WAY: f64 = 2.0;
 
-/// What is the same in all pictures.
 struct Film<'a> {
     ground: &'a Ground<'a>,
     subjects: &'a [Subject],
@@ -36,10 +34,6 @@ struct Film<'a> {
     legend: Legend,
 }
 
-/// The pictures of a drive, each drawn when it is asked for.
-///
-/// # Errors
-/// Of each: it would be too large.
 pub(super) fn frames<'a>(
     ground: &'a Ground<'a>,
     subjects: &'a [Subject],
@@ -62,7 +56,6 @@ pub(super) fn frames<'a>(
     (0..subjects.len()).map(move |i| Ok((film.draw(i)?, shown(subjects, i))))
 }
 
-/// From a scan to the next.
 fn shown(subjects: &[Subject], i: usize) -> Duration {
     let pair = (subjects.get(i), subjects.get(i + 1));
     let (Some(this), Some(next)) = pair else {

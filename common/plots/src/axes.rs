@@ -1,5 +1,4 @@
-//! Axes around a part of a picture, and the bar that says what colours mean. Numbers are
-//! left out where they would stand over one another.
+//! Axes, and the bar that says what colours mean, without numbers that would overlap.
 
 use crate::drawing::{Anchor, Color, Path, Rect, Scene, Stroke};
 
@@ -8,11 +7,9 @@ use super::scale::Scale;
 use super::theme::{self, TEXT};
 use super::view::View;
 
-/// The length of ticks, and from their ends to the numbers, pixels of a picture of the
-/// common width.
+/// Length of ticks, and from their ends to the numbers, pixels of a picture of the common width.
 const TICK: f64 = 5.0;
 const BESIDE: f64 = 4.0;
-/// The height of a line of text.
 const LINE: f64 = 1.25 * TEXT;
 /// Room for the name of an upright axis, and from the numbers to its base line.
 const NAME: (f64, f64) = (1.4 * TEXT, 0.55 * TEXT);
@@ -26,7 +23,6 @@ const GAP: f64 = 10.0;
 /// From an area to the bar of colours beside it, and how wide that is.
 const BAR: (f64, f64) = (16.0, 18.0);
 
-/// What an axis says.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis<'a> {
     pub(super) scale: Scale,
@@ -176,8 +172,7 @@ pub(super) fn draw_grating(scene: &mut Scene, area: Rect, (x, y): (Axis<'_>, Axi
     scene.stroke(lines, Stroke::new(theme::GRATING, unit));
 }
 
-/// Draws a bar of colours, the least value below, with ticks, numbers and the name of
-/// what they are of.
+/// Draws a bar of colours, the least value below, with ticks, numbers and its name.
 pub(super) fn draw_bar(
     scene: &mut Scene,
     bar: Rect,
@@ -229,16 +224,12 @@ mod tests {
                 draw_metres(&mut scene, &view, 1.0);
                 layout::check(&scene);
                 let labels = scene.labels();
-                assert!(
-                    labels.len() >= 4,
-                    "two names, and a number each: {labels:?}"
-                );
+                let is_so = labels.len() >= 4;
+                assert!(is_so, "two names, and a number each: {labels:?}");
                 // A pixel for the view, which begins on whole ones.
                 let area = area.shrunk(-1.0);
-                assert!(
-                    labels.iter().all(|label| area.holds(&label.area)),
-                    "{labels:?}"
-                );
+                let is_so = labels.iter().all(|label| area.holds(&label.area));
+                assert!(is_so, "{labels:?}");
             }
         }
     }
@@ -256,10 +247,8 @@ mod tests {
             draw_bar(&mut scene, bar, axis, theme::heat, 1.0);
             layout::check(&scene);
             for label in scene.labels() {
-                assert!(
-                    area.holds(&label.area) && !rest.overlaps(&label.area),
-                    "{label:?}"
-                );
+                let is_so = area.holds(&label.area) && !rest.overlaps(&label.area);
+                assert!(is_so, "{label:?}");
             }
         }
     }

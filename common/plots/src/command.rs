@@ -26,11 +26,6 @@ use super::field::Votes;
 use super::subject::Subject;
 use super::{animation, errors, field, outline, scan, surface};
 
-/// Draws one picture and says how large it is.
-///
-/// # Errors
-/// Options contradict each other, map or recording cannot be used, the scan is
-/// refused, or the picture cannot be written.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let format = config.check()?;
     // Before anything is read, so that a failure costs no work.
@@ -73,10 +68,6 @@ fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> anyhow::Result<E
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a scene to a PNG file.
-///
-/// # Errors
-/// The picture cannot be encoded, or the file not be written.
 pub fn save_png(scene: &Scene, file: &Path) -> anyhow::Result<()> {
     write(file, &crate::drawing::to_png(scene)?)
 }
@@ -105,7 +96,6 @@ fn draw_map(
     outline::draw(&config.ground(&map), &grid, &name, config.size())
 }
 
-/// A recording and a map, ready to be drawn.
 struct Plot<'a> {
     config: &'a Config,
     bag: &'a Path,
@@ -161,7 +151,6 @@ impl<'a> Plot<'a> {
         }
     }
 
-    /// The scan with a number from 1.
     fn nth_scan(&mut self, number: u64) -> anyhow::Result<TakenScan> {
         let mut seen = 0;
         for scan in self.session.scans.by_ref() {
@@ -189,7 +178,6 @@ impl<'a> Plot<'a> {
         Ok(Subject::new((number, scan), places?, truth, world)?)
     }
 
-    /// The votes at the heading of the best place.
     fn field(&self, scan: &TakenScan, subject: &Subject) -> anyhow::Result<Field> {
         let Some(best) = subject.shown.first() else {
             return Err(no_place(self.bag, subject.number, &subject.places));
@@ -238,7 +226,6 @@ impl<'a> Plot<'a> {
         })
     }
 
-    /// All scans that can be searched.
     fn subjects(&mut self) -> anyhow::Result<Vec<Subject>> {
         let progress = Progress::new("locating", self.session.scans.total());
         let (mut subjects, mut number) = (Vec::new(), 0);

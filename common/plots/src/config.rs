@@ -1,5 +1,4 @@
-//! Options of `backcast plot`, and which options belong to
-//! which picture.
+//! Options of `backcast plot`, and which of them belong to which picture.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +10,6 @@ use offline::Options;
 use super::scan::Size;
 use super::subject::Ground;
 
-/// What stands below the options.
 pub const NOTES: &str = "\
 Ends of beams: a green dot is at an obstacle, an orange triangle before one, a red cross behind
 one, a violet diamond behind unknown space. Places that fit about as well are fainter, and shown
@@ -78,7 +76,6 @@ pub struct Config {
     pub(super) options: Options,
 }
 
-/// In what a picture is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Png,
@@ -88,19 +85,13 @@ pub(super) enum Format {
 impl Config {
     /// Whether the file is the image of --map.
     fn is_map(&self, file: &Path) -> bool {
-        let image = self
-            .options
-            .map
-            .first()
-            .and_then(|yaml| map::image_of(yaml).ok());
+        let yaml = self.options.map.first();
+        let image = yaml.and_then(|yaml| map::image_of(yaml).ok());
         let whole = |path: &Path| path.canonicalize().ok();
         image.is_some_and(|image| whole(&image).is_some() && whole(&image) == whole(file))
     }
 
     /// Checks what no option can check alone; opens nothing.
-    ///
-    /// # Errors
-    /// Names the option and what is allowed.
     pub(super) fn check(&self) -> anyhow::Result<Format> {
         self.options.check()?;
         let usage = |text: String| Err(wrong_use(text));
@@ -148,7 +139,6 @@ impl Config {
         }
     }
 
-    /// How the picture is made.
     pub(super) fn size(&self) -> Size {
         Size {
             width: self.width,
@@ -156,7 +146,6 @@ impl Config {
         }
     }
 
-    /// A map as it is drawn.
     pub(super) fn ground<'a>(&self, map: &'a OccupancyGrid) -> Ground<'a> {
         Ground {
             map,

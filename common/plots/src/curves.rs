@@ -12,7 +12,6 @@ use super::theme;
 /// The body's height as a share of its width.
 const HEIGHT: f64 = 0.5;
 
-/// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// Along the axis to the right.
@@ -26,22 +25,17 @@ pub struct CurvePoint {
 /// Points that belong together, from left to right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// As the legend names it.
     pub name: String,
     /// Which of the colours, and marks, of curves it has.
     pub color: usize,
     /// Figures that were not measured, but calculated or printed, are dashed.
     pub is_dashed: bool,
-    /// Its points, from left to right.
     pub points: Vec<CurvePoint>,
 }
 
-/// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curves {
-    /// Above the chart.
     pub title: String,
-    /// Below the title.
     pub says: String,
     /// What the axes measure, with their units.
     pub x: String,
@@ -49,14 +43,9 @@ pub struct Curves {
     pub y: String,
     /// Whether the axis upwards is one of decades; else it begins at 0.
     pub by_decades: bool,
-    /// The curves, in the order of the legend.
     pub curves: Vec<Curve>,
 }
 
-/// Draws a chart.
-///
-/// # Errors
-/// The picture would be too large.
 pub fn draw(chart: &Curves) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
     let heading = Heading::plain(&chart.title, &chart.says);
@@ -214,9 +203,7 @@ mod tests {
         below.curves[0].points[0].interval = Some((0.0, 4.0));
         assert!(has(&texts(&below), "goes on below the axis"));
         below.by_decades = false;
-        assert!(
-            !has(&texts(&below), "goes on below the axis"),
-            "0 is on this axis"
-        );
+        let is_so = !has(&texts(&below), "goes on below the axis");
+        assert!(is_so, "0 is on this axis");
     }
 }

@@ -12,24 +12,20 @@ use super::theme;
 /// The caption above a panel, pixels of a picture of the common width.
 const CAPTION: f64 = 34.0;
 
-/// What a cell shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cell {
     /// The robot may stand here; 0..=1 of the highest intensity.
     Free(f64),
-    /// An occupied cell.
     Obstacle,
     /// An obstacle that readings are projected from.
     Boundary,
 }
 
-/// What an arrow stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// A reading as the robot takes it.
     Reading,
-    /// A reading put to a place where it may have been taken, or projected back from
-    /// where it may have ended.
+    /// A reading put to a place where it may have been taken, or projected back.
     Projected,
     /// The same, where it ends beyond an obstacle or is none.
     Rejected,
@@ -42,40 +38,30 @@ pub struct Arrow {
     pub from: (f64, f64),
     /// Where its tip is, cells.
     pub to: (f64, f64),
-    /// What it shows, by its colour.
     pub role: Role,
 }
 
-/// One step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// Above the panel.
     pub caption: String,
     /// Cells along x and y.
     pub sides: (usize, usize),
     /// Row by row from the lowest y.
     pub cells: Vec<Cell>,
-    /// Over the cells.
     pub arrows: Vec<Arrow>,
     /// The true place of the robot, in cells.
     pub robot: Option<(f64, f64)>,
 }
 
-/// All steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagram {
-    /// Above all panels.
     pub title: String,
-    /// Below the title.
     pub says: String,
     /// In rows of two.
     pub panels: Vec<Panel>,
 }
 
 /// Draws the steps side by side, two in a row.
-///
-/// # Errors
-/// The picture would be too large.
 pub fn draw(diagram: &Diagram) -> anyhow::Result<Scene> {
     let width = page::COMMON_WIDTH;
     let unit = page::unit(width);
@@ -267,10 +253,8 @@ mod tests {
             for name in ["robot", "reading", "share of the most votes", "x, cells"] {
                 assert!(texts.contains(&name), "{name}: {texts:?}");
             }
-            assert!(
-                !texts.contains(&"boundary cell"),
-                "none is drawn: {texts:?}"
-            );
+            let is_so = !texts.contains(&"boundary cell");
+            assert!(is_so, "none is drawn: {texts:?}");
             scene.height()
         };
         assert_eq!(height(1), height(2));

@@ -1,5 +1,4 @@
-//! A drive from above: the map, where the tracker had the robot, and where it was not
-//! sure.
+//! A drive from above: the map, and where the tracker had the robot and was not sure.
 
 use crate::drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
@@ -14,14 +13,11 @@ use super::subject::Ground;
 use super::view::View;
 use super::{axes, theme};
 
-/// A scan of a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// What the tracker says there.
     pub state: TrackState,
     /// Where the tracker has the laser.
     pub pose: Option<Pose>,
-    /// Where it truly was.
     pub truth: Option<Pose>,
 }
 
@@ -35,19 +31,13 @@ const MARK: f64 = 3.0;
 const MARGIN_M: f64 = 3.0;
 
 /// Draws a drive; what it says stands above it.
-///
-/// # Errors
-/// The picture would be too large.
 pub fn draw(
     map: &OccupancyGrid,
     rules: CellRules,
     stops: &[Stop],
     (title, says): (String, String),
 ) -> anyhow::Result<Scene> {
-    let places = stops
-        .iter()
-        .flat_map(|stop| [stop.pose, stop.truth])
-        .flatten();
+    let places = stops.iter().flat_map(|it| [it.pose, it.truth]).flatten();
     let corners = places.flat_map(|pose| {
         let around = [-MARGIN_M, MARGIN_M];
         around.map(|by| (pose.x + by, pose.y + by))
@@ -87,8 +77,7 @@ fn draw_path((scene, legend): (&mut Scene, &mut Legend), view: &View, stops: &[S
     }
 }
 
-/// The marks of a state: where the tracker had the robot, or where it truly was while
-/// nothing was known.
+/// Draws the marks of a state, at the true place while nothing was known.
 fn draw_state(
     (scene, legend): (&mut Scene, &mut Legend),
     view: &View,

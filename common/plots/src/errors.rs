@@ -1,5 +1,4 @@
-//! The picture of a drive: how far off the best place of each scan is, and what
-//! the verdict says.
+//! Picture of a drive: how far off the best place of each scan is, and its verdict.
 
 use crate::drawing::{Path, Rect, Scene, Stroke};
 use messages::Verdict;
@@ -12,14 +11,12 @@ use super::scale::Scale;
 use super::shapes::Shape;
 use super::theme;
 
-/// A scan whose truth is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Judged {
     /// When it was measured, nanoseconds since 1970.
     pub(super) stamp_ns: i64,
     pub(super) verdict: Verdict,
-    /// From the best place to the true one, metres and degrees; `None` where
-    /// the scan was refused or has no place.
+    /// Metres and degrees from the best place to the true one; `None` without a place.
     pub(super) off: Option<(f64, f64)>,
 }
 
@@ -42,9 +39,6 @@ const HEIGHT: f64 = 0.24;
 const MARK: f64 = 4.2;
 
 /// Draws the picture of at least one judged scan.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> anyhow::Result<Scene> {
     let unit = page::unit(width);
     let one = axes::height_for(HEIGHT, page::body_width(width), unit);
@@ -58,10 +52,8 @@ pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> anyhow::Result<S
     });
     // Both times run side by side.
     let left = parts.clone().map(|(_, area)| area.x).fold(0.0, f64::max);
-    let right = parts
-        .clone()
-        .map(|(_, area)| area.right())
-        .fold(f64::MAX, f64::min);
+    let rights = parts.clone().map(|(_, area)| area.right());
+    let right = rights.fold(f64::MAX, f64::min);
     for (series, area) in parts {
         let area = Rect::new(left, area.y, right - left, area.height);
         series.draw(&mut page, judged, area);
@@ -69,10 +61,8 @@ pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> anyhow::Result<S
     Ok(page.finish()?)
 }
 
-/// One of both errors.
 struct Series {
     name: &'static str,
-    /// What counts as found.
     limit: f64,
     /// The least that an axis goes down to: what a truth is good for.
     least: f64,
@@ -145,8 +135,7 @@ impl Series {
     }
 }
 
-/// Draws the marks of a verdict, and names those that have a shape of their own: of scans
-/// without a place, and of errors below the axis.
+/// Draws the marks of a verdict, and names those without a place or below the axis.
 fn draw_marks(
     page: &mut Page,
     verdict: Verdict,
@@ -215,7 +204,6 @@ fn heading(judged: &[Judged], bag: &str) -> Heading {
     )
 }
 
-/// Names the verdicts and the limit.
 fn name(legend: &mut Legend, judged: &[Judged], unit: f64) {
     for verdict in VERDICTS {
         let scans = judged.iter().filter(|scan| scan.verdict == verdict);

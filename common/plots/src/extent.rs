@@ -12,20 +12,17 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// Nothing yet.
     pub(super) const EMPTY: Extent = Extent {
         min: (f64::INFINITY, f64::INFINITY),
         max: (f64::NEG_INFINITY, f64::NEG_INFINITY),
     };
 
-    /// What holds all points.
     pub(super) fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut extent = Extent::EMPTY;
         extent.include(points);
         extent
     }
 
-    /// What holds the whole map.
     pub(super) fn of_map(map: &OccupancyGrid) -> Self {
         let width = f64::from(map.width) * map.resolution_m;
         let height = f64::from(map.height) * map.resolution_m;
@@ -73,7 +70,6 @@ impl Extent {
         }
     }
 
-    /// Grows until it holds another.
     pub(super) fn include_all(&mut self, other: Extent) {
         self.include([other.min, other.max]);
     }
@@ -88,8 +84,7 @@ impl Extent {
         other
     }
 
-    /// With a rim of a share of its longer side, and at least `least_m` along
-    /// each axis.
+    /// With a rim of a share of its longer side, and at least `least_m` along each axis.
     pub(super) fn with_rim(self, share: f64, least_m: f64) -> Self {
         let rim = share * self.width().max(self.height());
         let (x, y) = self.center();
@@ -101,17 +96,14 @@ impl Extent {
         }
     }
 
-    /// Metres along x.
     pub(super) fn width(&self) -> f64 {
         self.max.0 - self.min.0
     }
 
-    /// Metres along y.
     pub(super) fn height(&self) -> f64 {
         self.max.1 - self.min.1
     }
 
-    /// The middle.
     pub(super) fn center(&self) -> (f64, f64) {
         (
             (self.min.0 + self.max.0) / 2.0,

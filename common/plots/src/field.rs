@@ -1,5 +1,4 @@
-//! The picture of the votes: how many each position has at the best heading,
-//! over the map, as in figures 4b, 5b and 6e to 6g of the paper.
+//! Picture of the votes of each position at the best heading, as figure 4b of the paper.
 
 use crate::drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
@@ -23,16 +22,13 @@ const HEIGHTS: (f64, f64) = (0.25, 1.0);
 /// About what the bar of colours takes from the width.
 const BAR_ROOM: f64 = 110.0;
 
-/// What a picture of votes is made of.
 #[derive(Debug)]
 pub struct Votes<'a> {
     pub(super) ground: Ground<'a>,
     pub(super) field: &'a Field,
     pub(super) heading: Heading,
-    /// What is shown of the map.
     pub(super) extent: Extent,
     pub(super) truth: Option<Pose>,
-    /// Pixels.
     pub(super) width: u32,
 }
 
@@ -71,7 +67,32 @@ impl<'a> Votes<'a> {
         }
     }
 
-    /// What the bar of colours says.
+    /// Returns a function from the column and row of a view's pixel to the highest share of the most
+    /// votes under it, and the share of walls.
+    pub(super) fn sampler(&self, view: &View) -> impl Fn(u32, u32) -> (f64, f64) {
+        let (field, Ground { map, rules }) = (self.field, self.ground);
+        let cells = Sampler::new(view, frame_of(map), sides_of(map));
+        let under = Sampler::new(view, field.frame, field.sides);
+        let most = f64::from(field.outcome.found.best.max(1));
+        let is_wall = move |index: usize| {
+            let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
+            rules.is_occupied(value)
+        };
+        move |column, row| {
+            let mut highest = 0;
+            under.each(column, row, |index| {
+                let intensity = index.and_then(|index| field.intensities.get(index));
+                highest = highest.max(intensity.copied().unwrap_or_default());
+            });
+            let (mut met, mut walls) = (0.0_f64, 0.0);
+            cells.each(column, row, |index| {
+                met += 1.0;
+                walls += f64::from(u8::from(index.is_some_and(is_wall)));
+            });
+            (f64::from(highest) / most, (walls / met.max(1.0)).sqrt())
+        }
+    }
+
     pub(super) fn scale(&self) -> Axis<'static> {
         let most = f64::from(self.field.outcome.found.best.max(1));
         Axis {
@@ -81,7 +102,6 @@ impl<'a> Votes<'a> {
     }
 }
 
-/// The lines above a picture of a field.
 fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
     let best = field.outcome.found.best;
     let degrees = field.outcome.known_heading.unwrap_or_default().to_degrees();
@@ -100,10 +120,6 @@ fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
     }
 }
 
-/// Draws the picture.
-///
-/// # Errors
-/// The picture would be too large.
 pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
     let extent = votes.extent;
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
@@ -143,36 +159,14 @@ pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
 
 /// Fills a view with the votes and the walls; whether there is a wall.
 fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> anyhow::Result<bool> {
-    let (ground, field) = (&votes.ground, votes.field);
-    let map = ground.map;
-    let cells = Sampler::new(view, frame_of(map), sides_of(map));
-    let under = Sampler::new(view, field.frame, field.sides);
-    let most = f64::from(field.outcome.found.best.max(1));
-    let mut any_wall = false;
+    let (sampled, mut any_wall) = (votes.sampler(view), false);
     scene.image(view.area(), |column, row| {
-        let mut highest = 0;
-        under.each(column, row, |index| {
-            let intensity = index.and_then(|index| field.intensities.get(index));
-            highest = highest.max(intensity.copied().unwrap_or_default());
-        });
-        let (mut met, mut walls) = (0.0_f64, 0.0);
-        cells.each(column, row, |index| {
-            met += 1.0;
-            if index.is_some_and(|index| is_wall(map, ground.rules, index)) {
-                walls += 1.0;
-            }
-        });
+        let (share, walls) = sampled(column, row);
         any_wall |= walls > 0.0;
-        let color = theme::heat(f64::from(highest) / most);
-        color.towards(WALL, (walls / met.max(1.0)).sqrt())
+        theme::heat(share).towards(WALL, walls)
     })?;
     Ok(any_wall)
 }
 
 /// Walls stand back behind the votes.
 pub(super) const WALL: Color = Color::rgb(0x7C_8896);
-
-pub(super) fn is_wall(map: &OccupancyGrid, rules: CellRules, index: usize) -> bool {
-    let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
-    rules.is_occupied(value)
-}

@@ -28,7 +28,6 @@ pub(super) struct Sampler {
 }
 
 impl Sampler {
-    /// For a raster of `sides` cells.
     pub(super) fn new(view: &View, frame: GridFrame, sides: (usize, usize)) -> Self {
         let cells_per_pixel = 1.0 / (view.pixels_per_m() * frame.resolution_m);
         let looks = (1.5 * cells_per_pixel).ceil().clamp(1.0, MAX_LOOKS);
@@ -50,8 +49,7 @@ impl Sampler {
         }
     }
 
-    /// Calls `see` with the index of each cell that is met under a pixel of the
-    /// view's area, and with `None` beside the raster. A cell can come often.
+    /// Calls `see` with each cell met under a pixel, some twice, or `None` beyond the raster.
     pub(super) fn each(&self, column: u32, row: u32, mut see: impl FnMut(Option<usize>)) {
         for v in row * self.looks..(row + 1) * self.looks {
             for u in column * self.looks..(column + 1) * self.looks {
@@ -73,8 +71,7 @@ impl Sampler {
 /// Cells of a kind, their colour and their name.
 pub(super) type Ink = (Color, &'static str);
 
-/// Draws the map, and names what is seen of it. Occupied cells are those of `ink`, whatever
-/// share of a pixel they take; `ink` gives `None` for the others.
+/// Draws the map, and names what is seen; `ink` is of occupied cells, however small.
 pub(super) fn draw(
     (scene, legend): (&mut Scene, &mut Legend),
     (map, rules): (&OccupancyGrid, CellRules),
@@ -122,7 +119,6 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// The ink of an ordinary map.
 pub(super) fn occupied(map: &OccupancyGrid, rules: CellRules) -> impl Fn(usize) -> Option<Ink> {
     move |index| {
         let value = *map.cells.get(index)?;
@@ -171,8 +167,7 @@ mod tests {
 
     use super::*;
 
-    /// Three by two cells of half a metre, turned by a quarter: the grid's x
-    /// axis points up, its y axis to the left.
+    /// Three by two cells of half a metre, turned by a quarter: the grid's x axis points up.
     fn map() -> OccupancyGrid {
         let turned = Pose::new(1.0, 0.0, std::f64::consts::FRAC_PI_2);
         let cells = vec![0, 0, 100, 0, UNKNOWN, 0];

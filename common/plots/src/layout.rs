@@ -2,22 +2,17 @@
 
 use crate::drawing::Scene;
 
-/// Fails if a label lies over another or reaches beyond the picture, or if text is too
-/// small to read.
+/// Fails if a label overlaps another, reaches beyond the picture, or is too small to read.
 pub(super) fn check(scene: &Scene) {
     let labels = scene.labels();
     for (i, label) in labels.iter().enumerate() {
-        assert!(
-            scene.area().holds(&label.area),
-            "beyond the picture: {label:?}"
-        );
+        let is_so = scene.area().holds(&label.area);
+        assert!(is_so, "beyond the picture: {label:?}");
         let side = label.area.width.min(label.area.height);
         assert!(label.text.is_empty() || side > 3.0, "too small: {label:?}");
         for other in &labels[i + 1..] {
-            assert!(
-                !label.area.overlaps(&other.area),
-                "{label:?} over {other:?}"
-            );
+            let is_so = !label.area.overlaps(&other.area);
+            assert!(is_so, "{label:?} over {other:?}");
         }
     }
 }

@@ -6,22 +6,15 @@ use super::marks;
 use super::shapes::Shape;
 use super::theme;
 
-/// What an entry of the legend looks like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sample {
-    /// A mark.
     Mark(Shape, Color),
-    /// The outline of a mark.
     Outline(Shape, Color),
     /// A filled area; pale ones have a rim.
     Area(Color),
-    /// A robot.
     Robot(Color),
-    /// The mark of the truth.
     Truth,
-    /// A line.
     Line(Stroke),
-    /// A line with marks.
     Curve(Stroke, Shape),
     /// A beam and the mark of its end.
     Beam(Shape, Color),
@@ -29,9 +22,7 @@ pub(super) enum Sample {
     Bar(Stroke),
     /// An arrow that points down.
     Arrow(Stroke),
-    /// A ring.
     Ring(Color),
-    /// An ellipse.
     Ellipse(Color),
 }
 
@@ -67,13 +58,11 @@ impl Legend {
         }
     }
 
-    /// The names.
     #[cfg(test)]
     pub(super) fn names(&self) -> Vec<&str> {
         self.entries.iter().map(|(_, name)| name.as_str()).collect()
     }
 
-    /// How high it is for a width.
     pub(super) fn height(&self, width: f64, unit: f64) -> f64 {
         ROW * unit * self.arranged(width, unit).len() as f64
     }
@@ -113,7 +102,6 @@ impl Legend {
     }
 }
 
-/// Draws a sample around a point.
 fn draw_sample(scene: &mut Scene, sample: Sample, at: (f64, f64), unit: f64) {
     let half = 10.0 * unit;
     let line = Path::line((at.0 - half, at.1), (at.0 + half, at.1));
@@ -189,19 +177,5 @@ mod tests {
         legend.amend("hit", " (3)");
         legend.amend("short", " (4)");
         assert_eq!(legend.names(), ["hit (3)", "truth"]);
-    }
-
-    #[test]
-    fn a_name_that_is_wider_than_the_picture_is_written_smaller() {
-        let legend = legend(&["a name that is much too long for this picture", "other"]);
-        let mut scene = Scene::new(200, 100, "").unwrap();
-        legend.draw(&mut scene, (10.0, 10.0), 180.0, 1.0);
-        let room = Rect::new(10.0, 10.0, 180.0001, 2.0 * ROW);
-        let labels = scene.labels();
-        assert_eq!(labels.len(), 2);
-        assert!(
-            labels.iter().all(|label| room.holds(&label.area)),
-            "{labels:?}"
-        );
     }
 }

@@ -18,8 +18,7 @@ pub(super) fn placement(view: &View, pose: Pose) -> Placement {
     (view.at((pose.x, pose.y)), pose.yaw)
 }
 
-/// A robot as a dart that points where it is headed, `size` pixels from its
-/// middle to its tip.
+/// Draws a robot as a dart, `size` pixels from its middle to its tip.
 pub(super) fn robot(scene: &mut Scene, placement: Placement, size: f64, color: Color) {
     let corners = [(1.25, 0.0), (-0.85, 0.8), (-0.45, 0.0), (-0.85, -0.8)];
     let path = Path::polygon(corners.map(|(x, y)| placed(placement, x * size, y * size)));
@@ -54,7 +53,6 @@ pub(super) fn ellipse(
     scene.stroke(path, stroke);
 }
 
-/// The ends of beams that are shown; whether there is one.
 pub(super) fn ends(
     scene: &mut Scene,
     view: &View,
@@ -103,19 +101,4 @@ fn placed((at, yaw): Placement, ahead: f64, left: f64) -> (f64, f64) {
         at.0 + ahead * cos - left * sin,
         at.1 - ahead * sin - left * cos,
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
-    use super::*;
-
-    #[test]
-    fn ahead_of_a_robot_that_faces_up_is_up() {
-        let placement = ((10.0, 20.0), FRAC_PI_2);
-        let near = |(x, y): (f64, f64), ex: f64, ey: f64| (x - ex).hypot(y - ey) < 1e-12;
-        assert!(near(placed(placement, 5.0, 0.0), 10.0, 15.0));
-        assert!(near(placed(placement, 0.0, 5.0), 5.0, 20.0));
-    }
 }

@@ -5,8 +5,7 @@ use crate::drawing::{Anchor, Path, Rect, Scene, Stroke, TextStyle};
 
 use super::theme;
 
-/// Directions that are tried around a mark, and distances, each by a share of the letters'
-/// size farther.
+/// Directions and distances tried around a mark, each farther by a share of the letters' size.
 const DIRECTIONS: u32 = 16;
 const DISTANCES: u32 = 12;
 const STEP: f64 = 0.5;
@@ -21,7 +20,6 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// Numbers within an area.
     pub(super) fn new(area: Rect) -> Self {
         Numbers {
             area,
@@ -30,7 +28,6 @@ impl Numbers {
         }
     }
 
-    /// Keeps what a mark covers free.
     pub(super) fn keep_free(&mut self, at: (f64, f64), radius: f64) {
         self.marks.push((at, radius));
     }
@@ -76,35 +73,5 @@ impl Numbers {
         self.area.holds(area)
             && self.marks.iter().all(is_clear)
             && self.written.iter().all(|other| !other.overlaps(area))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::layout;
-    use super::*;
-
-    #[test]
-    fn numbers_of_marks_in_a_heap_are_all_written_beside_each_other() {
-        let mut scene = Scene::new(400, 300, "").unwrap();
-        let mut numbers = Numbers::new(scene.area());
-        // In the corner, where half of the directions lead out of the picture.
-        let marks: Vec<_> = (0..9).map(|i| (390.0 - 3.0 * f64::from(i), 8.0)).collect();
-        for &mark in &marks {
-            numbers.keep_free(mark, 8.0);
-        }
-        for (rank, &mark) in (2..).zip(&marks) {
-            numbers.write(&mut scene, &rank.to_string(), mark, &theme::text(1.0));
-        }
-        assert_eq!(scene.labels().len(), marks.len());
-        layout::check(&scene);
-        for label in scene.labels() {
-            let (x, y) = label.area.center();
-            assert!(
-                marks
-                    .iter()
-                    .all(|mark| (x - mark.0).hypot(y - mark.1) > 8.0)
-            );
-        }
     }
 }

@@ -1,5 +1,4 @@
-//! The picture of a map: its boundary cells, from which readings are projected
-//! back, and how many there are.
+//! Picture of a map with its boundary cells, from which readings are projected back.
 
 use crate::drawing::Scene;
 use engine::boundary;
@@ -16,9 +15,6 @@ use super::theme;
 const HEIGHTS: (f64, f64) = (0.2, 1.3);
 
 /// Draws what is known of the map; `grid` is the same map as rays see it.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw(
     ground: &Ground<'_>,
     grid: &Grid,

@@ -20,8 +20,7 @@ const DOT: f64 = 2.6;
 const FAINT_DOT: f64 = 1.7;
 const RANK: f64 = 16.0;
 
-/// Draws all places, the best in front and with what became of its beams, and names what
-/// is drawn.
+/// Draws and names all places, the best in front and with the classes of its beams.
 pub(super) fn draw(
     (scene, legend): (&mut Scene, &mut Legend),
     view: &View,
@@ -112,7 +111,6 @@ pub(super) fn count(legend: &mut Legend, subject: &Subject) {
     }
 }
 
-/// The mark of a place.
 fn mark(scene: &mut Scene, view: &View, shown: &Shown, unit: f64) {
     let pose = shown.place.map_from_laser;
     let (color, size) = match shown.rank {
@@ -234,8 +232,7 @@ pub(super) mod tests {
             // 50 pixels a metre, y from the top.
             let (x, y) = (50.0 * pose.x, 400.0 - 50.0 * pose.y);
             let (robot_x, robot_y) = middle_of(&scene, theme::BEST);
-            // The dart's middle lies a little off the laser, and its rim is
-            // blended with the ellipse: a quarter of its length.
+            // The dart's middle lies a little off the laser, by up to a quarter of its length.
             let off = (robot_x - x).hypot(robot_y - y);
             assert!(off < ROBOT / 2.0, "{robot_x} {robot_y} for {pose:?}");
             let (hit_color, ..) = theme::of_class(BeamClass::Hit);

@@ -15,11 +15,7 @@ use super::{axes, marks, theme};
 /// The body's height as a share of its width.
 const HEIGHTS: (f64, f64) = (0.25, 0.9);
 
-/// Draws the map, the true path over it, and places by their numbers from 1: found, and
-/// true.
-///
-/// # Errors
-/// The picture would be too large.
+/// Draws the map, the true path, and places by their numbers from 1: found, and true.
 pub fn draw(
     (map, rules): (&OccupancyGrid, CellRules),
     path: &[Pose],

@@ -1,7 +1,5 @@
-//! From values to shares of an axis, and the round numbers that are written beside it.
-//! Pure.
+//! Shares of an axis for values, and the round numbers written along it. Pure.
 
-/// How values lie along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Scale {
     /// Evenly from the first value to the second.
@@ -38,8 +36,7 @@ impl Scale {
         Scale::Decades(below, round_step(high).max(2.0 * below))
     }
 
-    /// Where a value lies, 0 at the axis' beginning and 1 at its end; what lies beyond
-    /// is put on the end.
+    /// Share of the axis up to a value, clamped to 0..=1.
     pub(super) fn share(self, value: f64) -> f64 {
         let share = match self {
             Scale::Even(low, high) => (value - low) / (high - low),
@@ -60,8 +57,7 @@ impl Scale {
         }
     }
 
-    /// The values that are written beside the axis, with their text: about `most`, and some
-    /// more of decades.
+    /// Values that are written along the axis, with their text: about `most`.
     pub(super) fn ticks(self, most: u32) -> Vec<(f64, String)> {
         let values: Vec<f64> = match self {
             Scale::Even(low, high) => {
@@ -73,10 +69,7 @@ impl Scale {
             }
             Scale::Decades(low, high) => decades(low, high, most),
         };
-        values
-            .into_iter()
-            .map(|value| (value, number(value)))
-            .collect()
+        values.into_iter().map(|it| (it, number(it))).collect()
     }
 }
 
@@ -132,22 +125,14 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_within_the_axis() {
-        assert_eq!(
-            texts(Scale::Even(0.0, 120.0)),
-            ["0", "20", "40", "60", "80", "100", "120"]
-        );
-        assert_eq!(
-            texts(Scale::Even(-0.3, 0.3)),
-            ["−0.3", "−0.2", "−0.1", "0", "0.1", "0.2", "0.3"]
-        );
-        assert_eq!(
-            texts(Scale::Decades(0.5, 20.0)),
-            ["0.5", "1", "2", "5", "10", "20"]
-        );
-        assert_eq!(
-            texts(Scale::Decades(0.01, 100.0)),
-            ["0.01", "0.1", "1", "10", "100"]
-        );
+        let expected = ["0", "20", "40", "60", "80", "100", "120"];
+        assert_eq!(texts(Scale::Even(0.0, 120.0)), expected);
+        let found = texts(Scale::Even(-0.3, 0.3));
+        assert_eq!(found, ["−0.3", "−0.2", "−0.1", "0", "0.1", "0.2", "0.3"]);
+        let found = texts(Scale::Decades(0.5, 20.0));
+        assert_eq!(found, ["0.5", "1", "2", "5", "10", "20"]);
+        let found = texts(Scale::Decades(0.01, 100.0));
+        assert_eq!(found, ["0.01", "0.1", "1", "10", "100"]);
         let few = Scale::Decades(0.001, 1000.0).ticks(3);
         let values: Vec<f64> = few.into_iter().map(|(value, _)| value).collect();
         assert_eq!(values, [0.01, 1.0, 100.0]);
@@ -155,22 +140,16 @@ mod tests {
 
     #[test]
     fn axes_hold_their_values() {
-        assert_eq!(
-            Scale::from_zero([3.0, 97.0].into_iter()),
-            Scale::Even(0.0, 100.0)
-        );
+        let expected = Scale::Even(0.0, 100.0);
+        assert_eq!(Scale::from_zero([3.0, 97.0].into_iter()), expected);
         let Scale::Decades(low, high) = Scale::of_decades([0.3, 0.0, 41.0].into_iter()) else {
             panic!("another scale");
         };
         // Roots and powers of ten round.
-        assert!(
-            (low - 0.2).abs() < 1e-9 && (high - 50.0).abs() < 1e-9,
-            "{low} {high}"
-        );
-        assert_eq!(
-            Scale::of_decades(std::iter::empty()),
-            Scale::Decades(1.0, 10.0)
-        );
+        let is_so = (low - 0.2).abs() < 1e-9 && (high - 50.0).abs() < 1e-9;
+        assert!(is_so, "{low} {high}");
+        let found = Scale::of_decades(std::iter::empty());
+        assert_eq!(found, Scale::Decades(1.0, 10.0));
     }
 
     #[test]

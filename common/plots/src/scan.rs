@@ -12,8 +12,7 @@ use super::{axes, marks, places, theme};
 
 /// Most places that are shown from near.
 const MAX_NEAR: usize = 3;
-/// The body of the picture is as high as the part of the map asks for, within
-/// these shares of its width.
+/// Limits of the body's height as a share of its width.
 const HEIGHTS: (f64, f64) = (0.25, 1.0);
 /// From here on the places from near stand beside the map.
 const HIGH: f64 = 0.65;
@@ -30,16 +29,13 @@ const LEAST_NEAR: f64 = 250.0;
 const NEAR_SHARE: f64 = 0.85;
 const GAP: f64 = 10.0;
 
-/// How a picture is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Size {
-    /// Pixels.
     pub(super) width: u32,
     /// Shows the whole map and not only what matters.
     pub(super) whole: bool,
 }
 
-/// A place that is shown from near.
 struct Near<'a> {
     name: String,
     /// `None` at the truth.
@@ -48,10 +44,6 @@ struct Near<'a> {
     scan: &'a ScanAt,
 }
 
-/// Draws the picture.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw(
     ground: &Ground<'_>,
     subject: &Subject,
@@ -79,7 +71,6 @@ pub(super) fn draw(
     Ok(page.finish()?)
 }
 
-/// Where everything lies in the body of the picture.
 #[derive(Debug, Clone, PartialEq)]
 struct Layout {
     height: f64,
@@ -88,8 +79,7 @@ struct Layout {
 }
 
 impl Layout {
-    /// For a part of the map that is `ratio` times as high as it is wide. The
-    /// places from near stand in a row below it, or beside it where it is high.
+    /// Places from near stand below a part of the map, or to the right where `ratio` is high.
     fn new(ratio: f64, near: usize, width: f64, unit: f64) -> Self {
         if near == 0 {
             return Layout::below(ratio.clamp(HEIGHTS.0, HEIGHTS.1), 0, width, unit);
@@ -137,8 +127,7 @@ fn moved(area: Rect, (x, y): (f64, f64)) -> Rect {
     Rect::new(area.x + x, area.y + y, area.width, area.height)
 }
 
-/// The best place beside those that come near it, and beside the truth where
-/// that is another; nothing where there is nothing to compare.
+/// Places worth comparing: the best, its rivals and a missed truth; none if there is one alone.
 fn worth_comparing(subject: &Subject) -> Vec<Near<'_>> {
     let truth = subject.missed_truth();
     let rivals = 1 + subject.places.alternatives as usize;
@@ -225,13 +214,5 @@ mod tests {
             assert!((lowest - layout.height).abs() < 1e-9, "{layout:?}");
             assert!(right > 999.999 && right < 1000.001, "{layout:?}");
         }
-    }
-
-    #[test]
-    fn a_single_place_has_the_whole_picture() {
-        let alone = Layout::new(9.0, 0, 1000.0, 1.0);
-        assert_eq!(alone.map, Rect::new(0.0, 0.0, 1000.0, alone.height));
-        assert_eq!(alone.height, axes::height_for(1.0, 1000.0, 1.0));
-        assert!(alone.near.is_empty());
     }
 }

@@ -1,21 +1,16 @@
-//! Shapes of marks: each kind has its own, so that none differs from another by its
-//! colour alone.
+//! Shapes of marks, so that none differs from another by its colour alone.
 
 use crate::drawing::Path;
 
-/// The shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Circle,
     Square,
-    /// Points up.
     Triangle,
     Diamond,
     /// Lies, as the letter x.
     Cross,
-    /// Points down.
     Down,
-    /// Stands.
     Plus,
 }
 
@@ -31,8 +26,7 @@ impl Shape {
         Shape::Plus,
     ];
 
-    /// Adds the shape around a point to a path; all of a size cover about the same area
-    /// as a circle with that radius.
+    /// Adds the shape around a point; all of a size cover about the same area as a circle.
     pub(super) fn add_to(self, path: &mut Path, (x, y): (f64, f64), size: f64) {
         let mut polygon = |corners: &[(f64, f64)]| {
             path.add_polygon(corners.iter().map(|(u, v)| (x + size * u, y + size * v)));
@@ -51,7 +45,6 @@ impl Shape {
         }
     }
 
-    /// The shape around a point.
     pub(super) fn at(self, at: (f64, f64), size: f64) -> Path {
         let mut path = Path::new();
         self.add_to(&mut path, at, size);

@@ -1,5 +1,4 @@
-//! What a picture is about: a scan, where it could have been taken, and where
-//! it was.
+//! Subject of a picture: a scan, its possible places, and the truth.
 
 use crate::drawing::DrawingError;
 use engine::EngineError;
@@ -15,7 +14,6 @@ use super::ground;
 use super::page::{Heading, Page};
 use super::view::View;
 
-/// The map as it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ground<'a> {
     pub(super) map: &'a OccupancyGrid,
@@ -23,7 +21,6 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Fills a view with the map.
     pub(super) fn draw(&self, page: &mut Page, view: &View) -> Result<(), DrawingError> {
         let ink = ground::occupied(self.map, self.rules);
         let names = (&mut page.scene, &mut page.legend);
@@ -35,7 +32,6 @@ impl Ground<'_> {
         Extent::of_known(self.map, self.rules).with_rim(MARGIN, 0.0)
     }
 
-    /// The whole map, with a margin.
     pub(super) fn whole(&self) -> Extent {
         Extent::of_map(self.map).with_rim(MARGIN, 0.0)
     }
@@ -44,18 +40,15 @@ impl Ground<'_> {
 /// Around what is shown, as a share of its longer side.
 const MARGIN: f64 = 0.02;
 
-/// A scan at one of its places.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Shown {
     pub(super) place: Place,
-    /// Its rank, from 1.
     pub(super) rank: usize,
     pub(super) scan: ScanAt,
     /// How clearly it is drawn, 0..=1.
     pub(super) opacity: f32,
 }
 
-/// A scan and what is known of its place.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Subject {
     /// From 1.
@@ -67,7 +60,6 @@ pub(super) struct Subject {
     pub(super) truth: Option<Truth>,
 }
 
-/// Where a scan was taken.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Truth {
     pub(super) pose: Pose,
@@ -113,10 +105,6 @@ const MAX_OF_SCAN: f64 = 0.96;
 const FAINTEST: f64 = 0.08;
 
 impl Subject {
-    /// Puts a scan at its places.
-    ///
-    /// # Errors
-    /// The scan is refused.
     pub(super) fn new(
         (number, scan): (u64, &TakenScan),
         places: Places,
@@ -164,8 +152,7 @@ impl Subject {
         self.truth.as_ref().filter(|truth| !truth.is_met())
     }
 
-    /// The whole map, or what matters of it: the place, those that fit about as
-    /// well, and the truth, each with what most of the scan reaches there.
+    /// The whole map, or the places that fit and the truth, as far as the scan reaches.
     pub(super) fn extent(&self, ground: &Ground<'_>, whole: bool) -> Extent {
         let mut extent = Extent::EMPTY;
         let rivals = self.places.alternatives as usize;
@@ -185,7 +172,6 @@ impl Subject {
         extent
     }
 
-    /// The lines above a picture of it.
     pub(super) fn heading(&self, bag: &str) -> Heading {
         let mut says = self.places.sentence();
         if let Some(truth) = &self.truth {

@@ -4,11 +4,9 @@
 use std::f64::consts::PI;
 
 use crate::drawing::{Color, Path, Rect, Scene, Stroke};
-use offline::{frame_of, sides_of};
 
 use super::axes::{self, Axis};
-use super::field::{self, Votes, WALL};
-use super::ground::Sampler;
+use super::field::{Votes, WALL};
 use super::legend::Sample;
 use super::page::{self, Page};
 use super::view::View;
@@ -22,20 +20,17 @@ use space::Space;
 const PATCHES: f64 = 150.0;
 /// The height of the highest peak, as a share of the longer side.
 const PEAK: f64 = 0.32;
-/// How much darker a patch is that is turned from the light, and lighter one that is turned
-/// to it: little, as colours stand for votes.
+/// Darkening of patches that are turned from the light, and lightening of those turned to it.
 const SHADE: (f64, f64) = (0.22, 0.15);
 /// The height of both pictures as a share of the width.
 const HEIGHTS: (f64, f64) = (0.50, 0.42);
 /// Around a picture from one side: left, above, right and below.
 const ROOM: [f64; 4] = [80.0, 46.0, 100.0, 62.0];
 
-/// From where the surface is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Camera {
     name: &'static str,
-    /// By how much the map is turned before it is looked at along its y axis,
-    /// radians.
+    /// Turn of the map before it is looked at along its y axis, radians.
     azimuth: f64,
     /// Above the ground, radians.
     elevation: f64,
@@ -77,34 +72,28 @@ struct Corner {
 }
 
 impl Camera {
-    /// Looks at a point whose coordinates are shares of the longer side, the
-    /// map's middle at 0; y downwards.
+    /// Looks at a point in shares of the longer side, the map's middle at 0; y downwards.
     fn look(&self, (x, y, z): (f64, f64, f64)) -> Corner {
         let (sin, cos) = self.azimuth.sin_cos();
         let (right, away) = (x * cos - y * sin, x * sin + y * cos);
         let (up_sin, up_cos) = self.elevation.sin_cos();
         Corner {
             at: (right, -(away * up_sin + z * up_cos)),
-            // Over flat ground what stands nearer hides what stands behind it,
-            // however high either is.
+            // Over flat ground, nearer things hide farther ones, however high either is.
             nearness: -away,
         }
     }
 }
 
 impl Relief {
-    /// The surface over a part of the map.
     fn of(votes: &Votes<'_>) -> Self {
-        let (ground, field, extent) = (&votes.ground, votes.field, votes.extent);
+        let extent = votes.extent;
         let longer = extent.width().max(extent.height());
         let count = |metres: f64| (PATCHES * metres / longer).round().max(2.0);
         let (columns, rows) = (count(extent.width()), count(extent.height()));
         // A view of one pixel a corner does the sampling.
         let view = View::fitting(extent, Rect::new(0.0, 0.0, columns, rows));
-        let under = Sampler::new(&view, field.frame, field.sides);
-        let map = ground.map;
-        let cells = Sampler::new(&view, frame_of(map), sides_of(map));
-        let most = f64::from(field.outcome.found.best.max(1));
+        let sampled = votes.sampler(&view);
         let (columns, rows) = (columns as u32, rows as u32);
         let mut relief = Relief {
             columns: columns as usize,
@@ -116,20 +105,9 @@ impl Relief {
         };
         for row in (0..rows).rev() {
             for column in 0..columns {
-                let mut highest = 0;
-                under.each(column, row, |index| {
-                    let intensity = index.and_then(|index| field.intensities.get(index));
-                    highest = highest.max(intensity.copied().unwrap_or_default());
-                });
-                relief.heights.push(f64::from(highest) / most);
-                let (mut met, mut walls) = (0.0_f64, 0.0);
-                cells.each(column, row, |index| {
-                    met += 1.0;
-                    if index.is_some_and(|index| field::is_wall(map, ground.rules, index)) {
-                        walls += 1.0;
-                    }
-                });
-                relief.walls.push((walls / met.max(1.0)).sqrt());
+                let (height, walls) = sampled(column, row);
+                relief.heights.push(height);
+                relief.walls.push(walls);
             }
         }
         relief
@@ -151,7 +129,6 @@ impl Relief {
         (x, y, PEAK * height.copied().unwrap_or_default())
     }
 
-    /// The highest corner.
     fn summit(&self) -> Option<(f64, f64, f64)> {
         let all = self.heights.iter().enumerate();
         let (index, _) = all.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
@@ -176,8 +153,7 @@ impl Relief {
         seen.map(|(_, corners, color)| (corners, color)).collect()
     }
 
-    /// By height, darker where the surface is turned from the light, which
-    /// comes from the left and above.
+    /// Colours by height, darker where turned from the light, which comes from the upper left.
     fn color(&self, index: usize, corners: [(f64, f64, f64); 4]) -> Color {
         let [a, b, _, d] = corners;
         let highest = corners.iter().fold(0.0_f64, |high, c| high.max(c.2)) / PEAK;
@@ -194,10 +170,6 @@ impl Relief {
     }
 }
 
-/// Draws the picture.
-///
-/// # Errors
-/// The picture would be too large.
 pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
     let relief = Relief::of(votes);
     let width = page::body_width(votes.width);

@@ -27,8 +27,7 @@ fn map() -> OccupancyGrid {
     OccupancyGrid::from_parts(width, height, 0.1, Pose::IDENTITY, cells).unwrap()
 }
 
-/// A scan with a beam of each class at its best place, and eight other places close to each
-/// other, far from the truth.
+/// A scan with a beam of each class at its best place, and eight others far from the truth.
 fn ambiguous(x: f64) -> Subject {
     let mut subject = places::tests::subject(Pose::new(x, 4.0, 0.4));
     let best = &mut subject.shown[0];
@@ -92,10 +91,8 @@ fn check_legend(scene: &Scene) {
             .filter(|(.., pixel)| **pixel == wanted);
         let (above, below): (Vec<_>, Vec<_>) = found.partition(|(_, y, _)| *y < top);
         // A single pixel may be a blend of others.
-        assert!(
-            above.len() < 4 || !below.is_empty(),
-            "{color:?} has no name"
-        );
+        let is_so = above.len() < 4 || !below.is_empty();
+        assert!(is_so, "{color:?} has no name");
     }
 }
 

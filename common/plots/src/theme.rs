@@ -8,13 +8,9 @@ use messages::{TrackState, Verdict};
 
 use super::shapes::Shape;
 
-/// Text and axes.
 pub(super) const INK: Color = Color::rgb(0x1F_2933);
-/// Text that stands back.
 pub(super) const QUIET: Color = Color::rgb(0x66_7380);
-/// Lines around panels.
 pub(super) const FRAME: Color = Color::rgb(0xC3_CAD3);
-/// Lines behind a chart.
 pub(super) const GRATING: Color = Color::rgb(0xE7_EAEE);
 
 /// The size of all text but titles, pixels of a picture of the common width: 7.6 points
@@ -22,12 +18,10 @@ pub(super) const GRATING: Color = Color::rgb(0xE7_EAEE);
 /// one column, it is 6 points.
 pub(super) const TEXT: f64 = 18.0;
 
-/// Most text.
 pub(super) fn text(unit: f64) -> TextStyle {
     TextStyle::new(TEXT * unit, INK)
 }
 
-/// A picture's title.
 pub(super) fn title(unit: f64) -> TextStyle {
     TextStyle::new(23.0 * unit, INK).bold()
 }
@@ -54,7 +48,6 @@ pub(super) const BEST: Color = Color::rgb(0x1B_5FD0);
 pub(super) const OTHER: Color = Color::rgb(0x5E_86BF);
 pub(super) const TRUTH: Color = Color::rgb(0xC2_187A);
 
-/// Colours of the curves of a chart.
 pub(super) const CURVES: [Color; 7] = [
     Color::rgb(0x00_72B2),
     Color::rgb(0xD5_5E00),
@@ -86,7 +79,6 @@ pub(super) fn of_class(class: BeamClass) -> (Color, Shape, &'static str) {
     }
 }
 
-/// The colour and the shape of a verdict.
 pub(super) fn of_verdict(verdict: Verdict) -> (Color, Shape) {
     match verdict {
         Verdict::Unique => (CURVES[0], Shape::Circle),
@@ -114,8 +106,7 @@ pub(super) fn ink_on(color: Color) -> Color {
     if luma > 140.0 { INK } else { Color::WHITE }
 }
 
-/// The colour of a share of the most votes, 0..=1: from paper to dark, even to the eye and
-/// to the colour-blind (magma, from its light end).
+/// Colour of a share of the most votes, 0..=1 (magma from its light end, even to the colour-blind).
 pub(super) fn heat(share: f64) -> Color {
     let share = share.clamp(0.0, 1.0);
     let colorous::Color { r, g, b } = colorous::MAGMA.eval_continuous(1.0 - 0.92 * share);
@@ -161,15 +152,5 @@ mod tests {
         }
         assert_eq!(ink_on(CURVES[5]), INK, "on orange");
         assert_eq!(ink_on(CURVES[0]), Color::WHITE, "on blue");
-    }
-
-    #[test]
-    fn long_text_is_written_smaller() {
-        let style = text(1.0);
-        let words = "a sentence that is longer than the picture";
-        let small = fitted(style, words, 100.0);
-        // Widths are proportional to the size.
-        assert!((small.width_of(words) - 100.0).abs() < 1e-9);
-        assert_eq!(fitted(style, "x", 100.0), style);
     }
 }

@@ -15,8 +15,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Shows an extent, in the middle and as large as fits; what lies beside it
-    /// fills the rest. The area is taken to whole pixels.
+    /// Shows an extent as large as fits an area, which is taken to whole pixels.
     pub(super) fn fitting(extent: Extent, area: Rect) -> Self {
         let (left, top) = (area.x.round(), area.y.round());
         let area = Rect::new(
@@ -33,12 +32,10 @@ impl View {
         }
     }
 
-    /// The part of the picture, on whole pixels.
     pub(super) fn area(&self) -> Rect {
         self.area
     }
 
-    /// Pixels of a metre.
     pub(super) fn pixels_per_m(&self) -> f64 {
         self.pixels_per_m
     }
@@ -70,7 +67,6 @@ impl View {
         Pose::new(self.center.0 - half_x, self.center.1 + half_y, 0.0)
     }
 
-    /// Whether a point of the map is shown.
     pub(super) fn shows(&self, at: (f64, f64)) -> bool {
         let (x, y) = self.at(at);
         (self.area.x..self.area.right()).contains(&x)

@@ -6,8 +6,7 @@ use std::time::Duration;
 use png::{BlendOp, ColorType};
 use resvg::tiny_skia::Pixmap;
 
-use crate::drawing::encoding::encoder;
-use crate::drawing::raster::pixels;
+use crate::drawing::raster::{encoder, pixels};
 use crate::drawing::{DrawingError, Scene};
 
 /// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.
@@ -15,9 +14,8 @@ pub type Frame = (Scene, Duration);
 
 /// Encodes an animated PNG file that repeats forever. Programs without support for animations show
 /// the first frame. Further frames store only changed pixels.
-///
-/// # Errors
-/// There is no frame, one has another size than the first, or an item of `frames` is an error.
+/// Fails if there is no frame, one has another size than the first, or an item of `frames` is an
+/// error.
 pub fn to_animated_png<E: From<DrawingError>>(
     mut frames: impl ExactSizeIterator<Item = Result<Frame, E>>,
 ) -> Result<Vec<u8>, E> {
@@ -58,8 +56,7 @@ pub fn to_animated_png<E: From<DrawingError>>(
     Ok(bytes)
 }
 
-/// Changed part of an image: the smallest rectangle around all changes, with unchanged pixels
-/// transparent.
+/// Smallest rectangle around all changes of an image, with unchanged pixels transparent.
 struct Part {
     corner: (u32, u32),
     sides: (u32, u32),

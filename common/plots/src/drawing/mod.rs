@@ -13,21 +13,18 @@
 
 mod animation;
 mod color;
-mod encoding;
 mod error;
 mod path;
 mod raster;
 mod scene;
-mod size;
 mod text;
 mod vector;
 
 pub use animation::{Frame, to_animated_png};
 pub use color::Color;
-pub use error::DrawingError;
+pub use error::{DrawingError, MAX_SIDE};
 pub use path::{Path, Rect};
 pub use raster::to_png;
 pub use scene::{Label, Scene, to_svg};
-pub use size::MAX_SIDE;
 pub use text::{Anchor, TextStyle, Weight};
 pub use vector::Stroke;

@@ -5,17 +5,13 @@ use std::fmt::Write;
 /// A rectangle along the axes, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rect {
-    /// Left edge.
     pub x: f64,
-    /// Upper edge.
     pub y: f64,
     pub width: f64,
     pub height: f64,
 }
 
 impl Rect {
-    /// A rectangle from its upper left corner and sides.
-    #[must_use]
     pub const fn new(x: f64, y: f64, width: f64, height: f64) -> Self {
         Rect {
             x,
@@ -25,23 +21,19 @@ impl Rect {
         }
     }
 
-    #[must_use]
     pub fn right(&self) -> f64 {
         self.x + self.width
     }
 
-    #[must_use]
     pub fn bottom(&self) -> f64 {
         self.y + self.height
     }
 
-    #[must_use]
     pub fn center(&self) -> (f64, f64) {
         (self.x + self.width / 2.0, self.y + self.height / 2.0)
     }
 
     /// True if both have a common area.
-    #[must_use]
     pub fn overlaps(&self, other: &Rect) -> bool {
         self.x < other.right()
             && other.x < self.right()
@@ -50,7 +42,6 @@ impl Rect {
     }
 
     /// True if the other rectangle is inside.
-    #[must_use]
     pub fn holds(&self, other: &Rect) -> bool {
         self.x <= other.x
             && self.y <= other.y
@@ -59,7 +50,6 @@ impl Rect {
     }
 
     /// Moves each edge inwards by this, or outwards if negative.
-    #[must_use]
     pub fn shrunk(&self, by: f64) -> Self {
         Rect::new(
             self.x + by,
@@ -76,7 +66,6 @@ impl Rect {
 pub struct Path(String);
 
 impl Path {
-    #[must_use]
     pub fn new() -> Self {
         Path::default()
     }
@@ -102,7 +91,6 @@ impl Path {
         }
     }
 
-    /// Adds a closed line through points.
     pub fn add_polygon(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
         self.add_polyline(points);
         self.push('Z', &[]);
@@ -124,46 +112,34 @@ impl Path {
         self.push('Z', &[]);
     }
 
-    #[must_use]
     pub fn rect(rect: Rect) -> Self {
         let (right, bottom) = (rect.right(), rect.bottom());
-        Path::polygon([
-            (rect.x, rect.y),
-            (right, rect.y),
-            (right, bottom),
-            (rect.x, bottom),
-        ])
+        let (x, y) = (rect.x, rect.y);
+        Path::polygon([(x, y), (right, y), (right, bottom), (x, bottom)])
     }
 
-    #[must_use]
     pub fn circle(center: (f64, f64), radius: f64) -> Self {
         let mut path = Path::new();
         path.add_circle(center, radius);
         path
     }
 
-    #[must_use]
     pub fn line(from: (f64, f64), to: (f64, f64)) -> Self {
         Path::polyline([from, to])
     }
 
-    /// An open line through points.
-    #[must_use]
     pub fn polyline(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut path = Path::new();
         path.add_polyline(points);
         path
     }
 
-    /// A closed line through points.
-    #[must_use]
     pub fn polygon(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut path = Path::new();
         path.add_polygon(points);
         path
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -5,12 +5,11 @@ use std::mem;
 use svg::node::element::{ClipPath, Group, Title};
 use svg::{Document, Node};
 
+use crate::drawing::error::check_size;
 use crate::drawing::path::rounded;
-use crate::drawing::size::check_size;
 use crate::drawing::vector::{filled, picture, rectangle, stroked};
 use crate::drawing::{Color, DrawingError, Path, Rect, Stroke, TextStyle, text};
 
-/// A line of text in a picture, with its area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
     pub text: String,
@@ -31,11 +30,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// An empty picture of `width · height` pixels. The title is shown by SVG viewers; it is not
-    /// drawn.
-    ///
-    /// # Errors
-    /// A side is 0 or above [`MAX_SIDE`](crate::drawing::MAX_SIDE).
+    /// An empty picture of `width · height` pixels; SVG viewers show the title.
     pub fn new(width: u32, height: u32, title: impl Into<String>) -> Result<Self, DrawingError> {
         check_size(width, height)?;
         Ok(Scene {
@@ -48,32 +43,23 @@ impl Scene {
         })
     }
 
-    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Area of the whole picture.
-    #[must_use]
     pub fn area(&self) -> Rect {
         Rect::new(0.0, 0.0, self.width.into(), self.height.into())
     }
 
-    /// All text of the picture, in drawing order.
-    #[must_use]
     pub fn labels(&self) -> &[Label] {
         &self.labels
     }
 
     /// Crops or extends the picture at the bottom.
-    ///
-    /// # Errors
-    /// The height is 0 or above [`MAX_SIDE`](crate::drawing::MAX_SIDE).
     pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
         check_size(self.width, height)?;
         self.height = height;
@@ -102,9 +88,6 @@ impl Scene {
 
     /// Draws an image from the opaque colour of each of its pixels, given by column and row. It has as
     /// many pixels as the rectangle has whole ones, and is stretched over it without smoothing.
-    ///
-    /// # Errors
-    /// A side is below one pixel or above [`MAX_SIDE`](crate::drawing::MAX_SIDE), or the encoder fails.
     pub fn image(
         &mut self,
         over: Rect,
@@ -145,7 +128,6 @@ impl Scene {
         self.fill(path, style.color);
     }
 
-    /// Clips everything that `draw` adds to `area`.
     pub fn clipped(&mut self, area: Rect, draw: impl FnOnce(&mut Scene)) {
         self.clips += 1;
         let name = format!("clip{}", self.clips);
@@ -155,7 +137,6 @@ impl Scene {
         self.grouped(inside, draw);
     }
 
-    /// Adds everything that `draw` adds to a group.
     fn grouped(&mut self, group: Group, draw: impl FnOnce(&mut Scene)) {
         let outside = mem::replace(&mut self.items, group);
         draw(self);
@@ -165,7 +146,6 @@ impl Scene {
 }
 
 /// Encodes an SVG file without external references.
-#[must_use]
 pub fn to_svg(scene: &Scene) -> String {
     let (width, height) = (scene.width(), scene.height());
     let document = Document::new()
@@ -184,7 +164,7 @@ pub(crate) mod tests {
     use svg::parser::Event;
 
     use super::*;
-    use crate::drawing::{Anchor, MAX_SIDE};
+    use crate::drawing::MAX_SIDE;
 
     pub(crate) const RED: Color = Color::rgb(0xFF_0000);
     pub(crate) const BLUE: Color = Color::rgb(0x00_00FF);
@@ -208,10 +188,8 @@ pub(crate) mod tests {
     #[test]
     fn sides_out_of_range_are_refused() {
         let error = |width, height| Scene::new(width, height, "").unwrap_err().to_string();
-        assert_eq!(
-            error(0, 9),
-            "a picture of 0 x 9 pixels; allowed: 1 to 16384 along each side"
-        );
+        let expected = "a picture of 0 x 9 pixels; allowed: 1 to 16384 along each side";
+        assert_eq!(error(0, 9), expected);
         assert!(error(9, MAX_SIDE + 1).contains("9 x 16385"));
         let mut scene = Scene::new(9, 9, "").unwrap();
         scene.set_height(14).unwrap();
@@ -219,25 +197,6 @@ pub(crate) mod tests {
         assert!(scene.set_height(0).is_err());
         let thin = scene.image(Rect::new(0.0, 0.0, 0.9, 9.0), |_, _| RED);
         assert!(thin.is_err());
-    }
-
-    #[test]
-    fn labels_are_where_their_letters_are() {
-        let style = TextStyle::new(100.0, Color::rgb(0));
-        let at = (200.0, 300.0);
-        let mut scene = Scene::new(900, 900, "").unwrap();
-        scene.text("Ep", at, &style.anchored(Anchor::End));
-        scene.text_upwards("Ep", at, &style);
-        let width = style.width_of("Ep");
-        let [flat, turned] = scene.labels() else {
-            panic!("{:?}", scene.labels());
-        };
-        assert_eq!(flat.area, Rect::new(200.0 - width, 226.0, width, 98.0));
-        let expected = Rect::new(126.0, 300.0 - width, 98.0, width);
-        // Tolerance for rounding.
-        let off = (turned.area.y - expected.y).abs() + (turned.area.x - expected.x).abs();
-        assert!(off < 1e-9, "{turned:?}");
-        assert!((turned.area.height - width).abs() < 1e-9 && turned.area.width == 98.0);
     }
 
     #[test]
@@ -257,10 +216,8 @@ pub(crate) mod tests {
         ];
         assert_eq!(names, expected);
         assert!(text.contains("a &lt;title&gt;"), "{text}");
-        assert!(
-            text.contains(r##"fill="#ff0000" fill-opacity="0.5""##),
-            "{text}"
-        );
+        let is_so = text.contains(r##"fill="#ff0000" fill-opacity="0.5""##);
+        assert!(is_so, "{text}");
         assert_eq!(text, to_svg(&everything()));
     }
 }

@@ -13,7 +13,6 @@ pub enum Weight {
     Bold,
 }
 
-/// Reference point of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -26,7 +25,6 @@ pub struct TextStyle {
     /// The em of the font, in pixels; capitals are 0.73 of it.
     pub size: f64,
     pub weight: Weight,
-    /// Reference point.
     pub anchor: Anchor,
     pub color: Color,
     /// Colour and width of a rim behind the letters, for legibility on any background.
@@ -35,7 +33,6 @@ pub struct TextStyle {
 
 impl TextStyle {
     /// Regular text that starts at its reference point, without a rim.
-    #[must_use]
     pub const fn new(size: f64, color: Color) -> Self {
         TextStyle {
             size,
@@ -46,7 +43,6 @@ impl TextStyle {
         }
     }
 
-    #[must_use]
     pub const fn bold(self) -> Self {
         TextStyle {
             weight: Weight::Bold,
@@ -54,28 +50,22 @@ impl TextStyle {
         }
     }
 
-    #[must_use]
     pub const fn anchored(self, anchor: Anchor) -> Self {
         TextStyle { anchor, ..self }
     }
 
-    #[must_use]
     pub const fn with_halo(self, color: Color, width: f64) -> Self {
         let halo = Some((color, width));
         TextStyle { halo, ..self }
     }
 
-    /// Width of a line of text, in pixels.
-    #[must_use]
     pub fn width_of(&self, content: &str) -> f64 {
         let face = face(self.weight);
         let advances = content.chars().map(|letter| advance(face, letter).1);
         advances.sum::<f64>() * self.scale(face)
     }
 
-    /// Area of a line of text at a point of its baseline: from the top of capitals to the bottom of
-    /// descenders.
-    #[must_use]
+    /// Area of a line at a point of its baseline, from capitals to descenders.
     pub fn area_of(&self, content: &str, (x, y): (f64, f64)) -> Rect {
         let width = self.width_of(content);
         let (above, below) = (0.74 * self.size, 0.24 * self.size);

@@ -4,23 +4,20 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use svg::node::element::{Image, Path as PathElement, Rectangle};
 
-use crate::drawing::encoding::encoded;
+use crate::drawing::error::check_size;
 use crate::drawing::path::rounded;
-use crate::drawing::size::check_size;
+use crate::drawing::raster::encoded;
 use crate::drawing::{Color, DrawingError, Path, Rect};
 
-/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     pub color: Color,
-    /// In pixels.
     pub width: f64,
     /// Length of dashes and of gaps, in pixels; 0 draws a solid line.
     pub dash: f64,
 }
 
 impl Stroke {
-    #[must_use]
     pub const fn new(color: Color, width: f64) -> Self {
         Stroke {
             color,
@@ -48,9 +45,6 @@ pub(crate) fn stroked(path: Path, stroke: Stroke) -> PathElement {
 }
 
 /// An image from the opaque colour of each pixel.
-///
-/// # Errors
-/// A side is below one pixel or too large, or the encoder fails.
 pub(crate) fn picture(
     over: Rect,
     mut color: impl FnMut(u32, u32) -> Color,
@@ -84,15 +78,13 @@ pub(crate) fn rectangle(area: Rect) -> Rectangle {
 }
 
 fn colored(element: PathElement, attribute: &str, color: Color) -> PathElement {
-    let Color {
-        red,
-        green,
-        blue,
-        opacity,
-    } = color;
+    let [red, green, blue] = [color.red, color.green, color.blue];
     let element = element.set(attribute, format!("#{red:02x}{green:02x}{blue:02x}"));
-    if opacity < 1.0 {
-        return element.set(format!("{attribute}-opacity"), rounded(opacity.into()));
+    if color.opacity < 1.0 {
+        return element.set(
+            format!("{attribute}-opacity"),
+            rounded(color.opacity.into()),
+        );
     }
     element
 }

@@ -14,7 +14,6 @@ use super::{Camera, PEAK, Relief};
 /// From an axis to its numbers, and from these to its name.
 const BESIDE: f64 = 10.0;
 const NAME: f64 = 6.0;
-/// Most numbers of an axis.
 const NUMBERS: u32 = 6;
 
 /// A part of the picture that shows what a camera sees.
@@ -26,7 +25,6 @@ pub(super) struct Space<'a> {
     center: (f64, f64),
 }
 
-/// An axis in the picture.
 #[derive(Debug, Clone, Copy)]
 struct Edge<'a> {
     axis: Axis<'a>,
@@ -53,7 +51,6 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// Where a point of the surface lies.
     pub(super) fn at(&self, point: (f64, f64, f64)) -> (f64, f64) {
         self.placed(self.camera.look(point).at)
     }
@@ -127,7 +124,6 @@ impl<'a> Space<'a> {
     }
 }
 
-/// The corners of the floor.
 fn floor(relief: &Relief) -> [(f64, f64); 4] {
     let (x, y) = relief.halves();
     [(-x, -y), (x, -y), (x, y), (-x, y)]
@@ -197,10 +193,7 @@ impl Edge<'_> {
         let (out_x, out_y) = self.outwards;
         let base = (x + away * out_x, y + away * out_y + 0.25 * TEXT * unit);
         let area = style.area_of(text, base);
-        let is_free = scene
-            .labels()
-            .iter()
-            .all(|label| !label.area.overlaps(&area));
+        let is_free = scene.labels().iter().all(|it| !it.area.overlaps(&area));
         if is_free && scene.area().holds(&area) {
             scene.text(text, base, &style);
         }
