@@ -1,9 +1,6 @@
-//! State of one robot, and its viewers.
-//!
-//! Shared by the thread of a source, which passes in messages, and the server, which reads. Both
-//! hold the lock only while they copy.
+//! State of one robot, and its viewers: a source and the server hold the lock only while they copy.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -19,8 +16,8 @@ use tokio::sync::{broadcast, watch};
 use transport::wall_ns;
 
 use crate::view::{
-    Abilities, Answer, Beams, History, Log, LogLine, Map, Message, Recording, Region, Roster, Scan,
-    Snapshot, StateChange, Times, Track, Tracked, field_frame,
+    Abilities, Answer, Beams, History, LogLine, MAX_LINES, Map, Message, Recording, Region, Roster,
+    Scan, Snapshot, StateChange, Times, Track, Tracked, field_frame, push_within,
 };
 use crate::webhook::Webhook;
 
@@ -52,8 +49,6 @@ pub enum Request {
 const HINT_M: f64 = 0.5;
 const HINT_YAW: f64 = 0.26;
 
-/// Returns the message for a hint.
-#[must_use]
 pub fn hint(map_from_base: Pose2, stamp: Stamp) -> InitialPose {
     InitialPose {
         stamp,
@@ -63,7 +58,6 @@ pub fn hint(map_from_base: Pose2, stamp: Stamp) -> InitialPose {
     }
 }
 
-/// A robot that can be watched.
 #[derive(Debug)]
 pub struct Robot {
     name: String,
@@ -89,7 +83,7 @@ struct Known {
     beams: Option<Beams>,
     roster: Roster,
     track: Track,
-    log: Log,
+    log: VecDeque<LogLine>,
     region: Vec<[f64; 2]>,
     abilities: Abilities,
     recording: Option<Recording>,
@@ -116,17 +110,13 @@ pub(crate) struct FieldView {
     pub(crate) images: watch::Receiver<Option<Bytes>>,
 }
 
-/// Methods for a source of messages.
 impl Robot {
-    /// Returns a robot without any data, and the receiver of its requests. The name is part of
-    /// URLs.
-    #[must_use]
+    /// Returns a robot without data, and the receiver of its requests. The name is part of URLs.
     pub fn new(name: String) -> (Arc<Self>, Receiver<Request>) {
         Self::in_graph(name, None)
     }
 
     /// Like [`Robot::new`], with the name of the robot's graph.
-    #[must_use]
     pub fn in_graph(name: String, graph: Option<String>) -> (Arc<Self>, Receiver<Request>) {
         let (requests, requested) = sync_channel(MAX_REQUESTS);
         let robot = Robot {
@@ -179,7 +169,6 @@ impl Robot {
         known.pose = Some(pose);
     }
 
-    /// Stores and sends the beams of a scan, each with its fate.
     pub fn on_beams(&self, header: &BeamsHeader, items: &[Beam]) {
         let beams = Beams::new(header, items);
         let mut known = self.known();
@@ -216,7 +205,7 @@ impl Robot {
         let line = LogLine::new(header, text);
         let mut known = self.known();
         self.broadcast(&Message::Log(&line));
-        known.log.receive(line);
+        push_within(MAX_LINES, &mut known.log, line);
     }
 
     /// Sends an intensity image to viewers of the field; false if it is not valid.
@@ -229,14 +218,12 @@ impl Robot {
         is_sound
     }
 
-    /// Stores and sends the corners of the current search region.
     pub fn on_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
         self.broadcast(&Message::Region(Region { corners: &corners }));
         known.region = corners;
     }
 
-    /// Stores and sends which requests have a receiver.
     pub fn on_abilities(&self, abilities: Abilities) {
         let mut known = self.known();
         if known.abilities != abilities {
@@ -267,7 +254,6 @@ impl Robot {
     }
 
     /// True if a viewer has the intensity field open.
-    #[must_use]
     pub fn is_field_viewed(&self) -> bool {
         self.field_viewers.load(Ordering::Relaxed) > 0
     }
@@ -300,7 +286,6 @@ impl Robot {
     }
 }
 
-/// Methods for the server.
 impl Robot {
     /// Posts every following state change to the webhook.
     pub(crate) fn post_states_to(&self, webhook: &Webhook) {
@@ -308,7 +293,6 @@ impl Robot {
         let _ = self.webhook.set(webhook.clone());
     }
 
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -322,7 +306,6 @@ impl Robot {
         }
     }
 
-    /// Snapshot at `now_ns`, as JSON.
     pub(crate) fn snapshot(&self, now_ns: i64) -> Utf8Bytes {
         self.snapshot_of(&self.known(), now_ns)
     }
@@ -373,7 +356,7 @@ impl Robot {
             beams: known.beams.as_ref(),
             nodes: known.roster.reports().collect(),
             track: known.track.points().collect(),
-            log: known.log.lines().collect(),
+            log: known.log.iter().collect(),
             region: &known.region,
             abilities: known.abilities,
             recording: known.recording.as_ref(),

@@ -39,21 +39,16 @@ impl Robots {
     /// Posts the state changes of all robots, including those added later.
     pub(crate) fn post_states_to(&self, webhook: Webhook) {
         let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        shared
-            .all
-            .iter()
-            .for_each(|robot| robot.post_states_to(&webhook));
+        shared.all.iter().for_each(|it| it.post_states_to(&webhook));
         shared.webhook = Some(webhook);
     }
 
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<Arc<Robot>> {
         let all = &self.read().all;
         let place = all.binary_search_by(|robot| robot.name().cmp(name)).ok()?;
         Some(Arc::clone(&all[place]))
     }
 
-    #[must_use]
     pub fn names(&self) -> Vec<String> {
         let all = &self.read().all;
         all.iter().map(|robot| robot.name().to_owned()).collect()

@@ -33,10 +33,10 @@ use transport::{CONSOLE_ONLY, node};
 
 use crate::token::Token;
 use crate::webhook::Webhook;
-use crate::{DashboardError, Options, Robot, Robots};
+use crate::{DashboardError, Options, Request, Robot, Robots};
+use actions::plain;
 use refusal::Refusal;
 
-/// Largest body of a request, in bytes.
 const MAX_BODY: usize = 64 * 1024;
 
 /// Maximum number of streams at the same time.
@@ -45,7 +45,6 @@ const MAX_WATCHERS: usize = 64;
 /// Longest time in which viewers are told that the server ends.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Shared state of all request handlers.
 pub(crate) struct Site {
     robots: Robots,
     token: Token,
@@ -92,13 +91,13 @@ fn router(site: Arc<Site>) -> Router {
         .route(&format!("{robot}/stream"), get(stream::open))
         .route(
             &format!("{robot}/region"),
-            put(actions::search_in).delete(actions::search_everywhere),
+            put(actions::search_in).delete(plain(Request::Region(Vec::new()))),
         )
-        .route(&format!("{robot}/save"), post(actions::save))
+        .route(&format!("{robot}/save"), post(plain(Request::Save)))
         .route(&format!("{robot}/hint"), post(actions::hint))
         .route(
             &format!("{robot}/recording"),
-            post(actions::start_recording).delete(actions::stop_recording),
+            post(plain(Request::Record(true))).delete(plain(Request::Record(false))),
         )
         .route(
             &format!("{robot}/nodes/{{node}}/restart"),
@@ -128,9 +127,7 @@ pub struct Server {
 impl Server {
     /// Listens on the address or, if the port is taken, on the next free one, and starts the
     /// thread.
-    ///
-    /// # Errors
-    /// It cannot listen or start a thread, or the token cannot be read.
+    /// Fails if it cannot listen or start a thread, or the token cannot be read.
     pub fn start(
         listen: SocketAddr,
         options: &Options,
@@ -200,8 +197,7 @@ impl Server {
         }
     }
 
-    /// Shows the page's link with the token as a QR code, on terminals only: a phone cannot scan a
-    /// log file.
+    /// Shows the page's link with the token as a QR code, on terminals only.
     fn announce_to_phones(&self) {
         if !node::logs_to_terminal() {
             return;
@@ -218,9 +214,6 @@ impl Server {
     }
 
     /// Returns `Ok` while the server's thread runs.
-    ///
-    /// # Errors
-    /// If its thread has ended.
     pub fn check(&self) -> Result<(), DashboardError> {
         if self.thread.as_ref().is_some_and(|t| !t.is_finished()) {
             return Ok(());

@@ -12,14 +12,11 @@ use crate::DashboardError;
 /// Permission bits for users outside the owner and group.
 const OTHERS: u32 = 0o007;
 
-/// Secret that write actions require.
 pub(crate) struct Token(String);
 
 impl Token {
     /// Reads the token from a file and trims white space.
-    ///
-    /// # Errors
-    /// The file cannot be read, is accessible to all users, or holds no valid token.
+    /// Fails if the file cannot be read, is accessible to all users, or holds no valid token.
     pub(crate) fn read(path: &Path) -> Result<Self, DashboardError> {
         let unreadable = |source| DashboardError::TokenFile {
             path: path.to_owned(),
@@ -44,9 +41,6 @@ impl Token {
     }
 
     /// Returns a new token of 128 random bits, in hexadecimal.
-    ///
-    /// # Errors
-    /// The system has no random numbers.
     pub(crate) fn random() -> Result<Self, DashboardError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(DashboardError::Random)?;

@@ -13,7 +13,6 @@ mod log;
 mod map;
 mod roster;
 mod scan;
-mod state_change;
 mod track;
 mod tracked;
 
@@ -21,14 +20,15 @@ pub(crate) use ages::{Ages, Times};
 pub(crate) use answer::Answer;
 pub(crate) use beams::Beams;
 pub(crate) use field::frame as field_frame;
-pub(crate) use history::{History, Period};
-pub(crate) use log::{Log, LogLine};
+pub(crate) use history::{History, Period, StateChange};
+pub(crate) use log::{LogLine, MAX_LINES};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
 pub(crate) use scan::Scan;
-pub(crate) use state_change::StateChange;
 pub(crate) use track::{Track, TrackPoint};
 pub(crate) use tracked::Tracked;
+
+use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
@@ -39,9 +39,7 @@ pub(crate) enum Message<'a> {
     /// Everything known, for a new viewer or one that missed messages.
     Snapshot(Snapshot<'a>),
     Map(&'a MapInfo),
-    /// Result of a scan.
     Answer(&'a Answer),
-    /// Pose of the tracker.
     Pose(&'a Tracked),
     State(Period<'a>),
     Beams(&'a Beams),
@@ -49,7 +47,6 @@ pub(crate) enum Message<'a> {
     Scan(&'a Scan),
     Node(&'a NodeReport),
     Log(&'a LogLine),
-    /// Search region.
     Region(Region<'a>),
     Abilities(Abilities),
     Recording(&'a Recording),
@@ -88,14 +85,12 @@ pub struct Recording {
     pub refused: Option<String>,
 }
 
-/// Search region in the map.
 #[derive(Debug, Serialize)]
 pub(crate) struct Region<'a> {
     /// Corners in metres; empty if the whole map is searched.
     pub(crate) corners: &'a [[f64; 2]],
 }
 
-/// All data about a robot.
 #[derive(Debug, Serialize)]
 pub(crate) struct Snapshot<'a> {
     pub(crate) robot: &'a str,
@@ -118,7 +113,14 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) recording: Option<&'a Recording>,
 }
 
-/// Converts nanoseconds to milliseconds.
+/// Adds an item at the end of a queue; drops the first one if there are more than `most`.
+pub(crate) fn push_within<T>(most: usize, queue: &mut VecDeque<T>, item: T) {
+    if queue.len() == most {
+        queue.pop_front();
+    }
+    queue.push_back(item);
+}
+
 pub(crate) fn ms(ns: i64) -> f64 {
     ns as f64 / 1e6
 }

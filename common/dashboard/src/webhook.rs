@@ -14,7 +14,6 @@ use ureq::Agent;
 
 use crate::DashboardError;
 
-/// Maximum number of waiting states.
 const QUEUE: usize = 64;
 
 /// Timeout of one post, from the DNS look-up to the response.
@@ -28,10 +27,6 @@ const SILENCE: Duration = Duration::from_secs(60);
 pub(crate) struct Webhook(Sender<String>);
 
 impl Webhook {
-    /// Starts the thread.
-    ///
-    /// # Errors
-    /// The system cannot start it.
     pub(crate) fn start(server: &Uri) -> Result<Self, DashboardError> {
         let (states, waiting) = tokio::sync::broadcast::channel(QUEUE);
         let server = server.to_string();
@@ -75,10 +70,7 @@ fn post_all(server: &str, mut waiting: Receiver<String>) {
 
 fn post(agent: &Agent, server: &str, state: &str) -> Result<(), String> {
     let request = agent.post(server).content_type("application/json");
-    request
-        .send(state)
-        .map(drop)
-        .map_err(|error| error.to_string())
+    request.send(state).map(drop).map_err(|it| it.to_string())
 }
 
 /// Counts lost states and limits the log lines about them: one at the first loss, then at most one

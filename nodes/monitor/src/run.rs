@@ -21,9 +21,6 @@ use outputs::Outputs;
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
-///
-/// # Errors
-/// If it cannot listen, the token cannot be read, or the transport fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
     let (robot, requests) = Robot::in_graph(config.robot(), Some(graph.name().to_string()));
     let inputs = Inputs::open(graph)?;
@@ -95,12 +92,8 @@ impl Node {
                     self.robot.on_region(corners);
                 }
                 Request::Hint(pose) => {
-                    tracing::info!(
-                        x = pose.x,
-                        y = pose.y,
-                        yaw = pose.yaw,
-                        "hint for the tracker"
-                    );
+                    let (x, y, yaw) = (pose.x, pose.y, pose.yaw);
+                    tracing::info!(x, y, yaw, "hint for the tracker");
                     self.outputs.hint(pose)?;
                 }
                 Request::Restart(node) => {

@@ -131,7 +131,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`answer`", &[("common/dashboard/src/view/answer.rs", "Answer")]),
     ("`pose`", &[("common/dashboard/src/view/tracked.rs", "Tracked")]),
     ("`state`", &[("common/dashboard/src/view/history.rs", "Period")]),
-    ("A webhook's object", &[("common/dashboard/src/view/state_change.rs", "StateChange")]),
+    ("A webhook's object", &[("common/dashboard/src/view/history.rs", "StateChange")]),
     ("`beams`", &[("common/dashboard/src/view/beams.rs", "Beams")]),
     ("`scan`", &[("common/dashboard/src/view/scan.rs", "Scan")]),
     ("`node`", &[("common/dashboard/src/view/roster.rs", "NodeReport")]),

@@ -1,12 +1,14 @@
 //! Write actions; all need the token.
 
 use std::f64::consts::TAU;
+use std::future::{Ready, ready};
 use std::sync::Arc;
 
 use axum::Json;
 use axum::extract::rejection::JsonRejection;
-use axum::extract::{Path, State};
-use axum::http::{HeaderMap, StatusCode};
+use axum::extract::{FromRequestParts, Path};
+use axum::http::StatusCode;
+use axum::http::request::Parts;
 use engine::limits::Region;
 use messages::Pose2;
 use serde::Deserialize;
@@ -14,7 +16,7 @@ use serde::Deserialize;
 use super::gate::authorize;
 use super::{Refusal, Site};
 use crate::robot::Request;
-use crate::view::{Abilities, Recording};
+use crate::view::Recording;
 
 /// Largest coordinate of a hint, metres: no map reaches further from its origin.
 const MAX_M: f64 = 1e6;
@@ -27,29 +29,40 @@ pub(super) struct Wanted {
     corners: Vec<[f64; 2]>,
 }
 
+type Outcome = Result<StatusCode, Refusal>;
+
+/// The site, for a request that carries the token.
+pub(super) struct Allowed(Arc<Site>);
+
+impl FromRequestParts<Arc<Site>> for Allowed {
+    type Rejection = Refusal;
+
+    async fn from_request_parts(parts: &mut Parts, site: &Arc<Site>) -> Result<Self, Refusal> {
+        authorize(site, &parts.headers)?;
+        Ok(Allowed(Arc::clone(site)))
+    }
+}
+
+impl From<JsonRejection> for Refusal {
+    fn from(rejection: JsonRejection) -> Self {
+        Refusal::new(rejection.status(), rejection.body_text())
+    }
+}
+
+pub(super) fn plain(wanted: Request) -> impl Fn(Allowed, Path<String>) -> Ready<Outcome> + Clone {
+    move |Allowed(site), Path(name)| ready(request(&site, &name, wanted.clone()))
+}
+
 /// Limits the search to a region.
 pub(super) async fn search_in(
-    State(site): State<Arc<Site>>,
+    Allowed(site): Allowed,
     Path(name): Path<String>,
-    headers: HeaderMap,
     wanted: Result<Json<Wanted>, JsonRejection>,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    let Json(Wanted { corners }) =
-        wanted.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+) -> Outcome {
+    let Json(Wanted { corners }) = wanted?;
     Region::new(&corners)
         .map_err(|problem| Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, problem))?;
     request(&site, &name, Request::Region(corners))
-}
-
-/// Searches the whole map again.
-pub(super) async fn search_everywhere(
-    State(site): State<Arc<Site>>,
-    Path(name): Path<String>,
-    headers: HeaderMap,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    request(&site, &name, Request::Region(Vec::new()))
 }
 
 /// Body of a request that says where the robot's base is.
@@ -65,14 +78,11 @@ pub(super) struct Here {
 
 /// Tells the tracker where the robot probably is.
 pub(super) async fn hint(
-    State(site): State<Arc<Site>>,
+    Allowed(site): Allowed,
     Path(name): Path<String>,
-    headers: HeaderMap,
     here: Result<Json<Here>, JsonRejection>,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    let Json(Here { x, y, yaw }) =
-        here.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+) -> Outcome {
+    let Json(Here { x, y, yaw }) = here?;
     if [x, y].iter().any(|metres| metres.abs() > MAX_M) || yaw.abs() > TAU {
         let problem = format!("x and y are within ±{MAX_M} m, yaw within ±2π radians");
         return Err(Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, problem));
@@ -82,11 +92,9 @@ pub(super) async fn hint(
 
 /// Has the launcher restart a node.
 pub(super) async fn restart(
-    State(site): State<Arc<Site>>,
+    Allowed(site): Allowed,
     Path((name, node)): Path<(String, String)>,
-    headers: HeaderMap,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
+) -> Outcome {
     if !site.robot(&name)?.has_node(&node) {
         let problem = format!("no node {node:?} has reported");
         return Err(Refusal::new(StatusCode::NOT_FOUND, problem));
@@ -94,53 +102,18 @@ pub(super) async fn restart(
     request(&site, &name, Request::Restart(node))
 }
 
-/// Has the launcher start a recording.
-pub(super) async fn start_recording(
-    State(site): State<Arc<Site>>,
-    Path(name): Path<String>,
-    headers: HeaderMap,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    request(&site, &name, Request::Record(true))
-}
-
-/// Has the launcher stop the recording.
-pub(super) async fn stop_recording(
-    State(site): State<Arc<Site>>,
-    Path(name): Path<String>,
-    headers: HeaderMap,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    request(&site, &name, Request::Record(false))
-}
-
-/// Makes the recorder save the last minutes.
-pub(super) async fn save(
-    State(site): State<Arc<Site>>,
-    Path(name): Path<String>,
-    headers: HeaderMap,
-) -> Result<StatusCode, Refusal> {
-    authorize(&site, &headers)?;
-    request(&site, &name, Request::Save)
-}
-
-fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refusal> {
+fn request(site: &Site, name: &str, request: Request) -> Outcome {
     let robot = site.robot(name)?;
-    let Abilities {
-        region,
-        save,
-        hint,
-        restart,
-    } = robot.abilities();
+    let can = robot.abilities();
     let recording = robot.recording();
     let (able, who) = match request {
-        Request::Region(_) => (region, "no accumulator accepts a region"),
+        Request::Region(_) => (can.region, "no accumulator accepts a region"),
         Request::Save => (
-            save,
+            can.save,
             "no recorder keeps the last minutes: backcast run --record FILE --keep 10m",
         ),
-        Request::Hint(_) => (hint, "no tracker accepts a hint"),
-        Request::Restart(_) => (restart, "no launcher is there: backcast restart NODE"),
+        Request::Hint(_) => (can.hint, "no tracker accepts a hint"),
+        Request::Restart(_) => (can.restart, "no launcher is there: backcast restart NODE"),
         Request::Record(on) => match &recording {
             None => (false, "no launcher is there: backcast run --record FILE"),
             Some(now) if !on => (now.file.is_some(), "nothing is being recorded"),

@@ -261,11 +261,8 @@ mod tests {
             others.push(connect(&all, 9));
             assert!(is_closed(&mut silent.0).await);
             drop(others);
-            assert_eq!(
-                all.open().entries.len(),
-                0,
-                "those that end are not counted"
-            );
+            let open = all.open().entries.len();
+            assert_eq!(open, 0, "those that end are not counted");
         });
     }
 

@@ -23,9 +23,7 @@ const HEAD_TIMEOUT: Duration = Duration::from_secs(15);
 const SHORTAGE: Duration = Duration::from_millis(500);
 
 /// Listens on the address or, if its port is taken, on the next free one.
-///
-/// # Errors
-/// No port is free, or the address does not belong to this machine.
+/// Fails if no port is free, or the address does not belong to this machine.
 pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
     let mut address = wanted;
     loop {
@@ -49,9 +47,6 @@ pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
 }
 
 /// Registers the listener with the current tokio runtime.
-///
-/// # Errors
-/// The system refuses, for instance non-blocking mode.
 pub(super) fn in_runtime(listener: StdListener) -> io::Result<TcpListener> {
     listener.set_nonblocking(true)?;
     TcpListener::from_std(listener)

@@ -52,7 +52,6 @@ pub(super) async fn index(uri: Uri) -> Response {
     file(Path("index.html".to_owned()), uri).await
 }
 
-/// Returns a file of the page.
 pub(super) async fn file(Path(name): Path<String>, uri: Uri) -> Response {
     let Some((_, kind, content)) = FILES.iter().find(|(known, ..)| *known == name) else {
         return nothing_here(uri).await.into_response();

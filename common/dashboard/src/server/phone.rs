@@ -34,11 +34,7 @@ fn on_default_route() -> Option<IpAddr> {
     Some(socket.local_addr().ok()?.ip())
 }
 
-/// QR code with two rows of modules per line, as light characters on a dark terminal; phones also
-/// read inverted codes.
-///
-/// # Errors
-/// The text is too long.
+/// QR code of light characters on a dark terminal, two rows of modules per line.
 pub(super) fn code(text: &str) -> Result<String, QrError> {
     // A screen needs no redundancy against dirt.
     let code = QrCode::with_error_correction_level(text, EcLevel::L)?;
@@ -58,18 +54,12 @@ mod tests {
         let place = |listening: &str, host, token| {
             super::place(listening.parse().unwrap(), host, token).unwrap()
         };
-        assert_eq!(
-            place("192.0.2.7:7440", None, Some("0123")),
-            "http://192.0.2.7:7440/#token=0123"
-        );
-        assert_eq!(
-            place("0.0.0.0:7441", Some("r7.local"), None),
-            "http://r7.local:7441/"
-        );
-        assert_eq!(
-            place("[2001:db8::7]:80", None, None),
-            "http://[2001:db8::7]:80/"
-        );
+        let expected = "http://192.0.2.7:7440/#token=0123";
+        assert_eq!(place("192.0.2.7:7440", None, Some("0123")), expected);
+        let found = place("0.0.0.0:7441", Some("r7.local"), None);
+        assert_eq!(found, "http://r7.local:7441/");
+        let found = place("[2001:db8::7]:80", None, None);
+        assert_eq!(found, "http://[2001:db8::7]:80/");
         // If there is a route, its address is not one that only this machine can reach.
         let any = super::place("0.0.0.0:7440".parse().unwrap(), None, None);
         assert!(any.is_none_or(|place| !place.contains("//0.0.0.0") && !place.contains("//127.")));

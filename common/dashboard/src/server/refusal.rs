@@ -43,7 +43,6 @@ impl IntoResponse for Refusal {
     }
 }
 
-/// Response to every unknown address.
 pub(super) async fn nothing_here(uri: Uri) -> Refusal {
     Refusal::new(
         StatusCode::NOT_FOUND,

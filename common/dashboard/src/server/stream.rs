@@ -32,17 +32,18 @@ const POLICY_VIOLATION: u16 = 1008;
 /// Close code of a server that ends (RFC 6455, section 7.4.1).
 const GOING_AWAY: u16 = 1001;
 
-/// Message from a reader.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum Said {
-    /// Opens or closes the intensity field.
-    Field { on: bool },
+    Field {
+        on: bool,
+    },
     /// Time stamp to be sent back.
-    Ping { t: f64 },
+    Ping {
+        t: f64,
+    },
 }
 
-/// Upgrades the request and starts the stream.
 pub(super) async fn open(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,

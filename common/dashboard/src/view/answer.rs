@@ -9,10 +9,8 @@ use super::ms;
 /// Maximum number of hypotheses sent; the engine keeps 64.
 const MAX_PLACES: usize = 64;
 
-/// Result of one scan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Answer {
-    /// Number of the scan.
     pub(crate) counter: u64,
     /// Time of measurement, in nanoseconds since 1970.
     pub(crate) stamp_ns: i64,

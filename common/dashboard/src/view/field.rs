@@ -6,7 +6,6 @@ use serde::Serialize;
 /// Maximum number of pixels; a larger image is reduced by a whole factor.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// Header of an image, as JSON.
 #[derive(Debug, PartialEq, Serialize)]
 struct Head {
     schema: u32,
@@ -116,10 +115,8 @@ mod tests {
         let (head, pixels) = split(&bytes);
         let columns = head["width"].as_u64().unwrap() as usize;
         assert_eq!(columns, 501);
-        assert_eq!(
-            pixels.len(),
-            columns * head["height"].as_u64().unwrap() as usize
-        );
+        let expected = columns * head["height"].as_u64().unwrap() as usize;
+        assert_eq!(pixels.len(), expected);
         assert!(pixels.len() <= MAX_PIXELS);
         assert_eq!(pixels[columns - 1], 255);
         assert_eq!(head["block"], 32);

@@ -5,9 +5,8 @@ use std::collections::VecDeque;
 use messages::Pose2;
 use serde::Serialize;
 
-use super::{Answer, Tracked};
+use super::{Answer, Tracked, push_within};
 
-/// Length of the history.
 const KEPT_NS: i64 = 3600 * 1_000_000_000;
 
 /// Maximum number of states, in case they change fast.
@@ -23,7 +22,6 @@ const NO_DATA: &str = "NoData";
 pub(crate) struct Period<'a> {
     /// The tracker's state or, without a tracker, the verdict; `NoData` without scans.
     pub(crate) state: &'static str,
-    /// Reason for the state.
     pub(crate) why: &'a str,
     /// Time since the state began.
     pub(crate) ago_s: f64,
@@ -31,6 +29,23 @@ pub(crate) struct Period<'a> {
     pub(crate) first: Option<Pose2>,
     /// Pose of the last scan in this state, in the same frame as `first`.
     pub(crate) last: Option<Pose2>,
+}
+
+/// A robot's new state, and the one before, as posted to a webhook.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct StateChange<'a> {
+    pub(crate) robot: &'a str,
+    /// `None` if it is not known (a graph on another machine).
+    pub(crate) graph: Option<&'a str>,
+    /// Start of the new state, in seconds since 1970.
+    pub(crate) since_s: f64,
+    /// The state before; `None` for the first one.
+    pub(crate) before: Option<&'static str>,
+    /// The last pose in the state before.
+    pub(crate) before_pose: Option<Pose2>,
+    /// The new state.
+    #[serde(flatten)]
+    pub(crate) period: Period<'a>,
 }
 
 #[derive(Debug)]
@@ -76,9 +91,6 @@ impl History {
             entry.last = pose.or(entry.last);
             return false;
         }
-        if self.entries.len() == CAPACITY {
-            self.entries.pop_front();
-        }
         // The state that held when the hour began stays.
         while let Some(second) = self.entries.get(1)
             && now_ns.saturating_sub(second.from_ns) >= KEPT_NS
@@ -86,13 +98,14 @@ impl History {
             self.entries.pop_front();
         }
         let before_ns = self.entries.back().map_or(i64::MIN, |entry| entry.from_ns);
-        self.entries.push_back(Entry {
+        let entry = Entry {
             state,
             why: why.to_owned(),
             from_ns: now_ns.max(before_ns),
             first: pose,
             last: pose,
-        });
+        };
+        push_within(CAPACITY, &mut self.entries, entry);
         true
     }
 
@@ -111,7 +124,6 @@ impl History {
         self.periods(now_ns).next_back()
     }
 
-    /// The state before the newest one.
     pub(crate) fn before(&self, now_ns: i64) -> Option<Period<'_>> {
         self.periods(now_ns).nth_back(1)
     }
@@ -154,10 +166,8 @@ mod tests {
     #[test]
     fn silence_began_with_the_last_scan_and_ends_with_the_next() {
         let mut history = History::default();
-        assert!(
-            !history.look_for_silence(None, 9 * SECOND),
-            "nothing came yet"
-        );
+        let is_so = !history.look_for_silence(None, 9 * SECOND);
+        assert!(is_so, "nothing came yet");
         history.on_pose(&tracked(TrackState::Unique, 1.0), SECOND);
         assert!(!history.look_for_silence(Some(SECOND), 3 * SECOND));
         assert!(history.look_for_silence(Some(SECOND), 4 * SECOND));

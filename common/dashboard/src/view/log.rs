@@ -1,12 +1,10 @@
 //! Log lines of the nodes.
 
-use std::collections::VecDeque;
-
 use messages::{LogHeader, LogLevel};
 use serde::Serialize;
 
 /// Number of lines kept for new viewers.
-const CAPACITY: usize = 200;
+pub(crate) const MAX_LINES: usize = 200;
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct LogLine {
@@ -38,26 +36,6 @@ impl LogLine {
     }
 }
 
-/// The last lines of all nodes.
-#[derive(Debug, Default)]
-pub(crate) struct Log {
-    lines: VecDeque<LogLine>,
-}
-
-impl Log {
-    pub(crate) fn receive(&mut self, line: LogLine) {
-        if self.lines.len() == CAPACITY {
-            self.lines.pop_front();
-        }
-        self.lines.push_back(line);
-    }
-
-    /// Lines, oldest first.
-    pub(crate) fn lines(&self) -> impl Iterator<Item = &LogLine> {
-        self.lines.iter()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
@@ -66,21 +44,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_lines_are_kept_as_they_were_written() {
-        let mut log = Log::default();
-        for counter in 0..CAPACITY as u64 + 3 {
-            let header = LogHeader {
-                node: Name::new("accumulator"),
-                wall_ns: 1_500_000_000,
-                counter,
-                level: LogLevel::Warn as u32,
-                ..LogHeader::zeroed()
-            };
-            log.receive(LogLine::new(&header, b"no \xff map"));
-        }
-        assert_eq!(log.lines().count(), CAPACITY);
-        let first = log.lines().next().unwrap();
-        assert_eq!((first.counter, first.level, first.at_s), (3, "warn", 1.5));
-        assert_eq!(first.text, "no \u{fffd} map");
+    fn a_line_is_kept_as_it_was_written() {
+        let header = LogHeader {
+            node: Name::new("accumulator"),
+            wall_ns: 1_500_000_000,
+            counter: 3,
+            level: LogLevel::Warn as u32,
+            ..LogHeader::zeroed()
+        };
+        let line = LogLine::new(&header, b"no \xff map");
+        assert_eq!((line.counter, line.level, line.at_s), (3, "warn", 1.5));
+        assert_eq!(line.text, "no \u{fffd} map");
     }
 }

@@ -12,7 +12,7 @@ const SILENT_AFTER_NS: i64 = 2_500_000_000;
 /// Minimum interval over which rates are computed.
 const RATE_NS: i64 = 900_000_000;
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(crate) struct NodeReport {
     pub(crate) name: String,
     /// `waiting`, `ready`, `busy`, `degraded`, `stopped`, or `silent` if reports stay away.
@@ -38,7 +38,6 @@ pub(crate) struct Roster(Vec<Entry>);
 #[derive(Debug)]
 struct Entry {
     report: NodeReport,
-    /// Time of the last report.
     received_ns: i64,
     /// Start of the interval for rates: time, and the counters received and sent.
     base: (i64, u64, u64),
@@ -79,7 +78,6 @@ impl Roster {
         silent
     }
 
-    /// All nodes, by name.
     pub(crate) fn reports(&self) -> impl Iterator<Item = &NodeReport> {
         self.0.iter().map(|entry| &entry.report)
     }
@@ -92,15 +90,7 @@ impl Entry {
                 name: header.node.as_str().to_owned(),
                 state: "waiting",
                 pid: header.pid,
-                received: 0,
-                sent: 0,
-                dropped: 0,
-                refused: 0,
-                received_hz: 0.0,
-                sent_hz: 0.0,
-                restarts: 0,
-                last_error: String::new(),
-                quiet_s: 0.0,
+                ..NodeReport::default()
             },
             received_ns: header.sent_ns,
             base: (header.sent_ns, header.received, header.sent),
@@ -197,18 +187,13 @@ mod tests {
     fn nodes_and_errors_are_bounded() {
         let mut roster = Roster::default();
         for i in 0..CAPACITY {
-            assert!(
-                roster
-                    .receive(&report(&i.to_string(), 1, 0, 0), b"")
-                    .is_some()
-            );
+            let report = report(&i.to_string(), 1, 0, 0);
+            assert!(roster.receive(&report, b"").is_some());
         }
         assert!(roster.receive(&report("one more", 1, 0, 0), b"").is_none());
         let long = vec![0xff; 10_000];
         let entry = roster.receive(&report("1", 1, 0, 0), &long).unwrap();
-        assert_eq!(
-            entry.last_error.chars().count(),
-            HealthHeader::ERROR_CAPACITY
-        );
+        let expected = HealthHeader::ERROR_CAPACITY;
+        assert_eq!(entry.last_error.chars().count(), expected);
     }
 }

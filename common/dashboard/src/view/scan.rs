@@ -11,7 +11,6 @@ const MAX_POINTS: usize = 1440;
 /// End points of one laser's newest scan, as columns.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Scan {
-    /// Number of the scan.
     pub(crate) counter: u64,
     /// Name of the laser; empty if the graph has only one.
     pub(crate) laser: String,

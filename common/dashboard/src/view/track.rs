@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use messages::Pose2;
 use serde::Serialize;
 
-use super::{Answer, Tracked};
+use super::{Answer, Tracked, push_within};
 
 /// Maximum number of poses: some minutes.
 const CAPACITY: usize = 3000;
@@ -20,8 +20,7 @@ pub(crate) struct TrackPoint(
     pub(crate) f64,
 );
 
-/// Poses of the last scans, all in one map: the tracker's or, without a tracker, the best of each
-/// scan.
+/// Poses of the last scans in one map: the tracker's or, without one, the best of each scan.
 #[derive(Debug, Default)]
 pub(crate) struct Track {
     map_id: String,
@@ -60,13 +59,10 @@ impl Track {
         let Some(pose) = pose else {
             return;
         };
-        if self.points.len() == CAPACITY {
-            self.points.pop_front();
-        }
         let rounded = |value: f64| (value * 1e3).round() / 1e3;
         let letter = word.chars().next().unwrap_or('?');
         let (x, y, yaw) = (rounded(pose.x), rounded(pose.y), rounded(pose.yaw));
-        self.points.push_back(TrackPoint(x, y, letter, yaw));
+        push_within(CAPACITY, &mut self.points, TrackPoint(x, y, letter, yaw));
     }
 
     pub(crate) fn points(&self) -> impl Iterator<Item = &TrackPoint> {

@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::ms;
 
-/// The tracker's pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Tracked {
     /// Number of the scan or, between scans, of the odometry.
@@ -97,14 +96,10 @@ pub(crate) mod tests {
         assert_eq!(tracked.sent_age_ms, 10.0);
         let json = serde_json::to_value(&tracked).unwrap();
         assert_eq!(json["says"], "2 places fit, 25 m apart: drive on");
-        assert_eq!(
-            (&json["state"], &json["latency_ms"]),
-            (&"Doubtful".into(), &22.0.into())
-        );
-        assert_eq!(
-            (&json["laser"]["x"], &json["base"]),
-            (&1.5.into(), &().into())
-        );
+        let expected = (&"Doubtful".into(), &22.0.into());
+        assert_eq!((&json["state"], &json["latency_ms"]), expected);
+        let found = (&json["laser"]["x"], &json["base"]);
+        assert_eq!(found, (&1.5.into(), &().into()));
     }
 
     #[test]
@@ -112,12 +107,8 @@ pub(crate) mod tests {
         let mut searching = header(TrackState::Searching, 1.5);
         searching.pose_known = 0;
         assert_eq!(tracked(&searching, b"").pose.place.laser, None);
-        let nowhere = Tracked::new(
-            &header(TrackState::Unique, f64::NAN),
-            b"",
-            &|_| None,
-            i64::MIN,
-        );
+        let header = header(TrackState::Unique, f64::NAN);
+        let nowhere = Tracked::new(&header, b"", &|_| None, i64::MIN);
         assert_eq!(nowhere.pose.place.probability, None);
     }
 }

@@ -29,17 +29,9 @@ impl Inputs {
     }
 
     pub(super) fn all(&self) -> [&dyn Input; 6] {
-        let Inputs {
-            maps,
-            hypotheses,
-            poses,
-            beams,
-            health,
-            log,
-            // A scan alone is no reason to wake up: its pose follows.
-            scans: _,
-        } = self;
-        [maps, hypotheses, poses, beams, health, log]
+        // A scan alone is no reason to wake up: its pose follows.
+        let (maps, answers, poses) = (&self.maps, &self.hypotheses, &self.poses);
+        [maps, answers, poses, &self.beams, &self.health, &self.log]
     }
 
     /// Processes everything that has arrived, the map before the results that refer to it.
@@ -56,8 +48,7 @@ impl Inputs {
             to.on_scan(scan.header(), scan.items(), monotonic_ns());
         }
         while let Some(answer) = self.hypotheses.receive()? {
-            // Gaps are not counted as dropped: they may be scans that were never answered, and
-            // messages that only this node missed are no loss for the graph.
+            // Gaps are not counted as dropped: such scans may never have been answered.
             health.count_received(1);
             to.on_answer(answer.header(), answer.items(), monotonic_ns());
         }

@@ -46,7 +46,6 @@ impl Launcher {
         Launcher(Some(requests))
     }
 
-    /// True if there is a launcher to ask.
     pub(super) fn is_there(&self) -> bool {
         self.0.is_some()
     }

@@ -21,8 +21,7 @@ impl Outputs {
         })
     }
 
-    /// Returns which requests have a subscriber. Restarts have none: `restart` says if they are
-    /// possible.
+    /// Returns which requests have a subscriber; `restart` says if restarts are possible.
     pub(super) fn abilities(&self, restart: bool) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),

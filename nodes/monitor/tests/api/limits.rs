@@ -47,10 +47,8 @@ fn hostile_sizes_end_the_connection_and_nothing_else() {
     assert_eq!(u16::from(closed.code), 1008);
     assert!(closed.reason.contains("reboot"), "{}", closed.reason);
     // A header without end is cut off, and garbage is not a request.
-    let head = format!(
-        "GET / HTTP/1.1\r\nHost: x\r\nX: {}\r\n\r\n",
-        "x".repeat(1 << 20)
-    );
+    let long = "x".repeat(1 << 20);
+    let head = format!("GET / HTTP/1.1\r\nHost: x\r\nX: {long}\r\n\r\n");
     assert!((400..500).contains(&world.site.raw(head.as_bytes()).0));
     assert_eq!(world.site.raw(b"\x16\x03\x01 hello\r\n\r\n").0, 400);
     assert_eq!(world.site.get("/api/v1/robots")["robots"], json!(["r"]));

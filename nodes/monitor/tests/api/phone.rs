@@ -7,16 +7,9 @@ use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 fn log(form: &str, listen: &str) -> String {
     let isolated = Isolated::new("phone");
     let graph = isolated.join("test");
-    let form = format!("{LOG_FORMAT_VARIABLE}={form}");
+    let form = &*format!("{LOG_FORMAT_VARIABLE}={form}");
     let monitor = env!("CARGO_BIN_EXE_monitor");
-    let arguments = [
-        form.as_str(),
-        monitor,
-        "--host",
-        "r7.local",
-        "--listen",
-        listen,
-    ];
+    let arguments = [form, monitor, "--host=r7.local", "--listen", listen];
     let node = NodeProcess::start("/usr/bin/env", &graph, arguments);
     wait_until_ready(&graph, "monitor");
     node.stop_with_log()

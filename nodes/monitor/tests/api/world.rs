@@ -20,7 +20,6 @@ pub(crate) fn map_name() -> String {
     format!("{:016x}", DrawnMap::small().header.map_id)
 }
 
-/// The node in a graph of its own, and its web address.
 pub(crate) struct World {
     node: Option<NodeProcess>,
     pub(crate) site: Site,
@@ -38,7 +37,6 @@ impl World {
         World::with(test, &[])
     }
 
-    /// Starts the node with additional arguments.
     pub(crate) fn with(test: &str, arguments: &[&str]) -> World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
@@ -70,11 +68,7 @@ impl World {
         };
         header.stamp.counter = counter;
         let place = Hypothesis {
-            map_from_laser: Pose2 {
-                x,
-                y: 2.0,
-                yaw: 0.5,
-            },
+            map_from_laser: at(x),
             ..Hypothesis::zeroed()
         };
         self.hypotheses.send(header, &[place]).unwrap();
@@ -85,11 +79,7 @@ impl World {
         let mut header = PoseHeader {
             map_id: DrawnMap::small().header.map_id,
             sent_ns: transport::monotonic_ns(),
-            map_from_laser: Pose2 {
-                x,
-                y: 2.0,
-                yaw: 0.5,
-            },
+            map_from_laser: at(x),
             state: state as u32,
             from_scan: 1,
             pose_known: 1,
@@ -109,12 +99,8 @@ impl World {
         self.graph
             .run(&[], tick, |_| {
                 found = Some(self.site.get("/api/v1/robots/r")).filter(&is_awaited);
-                let flow = if found.is_some() {
-                    Flow::Stop
-                } else {
-                    Flow::Continue
-                };
-                Ok::<_, TransportError>(flow)
+                let is_done = found.is_some();
+                Ok::<_, TransportError>(if is_done { Flow::Stop } else { Flow::Continue })
             })
             .unwrap();
         found.unwrap()
@@ -145,6 +131,11 @@ fn start(graph: &Graph, address: SocketAddr, token: &Path, more: &[&str]) -> Nod
         graph,
         [&common, more].concat(),
     )
+}
+
+fn at(x: f64) -> Pose2 {
+    let (y, yaw) = (2.0, 0.5);
+    Pose2 { x, y, yaw }
 }
 
 pub(crate) fn next(socket: &mut WebSocket<TcpStream>) -> Value {

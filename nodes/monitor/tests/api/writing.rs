@@ -14,23 +14,18 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     let json = "Content-Type: application/json";
     let token = format!("Authorization: Bearer {TOKEN}");
     let put = |headers: &[&str], body: &str| world.site.ask("PUT", path, headers, body).0;
-    assert_eq!(put(&[json], body), 401);
-    assert_eq!(
-        put(&[json, "Authorization: Bearer 0123456789abcdeX"], body),
-        403
-    );
-    assert_eq!(
-        put(&[json, "Authorization: Basic 0123456789abcdef"], body),
-        401
-    );
-    assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
-    assert_eq!(
+    let save = || {
         world
             .site
             .ask("POST", "/api/v1/robots/r/save", &[&token], "")
-            .0,
-        409
-    );
+    };
+    assert_eq!(put(&[json], body), 401);
+    let wrong = "Authorization: Bearer 0123456789abcdeX";
+    assert_eq!(put(&[json, wrong], body), 403);
+    let basic = "Authorization: Basic 0123456789abcdef";
+    assert_eq!(put(&[json, basic], body), 401);
+    assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
+    assert_eq!(save().0, 409);
 
     let regions = world.graph.subscriber::<topic::Region>().unwrap();
     let saves = world.graph.subscriber::<topic::Save>().unwrap();
@@ -41,23 +36,15 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     let corners = wait_for(&world.graph, &regions, |_, corners| {
         (!corners.is_empty()).then(|| corners.to_vec())
     });
-    assert_eq!(
-        corners,
-        [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 3.0 }]
-    );
+    let expected = [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 3.0 }];
+    assert_eq!(corners, expected);
     let known = world.wait_for_state(|known| known["region"] != json!([]));
     assert_eq!(known["region"], json!([[0.0, 0.0], [2.0, 3.0]]));
     assert_eq!(world.site.ask("DELETE", path, &[&token], "").0, 202);
     wait_for(&world.graph, &regions, |_, corners| {
         corners.is_empty().then_some(())
     });
-    assert_eq!(
-        world
-            .site
-            .ask("POST", "/api/v1/robots/r/save", &[&token], "")
-            .0,
-        202
-    );
+    assert_eq!(save().0, 202);
     wait_for(&world.graph, &saves, |_, _| Some(()));
 }
 
@@ -68,26 +55,16 @@ fn nonsense_is_refused_with_a_reason() {
     world.wait_for_state(|known| known["abilities"]["region"] == true);
     let token = format!("Authorization: Bearer {TOKEN}");
     let headers = [token.as_str(), "Content-Type: application/json"];
-    let put = |body: &str| {
-        world
-            .site
-            .ask("PUT", "/api/v1/robots/r/region", &headers, body)
-            .0
-    };
+    let path = "/api/v1/robots/r/region";
+    let put = |body: &str| world.site.ask("PUT", path, &headers, body).0;
     assert_eq!(put("{"), 400);
     assert_eq!(put(r#"{"corners":[[0,0],[1,1]],"more":1}"#), 422);
     assert_eq!(put(r#"{"corners":[[0,0]]}"#), 422);
     assert_eq!(put(r#"{"corners":[[0,0],[1e300,1]]}"#), 422);
     assert_eq!(put(r#"{"corners":[[0,0],[null,1]]}"#), 422);
-    let many = format!(r#"{{"corners":[{}[0,0]]}}"#, "[0,0],".repeat(1000));
-    assert_eq!(put(&many), 422);
-    assert_eq!(
-        put(&format!(
-            r#"{{"corners":[{}[0,0]]}}"#,
-            "[0,0],".repeat(100_000)
-        )),
-        413
-    );
+    let many = |n| format!(r#"{{"corners":[{}[0,0]]}}"#, "[0,0],".repeat(n));
+    assert_eq!(put(&many(1000)), 422);
+    assert_eq!(put(&many(100_000)), 413);
     let sent = regions.newest().unwrap();
     assert!(sent.is_none_or(|sent| sent.items().is_empty()), "no region");
     let (status, body) = world.site.ask("GET", "/api/v1/robots/other", &[], "");

@@ -1,5 +1,4 @@
-//! Tests of the page in a browser, in each state of the robot: the text that operators read, and
-//! accessibility.
+//! Tests of the page in a browser, in each state of the robot: its text, and accessibility.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -47,8 +46,7 @@ fn click(browser: &Browser, selector: &str) {
     let _ = browser.run(&script);
 }
 
-/// Returns the centres of the groups of pixels with exactly this colour on the map, in pixels of
-/// the page.
+/// Returns the centres of groups of pixels of this colour on the map, in pixels of the page.
 fn spots(browser: &Browser, color: [u8; 3]) -> Vec<(f64, f64)> {
     let [red, green, blue] = color;
     let found = browser.run(&format!(
@@ -105,10 +103,8 @@ fn while_several_places_fit_none_of_them_leads() {
     ));
     assert_eq!(shares, json!(["50 %", "30 %", "15 %"]));
     let trust = text(&browser, "trust");
-    assert!(
-        trust.contains("50 % probable, the best of 3 places"),
-        "{trust}"
-    );
+    let is_so = trust.contains("50 % probable, the best of 3 places");
+    assert!(is_so, "{trust}");
     assert!(text(&browser, "todo").contains("Drive a few metres"));
 
     // All places are in view although they are 90 m apart; the initial view covers about 34 m.
@@ -119,10 +115,8 @@ fn while_several_places_fit_none_of_them_leads() {
         }
     };
     let apart = |a: usize, b: usize| (spots[a].0 - spots[b].0).abs();
-    assert!(
-        apart(0, 1).max(apart(1, 2)).max(apart(0, 2)) > 500.0,
-        "{spots:?}"
-    );
+    let is_so = apart(0, 1).max(apart(1, 2)).max(apart(0, 2)) > 500.0;
+    assert!(is_so, "{spots:?}");
     // A click shows the numbers of a place, and the position of the pointer.
     click_map(&browser, spots[0]);
     assert!(text(&browser, "inspect-title").ends_with(" of 3"));
@@ -153,10 +147,8 @@ fn the_card_says_where_how_sure_and_how_exact() {
     assert!(browser.run(weight).as_i64().unwrap() > 500, "it is known");
     // Pose of the base, or of the laser on request.
     let [laser, _, _] = PLACES;
-    assert_eq!(
-        text(&browser, "pose-x"),
-        format!("{:.2}", laser.x - BEHIND_M)
-    );
+    let expected = format!("{:.2}", laser.x - BEHIND_M);
+    assert_eq!(text(&browser, "pose-x"), expected);
     click(&browser, "[data-frame=laser]");
     let is_laser = format!(
         "document.getElementById('pose-x').textContent === '{:.2}'",
@@ -164,10 +156,8 @@ fn the_card_says_where_how_sure_and_how_exact() {
     );
     browser.wait_until(&is_laser);
     // Places with a very low probability are hidden.
-    assert_eq!(
-        browser.run("return document.querySelectorAll('#places tr').length"),
-        1
-    );
+    let found = browser.run("return document.querySelectorAll('#places tr').length");
+    assert_eq!(found, 1);
     assert_eq!(text(&browser, "places-note"), "2 below 1 % are hidden");
     // Robot and graph are named.
     let title = browser.run("return document.title");
@@ -184,10 +174,8 @@ fn the_card_says_where_how_sure_and_how_exact() {
     click_map(&browser, ends[0]);
     assert!(text(&browser, "inspect-title").starts_with("Beam "));
     let shown = text(&browser, "inspect-facts");
-    assert!(
-        shown.contains("reading4.000 m") && shown.contains("on the map"),
-        "{shown}"
-    );
+    let is_so = shown.contains("reading4.000 m") && shown.contains("on the map");
+    assert!(is_so, "{shown}");
     let first = text(&browser, "inspect-title");
     click(&browser, "#beam-after");
     assert_ne!(text(&browser, "inspect-title"), first);
@@ -228,10 +216,8 @@ fn the_moments_when_it_was_lost_can_be_looked_at() {
     wait_for(&browser, "Lost");
     assert!(!is_shown(&browser, "pose"), "no coordinates are bold");
     browser.wait_until("document.getElementById('why').textContent === 'only fit 0.14.'");
-    assert_eq!(
-        text(&browser, "todo"),
-        "Drive a few metres, or mark a region."
-    );
+    let expected = "Drive a few metres, or mark a region.";
+    assert_eq!(text(&browser, "todo"), expected);
     for page in [&early, &browser] {
         let moments = "document.querySelectorAll('#lost-moments button').length === 2";
         page.wait_until(moments);
@@ -336,11 +322,8 @@ fn everybody_can_read_and_reach_it() {
                 }
                 browser.wait_until(&is_so);
                 let found = axe::violations(&browser, &script);
-                assert!(
-                    found.is_empty(),
-                    "{width} {word} {theme}:\n{}",
-                    found.join("\n")
-                );
+                let found = found.join("\n");
+                assert!(found.is_empty(), "{width} {word} {theme}:\n{found}");
             }
             let wide = browser.run("return document.documentElement.scrollWidth");
             assert_eq!(wide, width, "nothing is cut off at the side: {word}");

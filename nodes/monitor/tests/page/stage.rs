@@ -25,18 +25,15 @@ const fn place(x: f64) -> Pose2 {
     Pose2 { x, y, yaw }
 }
 
-/// State of the simulated graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scene {
     /// Several places fit, and there is no tracker.
     Ambiguous,
-    /// The tracker is in this state.
     Tracked(TrackState),
     /// No scans, because the laser cannot be reached.
     Silent,
 }
 
-/// The monitor and the thread that feeds it.
 pub(crate) struct Stage {
     node: Option<NodeProcess>,
     pub(crate) site: Site,

@@ -44,11 +44,8 @@ fn the_first_cause_is_named_first() {
     let expected = ["ros2_gateway is waiting for /map: no publisher: check the ROS 2 robot"];
     check(&[&gateway], Value::Null, &expected);
     let quiet = node("lms_reader", "ready", 0.0, "");
-    check(
-        &[&quiet],
-        json!({}),
-        &["lms_reader sends no scans: check the laser"],
-    );
+    let expected = ["lms_reader sends no scans: check the laser"];
+    check(&[&quiet], json!({}), &expected);
     check(&[&laser], json!({}), &["Scans come, and no pose"]);
     let player = node("replayer", "stopped", 0.0, "");
     check(&[&player], json!({}), &["The recording has ended."]);
@@ -85,10 +82,8 @@ fn the_card_knows_the_graph_and_not_the_tracker_alone() {
     let unique = || pose("Unique", "one place", 3.0, 20.0);
     let says = |store: Value, parts: &[&str]| {
         let words = card(store.clone());
-        assert!(
-            parts.iter().all(|part| words.contains(part)),
-            "{store}: {words}"
-        );
+        let is_so = parts.iter().all(|part| words.contains(part));
+        assert!(is_so, "{store}: {words}");
     };
     says(
         json!({ "fresh": true, "pose": unique(), "nodes": node("ready") }),
@@ -142,24 +137,17 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     wait_for(&browser, "Lost");
     stage.show(UNIQUE);
     wait_for(&browser, "Unique");
-    assert_eq!(
-        browser.run("return window.notified"),
-        json!([]),
-        "nobody asked"
-    );
+    let notified = browser.run("return window.notified");
+    assert_eq!(notified, json!([]), "nobody asked");
     click(&browser, "#notify");
     browser.wait_until("document.getElementById('notify').ariaPressed === 'true'");
     stage.show(LOST);
     browser.wait_until("window.notified.length === 1");
-    assert_eq!(
-        browser.run("return window.notified[0]"),
-        "r7: lost: only fit 0.14."
-    );
+    let expected = "r7: lost: only fit 0.14.";
+    assert_eq!(browser.run("return window.notified[0]"), expected);
     stage.show(Scene::Silent);
     browser.wait_until("window.notified.length === 2");
     let notified = browser.run("return window.notified[1]");
-    assert!(
-        notified.as_str().unwrap().starts_with("r7: no data: "),
-        "{notified}"
-    );
+    let is_so = notified.as_str().unwrap().starts_with("r7: no data: ");
+    assert!(is_so, "{notified}");
 }
