@@ -96,18 +96,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         grid,
         boundary: Vec::new(),
     };
-    let simulated = ScanConfig {
-        beams: 180,
-        noise_percent: 1.0,
-    };
+    let simulated = ScanConfig::new(180, 1.0);
     // Many scans are taken in unknown space; robots are in known space.
-    let tried = simulate(
-        &world,
-        vote_search.space(),
-        &simulated,
-        20 * options.scans,
-        options.seed,
-    )?;
+    let (space, count) = (vote_search.space(), 20 * options.scans);
+    let tried = simulate(&world, space, &simulated, count, options.seed)?;
     let known = tried
         .into_iter()
         .filter(|scan| cells[scan.y * sides.0 + scan.x] == 0);
@@ -138,7 +130,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Peak memory of this process, as reported by the system.
 fn peak_memory() -> String {
     let status = read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

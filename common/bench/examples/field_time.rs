@@ -36,10 +36,7 @@ fn main() -> anyhow::Result<()> {
     let size = (options.side, options.side);
     let world = World::generate(options.kind, size, options.p_over_n / 100.0, 1)?;
     let space = world.space(360)?;
-    let simulated = ScanConfig {
-        beams: options.beams,
-        noise_percent: options.noise,
-    };
+    let simulated = ScanConfig::new(options.beams, options.noise);
     let scan = &simulate(&world, &space, &simulated, 1, 1)?[0];
     let votes = simulated.votes(TaperShape::Trapezoid);
     let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
@@ -50,11 +47,8 @@ fn main() -> anyhow::Result<()> {
     };
     let sweeps = FieldSweep::new(&world.grid);
     for instruction_set in InstructionSet::available() {
-        let cost = time(
-            &mut sweeps.accumulator_with(instruction_set),
-            query,
-            options.runs,
-        );
+        let mut accumulator = sweeps.accumulator_with(instruction_set);
+        let cost = time(&mut accumulator, query, options.runs);
         println!("sweep, {instruction_set}: {cost:.2} ms");
     }
     let cost = time(&mut Scatter::new(&world.grid, &world.boundary), query, 3);

@@ -55,10 +55,7 @@ fn main() -> anyhow::Result<()> {
     let size = (options.side, options.side);
     let world = World::generate(options.kind, size, options.p_over_n / 100.0, options.seed)?;
     let space = world.space(options.headings)?;
-    let simulated = ScanConfig {
-        beams: options.beams,
-        noise_percent: options.noise,
-    };
+    let simulated = ScanConfig::new(options.beams, options.noise);
     let scans = simulate(&world, &space, &simulated, options.scans, options.seed)?;
     let votes = simulated.votes(options.taper);
     let collect = CollectConfig {

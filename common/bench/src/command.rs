@@ -2,7 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::builder::PossibleValue;
 use command_line::wrong_use;
 use engine::instruction_set::InstructionSet;
 use progress::Progress;
@@ -14,7 +13,6 @@ use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases, name_of};
 use super::text;
 
-/// What stands below the options.
 pub const NOTES: &str = "\
 Worlds are generated: buildings, corridors or scattered boxes with the wanted p/n, boundary
 cells over free cells. Noise q % adds a normal error of q/100 of the range to each reading,
@@ -26,40 +24,20 @@ and docs: half a minute, and with --data some minutes.
 
 Exit codes: 0 measured, 1 failed, or with --check a figure differs, 2 wrong use";
 
-/// Default seed.
 const SEED: u64 = 1;
 
-/// What is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Measured {
-    Table(Table),
+    /// The paper's Table 1: the heading is known
+    Table1,
+    /// The paper's Table 2: the heading is searched too
+    Table2,
+    /// The exact search over all headings, on worlds of every kind and size
+    Search,
+    /// All claims of the paper's sections II to V, into a folder of tables and pictures
     Paper,
+    /// The figures in README.md and docs, into these pages
     Docs,
-}
-
-impl clap::ValueEnum for Measured {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[
-            Measured::Table(Table::Table1),
-            Measured::Table(Table::Table2),
-            Measured::Table(Table::Search),
-            Measured::Paper,
-            Measured::Docs,
-        ]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self {
-            Measured::Table(table) => table.to_possible_value(),
-            Measured::Paper => Some(PossibleValue::new("paper").help(
-                "All claims of the paper's sections II to V, into a folder of tables and pictures",
-            )),
-            Measured::Docs => Some(
-                PossibleValue::new("docs")
-                    .help("The figures in README.md and docs, into these pages"),
-            ),
-        }
-    }
 }
 
 /// Options of `backcast bench`.
@@ -98,26 +76,25 @@ pub struct Config {
 
 impl Config {
     /// Checks that no options of another table are given.
-    ///
-    /// # Errors
-    /// Names those that are allowed.
     fn check_table(&self) -> anyhow::Result<()> {
         let has_docs = self.docs != docs::Config::default();
+        let has_paper = self.paper != paper::Config::default();
         let has_cases = self.json || self.scans.is_some() || self.filter != Filter::default();
         let has_effort = self.quick || self.seed != SEED;
         let message = match self.table {
-            Measured::Docs if has_cases || has_effort || !self.paper.is_empty() => {
+            Measured::Docs if has_cases || has_effort || has_paper => {
                 "`bench docs` takes --root, --data, --check, --constants, --stress and --times"
                     .to_owned()
             }
             Measured::Paper if has_cases || has_docs => {
                 "`bench paper` takes --quick, --seed, --out, --part and --recording".to_owned()
             }
-            Measured::Table(table) if has_docs => format!(
+            Measured::Paper | Measured::Docs => return Ok(()),
+            table if has_docs => format!(
                 "--root, --data, --check, --constants, --stress and --times are for `bench docs`, not for {}",
                 name_of(&table)
             ),
-            Measured::Table(table) if !self.paper.is_empty() => format!(
+            table if has_paper => format!(
                 "--out, --part and --recording are for `bench paper`, not for {}",
                 name_of(&table)
             ),
@@ -139,8 +116,6 @@ impl Config {
         }
     }
 
-    /// # Errors
-    /// If beams do not fall on the heading grid.
     fn check(&self, cases: &Cases) -> anyhow::Result<()> {
         for (place, sights) in cases {
             for sight in sights {
@@ -157,14 +132,12 @@ impl Config {
     }
 }
 
-/// Measures a table, the paper, or the figures of the documents.
-///
-/// # Errors
-/// Options contradict each other, a case cannot be set up, or output cannot be written.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     config.check_table()?;
     match config.table {
-        Measured::Table(table) => run_table(config, table),
+        Measured::Table1 => run_table(config, Table::Table1),
+        Measured::Table2 => run_table(config, Table::Table2),
+        Measured::Search => run_table(config, Table::Search),
         Measured::Paper => paper::run(&config.paper, config.quick, config.seed),
         Measured::Docs => docs::run(&config.docs),
     }
@@ -197,18 +170,13 @@ fn run_table(config: &Config, table: Table) -> anyhow::Result<ExitCode> {
 }
 
 fn name(place: &Place) -> String {
-    let Place {
-        kind,
-        size,
-        p_over_n,
-        ..
-    } = place;
-    format!("{} {size} x {size}, p/n {p_over_n} %", name_of(kind))
+    let (kind, size) = (name_of(&place.kind), place.size);
+    format!("{kind} {size} x {size}, p/n {} %", place.p_over_n)
 }
 
 fn printed(rows: &[Row], as_json: bool) -> String {
     if as_json {
-        rows.iter().map(|row| row.json() + "\n").collect()
+        rows.iter().map(|row| json::object(row) + "\n").collect()
     } else {
         text::block(rows)
     }

@@ -13,7 +13,6 @@ use super::method::{Method, Sizes};
 use super::row::Row;
 use super::scope::{Place, Sight, Table, name_of};
 
-/// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Effort {
     /// Most scans of a case.
@@ -25,7 +24,6 @@ pub(super) struct Effort {
     pub(super) seed: u64,
 }
 
-/// A place where the methods of a table meet.
 pub(super) struct Contest {
     table: Table,
     place: Place,
@@ -42,10 +40,6 @@ impl Contest {
         }
     }
 
-    /// Generates the place and prepares it.
-    ///
-    /// # Errors
-    /// If there is no such place.
     pub(super) fn new(table: Table, place: Place, seed: u64) -> anyhow::Result<Self> {
         Ok(Contest {
             table,
@@ -55,32 +49,21 @@ impl Contest {
     }
 
     /// Measures every method on the same scans; `step` is called for each.
-    ///
-    /// # Errors
-    /// If the beams do not divide the headings, or a scan is refused.
     pub(super) fn run(
         &mut self,
         sight: &Sight,
         effort: Effort,
         mut step: impl FnMut(),
     ) -> anyhow::Result<Vec<Row>> {
-        let config = ScanConfig {
-            beams: sight.beams as usize,
-            noise_percent: sight.noise_percent,
-        };
+        let config = ScanConfig::new(sight.beams as usize, sight.noise_percent);
         let space = self.line_up.space.clone();
-        let scans = simulate(
-            &self.line_up.world,
-            &space,
-            &config,
-            effort.scans,
-            effort.seed,
-        )?;
+        let world = &self.line_up.world;
+        let scans = simulate(world, &space, &config, effort.scans, effort.seed)?;
         let tasks = tasks(self.table, &scans, &space, sight, &config)?;
         let template = self.template(sight, &tasks)?;
         let sizes = Sizes {
-            n: self.line_up.world.grid.free_cells() as f64,
-            p: self.line_up.world.boundary.len() as f64,
+            n: world.grid.free_cells() as f64,
+            p: world.boundary.len() as f64,
             m: f64::from(sight.beams),
             k: template.k,
             headings: template.headings as f64,
@@ -94,13 +77,11 @@ impl Contest {
             let measured = measure(&mut contestant.locate, &tasks, effort.budget_ms, least)?;
             let counts = method.counts(&sizes);
             let row = Row {
-                method: method.name(),
-                label: method.label(),
-                operations: counts.map(|counts| counts.operations),
-                additions: counts.map(|counts| counts.additions),
+                operations: counts.map(|counts| counts.0),
+                additions: counts.map(|counts| counts.1),
                 prepare_cpu_ms: contestant.prepare_cpu_ms,
                 map_bytes: contestant.map_bytes,
-                ..template.clone()
+                ..template.of(method)
             };
             rows.push(match measured {
                 Some(measured) => row.with(&measured),
@@ -151,16 +132,13 @@ impl Contest {
     fn left_out_table(&self, template: &Row) -> Option<Row> {
         let bytes = self.line_up.left_out_table_bytes()?;
         let row = Row {
-            method: Method::RangeTable.name(),
-            label: Method::RangeTable.label(),
             map_bytes: bytes,
-            ..template.clone()
+            ..template.of(Method::RangeTable)
         };
         Some(row.without(format!("its table would take {:.1} GB", bytes as f64 / 1e9)))
     }
 }
 
-/// The scans of a case, with the headings that are searched.
 fn tasks<'a>(
     table: Table,
     scans: &'a [SimulatedScan],
@@ -196,16 +174,10 @@ fn taper_cells(tasks: &[Task<'_>]) -> anyhow::Result<f64> {
     Ok(cells as f64 / beams.max(1) as f64)
 }
 
-/// Fills in the ratios to the fastest reverse projection that finds the best
-/// pose and nothing more.
+/// Fills in the ratios to the fastest reverse projection that finds the best pose alone.
 fn compare(rows: &mut [Row]) {
-    let plain = [
-        Method::Scatter,
-        Method::Sweep,
-        Method::Exhaustive,
-        Method::Search,
-    ]
-    .map(Method::name);
+    use Method::{Exhaustive, Scatter, Search, Sweep};
+    let plain = [Scatter, Sweep, Exhaustive, Search].map(Method::name);
     let times = rows.iter().filter(|row| plain.contains(&row.method));
     let fastest = times.filter_map(|row| row.cpu_ms).min_by(f64::total_cmp);
     for row in rows {

@@ -12,62 +12,21 @@ use engine::reference;
 use crate::baselines::Readings;
 use crate::worlds::World;
 
-/// Operations of Markov localization. The paper's formulas: mn ranges, mn squarings and n
-/// Gaussians, n(2m + 1) operations; 2mn additions and subtractions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct MarkovCounts {
-    /// Number of ranges to the nearest obstacle.
-    pub ranges: u64,
-    pub squarings: u64,
-    pub gaussians: u64,
+pub struct Counts {
+    /// Of Markov localization ranges, squarings and Gaussians, n(2m + 1) by the formula; of reverse
+    /// projection obstacles found along θ - π and readings converted to cells and intensities,
+    /// without those that end behind an obstacle, 2mp at worst.
+    pub operations: u64,
+    /// Additions and subtractions: 2mn, or kmp at worst.
     pub additions: u64,
-}
-
-impl MarkovCounts {
-    /// Number of operations as the paper counts them.
-    #[must_use]
-    pub fn operations(&self) -> u64 {
-        self.ranges + self.squarings + self.gaussians
-    }
-}
-
-/// Operations of reverse projection. The paper's formulas for the worst case: 2mp operations and
-/// kmp additions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ReverseCounts {
-    /// Number of nearest obstacles found along θ - π.
-    pub obstacles: u64,
-    /// Number of readings converted to cells and intensities, without those that end behind an
-    /// obstacle.
-    pub projections: u64,
-    /// Number of intensities added to a cell.
-    pub additions: u64,
-    /// Number of additions without obstacles in between: the sum of k over all boundary cells and
-    /// beams, the paper's kmp.
+    /// Additions without obstacles in between, the paper's kmp.
     pub worst_additions: u64,
 }
 
-impl ReverseCounts {
-    /// Number of operations as the paper counts them.
-    #[must_use]
-    pub fn operations(&self) -> u64 {
-        self.obstacles + self.projections
-    }
-}
-
-impl AddAssign for MarkovCounts {
+impl AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
-        self.ranges += other.ranges;
-        self.squarings += other.squarings;
-        self.gaussians += other.gaussians;
-        self.additions += other.additions;
-    }
-}
-
-impl AddAssign for ReverseCounts {
-    fn add_assign(&mut self, other: Self) {
-        self.obstacles += other.obstacles;
-        self.projections += other.projections;
+        self.operations += other.operations;
         self.additions += other.additions;
         self.worst_additions += other.worst_additions;
     }
@@ -75,9 +34,8 @@ impl AddAssign for ReverseCounts {
 
 /// Markov localization at one heading: returns the likelihood of the readings in each cell, row by
 /// row from the lowest y, 0 in cells that are not free; and the operations.
-#[must_use]
-pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>, MarkovCounts) {
-    let mut counts = MarkovCounts::default();
+pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>, Counts) {
+    let mut counts = Counts::default();
     let grid = &world.grid;
     let mut belief = vec![0.0; grid.cells().len()];
     for (i, likelihood) in belief.iter_mut().enumerate() {
@@ -88,19 +46,19 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
         let mut sum = 0.0;
         for beam in &readings.beams {
             let direction = query.space.directions.get(query.heading + beam.bearing);
-            counts.ranges += 1;
+            counts.operations += 1;
             let steps = reference::range(grid, x, y, direction);
             let cells = steps.map_or(f64::INFINITY, |steps| {
                 f64::from(steps) / direction.steps_per_cell
             });
             counts.additions += 1;
             let error = (cells - beam.cells) / beam.sigma_cells;
-            counts.squarings += 1;
+            counts.operations += 1;
             let square = error * error;
             counts.additions += 1;
             sum += square;
         }
-        counts.gaussians += 1;
+        counts.operations += 1;
         *likelihood = (-0.5 * sum).exp();
     }
     (belief, counts)
@@ -108,8 +66,7 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
 
 /// Reverse projection at one heading: returns the intensity of each cell, row by row from the
 /// lowest y, equal to that of [`Scatter`](crate::scatter::Scatter); and the operations.
-#[must_use]
-pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
+pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, Counts) {
     let mut field = vec![0u16; world.grid.cells().len()];
     let counts = project(world, query, |index, votes| {
         field[index] += u16::from(votes);
@@ -118,7 +75,6 @@ pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, Reverse
 }
 
 /// Maximum number of beams that vote for one cell: by Lemma 1 at most the number of beams.
-#[must_use]
 pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
     let mut beams = vec![0u16; world.grid.cells().len()];
     project(world, query, |index, _| beams[index] += 1);
@@ -127,8 +83,8 @@ pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
 
 /// Projects all readings back from all boundary cells; calls `add` with each cell that a taper
 /// reaches, and its votes.
-fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> ReverseCounts {
-    let mut counts = ReverseCounts::default();
+fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> Counts {
+    let mut counts = Counts::default();
     let mut visible = Vec::new();
     for cell in &world.boundary {
         for beam in 0..query.program.beams() {
@@ -136,22 +92,17 @@ fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> R
             let first = (taper.centre + 1).saturating_sub(taper.profile.len() as u16);
             let first = first.max(1);
             counts.worst_additions += u64::from(taper.end().saturating_sub(first));
-            counts.obstacles += 1;
+            counts.operations += 1;
             let from = (i64::from(cell.x), i64::from(cell.y));
-            see_back(
-                world,
-                from,
-                &direction.opposite(),
-                taper.end(),
-                &mut visible,
-            );
+            let (back, end) = (direction.opposite(), taper.end());
+            see_back(world, from, &back, end, &mut visible);
             let reached = visible.iter().zip(1..).skip(usize::from(first) - 1);
             let before = counts.additions;
             for (&index, steps) in reached {
                 counts.additions += 1;
                 add(index, taper.votes(steps));
             }
-            counts.projections += u64::from(counts.additions > before);
+            counts.operations += u64::from(counts.additions > before);
         }
     }
     counts
@@ -178,10 +129,7 @@ mod tests {
     use crate::scatter::Scatter;
     use crate::worlds::Kind;
 
-    const CONFIG: ScanConfig = ScanConfig {
-        beams: 8,
-        noise_percent: 5.0,
-    };
+    const CONFIG: ScanConfig = ScanConfig::new(8, 5.0);
 
     #[test]
     fn counts_are_the_papers_or_below_and_the_fields_those_of_the_engine() {
@@ -200,10 +148,10 @@ mod tests {
                     heading: scan.heading,
                 };
                 let (_, markov) = markov(&world, &readings, query);
-                assert_eq!(markov.operations(), n * (2 * m + 1));
+                assert_eq!(markov.operations, n * (2 * m + 1));
                 assert_eq!(markov.additions, 2 * m * n);
                 let (field, reverse) = reverse_projection(&world, query);
-                assert!(reverse.operations() <= 2 * m * p);
+                assert!(reverse.operations <= 2 * m * p);
                 assert!(reverse.additions <= reverse.worst_additions);
                 assert!(reverse.additions <= m * n, "Theorem 1");
                 assert!(u64::from(most_beams(&world, query)) <= m, "Lemma 1");

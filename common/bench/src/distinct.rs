@@ -11,7 +11,6 @@ const SAME_PLACE: (f64, f64) = (0.5, 10.0 * TAU / 360.0);
 
 /// Returns up to `most` poses in the map, those with the most votes first. A vote near a pose that
 /// was taken before counts as the same place. `frame` is that of the votes' grid.
-#[must_use]
 pub fn distinct(outcome: &Outcome, frame: GridFrame, most: usize) -> Vec<Pose> {
     let mut poses: Vec<Pose> = Vec::new();
     for vote in &outcome.found.votes {

@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 use std::time::Instant;
 
+use crate::baselines::Estimate;
 use crate::scatter::Scatter;
 use crate::worlds::World;
 use engine::accumulator::{Accumulator, Query};
@@ -14,9 +15,8 @@ use engine::sweep::{FieldSweep, Sweep};
 use engine::votes::{CollectConfig, VoteSet, distinct};
 use messages::Vote;
 
-use super::measure::{Answer, Locate, Pose, Task};
+use super::measure::{Answer, Locate, Task};
 
-/// Only the best pose.
 const ARGMAX: CollectConfig = CollectConfig {
     floor_share: 1.0,
     max_votes: 1,
@@ -27,18 +27,6 @@ const ARGMAX: CollectConfig = CollectConfig {
 fn program(task: &Task<'_>) -> anyhow::Result<ScanProgram> {
     let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes);
     Ok(program?)
-}
-
-fn best(found: &VoteSet) -> Option<Pose> {
-    found.votes.first().map(pose)
-}
-
-fn pose(vote: &Vote) -> Pose {
-    Pose {
-        x: usize::from(vote.x),
-        y: usize::from(vote.y),
-        heading: usize::from(vote.heading),
-    }
 }
 
 /// By the fields of an accumulator at some headings.
@@ -59,10 +47,8 @@ fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'
         });
         // Of equal ones the first, as the search has it.
         let best = bests.max().filter(|&(votes, ..)| votes > 0);
-        Ok(Answer::Best(best.map(|(_, heading, cell)| Pose {
-            x: cell.0 % width,
-            y: cell.0 / width,
-            heading: heading.0,
+        Ok(Answer::Best(best.map(|(votes, heading, Reverse(cell))| {
+            Estimate::new(cell % width, cell / width, heading.0, votes.into())
         })))
     })
 }
@@ -95,7 +81,8 @@ fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConf
         let (scan, collect) = ((&program, task.space), (collect, &mut found));
         let grid = &world.grid;
         let searched = index.search_in(&mut workspace, how, grid, scan, collect, &|| false);
-        Ok(Answer::Best(searched.and_then(|()| best(&found))))
+        let best = searched.and_then(|()| found.votes.first());
+        Ok(Answer::Best(best.map(Estimate::from)))
     })
 }
 
@@ -124,7 +111,7 @@ pub(super) fn top_sixteen<'a>(
             let best = found.first().map_or(0, |best| best.intensity);
             // At 1 or below, all poses that have votes were collected.
             if poses.len() == COUNT || floor_of(best, floor_share) <= 1 {
-                return Ok(Answer::Best(poses.first().map(pose)));
+                return Ok(Answer::Best(poses.first().map(Estimate::from)));
             }
             floor_share /= 2.0;
         }

@@ -3,7 +3,7 @@
 //! `paper`, all claims of the paper; and in `docs`, the figures of the documents.
 //!
 //! `worlds` and `scans` are generated from seeds: the same numbers give the same world, scan and
-//! result. `baselines`, `particles` and `scatter` are the methods that the engine is compared with.
+//! result. `baselines` and `scatter` are the methods that the engine is compared with.
 
 pub mod baselines;
 mod command;
@@ -16,7 +16,6 @@ mod line_up;
 mod measure;
 mod method;
 mod paper;
-pub mod particles;
 mod row;
 pub mod scans;
 pub mod scatter;
@@ -31,8 +30,6 @@ pub use distinct::distinct;
 /// Side of a cell of every generated world, in metres.
 pub const RESOLUTION_M: f64 = 0.05;
 
-/// Schemas of what the command prints.
-#[must_use]
 pub fn schemas() -> Vec<json::schema::Named> {
     vec![json::schema::of_object::<row::Row>("bench")]
 }

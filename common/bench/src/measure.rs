@@ -1,18 +1,10 @@
 //! Takes the time of a method on the scans of a case.
 
-use crate::baselines::Readings;
+use crate::baselines::{Estimate, Readings};
 use crate::scans::SimulatedScan;
 use crate::timing::{cpu_ms, median};
 use engine::program::VoteConfig;
 use engine::space::Space;
-
-/// A pose on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Pose {
-    pub(super) x: usize,
-    pub(super) y: usize,
-    pub(super) heading: usize,
-}
 
 /// One scan of a case, and what all methods read from it.
 #[derive(Debug)]
@@ -21,32 +13,26 @@ pub(super) struct Task<'a> {
     pub(super) votes: VoteConfig,
     pub(super) space: &'a Space,
     pub(super) readings: Readings,
-    /// Headings that are searched.
     pub(super) headings: Vec<usize>,
 }
 
-/// What a method makes of a scan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Answer {
     /// The best pose, if any has a vote.
-    Best(Option<Pose>),
+    Best(Option<Estimate>),
     /// It took too long, or too much memory.
     GaveUp,
 }
 
-/// A method that is ready for a case; it is given a scan and the headings to
-/// search.
+/// A method that is ready for a case; takes a scan and the headings to search.
 pub(super) type Locate<'a> = Box<dyn FnMut(&Task<'_>, &[usize]) -> anyhow::Result<Answer> + 'a>;
 
-/// What was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Measured {
     /// Median over the scans, for all headings.
     pub(super) cpu_ms: f64,
-    /// Scans that were measured.
     pub(super) scans: usize,
-    /// Of these, how many were located to 0.5 m and 10°; `None` where only
-    /// some headings were.
+    /// Scans located to 0.5 m and 10°; `None` where only some headings were searched.
     pub(super) found: Option<usize>,
     /// Headings that were measured, if the time was scaled up from them.
     pub(super) scaled_from_headings: Option<usize>,
@@ -56,9 +42,6 @@ pub(super) struct Measured {
 /// A method that would spend it on one scan alone is measured on as many
 /// headings as fit, but not on fewer than `least_headings`, evenly spread, and
 /// its time scaled up. `None` if it gave up.
-///
-/// # Errors
-/// If the engine refuses a scan.
 pub(super) fn measure(
     locate: &mut Locate<'_>,
     tasks: &[Task<'_>],
@@ -80,7 +63,7 @@ pub(super) fn measure(
         let Answer::Best(pose) = answer? else {
             return Ok(None);
         };
-        found += usize::from(pose.is_some_and(|pose| is_near(pose, task)));
+        found += usize::from(pose.is_some_and(|pose| task.scan.is_found_at(&pose, task.space)));
         costs.push(cost * all as f64 / count as f64);
         if costs.iter().sum::<f64>() * count as f64 / all as f64 >= budget_ms {
             break;
@@ -94,14 +77,6 @@ pub(super) fn measure(
     }))
 }
 
-/// Whether a pose lies within 0.5 m and 10° of the true one.
-fn is_near(pose: Pose, task: &Task<'_>) -> bool {
-    let (dx, dy) = (pose.x.abs_diff(task.scan.x), pose.y.abs_diff(task.scan.y));
-    let off_m = (dx as f64).hypot(dy as f64) * task.space.resolution_m;
-    let turned = (pose.heading as f64 - task.scan.heading as f64) * task.space.directions.spacing();
-    off_m <= 0.5 && geometry::wrap_angle(turned).abs() <= 10f64.to_radians()
-}
-
 #[cfg(test)]
 mod tests {
     use crate::scans::{ScanConfig, simulate};
@@ -113,10 +88,7 @@ mod tests {
     fn on_tasks<T>(headings: usize, work: impl FnOnce(&[Task<'_>]) -> T) -> T {
         let world = World::generate(Kind::Boxes, (60, 60), 0.2, 1).unwrap();
         let space = world.space(72).unwrap();
-        let config = ScanConfig {
-            beams: 8,
-            noise_percent: 0.0,
-        };
+        let config = ScanConfig::new(8, 0.0);
         let scans = simulate(&world, &space, &config, 3, 1).unwrap();
         let votes = config.votes(TaperShape::Box);
         let task = |scan| Task {
@@ -139,7 +111,7 @@ mod tests {
                 spent += cpu_ms(|| std::hint::black_box(spin())).1;
             }
             let SimulatedScan { x, y, heading, .. } = *task.scan;
-            Ok(Answer::Best(Some(Pose { x, y, heading })))
+            Ok(Answer::Best(Some(Estimate::new(x, y, heading, 1.0))))
         });
         let measured = on_tasks(headings, |tasks| {
             measure(&mut locate, tasks, budget_ms, Some(1))

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::measure::Measured;
+use super::method::Method;
 
 /// One line of JSON, and one of the table.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -49,7 +50,15 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// The row with the times that were taken.
+    pub(super) fn of(&self, method: Method) -> Self {
+        let (method, label) = method.names();
+        Row {
+            method,
+            label,
+            ..self.clone()
+        }
+    }
+
     pub(super) fn with(self, measured: &Measured) -> Self {
         Row {
             cpu_ms: Some(measured.cpu_ms),
@@ -62,16 +71,10 @@ impl Row {
         }
     }
 
-    /// The row of a method that was left out.
     pub(super) fn without(self, reason: String) -> Self {
         Row {
             skipped: Some(reason),
             ..self
         }
-    }
-
-    /// As a line of JSON, without its end.
-    pub(super) fn json(&self) -> String {
-        json::object(self)
     }
 }

@@ -12,7 +12,9 @@ use engine::taper::TaperShape;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
+use statistics::SUCCESS;
 
+use crate::baselines::Estimate;
 use crate::worlds::World;
 
 /// Share of the beams that must have a return.
@@ -30,8 +32,14 @@ pub struct ScanConfig {
 }
 
 impl ScanConfig {
+    pub const fn new(beams: usize, noise_percent: f64) -> Self {
+        ScanConfig {
+            beams,
+            noise_percent,
+        }
+    }
+
     /// Settings of the votes to match: the same standard deviation, and equal weights.
-    #[must_use]
     pub fn votes(&self, taper: TaperShape) -> VoteConfig {
         let mut votes = VoteConfig {
             taper,
@@ -65,23 +73,16 @@ pub struct RingConfig<'a> {
 }
 
 impl RingConfig<'_> {
-    /// Settings of the votes to match: the same standard deviation, one taper per rangefinder, and
-    /// equal weights.
-    #[must_use]
+    /// Settings of the votes to match: one taper per rangefinder, and equal weights.
     pub fn votes(&self, taper: TaperShape) -> VoteConfig {
-        let all = ScanConfig {
-            beams: RING_BEARINGS,
-            noise_percent: self.noise_percent,
-        };
+        let all = ScanConfig::new(RING_BEARINGS, self.noise_percent);
         all.votes(taper)
     }
 }
 
 /// Simulates `count` scans of a ring at random poses: 360 readings a degree apart, NaN without a
 /// rangefinder. Headings are those of a grid of 360.
-///
-/// # Errors
-/// The space has other headings, or no pose has enough returns.
+/// Fails if the space has other headings, or no pose has enough returns.
 pub fn simulate_ring(
     world: &World,
     space: &Space,
@@ -95,10 +96,7 @@ pub fn simulate_ring(
     }
     // Simulates all bearings and drops those in between, so that each reading is equal to that of a
     // full scan with the same seed.
-    let config = ScanConfig {
-        beams: RING_BEARINGS,
-        noise_percent: ring.noise_percent,
-    };
+    let config = ScanConfig::new(RING_BEARINGS, ring.noise_percent);
     let mut scans = simulate(world, space, &config, count, seed)?;
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ BEARING_ERRORS);
     for scan in &mut scans {
@@ -120,7 +118,6 @@ fn looked_at(full: &[f32], ring: &RingConfig<'_>, rng: &mut Xoshiro256PlusPlus) 
     ranges
 }
 
-/// A scan with its true pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedScan {
     /// Column of the cell.
@@ -134,8 +131,14 @@ pub struct SimulatedScan {
 }
 
 impl SimulatedScan {
-    /// Converts to a scan of the engine.
-    #[must_use]
+    /// Returns true if a pose is within 0.5 m and 10° of the true one.
+    pub fn is_found_at(&self, at: &Estimate, space: &Space) -> bool {
+        let (dx, dy) = (at.x.abs_diff(self.x) as f64, at.y.abs_diff(self.y) as f64);
+        let turned = (at.heading as f64 - self.heading as f64) * space.directions.spacing();
+        dx.hypot(dy) * space.resolution_m <= SUCCESS.0
+            && geometry::wrap_angle(turned).abs() <= SUCCESS.1.to_radians()
+    }
+
     pub fn scan(&self) -> Scan<'_> {
         Scan {
             angle_min: 0.0,
@@ -148,9 +151,7 @@ impl SimulatedScan {
 }
 
 /// Simulates `count` scans at random poses.
-///
-/// # Errors
-/// The number of beams does not divide the headings, or no pose has enough returns.
+/// Fails if the number of beams does not divide the headings, or no pose has enough returns.
 pub fn simulate(
     world: &World,
     space: &Space,
@@ -197,12 +198,10 @@ fn simulate_one(
     Err(anyhow!("none of {TRIES} random poses has enough returns"))
 }
 
-/// Error of beams whose number does not divide the number of headings.
 fn misfit(beams: usize, headings: usize) -> anyhow::Error {
     anyhow!("{beams} beams do not fall on a grid of {headings} headings: it must be a multiple")
 }
 
-/// Readings of all beams from one pose.
 fn look_out(
     world: &World,
     space: &Space,
@@ -230,10 +229,7 @@ mod tests {
     use super::*;
     use crate::worlds::Kind;
 
-    const EXACT: ScanConfig = ScanConfig {
-        beams: 36,
-        noise_percent: 0.0,
-    };
+    const EXACT: ScanConfig = ScanConfig::new(36, 0.0);
 
     fn world() -> World {
         World::generate(Kind::Rooms, (150, 120), 0.1, 7).unwrap()
@@ -274,11 +270,8 @@ mod tests {
         let square_mean =
             errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
         // 3600 samples give the standard deviation to 1.2 %; four times that is allowed.
-        assert!(
-            (square_mean.sqrt() - 0.10).abs() < 0.005,
-            "{}",
-            square_mean.sqrt()
-        );
+        let deviation = square_mean.sqrt();
+        assert!((deviation - 0.10).abs() < 0.005, "{deviation}");
     }
 
     #[test]

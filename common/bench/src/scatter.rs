@@ -10,8 +10,7 @@ use engine::grid::{Cell, Grid};
 use engine::program::Taper;
 use messages::BoundaryCell;
 
-/// Counts votes from the boundary cells outward; fastest with few beams on maps with few boundary
-/// cells.
+/// Counts votes from the boundary cells outward.
 #[derive(Debug, Clone, Copy)]
 pub struct Scatter<'a> {
     grid: &'a Grid,
@@ -20,7 +19,6 @@ pub struct Scatter<'a> {
 
 impl<'a> Scatter<'a> {
     /// Projects from cells of [`engine::boundary::extract`], all or some.
-    #[must_use]
     pub fn new(grid: &'a Grid, boundary: &'a [BoundaryCell]) -> Self {
         Scatter { grid, boundary }
     }
@@ -72,10 +70,7 @@ mod tests {
 
     #[test]
     fn votes_equal_the_reference_and_none_has_more_than_its_beams() {
-        let config = ScanConfig {
-            beams: 24,
-            noise_percent: 5.0,
-        };
+        let config = ScanConfig::new(24, 5.0);
         for (kind, shape) in [
             (Kind::Rooms, TaperShape::Trapezoid),
             (Kind::Boxes, TaperShape::Gaussian),

@@ -1,21 +1,17 @@
-//! Which cases a table has: the full lists, the quick ones, and what the
-//! options put in their place.
+//! Cases of a table: the full lists, the quick ones, and those of the options.
 
 use crate::worlds::Kind;
 use clap::ValueEnum;
+use command_line::number;
 use engine::taper::TaperShape;
 
-/// Longest side of a world, cells.
 const MAX_SIDE: u32 = 5000;
 
 /// The tables that can be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Table {
-    /// The paper's Table 1: the heading is known
     Table1,
-    /// The paper's Table 2: the heading is searched too
     Table2,
-    /// The exact search over all headings, on worlds of every kind and size
     Search,
 }
 
@@ -35,10 +31,10 @@ pub(super) struct Filter {
     #[arg(long, value_delimiter = ',', value_name = "CELLS", value_parser = clap::value_parser!(u32).range(32..=i64::from(MAX_SIDE)))]
     pub(super) size: Vec<u32>,
     /// Boundary cells over free cells, per cent, 1..=300
-    #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = parse_ratio)]
+    #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = number(1.0..=300.0, "per cent"))]
     pub(super) p_over_n: Vec<f64>,
     /// Standard deviation of a reading, per cent of its range, 0..=25
-    #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = parse_noise)]
+    #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = number(0.0..=25.0, "per cent"))]
     pub(super) noise: Vec<f64>,
     /// Beams over the whole turn; they must divide the headings
     #[arg(long, value_delimiter = ',', value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=3600))]
@@ -49,25 +45,6 @@ pub(super) struct Filter {
     /// Tapers of the votes
     #[arg(long, value_enum, value_delimiter = ',', value_name = "TAPER")]
     pub(super) taper: Vec<TaperShape>,
-}
-
-fn parse_ratio(text: &str) -> Result<f64, String> {
-    parse(text, 1.0..=300.0)
-}
-
-fn parse_noise(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=25.0)
-}
-
-fn parse(text: &str, allowed: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
-    let value: f64 = text
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number"))?;
-    if allowed.contains(&value) {
-        return Ok(value);
-    }
-    let (start, end) = (allowed.start(), allowed.end());
-    Err(format!("{value} is not within {start} to {end} per cent"))
 }
 
 fn parse_headings(text: &str) -> Result<u32, String> {
@@ -84,7 +61,6 @@ fn parse_headings(text: &str) -> Result<u32, String> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     pub(super) kind: Kind,
-    /// Cells a side.
     pub(super) size: u32,
     /// Per cent.
     pub(super) p_over_n: f64,
@@ -102,7 +78,6 @@ pub(super) struct Sight {
 /// The places of a table, each with all that is seen there.
 pub(super) type Cases = Vec<(Place, Vec<Sight>)>;
 
-/// The cases of a table.
 pub(super) fn cases(table: Table, quick: bool, filter: &Filter) -> Cases {
     let lists = filter.over(&own(table, quick));
     let mut cases = Cases::new();
@@ -168,7 +143,6 @@ impl Filter {
     }
 }
 
-/// What a table consists of where nothing else is asked for.
 fn own(table: Table, quick: bool) -> Filter {
     let trapezoid = vec![TaperShape::Trapezoid];
     let full = match table {

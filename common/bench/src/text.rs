@@ -16,10 +16,8 @@ const COLUMNS: [(&str, usize); 7] = [
     ("map MB", 9),
 ];
 
-/// Width of the method's name.
 const NAME: usize = 32;
 
-/// What the table is about, above it.
 pub(super) fn title(table: Table, instruction_set: &str) -> String {
     let about = match table {
         Table::Table1 => "The paper's Table 1: where was this scan taken, if its heading is known?",
@@ -29,7 +27,6 @@ pub(super) fn title(table: Table, instruction_set: &str) -> String {
     format!("{about}\nOne thread, {instruction_set}; every method has the same worlds and scans.\n")
 }
 
-/// What the columns mean, below the table.
 pub(super) const LEGEND: &str = "
 CPU ms      processor time for one scan, median; ~ where it is scaled up from some of the headings
 ratio       that time against the fastest reverse projection above
@@ -56,7 +53,6 @@ pub(super) fn block(rows: &[Row]) -> String {
     text
 }
 
-/// What a case consists of, in words.
 pub(super) fn case(row: &Row) -> String {
     let headings = match row.headings {
         1 => "heading known".to_owned(),
@@ -183,14 +179,5 @@ rooms, 1200 x 1200 cells, p/n 5 %, noise 10 %, 180 beams, 360 headings, trapezoi
   Reverse projection, search        left out: its table would take 18.0 GB
 "
         );
-    }
-
-    #[test]
-    fn json_has_a_key_for_each_figure() {
-        let line: serde_json::Value = serde_json::from_str(&row().json()).unwrap();
-        assert_eq!(line["method"], "reverse_projection_search");
-        assert_eq!(line["p_over_n"], 0.0501);
-        assert_eq!(line["ratio_to_reverse_projection"], 1.0);
-        assert!(line["operations"].is_null() && line.get("label").is_none());
     }
 }

@@ -1,6 +1,7 @@
 //! Keeps the best pose.
 
-/// A pose with its score.
+use messages::Vote;
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Column of the cell.
@@ -11,6 +12,24 @@ pub struct Estimate {
     pub heading: usize,
     /// Higher is better; the scale depends on the method.
     pub score: f32,
+}
+
+impl Estimate {
+    pub(crate) fn new(x: usize, y: usize, heading: usize, score: f32) -> Self {
+        Estimate {
+            x,
+            y,
+            heading,
+            score,
+        }
+    }
+}
+
+impl From<&Vote> for Estimate {
+    fn from(vote: &Vote) -> Self {
+        let (x, y, heading) = (vote.x.into(), vote.y.into(), vote.heading.into());
+        Estimate::new(x, y, heading, vote.intensity.into())
+    }
 }
 
 /// Keeps the best of poses in any order. Ties go to the lowest (heading, y, x), as in the engine.
@@ -45,21 +64,15 @@ mod tests {
 
     #[test]
     fn ties_go_to_the_first_place() {
-        let at = |heading, y, x, score| Estimate {
-            x,
-            y,
-            heading,
-            score,
-        };
         let mut best = Best::default();
-        for estimate in [
-            at(3, 0, 0, 1.0),
-            at(2, 9, 9, 2.0),
-            at(2, 9, 8, 2.0),
-            at(4, 0, 0, 2.0),
+        for (heading, y, x, score) in [
+            (3, 0, 0, 1.0),
+            (2, 9, 9, 2.0),
+            (2, 9, 8, 2.0),
+            (4, 0, 0, 2.0),
         ] {
-            best.take(estimate);
+            best.take(Estimate::new(x, y, heading, score));
         }
-        assert_eq!(best.get(), Some(at(2, 9, 8, 2.0)));
+        assert_eq!(best.get(), Some(Estimate::new(8, 9, 2, 2.0)));
     }
 }

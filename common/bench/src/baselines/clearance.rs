@@ -36,9 +36,7 @@ impl Clearance {
 
     /// Makes rays take single steps, with the same results.
     pub(super) fn with_single_steps(mut self) -> Self {
-        self.cells
-            .iter_mut()
-            .for_each(|cell| *cell = (*cell).min(1));
+        self.cells.iter_mut().for_each(|it| *it = (*it).min(1));
         self
     }
 

@@ -20,7 +20,6 @@ const FULL: u8 = 15;
 /// Number of rows whose sum fits eight bits.
 const TOGETHER: usize = (u8::MAX / FULL) as usize;
 
-/// Correlation by end points in a likelihood field.
 #[derive(Debug, Clone)]
 pub struct FieldCorrelation {
     space: Space,
@@ -31,18 +30,13 @@ pub struct FieldCorrelation {
 
 impl FieldCorrelation {
     /// Prepares a map for readings with one standard deviation, in cells.
-    #[must_use]
     pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
         let grid = &world.grid;
         let field = likelihood(world, sigma_cells);
         FieldCorrelation {
             space: space.clone(),
             field: Padded::new(grid.width(), field.into_iter()),
-            open: grid
-                .cells()
-                .iter()
-                .map(|&cell| cell == Cell::Open)
-                .collect(),
+            open: grid.cells().iter().map(|&it| it == Cell::Open).collect(),
             instructions: InstructionSet::best(),
         }
     }
@@ -89,16 +83,12 @@ pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> 
     readings.beams.iter().map(end).collect()
 }
 
-/// Adds the best pose of a row, if it improves on the best so far. Rows come in order, so the first
-/// of equal poses is kept.
+/// Adds the best pose of a row, if it is better. Rows come in order, so ties go to the first.
 pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, heading: usize) {
     let score = best.score();
     // Most rows contain nothing better, which one pass decides.
-    let most = sums
-        .iter()
-        .zip(open)
-        .map(|(&sum, &open)| sum * u16::from(open))
-        .max();
+    let both = sums.iter().zip(open);
+    let most = both.map(|(&sum, &open)| sum * u16::from(open)).max();
     if most.is_none_or(|most| f32::from(most) <= score) {
         return;
     }
@@ -108,12 +98,7 @@ pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, h
         .enumerate()
         .filter(|(_, (_, open))| **open)
     {
-        best.take(Estimate {
-            x,
-            y,
-            heading,
-            score: f32::from(sum),
-        });
+        best.take(Estimate::new(x, y, heading, f32::from(sum)));
     }
 }
 
@@ -123,9 +108,7 @@ fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
     let most = (0..)
         .find(|&square: &u32| level(square, sigma_cells) == 0)
         .unwrap_or(u32::MAX);
-    let levels: Vec<u8> = (0..=most)
-        .map(|square| level(square, sigma_cells))
-        .collect();
+    let levels: Vec<u8> = (0..=most).map(|it| level(it, sigma_cells)).collect();
     let at = |square: u32| levels[square.min(most) as usize];
     square_distances(world).map(at).collect()
 }
@@ -135,8 +118,7 @@ fn level(square: u32, sigma_cells: f64) -> u8 {
     (f64::from(FULL) * height).round() as u8
 }
 
-/// Squared distance of each cell to the nearest boundary cell. The inside of obstacles does not
-/// count, since no beam ends there.
+/// Squared distance of each cell to the nearest boundary cell: no beam ends inside obstacles.
 fn square_distances(world: &World) -> impl Iterator<Item = u32> {
     let (width, height) = (world.grid.width(), world.grid.height());
     let mut is_boundary = vec![false; width * height];
@@ -151,10 +133,8 @@ fn square_distances(world: &World) -> impl Iterator<Item = u32> {
 
 #[cfg(test)]
 mod tests {
-    use engine::taper::TaperShape;
-
+    use super::super::tests::{best_of, noisy};
     use super::*;
-    use crate::scans::{ScanConfig, simulate};
     use crate::worlds::Kind;
 
     #[test]
@@ -173,49 +153,27 @@ mod tests {
 
     #[test]
     fn the_best_pose_is_that_of_plain_sums_on_every_instruction_set() {
-        let world = World::generate(Kind::Rooms, (90, 70), 0.15, 4).unwrap();
-        let space = world.space(24).unwrap();
-        let config = ScanConfig {
-            beams: 24,
-            noise_percent: 10.0,
-        };
-        let votes = config.votes(TaperShape::Trapezoid);
+        let (world, space, scans) = noisy(24, 24);
         let field = likelihood(&world, 2.0);
         let mut correlation = FieldCorrelation::new(&world, &space, 2.0);
         let headings: Vec<usize> = (0..24).collect();
-        for scan in simulate(&world, &space, &config, 3, 6).unwrap() {
-            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
-            let mut plain = Best::default();
-            for heading in 0..24 {
+        for readings in scans {
+            let plain = best_of(&world, |heading| {
                 let ends = end_points(&readings, &space, heading);
-                for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x, y))) {
-                    let at = |&(dx, dy): &(i32, i32)| {
-                        let (x, y) = (x as i64 + i64::from(dx), y as i64 + i64::from(dy));
-                        let is_within = (0..90).contains(&x) && (0..70).contains(&y);
-                        if is_within {
-                            u16::from(field[(y * 90 + x) as usize])
-                        } else {
-                            0
-                        }
-                    };
-                    if world.grid.is_open(x as i64, y as i64) {
-                        let score = f32::from(ends.iter().map(at).sum::<u16>());
-                        plain.take(Estimate {
-                            x,
-                            y,
-                            heading,
-                            score,
-                        });
-                    }
+                let field = &field;
+                move |x, y| {
+                    let ends = ends
+                        .iter()
+                        .map(|&(dx, dy)| (x + i64::from(dx), y + i64::from(dy)));
+                    let inside = ends.filter(|(x, y)| (0..90).contains(x) && (0..70).contains(y));
+                    inside
+                        .map(|(x, y)| u16::from(field[(y * 90 + x) as usize]))
+                        .sum()
                 }
-            }
+            });
             for set in InstructionSet::available() {
                 correlation.instructions = set;
-                assert_eq!(
-                    correlation.locate(&readings, &headings),
-                    plain.get(),
-                    "{set}"
-                );
+                assert_eq!(correlation.locate(&readings, &headings), plain, "{set}");
             }
         }
     }

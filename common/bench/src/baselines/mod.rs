@@ -19,6 +19,7 @@ mod clearance;
 mod field_correlation;
 mod monte_carlo;
 mod padded;
+mod particles;
 mod patch_correlation;
 mod range_table;
 mod ray_casting;
@@ -27,7 +28,7 @@ mod row_sums;
 
 pub use best::Estimate;
 pub use field_correlation::FieldCorrelation;
-pub use monte_carlo::{MonteCarlo, MonteCarloConfig};
+pub use monte_carlo::MonteCarlo;
 pub use patch_correlation::{PatchCorrelation, PlainCorrelation};
 pub use range_table::RangeTable;
 pub use ray_casting::RayCasting;
@@ -38,11 +39,10 @@ pub trait Baseline {
     /// (heading, y, x). `None` if no cell is free.
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate>;
 
-    /// Size of the prepared data in bytes.
     fn bytes(&self) -> usize;
 }
 
-impl<B: Baseline> Baseline for &mut B {
+impl<B: Baseline + ?Sized> Baseline for &mut B {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
         (**self).locate(readings, headings)
     }
@@ -53,17 +53,48 @@ impl<B: Baseline> Baseline for &mut B {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use engine::space::Space;
     use engine::taper::TaperShape;
 
+    use super::best::Best;
     use super::*;
     use crate::scans::{ScanConfig, simulate};
     use crate::worlds::{Kind, World};
 
-    const EXACT: ScanConfig = ScanConfig {
-        beams: 24,
-        noise_percent: 0.0,
-    };
+    /// A world of 90 by 70 cells, its space, and three scans with errors of 10 %.
+    pub(super) fn noisy(headings: u32, beams: usize) -> (World, Space, Vec<Readings>) {
+        let world = World::generate(Kind::Rooms, (90, 70), 0.15, 4).unwrap();
+        let space = world.space(headings).unwrap();
+        let config = ScanConfig::new(beams, 10.0);
+        let votes = config.votes(TaperShape::Trapezoid);
+        let scans = simulate(&world, &space, &config, 3, 6).unwrap();
+        let readings = scans
+            .iter()
+            .map(|scan| Readings::new(&scan.scan(), &space, &votes).unwrap());
+        let readings = readings.collect();
+        (world, space, readings)
+    }
+
+    /// The best of all poses by their plain scores.
+    pub(super) fn best_of<S: Fn(i64, i64) -> u16>(
+        world: &World,
+        score_at: impl Fn(usize) -> S,
+    ) -> Option<Estimate> {
+        let mut plain = Best::default();
+        for heading in 0..24 {
+            let score_at = score_at(heading);
+            for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x, y))) {
+                if world.grid.is_open(x, y) {
+                    let score = f32::from(score_at(x, y));
+                    plain.take(Estimate::new(x as usize, y as usize, heading, score));
+                }
+            }
+        }
+        plain.get()
+    }
+
+    const EXACT: ScanConfig = ScanConfig::new(24, 0.0);
 
     /// Checks four scans in each kind of world, with and without their heading: all but `missed` of
     /// 24 are found within this many cells and one heading.
@@ -96,7 +127,7 @@ mod tests {
             Box::new(RayCasting::new(world, &world.space(48).unwrap()))
         });
         check(0, 0, |world| {
-            Box::new(RangeTable::new(world, &world.space(48).unwrap(), 0..48))
+            Box::new(RangeTable::new(world, &world.space(48).unwrap()))
         });
     }
 
@@ -111,13 +142,7 @@ mod tests {
             Box::new(FieldCorrelation::new(world, &world.space(48).unwrap(), 1.0))
         });
         check(3, 6, |world| {
-            let config = MonteCarloConfig::default();
-            Box::new(MonteCarlo::new(
-                world,
-                &world.space(48).unwrap(),
-                1.0,
-                config,
-            ))
+            Box::new(MonteCarlo::new(world, &world.space(48).unwrap(), 1.0))
         });
     }
 
@@ -137,13 +162,12 @@ mod tests {
                 sigma_cells: 1.0,
             }],
         };
-        let config = MonteCarloConfig::default();
         let baselines: [Box<dyn Baseline>; 5] = [
             Box::new(RayCasting::new(&world, &space)),
-            Box::new(RangeTable::new(&world, &space, 0..48)),
+            Box::new(RangeTable::new(&world, &space)),
             Box::new(PatchCorrelation::new(&world, &space)),
             Box::new(FieldCorrelation::new(&world, &space, 1.0)),
-            Box::new(MonteCarlo::new(&world, &space, 1.0, config)),
+            Box::new(MonteCarlo::new(&world, &space, 1.0)),
         ];
         for mut baseline in baselines {
             assert_eq!(baseline.locate(&readings, &[0, 1]), None);

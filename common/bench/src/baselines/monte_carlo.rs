@@ -7,159 +7,97 @@ use engine::grid::{Cell, CellRules, GridFrame};
 use engine::particles::Candidate;
 use engine::space::Space;
 use geometry::Pose;
-use messages::{Reading, UNKNOWN};
+use messages::UNKNOWN;
 
 use super::Baseline;
 use super::best::Estimate;
+use super::particles::{Particle, ParticleFilter, Sensor, heaviest};
 use super::reading::Readings;
-use crate::particles::{
-    Estimate as Gathering, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
-};
 use crate::worlds::World;
 
-/// Settings of the particles and their updates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MonteCarloConfig {
-    /// Settings of the filter. The standard deviation is replaced by that of the readings.
-    pub particles: ParticlesConfig,
-    /// Maximum number of updates by the scan.
-    pub most_updates: usize,
-}
-
-impl Default for MonteCarloConfig {
-    /// One particle for each bin of 5 × 5 cells and three degrees at the start: a particle must be
-    /// this close to the true pose to outweigh the others. The error of 0.32 yields as many
-    /// particles as there are bins.
-    fn default() -> Self {
-        MonteCarloConfig {
-            particles: ParticlesConfig {
-                particles_min: 2000,
-                particles_max: u32::MAX,
-                particles_error: 0.32,
-                particles_bin_m: 5.0 * crate::RESOLUTION_M,
-                particles_bin_deg: 3.0,
-                // All beams, as in the other methods.
-                particles_beams: u32::MAX,
-                ..ParticlesConfig::default()
-            },
-            most_updates: 20,
-        }
-    }
-}
+const MOST_UPDATES: u32 = 20;
 
 /// Standard deviation at or below which particles have converged, in cells.
 const GATHERED_CELLS: f64 = 3.0;
 
-/// Scatter of the particles after the first update, in cells and radians; it decreases with each
-/// update.
+/// Scatter after the first update, in cells and radians; it decreases with each update.
 const SCATTER_CELLS: f64 = 4.0;
 const SCATTER_RADIANS: f64 = 0.03;
 
-/// Smallest factor of the scatter.
 const MIN_SCATTER: f64 = 0.125;
 
-/// Monte Carlo localization on a likelihood field; the number of particles decreases as they
-/// converge.
+/// Monte Carlo localization on a likelihood field, with fewer particles as they converge.
 #[derive(Debug, Clone)]
 pub struct MonteCarlo {
     space: Space,
     distance_field: DistanceField,
     sides: (usize, usize),
-    config: MonteCarloConfig,
+    sigma_cells: f64,
     /// Number of particles at the start of the last scan.
-    started_with: usize,
+    pub started_with: usize,
 }
 
 impl MonteCarlo {
     /// Prepares a map for readings with one standard deviation, in cells.
-    ///
-    /// # Panics
-    /// The world has no cells, which [`World::generate`] never returns.
-    #[must_use]
-    pub fn new(world: &World, space: &Space, sigma_cells: f64, config: MonteCarloConfig) -> Self {
-        let particles = ParticlesConfig {
-            particles_sigma_m: sigma_cells * space.resolution_m,
-            ..config.particles
-        };
+    pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
         MonteCarlo {
             space: space.clone(),
             distance_field: distance_field(world, space.resolution_m),
             sides: (world.grid.width(), world.grid.height()),
-            config: MonteCarloConfig {
-                particles,
-                ..config
-            },
+            sigma_cells,
             started_with: 0,
         }
     }
 
-    /// Number of particles at the start of the last scan.
-    #[must_use]
-    pub fn started_with(&self) -> usize {
-        self.started_with
-    }
-
     /// Starts around candidates in place of the whole map, at any heading; the filter is the same
-    /// otherwise. The frame of the candidates is the grid's, in metres. `None` without readings or
-    /// candidates.
-    #[must_use]
+    /// otherwise. The frame of the candidates is the grid's, in metres. `None` without candidates.
     pub fn locate_from(
         &mut self,
         readings: &Readings,
         candidates: &[Candidate],
     ) -> Option<Estimate> {
-        let readings = self.beams(readings);
-        let (frame, config) = (self.distance_field.frame, self.config.particles);
-        let filter = ParticleFilter::seeded(frame, candidates.iter().copied(), config).ok()?;
-        self.gather(&readings, filter, false)
+        let (field, sensor) = (&self.distance_field, self.sensor(readings));
+        let filter = ParticleFilter::seeded(field, sensor, candidates.iter().copied())?;
+        let (started_with, found) = self.gather(filter, false);
+        self.started_with = started_with;
+        found
     }
 
-    /// Updates the filter until the particles have converged; returns its estimate.
+    /// Updates until the particles have converged; returns their first number, and the estimate.
     fn gather(
-        &mut self,
-        readings: &[Reading],
-        mut filter: ParticleFilter,
+        &self,
+        mut filter: ParticleFilter<'_>,
         heading_is_known: bool,
-    ) -> Option<Estimate> {
-        self.started_with = filter.particles().len();
-        for update in 1..=self.config.most_updates {
-            filter.weigh(&self.distance_field, readings);
+    ) -> (usize, Option<Estimate>) {
+        let started_with = filter.particles.len();
+        for update in 1..=MOST_UPDATES {
+            filter.weigh();
             filter.resample();
-            if spread_cells(filter.particles()) <= GATHERED_CELLS {
+            if spread_cells(&filter.particles) <= GATHERED_CELLS {
                 break;
             }
-            let scatter = (1.0 / update as f64).max(MIN_SCATTER);
+            let scatter = (1.0 / f64::from(update)).max(MIN_SCATTER);
             // A known heading has no error.
             let turn = match heading_is_known {
                 true => 0.0,
                 false => SCATTER_RADIANS * scatter,
             };
-            filter.scatter(SCATTER_CELLS * scatter * self.space.resolution_m, turn);
+            filter.scatter(SCATTER_CELLS * scatter, turn);
         }
-        filter.estimate().map(|found| self.on_the_grid(&found))
-    }
-
-    fn on_the_grid(&self, found: &Gathering) -> Estimate {
-        let GridPose { x, y, heading } =
-            GridPose::of(self.distance_field.frame, found.map_from_target);
-        Estimate {
+        let on_the_grid = |(GridPose { x, y, heading }, share)| Estimate {
             x: (x as usize).min(self.sides.0 - 1),
             y: (y as usize).min(self.sides.1 - 1),
             heading: self.space.directions.nearest(heading).0,
-            score: found.share as f32,
-        }
+            score: share as f32,
+        };
+        (started_with, heaviest(&filter.particles).map(on_the_grid))
     }
 
-    /// Converts the readings with a return.
-    fn beams(&self, readings: &Readings) -> Vec<Reading> {
+    fn sensor(&self, readings: &Readings) -> Sensor {
         let beams = readings.beams.iter().filter(|beam| beam.cells > 0.0);
-        let reading = beams.map(|beam| Reading {
-            bearing: beam.bearing as f64 * self.space.directions.spacing(),
-            range_m: beam.cells * self.space.resolution_m,
-            weight: 1.0,
-            ..Reading::default()
-        });
-        reading.collect()
+        let spacing = self.space.directions.spacing();
+        let beams = beams.map(|beam| (beam.bearing as f64 * spacing, beam.cells));
+        Sensor::new(beams, self.sigma_cells)
     }
 }
 
@@ -186,10 +124,11 @@ impl Baseline for MonteCarlo {
         }
         let spacing = self.space.directions.spacing();
         let headings: Vec<f64> = headings.iter().map(|&i| i as f64 * spacing).collect();
-        let readings = self.beams(readings);
-        let (start, config) = (StartHeadings::OneOf(&headings), self.config.particles);
-        let filter = ParticleFilter::uniform(&self.distance_field, start, config).ok()?;
-        self.gather(&readings, filter, headings.len() == 1)
+        let (field, sensor) = (&self.distance_field, self.sensor(readings));
+        let filter = ParticleFilter::uniform(field, sensor, &headings)?;
+        let (started_with, found) = self.gather(filter, headings.len() == 1);
+        self.started_with = started_with;
+        found
     }
 
     fn bytes(&self) -> usize {
@@ -200,13 +139,12 @@ impl Baseline for MonteCarlo {
 /// Weighted standard deviation from the weighted mean, in cells.
 fn spread_cells(particles: &[Particle]) -> f64 {
     let mean = |of: &dyn Fn(&Particle) -> f64| {
-        let add = |(sum, weight), particle: &Particle| {
-            (
-                sum + particle.weight * of(particle),
-                weight + particle.weight,
-            )
-        };
-        let (sum, weight) = particles.iter().fold((0.0, 0.0), add);
+        let (sum, weight) = particles
+            .iter()
+            .fold((0.0, 0.0), |(sum, weight), particle| {
+                let add = particle.weight * of(particle);
+                (sum + add, weight + particle.weight)
+            });
         sum / weight
     };
     let (x, y) = (mean(&|p| p.pose.x), mean(&|p| p.pose.y));
@@ -215,7 +153,6 @@ fn spread_cells(particles: &[Particle]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-
     use super::*;
 
     #[test]

@@ -16,13 +16,11 @@ use super::reading::Readings;
 use super::row_sums::{self, Group};
 use crate::worlds::World;
 
-/// Maximum weight of a cell of the patch.
 const FULL: u16 = 15;
 
 /// Number of rows of zeros and ones whose sum fits eight bits.
 const TOGETHER: usize = u8::MAX as usize;
 
-/// Correlation of a patch with the map.
 #[derive(Debug, Clone)]
 pub struct PatchCorrelation {
     space: Space,
@@ -40,9 +38,7 @@ struct PatchCell {
 }
 
 impl PatchCorrelation {
-    /// Prepares a map. Only its boundary counts: the patch shows the ends of beams, and none ends
-    /// inside an obstacle.
-    #[must_use]
+    /// Prepares a map. Only its boundary counts, since no beam ends inside an obstacle.
     pub fn new(world: &World, space: &Space) -> Self {
         let cells = world.grid.cells();
         let width = world.grid.width();
@@ -59,14 +55,11 @@ impl PatchCorrelation {
     }
 }
 
-/// Correlation of a patch with the map pose by pose, as the paper describes it: without rows that are
-/// added by vector instructions.
+/// Correlation of a patch with the map pose by pose, as the paper describes it.
 #[derive(Debug, Clone)]
 pub struct PlainCorrelation(PatchCorrelation);
 
 impl PlainCorrelation {
-    /// Prepares a map, see [`PatchCorrelation::new`].
-    #[must_use]
     pub fn new(world: &World, space: &Space) -> Self {
         PlainCorrelation(PatchCorrelation::new(world, space))
     }
@@ -74,12 +67,7 @@ impl PlainCorrelation {
 
 impl Baseline for PlainCorrelation {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
-        let PatchCorrelation {
-            space,
-            boundary,
-            open,
-            ..
-        } = &self.0;
+        let (space, boundary, open) = (&self.0.space, &self.0.boundary, &self.0.open);
         let mut best = Best::default();
         for &heading in headings {
             let patch = patch(readings, space, heading);
@@ -93,12 +81,7 @@ impl Baseline for PlainCorrelation {
                     let votes =
                         |&(at, weight): &(usize, u16)| weight * u16::from(boundary.bytes()[at + x]);
                     let sum: u16 = cells.iter().map(votes).sum();
-                    best.take(Estimate {
-                        x,
-                        y,
-                        heading,
-                        score: f32::from(sum),
-                    });
+                    best.take(Estimate::new(x, y, heading, f32::from(sum)));
                 }
             }
         }
@@ -189,58 +172,33 @@ fn patch(readings: &Readings, space: &Space, heading: usize) -> Vec<PatchCell> {
 mod tests {
     use std::collections::HashSet;
 
-    use engine::taper::TaperShape;
-
+    use super::super::tests::{best_of, noisy};
     use super::*;
-    use crate::scans::{ScanConfig, simulate};
-    use crate::worlds::Kind;
 
     #[test]
     fn the_best_pose_is_that_of_plain_sums_on_every_instruction_set() {
-        let world = World::generate(Kind::Rooms, (90, 70), 0.15, 4).unwrap();
-        let space = world.space(24).unwrap();
-        let config = ScanConfig {
-            beams: 24,
-            noise_percent: 10.0,
-        };
-        let votes = config.votes(TaperShape::Trapezoid);
+        let (world, space, scans) = noisy(24, 24);
         let mut correlation = PatchCorrelation::new(&world, &space);
         let headings: Vec<usize> = (0..24).collect();
-        let places = world.boundary.iter();
-        let boundary: HashSet<(i64, i64)> = places
-            .map(|cell| (i64::from(cell.x), i64::from(cell.y)))
-            .collect();
-        for scan in simulate(&world, &space, &config, 3, 6).unwrap() {
-            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
-            let mut plain = Best::default();
-            for heading in 0..24 {
+        let cells = world.boundary.iter();
+        let boundary: HashSet<(i64, i64)> =
+            cells.map(|cell| (cell.x.into(), cell.y.into())).collect();
+        for readings in scans {
+            let plain = best_of(&world, |heading| {
                 let patch = patch(&readings, &space, heading);
-                for (x, y) in (0..70i64).flat_map(|y| (0..90i64).map(move |x| (x, y))) {
+                let boundary = &boundary;
+                move |x, y| {
                     let meets = |cell: &&PatchCell| {
-                        let (x, y) = (x + i64::from(cell.dx), y + i64::from(cell.dy));
-                        boundary.contains(&(x, y))
+                        boundary.contains(&(x + i64::from(cell.dx), y + i64::from(cell.dy)))
                     };
-                    if world.grid.is_open(x, y) {
-                        let sum: u16 = patch.iter().filter(meets).map(|cell| cell.weight).sum();
-                        let (x, y, score) = (x as usize, y as usize, f32::from(sum));
-                        plain.take(Estimate {
-                            x,
-                            y,
-                            heading,
-                            score,
-                        });
-                    }
+                    patch.iter().filter(meets).map(|cell| cell.weight).sum()
                 }
-            }
+            });
             let found = PlainCorrelation(correlation.clone()).locate(&readings, &headings);
-            assert_eq!(found, plain.get());
+            assert_eq!(found, plain);
             for set in InstructionSet::available() {
                 correlation.instructions = set;
-                assert_eq!(
-                    correlation.locate(&readings, &headings),
-                    plain.get(),
-                    "{set}"
-                );
+                assert_eq!(correlation.locate(&readings, &headings), plain, "{set}");
             }
         }
     }

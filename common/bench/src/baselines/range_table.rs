@@ -15,34 +15,25 @@ const TILE: usize = 1024;
 /// Range without an obstacle along the ray.
 const NO_RANGE: u16 = u16::MAX;
 
-/// Markov localization with a table of ranges.
-///
-/// The table has two bytes for each cell and direction. It scores one tile of cells at all headings
-/// while their ranges are in the cache.
+/// Markov localization with a table of ranges, two bytes for each cell and direction.
 #[derive(Debug, Clone)]
 pub struct RangeTable {
     space: Space,
     width: usize,
     /// Range of each cell in steps, direction by direction.
     ranges: Vec<u16>,
-    /// Start of each direction in `ranges`; `None` if it was left out.
-    starts: Vec<Option<usize>>,
     /// Zero for free cells, infinite for others.
     blocked: Vec<f32>,
     instructions: InstructionSet,
 }
 
 impl RangeTable {
-    /// Computes the ranges in the given directions: all of them, or those that a known heading
-    /// needs.
-    #[must_use]
-    pub fn new(world: &World, space: &Space, directions: impl IntoIterator<Item = usize>) -> Self {
+    pub fn new(world: &World, space: &Space) -> Self {
         let cells = world.grid.cells();
         let mut table = RangeTable {
             space: space.clone(),
             width: world.grid.width(),
             ranges: Vec::new(),
-            starts: vec![None; space.directions.count()],
             blocked: cells
                 .iter()
                 .map(|&cell| {
@@ -55,12 +46,7 @@ impl RangeTable {
                 .collect(),
             instructions: InstructionSet::best(),
         };
-        for direction in directions {
-            if table.starts[direction].is_none() {
-                table.starts[direction] = Some(table.ranges.len());
-                table.push(world, direction);
-            }
-        }
+        (0..space.directions.count()).for_each(|direction| table.push(world, direction));
         table
     }
 
@@ -98,13 +84,9 @@ impl RangeTable {
     }
 
     /// Ranges of all cells in a direction, row by row.
-    ///
-    /// # Panics
-    /// The direction was left out.
-    #[must_use]
-    pub fn ranges(&self, direction: usize) -> &[u16] {
-        let start = self.starts[direction].expect("the direction is in the table");
-        &self.ranges[start..][..self.blocked.len()]
+    fn ranges(&self, direction: usize) -> &[u16] {
+        let cells = self.blocked.len();
+        &self.ranges[direction * cells..][..cells]
     }
 
     /// Scores one tile at one heading; lower is better.
@@ -136,12 +118,7 @@ impl Baseline for RangeTable {
                 for (i, &cost) in (tile..).zip(costs.iter()) {
                     if -cost >= best.score() && cost.is_finite() {
                         let (x, y) = (i % self.width, i / self.width);
-                        best.take(Estimate {
-                            x,
-                            y,
-                            heading,
-                            score: -cost,
-                        });
+                        best.take(Estimate::new(x, y, heading, -cost));
                     }
                 }
             }
@@ -192,22 +169,15 @@ impl Errors {
 #[cfg(test)]
 mod tests {
     use engine::reference;
-    use engine::taper::TaperShape;
 
     use super::super::RayCasting;
+    use super::super::tests::noisy;
     use super::*;
-    use crate::scans::{ScanConfig, simulate};
-    use crate::worlds::Kind;
-
-    fn world() -> World {
-        World::generate(Kind::Rooms, (90, 70), 0.12, 4).unwrap()
-    }
 
     #[test]
     fn the_table_holds_what_rays_meet() {
-        let world = world();
-        let space = world.space(40).unwrap();
-        let table = RangeTable::new(&world, &space, 0..40);
+        let (world, space, _) = noisy(40, 20);
+        let table = RangeTable::new(&world, &space);
         for d in 0..40 {
             for (i, &range) in table.ranges(d).iter().enumerate() {
                 let (x, y) = ((i % 90) as i64, (i / 90) as i64);
@@ -219,18 +189,11 @@ mod tests {
 
     #[test]
     fn it_finds_what_ray_casts_find_on_every_instruction_set() {
-        let world = world();
-        let space = world.space(40).unwrap();
-        let config = ScanConfig {
-            beams: 20,
-            noise_percent: 10.0,
-        };
-        let votes = config.votes(TaperShape::Trapezoid);
+        let (world, space, scans) = noisy(40, 20);
         let mut casts = RayCasting::new(&world, &space);
-        let mut table = RangeTable::new(&world, &space, 0..40);
+        let mut table = RangeTable::new(&world, &space);
         let headings: Vec<usize> = (0..40).collect();
-        for scan in simulate(&world, &space, &config, 5, 6).unwrap() {
-            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+        for readings in scans {
             let plain = casts.locate(&readings, &headings);
             for set in InstructionSet::available() {
                 table.instructions = set;

@@ -10,10 +10,7 @@ use super::clearance::Clearance;
 use super::reading::{MAX_DEVIATIONS, Readings};
 use crate::worlds::World;
 
-/// Markov localization by ray casts.
-///
-/// Rays skip free space, and stop where the reading's error has reached its maximum. The posterior
-/// is complete: no pose is pruned.
+/// Markov localization by ray casts, without pruning. Rays skip free space.
 #[derive(Debug, Clone)]
 pub struct RayCasting {
     space: Space,
@@ -22,7 +19,6 @@ pub struct RayCasting {
     free: Vec<BoundaryCell>,
 }
 
-/// A beam at one heading.
 #[derive(Debug, Clone, Copy)]
 struct Beam {
     direction: usize,
@@ -35,7 +31,6 @@ struct Beam {
 }
 
 impl RayCasting {
-    #[must_use]
     pub fn new(world: &World, space: &Space) -> Self {
         let grid = &world.grid;
         let cells = (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (x, y)));
@@ -53,7 +48,6 @@ impl RayCasting {
     }
 
     /// Makes rays walk cell by cell instead of skipping free space, with the same results.
-    #[must_use]
     pub fn with_single_steps(self) -> Self {
         RayCasting {
             clearance: self.clearance.with_single_steps(),
@@ -94,7 +88,6 @@ impl RayCasting {
 impl RayCasting {
     /// Returns the best of some poses, given as column, row and heading of free cells. Sorting them
     /// by heading is fastest, since the beams are prepared per heading.
-    #[must_use]
     pub fn locate_among(
         &self,
         readings: &Readings,
@@ -107,12 +100,7 @@ impl RayCasting {
                 beams = self.beams(readings, heading);
                 at = Some(heading);
             }
-            best.take(Estimate {
-                x,
-                y,
-                heading,
-                score: -self.cost(x, y, &beams),
-            });
+            best.take(Estimate::new(x, y, heading, -self.cost(x, y, &beams)));
         }
         best.get()
     }
@@ -127,12 +115,7 @@ impl Baseline for RayCasting {
                 let (x, y) = (usize::from(cell.x), usize::from(cell.y));
                 let score = -self.cost(x, y, &beams);
                 if score >= best.score() {
-                    best.take(Estimate {
-                        x,
-                        y,
-                        heading,
-                        score,
-                    });
+                    best.take(Estimate::new(x, y, heading, score));
                 }
             }
         }

@@ -8,12 +8,10 @@ use engine::space::Space;
 /// model, for objects that are not on the map.
 pub(super) const MAX_DEVIATIONS: f32 = 3.0;
 
-/// One beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// Index on the heading grid.
     pub bearing: usize,
-    /// Range of the beam in cells.
     pub cells: f64,
     /// Standard deviation of the range, at least one cell.
     pub sigma_cells: f64,
@@ -27,9 +25,6 @@ pub struct Readings {
 
 impl Readings {
     /// Converts all readings, with the standard deviations of the votes.
-    ///
-    /// # Errors
-    /// The engine rejects the scan.
     pub fn new(scan: &Scan<'_>, space: &Space, votes: &VoteConfig) -> anyhow::Result<Self> {
         scan.check()?;
         let reading = |i| {
@@ -47,7 +42,6 @@ impl Readings {
     }
 
     /// Median standard deviation, for methods with a single one; 1 without beams.
-    #[must_use]
     pub fn median_sigma_cells(&self) -> f64 {
         let sigmas = self.beams.iter().map(|beam| beam.sigma_cells).collect();
         let median = crate::timing::median(sigmas);

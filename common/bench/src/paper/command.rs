@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::ValueEnum;
 use progress::Progress;
 
 use super::super::contest::Effort;
@@ -29,19 +30,9 @@ pub(in super::super) enum Part {
     Aid,
 }
 
-const ALL: [Part; 7] = [
-    Part::Method,
-    Part::Counts,
-    Part::Sonar,
-    Part::Table1,
-    Part::Table2,
-    Part::Corridor,
-    Part::Aid,
-];
-
 /// Options of `backcast bench paper`, in addition to those of every table.
 // Its group would have the same name as that of the other options.
-#[derive(Debug, Clone, Default, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 #[group(skip)]
 #[command(next_help_heading = "Table paper")]
 pub(in super::super) struct Config {
@@ -59,14 +50,6 @@ pub(in super::super) struct Config {
     recording: Option<PathBuf>,
 }
 
-impl Config {
-    /// Whether nothing was asked for.
-    pub(in super::super) fn is_empty(&self) -> bool {
-        self.out.is_none() && self.part.is_empty() && self.recording.is_none()
-    }
-}
-
-/// How much is measured.
 #[derive(Debug, Clone, Copy)]
 struct Scope {
     is_quick: bool,
@@ -128,10 +111,6 @@ impl Scope {
     }
 }
 
-/// Measures all parts, or those that were asked for, and says what was written.
-///
-/// # Errors
-/// The folder cannot be written, or a part not be measured.
 pub(in super::super) fn run(
     config: &Config,
     is_quick: bool,
@@ -140,12 +119,15 @@ pub(in super::super) fn run(
     let out = config.out.clone().unwrap_or_else(|| "bench-paper".into());
     let folder = Folder::open(&out)?;
     let parts = match &config.part[..] {
-        [] => &ALL,
+        [] => Part::value_variants(),
         asked => asked,
     };
     let scope = Scope { is_quick, seed };
     let progress = Progress::counting("measuring", "parts", parts.len() as u64);
-    for part in ALL.iter().filter(|part| parts.contains(part)) {
+    for part in Part::value_variants()
+        .iter()
+        .filter(|part| parts.contains(part))
+    {
         let say = |what: String| progress.show(what);
         match part {
             Part::Method => method_part(&folder)?,

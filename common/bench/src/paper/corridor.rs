@@ -26,7 +26,6 @@ struct Defaults {
     options: Options,
 }
 
-/// A scan at one of the places, localized.
 #[derive(Debug)]
 pub(super) struct Localized {
     /// Which scan of the recording, from 1.
@@ -38,7 +37,6 @@ pub(super) struct Localized {
     field: Field,
 }
 
-/// All places, and the path between them.
 #[derive(Debug)]
 pub(super) struct Corridor {
     map: map::OccupancyGrid,
@@ -60,9 +58,6 @@ impl Localized {
 }
 
 /// Localizes at the three places of a recording with `/map` and `/ground_truth`.
-///
-/// # Errors
-/// It cannot be read, has no truth, or a scan has no place.
 pub(super) fn localize(file: &Path) -> anyhow::Result<Corridor> {
     let defaults = Defaults::try_parse_from(["paper"]);
     let options = defaults.map_err(|error| wrong_use(error.to_string()))?;
@@ -109,11 +104,8 @@ fn locate(
     let answer = session.ask(scan)?.answer?;
     let most = distinct(answer.outcome, answer.frame, 1);
     let (Some(&by_votes), Some(best)) = (most.first(), answer.places.places.first()) else {
-        return Err(plots::no_place(
-            recording.path(),
-            number as u64,
-            answer.places,
-        ));
+        let path = recording.path();
+        return Err(plots::no_place(path, number as u64, answer.places));
     };
     let by_fit = best.map_from_laser;
     let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
@@ -127,19 +119,11 @@ fn locate(
     })
 }
 
-/// A row for each place.
 pub(super) fn csv(corridor: &Corridor) -> Csv {
-    let mut csv = Csv::new(&[
-        "place",
-        "scan",
-        "truth_x_m",
-        "truth_y_m",
-        "truth_heading_deg",
-        "votes_error_m",
-        "votes_error_deg",
-        "fit_error_m",
-        "fit_error_deg",
-    ]);
+    let mut csv = Csv::new(
+        "place,scan,truth_x_m,truth_y_m,truth_heading_deg,votes_error_m,votes_error_deg,\
+         fit_error_m,fit_error_deg",
+    );
     for (number, place) in (1..).zip(&corridor.places) {
         let truth = place.truth;
         let degrees = |pose: Pose| pose.angle_to(truth).to_degrees();
@@ -159,9 +143,6 @@ pub(super) fn csv(corridor: &Corridor) -> Csv {
 }
 
 /// The map with path and places, as figure 6a.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw_places(corridor: &Corridor) -> anyhow::Result<Scene> {
     let places: Vec<(Pose, Pose)> = corridor
         .places
@@ -177,9 +158,6 @@ pub(super) fn draw_places(corridor: &Corridor) -> anyhow::Result<Scene> {
 }
 
 /// The intensity field at a place, as figures 6e to 6g.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw_field(
     corridor: &Corridor,
     number: usize,

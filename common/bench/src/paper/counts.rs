@@ -2,7 +2,7 @@
 //! while both run, against the paper's formulas.
 
 use crate::baselines::Readings;
-use crate::counted::{self, MarkovCounts, ReverseCounts};
+use crate::counted::{self, Counts};
 use crate::scans::{ScanConfig, simulate};
 use crate::worlds::{Kind, World};
 use engine::accumulator::Query;
@@ -17,10 +17,7 @@ use super::folder::{Csv, digits};
 const P_OVER_N: [u32; 10] = [5, 10, 25, 50, 100, 120, 150, 200, 250, 300];
 
 /// As many beams as the robot of section IV has sonars.
-const BEAMS: ScanConfig = ScanConfig {
-    beams: 8,
-    noise_percent: 10.0,
-};
+const BEAMS: ScanConfig = ScanConfig::new(8, 10.0);
 
 /// What was counted at one p/n, summed over all scans.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,9 +26,8 @@ pub(super) struct Counted {
     pub(super) n: u64,
     pub(super) p: u64,
     pub(super) scans: u64,
-    pub(super) markov: MarkovCounts,
-    pub(super) reverse: ReverseCounts,
-    /// Most beams that voted for one cell.
+    pub(super) markov: Counts,
+    pub(super) reverse: Counts,
     pub(super) most_votes: u16,
 }
 
@@ -58,15 +54,9 @@ impl Counted {
     }
 }
 
-/// Counts `scans` scans in a world for each p/n.
-///
-/// # Errors
-/// A world or a scan cannot be made.
 pub(super) fn count(side: usize, scans: usize, seed: u64) -> anyhow::Result<Vec<Counted>> {
-    P_OVER_N
-        .into_iter()
-        .map(|p_over_n| count_in(p_over_n, side, scans, seed))
-        .collect()
+    let count = |p_over_n| count_in(p_over_n, side, scans, seed);
+    P_OVER_N.into_iter().map(count).collect()
 }
 
 fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> anyhow::Result<Counted> {
@@ -79,8 +69,8 @@ fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> anyhow::Resu
         n: world.grid.free_cells() as u64,
         p: world.boundary.len() as u64,
         scans: scans as u64,
-        markov: MarkovCounts::default(),
-        reverse: ReverseCounts::default(),
+        markov: Counts::default(),
+        reverse: Counts::default(),
         most_votes: 0,
     };
     for scan in simulate(&world, &space, &BEAMS, scans, seed)? {
@@ -101,23 +91,10 @@ fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> anyhow::Resu
 
 /// Counts and formulas, for one scan.
 pub(super) fn csv(all: &[Counted]) -> Csv {
-    let mut csv = Csv::new(&[
-        "p_over_n_percent",
-        "n",
-        "p",
-        "m",
-        "k",
-        "markov_operations",
-        "n_2m_plus_1",
-        "markov_additions",
-        "2mn",
-        "reverse_operations",
-        "2mp",
-        "reverse_additions",
-        "kmp",
-        "mn",
-        "most_beams_for_a_cell",
-    ]);
+    let mut csv = Csv::new(
+        "p_over_n_percent,n,p,m,k,markov_operations,n_2m_plus_1,markov_additions,2mn,\
+         reverse_operations,2mp,reverse_additions,kmp,mn,most_beams_for_a_cell",
+    );
     for counted in all {
         let each = |sum: u64| digits(sum as f64 / counted.scans as f64);
         csv.push([
@@ -126,11 +103,11 @@ pub(super) fn csv(all: &[Counted]) -> Csv {
             counted.p.to_string(),
             Counted::M.to_string(),
             digits(counted.k()),
-            each(counted.markov.operations()),
+            each(counted.markov.operations),
             each(counted.markov_formula()),
             each(counted.markov.additions),
             each(2 * counted.mn()),
-            each(counted.reverse.operations()),
+            each(counted.reverse.operations),
             each(2 * counted.mp()),
             each(counted.reverse.additions),
             each(counted.reverse.worst_additions),
@@ -141,17 +118,13 @@ pub(super) fn csv(all: &[Counted]) -> Csv {
     csv
 }
 
-/// A value of one p/n.
 type Value = fn(&Counted) -> f64;
 
 /// All counts as shares of what Markov localization takes.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw(all: &[Counted]) -> anyhow::Result<Scene> {
     let curves: [(&str, usize, bool, Value); 5] = [
         ("operations, counted", 0, false, |c| {
-            c.reverse.operations() as f64 / c.markov.operations() as f64
+            c.reverse.operations as f64 / c.markov.operations as f64
         }),
         ("2mp / n(2m+1)", 0, true, |c| {
             2.0 * c.mp() as f64 / c.markov_formula() as f64

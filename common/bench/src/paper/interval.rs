@@ -4,7 +4,6 @@ use plots::CurvePoint;
 
 use super::folder::digits;
 
-/// A figure and its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Interval {
     pub(super) value: f64,
@@ -13,7 +12,6 @@ pub(super) struct Interval {
 }
 
 impl Interval {
-    /// The point of a curve with this height.
     pub(super) fn at(self, x: f64) -> CurvePoint {
         CurvePoint {
             x,
@@ -22,14 +20,12 @@ impl Interval {
         }
     }
 
-    /// The figure and both ends, for a table.
     pub(super) fn fields(self) -> [String; 3] {
         [self.value, self.low, self.high].map(digits)
     }
 }
 
-/// Student's t at 97.5 % for 1, 2, 3 … degrees of freedom; beyond, the normal one is met
-/// to 5 %.
+/// Student's t at 97.5 % for 1, 2, 3 … degrees of freedom.
 const STUDENT: [f64; 20] = [
     12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160,
     2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
@@ -41,10 +37,7 @@ const NORMAL: f64 = 1.960;
 pub(super) fn of_mean(values: &[f64]) -> Interval {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let squares = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>();
+    let squares = values.iter().map(|it| (it - mean).powi(2)).sum::<f64>();
     let half = match values.len() {
         0 | 1 => 0.0,
         n => {

@@ -30,14 +30,11 @@ struct Example {
 }
 
 impl Example {
-    /// A map of rows from the highest y, `#` occupied; and beams in which the robot
-    /// looks.
+    /// A map of rows from the highest y, `#` occupied; and beams in which the robot looks.
     fn new(rows: &[&str], robot: (i64, i64), looks: &[usize]) -> Result<Self, EngineError> {
         let width = rows.first().map_or(0, |row| row.len());
         let cells = rows.iter().rev().flat_map(|row| row.bytes());
-        let cells: Vec<u8> = cells
-            .map(|cell| if cell == b'#' { 100 } else { 0 })
-            .collect();
+        let cells: Vec<u8> = cells.map(|it| if it == b'#' { 100 } else { 0 }).collect();
         let grid = Grid::new(width, rows.len(), &cells, CellRules::default())?;
         let space = Space::new(BEAMS as u32, 1.0, width, rows.len())?;
         let mut readings = [f32::INFINITY; BEAMS];
@@ -70,8 +67,7 @@ impl Example {
         (0..BEAMS).filter(|&beam| self.readings[beam].is_finite())
     }
 
-    /// The intensities of some beams, projected from some boundary cells; and the highest
-    /// possible one.
+    /// Intensities of some beams from some boundary cells; and the highest possible one.
     fn field(
         &self,
         beams: &[usize],
@@ -157,8 +153,7 @@ impl Example {
         }
     }
 
-    /// A reading projected back from a boundary cell; `None` where the boundary cell
-    /// turns its back to it.
+    /// A reading projected back; `None` where the boundary cell turns its back to it.
     fn backward(&self, from: BoundaryCell, beam: usize) -> Option<Arrow> {
         let from = (i64::from(from.x), i64::from(from.y));
         let back: Direction = self.space.directions.get(beam).opposite();
@@ -179,15 +174,10 @@ impl Example {
         })
     }
 
-    /// All that some boundary cells project back.
     fn backward_from(&self, cells: &[BoundaryCell], beams: &[usize]) -> Vec<Arrow> {
         let cells = cells.iter();
         cells
-            .flat_map(|&cell| {
-                beams
-                    .iter()
-                    .filter_map(move |&beam| self.backward(cell, beam))
-            })
+            .flat_map(|&cell| beams.iter().filter_map(move |&it| self.backward(cell, it)))
             .collect()
     }
 }
@@ -196,28 +186,13 @@ fn middle((x, y): (i64, i64)) -> (f64, f64) {
     (x as f64 + 0.5, y as f64 + 0.5)
 }
 
-const SQUARE: [&str; 14] = [
-    "##############",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "#............#",
-    "##############",
-];
+const SQUARE: [&str; 14] = {
+    let mut rows = ["#............#"; 14];
+    (rows[0], rows[13]) = ("##############", "##############");
+    rows
+};
 
-/// Figure 1: forward projection from all free cells, and reverse projection from the
-/// boundary cells, in a square.
-///
-/// # Errors
-/// The picture would be too large.
+/// Figure 1: forward projection from all free cells, and reverse projection, in a square.
 pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
     let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let beams: Vec<usize> = example.looks().collect();
@@ -226,8 +201,7 @@ pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
     let empty = || example.cells(&[], 1);
     let own = beams.iter();
     let own = own.map(|&beam| example.forward(example.robot, beam, Some(Role::Reading)));
-    // No two share a row or a column, so that no arrows lie on one another; the robot's
-    // cell is among them.
+    // No two share a row or a column, so that no arrows lie on one another.
     let places = [(2, 11), (4, 9), (6, 2), (8, 6), (10, 4), (12, 8)];
     let forward = places.into_iter().flat_map(|from| {
         let beams = beams.iter();
@@ -269,9 +243,6 @@ pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
 }
 
 /// Figure 2: the taper of one reading, and the superposition of all.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw_figure_2() -> anyhow::Result<Scene> {
     let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let step = |caption: &str, beams: &[usize], from: &[BoundaryCell]| {
@@ -324,9 +295,6 @@ const ROOMS: [&str; 14] = [
 ];
 
 /// Figure 3: what obstacles leave of the projections.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw_figure_3() -> anyhow::Result<Scene> {
     let looks = [0, 1, 3, 4, 6];
     let example = Example::new(&ROOMS, (8, 7), &looks)?;

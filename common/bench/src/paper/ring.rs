@@ -12,7 +12,6 @@ use engine::space::Space;
 /// Beyond this many deviations the Gaussian over the bearing is left out.
 const DEVIATIONS: f64 = 2.5;
 
-/// How readings are projected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Projection {
     /// The taper over the range, and its deviation.
@@ -21,11 +20,7 @@ pub(super) struct Projection {
     pub(super) bearing_sigma_deg: f64,
 }
 
-/// The intensity of each cell at a heading of the grid, row by row from the lowest y, in
-/// votes.
-///
-/// # Errors
-/// The scan is refused.
+/// Intensity of each cell at a heading of the grid, row by row from the lowest y, in votes.
 pub(super) fn intensities(
     (world, space): (&World, &Space),
     scan: &Scan<'_>,

@@ -22,7 +22,6 @@ use super::folder::{Csv, digits};
 use super::interval::{self, Interval};
 use super::ring::{self, Projection};
 
-/// A map of the section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
     /// The paper's figure that it is like.
@@ -53,11 +52,9 @@ pub(super) const NOISE: [u32; 4] = [3, 4, 5, 10];
 /// What the variants below are compared at.
 const COMMON_NOISE: u32 = 4;
 
-/// Position and peak are one if they are no farther apart, metres, as in all other
-/// tables.
+/// Position and peak are one up to this distance, metres, as in all other tables.
 const FOUND_M: f64 = 0.5;
 
-/// What is varied.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Variant {
     pub(super) noise_percent: u32,
@@ -78,7 +75,6 @@ impl Variant {
     }
 }
 
-/// The errors of one variant in one map.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Judged {
     pub(super) place: Place,
@@ -110,9 +106,6 @@ pub(super) fn variants() -> Vec<Variant> {
 }
 
 /// Judges all variants in both maps, at this many poses each.
-///
-/// # Errors
-/// A map or a scan cannot be made.
 pub(super) fn judge(
     poses: usize,
     seed: u64,
@@ -198,26 +191,13 @@ fn mean_reading(scan: &SimulatedScan) -> f64 {
     sum / f64::from(count.max(1))
 }
 
-/// A row for each map and variant.
 pub(super) fn csv(all: &[Judged]) -> Csv {
-    let mut csv = Csv::new(&[
-        "like_figure",
-        "noise_percent",
-        "taper",
-        "true_bearing_sigma_deg",
-        "bearing_sigma_deg",
-        "poses",
-        "mean_error_percent",
-        "low_95",
-        "high_95",
-        "median_error_percent",
-        "found_within_0.5_m",
-        "found_low_95",
-        "found_high_95",
-        "mean_error_of_found_percent",
-        "mean_error_of_found_low_95",
-        "mean_error_of_found_high_95",
-    ]);
+    let mut csv = Csv::new(
+        "like_figure,noise_percent,taper,true_bearing_sigma_deg,bearing_sigma_deg,poses,\
+         mean_error_percent,low_95,high_95,median_error_percent,found_within_0.5_m,\
+         found_low_95,found_high_95,mean_error_of_found_percent,\
+         mean_error_of_found_low_95,mean_error_of_found_high_95",
+    );
     for judged in all {
         let variant = judged.variant;
         let mut row = vec![
@@ -237,10 +217,6 @@ pub(super) fn csv(all: &[Judged]) -> Csv {
     csv
 }
 
-/// Errors over the error of a reading.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
     let mut curves = Vec::new();
     for (color, place) in PLACES.into_iter().enumerate() {
@@ -287,9 +263,6 @@ pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
 }
 
 /// The intensity field of the first pose in a map, flat and as a surface.
-///
-/// # Errors
-/// The map or the scan cannot be made, or a picture would be too large.
 pub(super) fn draw_field(place: Place, seed: u64) -> anyhow::Result<[Scene; 2]> {
     let (world, space) = place.world(seed)?;
     let ring = ring_of(Variant::plain(COMMON_NOISE));
@@ -318,13 +291,9 @@ fn occupancy(world: &World, resolution_m: f64) -> anyhow::Result<OccupancyGrid> 
     let cells = world.grid.cells().iter();
     let cells = cells.map(|&cell| if cell == Cell::Open { 0 } else { 100 });
     let (width, height) = (world.grid.width() as u32, world.grid.height() as u32);
-    Ok(OccupancyGrid::from_parts(
-        width,
-        height,
-        resolution_m,
-        Pose::IDENTITY,
-        cells.collect(),
-    )?)
+    let (cells, origin) = (cells.collect(), Pose::IDENTITY);
+    let map = OccupancyGrid::from_parts(width, height, resolution_m, origin, cells)?;
+    Ok(map)
 }
 
 fn field_of(

@@ -23,10 +23,8 @@ const BEYOND: [u32; 4] = [135, 150, 200, 300];
 /// The noise of table 2, and that at which table 1 is drawn, per cent.
 pub(super) const COMMON_NOISE: u32 = 10;
 
-/// How a table is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
-    /// Cells a side.
     pub(super) size: u32,
     /// Worlds for each p/n, over which the intervals run.
     pub(super) worlds: u64,
@@ -51,10 +49,6 @@ pub(super) struct Measured {
     pub(super) paper_ratio: Option<f64>,
 }
 
-/// Measures a table, world by world.
-///
-/// # Errors
-/// A case cannot be set up.
 pub(super) fn measure(
     table: Table,
     extent: Extent,
@@ -100,7 +94,6 @@ pub(super) fn measure(
         .collect())
 }
 
-/// All methods of a case.
 fn summarized(table: Table, (p_over_n, noise): (u32, u32), worlds: &[Vec<Row>]) -> Vec<Measured> {
     let Some(first) = worlds.first() else {
         return Vec::new();
@@ -147,22 +140,11 @@ fn paper_ratio(method: &str, printed: Printed) -> Option<f64> {
     is(Method::Scatter).then_some(1.0)
 }
 
-/// A row for each case and method.
 pub(super) fn csv(all: &[Measured]) -> Csv {
-    let mut csv = Csv::new(&[
-        "p_over_n_percent",
-        "noise_percent",
-        "k",
-        "method",
-        "cpu_ms",
-        "cpu_ms_low_95",
-        "cpu_ms_high_95",
-        "ratio",
-        "ratio_low_95",
-        "ratio_high_95",
-        "paper_ratio",
-        "found",
-    ]);
+    let mut csv = Csv::new(
+        "p_over_n_percent,noise_percent,k,method,cpu_ms,cpu_ms_low_95,cpu_ms_high_95,\
+         ratio,ratio_low_95,ratio_high_95,paper_ratio,found",
+    );
     for row in all {
         let mut fields = vec![
             row.p_over_n.to_string(),
@@ -179,9 +161,6 @@ pub(super) fn csv(all: &[Measured]) -> Csv {
 }
 
 /// The ratios over p/n at the common noise, and the paper's, dashed.
-///
-/// # Errors
-/// The picture would be too large.
 pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> anyhow::Result<Scene> {
     let ours = match table {
         Table::Table1 => Method::Sweep,
@@ -193,7 +172,7 @@ pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> anyhow::Re
         (Method::PlainPatch, "Correlation, pose by pose"),
         (Method::Field, "Correlation, likelihood field"),
         (Method::MonteCarlo, "Monte Carlo"),
-        (ours, ours.label()),
+        (ours, ours.names().1),
     ];
     let mut curves = Vec::new();
     for (color, (method, name)) in shown.into_iter().enumerate() {

@@ -11,6 +11,17 @@ pub(super) struct Rect {
     pub(super) height: usize,
 }
 
+impl Rect {
+    pub(super) fn new(x: usize, y: usize, width: usize, height: usize) -> Self {
+        Rect {
+            x,
+            y,
+            width,
+            height,
+        }
+    }
+}
+
 /// Free and occupied cells, row by row.
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
@@ -38,25 +49,14 @@ impl Canvas {
             .map(|i| canvas.neighbours(i).count() as u8)
             .collect();
         for (x, y) in [(0, 0), (width - 1, 0)] {
-            canvas.fill(Rect {
-                x,
-                y,
-                width: 1,
-                height,
-            });
+            canvas.fill(Rect::new(x, y, 1, height));
         }
         for (x, y) in [(0, 0), (0, height - 1)] {
-            canvas.fill(Rect {
-                x,
-                y,
-                width,
-                height: 1,
-            });
+            canvas.fill(Rect::new(x, y, width, 1));
         }
         canvas
     }
 
-    /// Ratio of boundary cells to free cells.
     pub(super) fn p_over_n(&self) -> f64 {
         self.boundary as f64 / self.free as f64
     }
@@ -146,7 +146,7 @@ mod tests {
         ) {
             let mut canvas = Canvas::walled(20, 16);
             for (fills, x, y, width, height) in steps {
-                let rect = Rect { x, y, width, height };
+                let rect = Rect::new(x, y, width, height);
                 if fills { canvas.fill(rect) } else { canvas.clear(rect) }
             }
             let grid = Grid::new(20, 16, &canvas.occupancy(), CellRules::default()).unwrap();

@@ -43,7 +43,6 @@ struct City {
 }
 
 /// Occupancies of a city, row by row.
-#[must_use]
 pub fn city((width, height): (usize, usize), seed: u64) -> Vec<u8> {
     let mut city = City {
         width,
@@ -55,12 +54,7 @@ pub fn city((width, height): (usize, usize), seed: u64) -> Vec<u8> {
     city.put_things();
     for &(bottom, top) in &rows {
         for &(left, right) in &columns {
-            city.build(Rect {
-                x: left,
-                y: bottom,
-                width: right - left,
-                height: top - bottom,
-            });
+            city.build(Rect::new(left, bottom, right - left, top - bottom));
         }
     }
     city.cells
@@ -107,15 +101,7 @@ impl City {
                 1 => (self.length((3.8, 5.0)), self.length((1.6, 2.0))),
                 _ => (self.length((0.1, 0.4)), self.length((0.1, 0.4))),
             };
-            self.fill(
-                Rect {
-                    x,
-                    y,
-                    width,
-                    height,
-                },
-                OCCUPIED,
-            );
+            self.fill(Rect::new(x, y, width, height), OCCUPIED);
         }
     }
 
@@ -167,12 +153,7 @@ impl City {
     ) -> Rect {
         let lying = building.turned(!x_major);
         let start = if far { lying.height - deep } else { 0 };
-        let niche = Rect {
-            x: lying.x + at,
-            y: lying.y + start,
-            width: wide,
-            height: deep,
-        };
+        let niche = Rect::new(lying.x + at, lying.y + start, wide, deep);
         niche.turned(!x_major)
     }
 
@@ -198,12 +179,7 @@ impl City {
                 width: WALL,
                 ..lying
             },
-            Rect {
-                x: lying.x + at,
-                y: lying.y + gap,
-                width: WALL,
-                height: door,
-            },
+            Rect::new(lying.x + at, lying.y + gap, WALL, door),
             Rect { width: at, ..lying },
             Rect {
                 x: lying.x + at + WALL,
@@ -223,12 +199,7 @@ impl Rect {
     /// Exchanges x and y if `is_turned`.
     fn turned(self, is_turned: bool) -> Self {
         match is_turned {
-            true => Rect {
-                x: self.y,
-                y: self.x,
-                width: self.height,
-                height: self.width,
-            },
+            true => Rect::new(self.y, self.x, self.height, self.width),
             false => self,
         }
     }
@@ -236,12 +207,12 @@ impl Rect {
 
 /// The inside of the walls.
 fn shrunk(building: Rect) -> Rect {
-    Rect {
-        x: building.x + WALL,
-        y: building.y + WALL,
-        width: building.width - 2 * WALL,
-        height: building.height - 2 * WALL,
-    }
+    Rect::new(
+        building.x + WALL,
+        building.y + WALL,
+        building.width - 2 * WALL,
+        building.height - 2 * WALL,
+    )
 }
 
 #[cfg(test)]

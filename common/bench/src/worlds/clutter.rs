@@ -32,7 +32,6 @@ pub(super) fn add(canvas: &mut Canvas, turned: bool, p_over_n: f64, rng: &mut Xo
     }
 }
 
-/// Adds one piece at a random position.
 fn put(
     canvas: &mut Canvas,
     (width, height): (f64, f64),
@@ -45,12 +44,7 @@ fn put(
         let angle = rng.random_range(0.0..FRAC_PI_2);
         put_turned(canvas, (x as f64, y as f64), (width, height), angle);
     } else {
-        canvas.fill(Rect {
-            x,
-            y,
-            width: width as usize,
-            height: height as usize,
-        });
+        canvas.fill(Rect::new(x, y, width as usize, height as usize));
     }
 }
 

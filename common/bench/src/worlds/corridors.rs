@@ -17,20 +17,10 @@ pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256Plu
         row_of_rooms(canvas, (y, y + spacing), spacing, y + spacing, rng);
         let bottom = y + spacing + WALL;
         let top = bottom + corridor;
-        row_of_rooms(
-            canvas,
-            (top + WALL, top + WALL + spacing),
-            spacing,
-            top,
-            rng,
-        );
+        let rows = (top + WALL, top + WALL + spacing);
+        row_of_rooms(canvas, rows, spacing, top, rng);
         let back = top + WALL + spacing;
-        canvas.fill(Rect {
-            x: 0,
-            y: back,
-            width: canvas.width,
-            height: WALL,
-        });
+        canvas.fill(Rect::new(0, back, canvas.width, WALL));
         y = back + WALL;
     }
     cross(canvas, corridor, 8 * spacing);
@@ -44,22 +34,12 @@ fn row_of_rooms(
     wall: usize,
     rng: &mut Xoshiro256PlusPlus,
 ) {
-    let full = Rect {
-        x: 0,
-        y: wall,
-        width: canvas.width,
-        height: WALL,
-    };
+    let full = Rect::new(0, wall, canvas.width, WALL);
     canvas.fill(full);
     let mut x = 1;
     while x < canvas.width {
         let width = rng.random_range(spacing * 3 / 4..=spacing * 5 / 4);
-        canvas.fill(Rect {
-            x: x + width,
-            y: bottom,
-            width: WALL,
-            height: top - bottom,
-        });
+        canvas.fill(Rect::new(x + width, bottom, WALL, top - bottom));
         canvas.clear(Rect {
             x: x + rng.random_range(0..width - DOOR),
             width: DOOR,
@@ -73,12 +53,7 @@ fn row_of_rooms(
 fn cross(canvas: &mut Canvas, corridor: usize, apart: usize) {
     let mut x = apart / 2;
     while x + corridor < canvas.width {
-        canvas.clear(Rect {
-            x,
-            y: 1,
-            width: corridor,
-            height: canvas.height - 2,
-        });
+        canvas.clear(Rect::new(x, 1, corridor, canvas.height - 2));
         x += apart;
     }
 }

@@ -52,10 +52,8 @@ pub struct World {
 impl World {
     /// Generates a world of `width` · `height` cells with `p_over_n` boundary cells per free cell,
     /// within 5 %.
-    ///
-    /// # Errors
-    /// A side is too short or too long, or the ratio is out of reach at that size: in a small world
-    /// the surrounding wall alone has much boundary.
+    /// Fails if a side is too short or too long, or the ratio is out of reach at that size: in a
+    /// small world the surrounding wall alone has much boundary.
     pub fn generate(
         kind: Kind,
         (width, height): (usize, usize),
@@ -81,16 +79,10 @@ impl World {
         )
     }
 
-    /// Ratio of boundary cells to free cells.
-    #[must_use]
     pub fn p_over_n(&self) -> f64 {
         self.boundary.len() as f64 / self.grid.free_cells() as f64
     }
 
-    /// Search space with this many headings.
-    ///
-    /// # Errors
-    /// The number of headings is not supported.
     pub fn space(&self, headings: u32) -> anyhow::Result<Space> {
         let (width, height) = (self.grid.width(), self.grid.height());
         Ok(Space::new(headings, RESOLUTION_M, width, height)?)
@@ -134,10 +126,8 @@ mod tests {
                 for side in [100, 300] {
                     let world = World::generate(kind, (side, side), percent / 100.0, 1).unwrap();
                     let off = world.p_over_n() * 100.0 / percent;
-                    assert!(
-                        (off - 1.0).abs() <= TOLERANCE,
-                        "{kind:?} {percent} {side}: {off}"
-                    );
+                    let is_so = (off - 1.0).abs() <= TOLERANCE;
+                    assert!(is_so, "{kind:?} {percent} {side}: {off}");
                     assert_eq!(world.boundary, boundary::extract(&world.grid));
                 }
             }
@@ -156,10 +146,8 @@ mod tests {
     #[test]
     fn what_cannot_be_is_refused() {
         let refused = World::generate(Kind::Rooms, (8, 100), 0.1, 1).unwrap_err();
-        assert_eq!(
-            refused.to_string(),
-            "a world of 8 x 100 cells: each side must have at least 16"
-        );
+        let expected = "a world of 8 x 100 cells: each side must have at least 16";
+        assert_eq!(refused.to_string(), expected);
         let refused = World::generate(Kind::Boxes, (20, 20), 0.05, 1).unwrap_err();
         assert_eq!(
             refused.to_string(),
