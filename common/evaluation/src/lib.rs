@@ -11,8 +11,6 @@ mod text;
 mod trust;
 mod truths;
 
-/// Schemas of what the commands print.
-#[must_use]
 pub fn schemas() -> Vec<json::schema::Named> {
     use json::schema::of_object;
     use outcomes::TotalLine;

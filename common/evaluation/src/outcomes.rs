@@ -40,12 +40,10 @@ pub(crate) struct TotalLine<'a, T> {
     total: &'a T,
 }
 
-/// Formats [`TotalLine`].
 pub(crate) fn total_line(total: &impl Serialize) -> String {
     json::object(&TotalLine { total }) + "\n"
 }
 
-/// Outcomes of the files so far.
 pub(crate) struct Outcomes {
     suites: Vec<TestSuite>,
     junit: Option<PathBuf>,
@@ -53,9 +51,6 @@ pub(crate) struct Outcomes {
 
 impl Outcomes {
     /// Checks that the report can be written.
-    ///
-    /// # Errors
-    /// It cannot, or it exists and is not to be overwritten.
     pub(crate) fn new(options: &ReportOptions) -> anyhow::Result<Self> {
         let junit = options.junit.clone();
         if let Some(file) = &junit {
@@ -67,8 +62,7 @@ impl Outcomes {
         })
     }
 
-    /// Adds a file, or a variant of it, with a sentence for each requirement that it misses, and
-    /// passes these to `say`.
+    /// Adds a file, or a variant of it; says a sentence for each requirement that it misses.
     pub(crate) fn judged(
         &mut self,
         file: &str,
@@ -91,17 +85,11 @@ impl Outcomes {
     pub(crate) fn failed(&mut self, file: &str, error: &anyhow::Error, say: impl Fn(&str)) {
         let reason = format!("{error:#}");
         say(&reason);
-        self.add(
-            file,
-            "evaluation",
-            not_passed(NonSuccessKind::Error, reason),
-        );
+        let status = not_passed(NonSuccessKind::Error, reason);
+        self.add(file, "evaluation", status);
     }
 
     /// Writes the report, if it is wanted, and returns the exit code.
-    ///
-    /// # Errors
-    /// The report cannot be written.
     pub(crate) fn finish(self) -> anyhow::Result<ExitCode> {
         let mut report = Report::new("backcast evaluate");
         report.add_test_suites(self.suites);
@@ -126,7 +114,7 @@ impl Outcomes {
     }
 }
 
-fn not_passed(kind: NonSuccessKind, message: String) -> TestCaseStatus {
+pub(crate) fn not_passed(kind: NonSuccessKind, message: String) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(kind);
     status.set_message(message);
     status

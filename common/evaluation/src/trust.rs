@@ -23,7 +23,6 @@ pub(crate) struct Said {
     pub(crate) mean: Option<f64>,
 }
 
-/// Counts of results by range of probability.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Trust {
     answers: [u64; ENDS.len()],
@@ -33,7 +32,6 @@ pub(crate) struct Trust {
 }
 
 impl Trust {
-    /// Adds the best place of a result.
     pub(crate) fn add(&mut self, probability: f64, is_right: bool) {
         // Rounding may make a probability slightly more than 1.
         let i = ENDS.iter().position(|&end| probability <= end);
@@ -51,7 +49,6 @@ impl Trust {
         }
     }
 
-    /// All ranges, lowest first.
     pub(crate) fn said(&self) -> [Said; ENDS.len()] {
         std::array::from_fn(|i| {
             let answers = self.answers[i];

@@ -34,9 +34,6 @@ impl TruthOptions {
     }
 
     /// Opens an undamaged recording that has true poses.
-    ///
-    /// # Errors
-    /// The recording cannot be read, is damaged, or has no true pose.
     pub(crate) fn open(
         &self,
         bag: &Path,
@@ -55,7 +52,6 @@ impl TruthOptions {
     }
 }
 
-/// True poses of the first laser in the map.
 pub(crate) struct Truths {
     /// By stamp, in nanoseconds; at least one.
     known: BTreeMap<i64, GroundTruth>,
@@ -63,7 +59,6 @@ pub(crate) struct Truths {
 }
 
 impl Truths {
-    /// Number of true poses in the recording.
     pub(crate) fn recorded(&self) -> usize {
         self.known.len()
     }

@@ -116,7 +116,7 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
     ("`backcast evaluate --sequence --stress --json`", &[("common/evaluation/src/sequence/stress/figures.rs", "Figures")]),
     ("Of a scan", &[("common/pose_table/src/tracked.rs", "Row")]),
     ("Of the run", &[("common/launcher/src/run/summary.rs", "Summary"), ("common/statistics/src/lib.rs", "Figures")]),
-    ("`backcast regress --json`", &[("common/evaluation/src/regression/object.rs", "Object")]),
+    ("`backcast regress --json`", &[("common/evaluation/src/regression/outcome.rs", "Object")]),
     ("`backcast status --json`", &[("common/launcher/src/run/control.rs", "Status")]),
     ("A node of a graph", &[("common/launcher/src/run/control.rs", "NodeStatus")]),
     ("The recording of a graph", &[("common/launcher/src/run/control.rs", "Recording")]),

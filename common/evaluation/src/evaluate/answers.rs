@@ -40,31 +40,14 @@ pub(super) struct AnswerOptions {
 }
 
 /// Arguments of `backcast evaluate` that have a meaning for the answers of another program.
-const MEANT_FOR_ANSWERS: [&str; 19] = [
-    "bags",
-    "json",
-    "junit",
-    "force",
-    "total",
-    "truth_gap_s",
-    "min_truths",
-    "min_success",
-    "min_unique",
-    "max_wrong",
-    "max_error_cm",
-    "answers",
-    "answers_of",
-    "answer_gap_s",
-    "scan_topic",
-    "cloud_topic",
-    "heights",
-    "cloud_mount",
-    "every",
-];
+const MEANT_FOR_ANSWERS: &str = "\
+    bags json junit force total truth_gap_s min_truths min_success min_unique max_wrong \
+    max_error_cm answers answers_of answer_gap_s scan_topic cloud_topic heights cloud_mount every";
 
 /// Makes an argument an error beside `--answers`, unless it has a meaning there.
 pub(super) fn refuse_beside_answers(argument: Arg) -> Arg {
-    match MEANT_FOR_ANSWERS.contains(&argument.get_id().as_str()) {
+    let mut meant = MEANT_FOR_ANSWERS.split(' ');
+    match meant.any(|name| argument.get_id() == name) {
         true => argument,
         false => argument.conflicts_with("answers"),
     }
@@ -112,11 +95,7 @@ pub(crate) struct Figures {
     probabilities: Vec<Said>,
 }
 
-/// Judges the answers to the scans of a recording with a true pose. Also returns the figures with
-/// which requirements are compared.
-///
-/// # Errors
-/// The file or the recording cannot be used, or no answer belongs to a scan with a true pose.
+/// Judges the answers to the scans with a true pose; also returns the figures for requirements.
 pub(super) fn evaluate(
     file: &Path,
     bag: &Path,
@@ -184,7 +163,6 @@ pub(super) fn evaluate(
 }
 
 impl Figures {
-    /// Formats the figures as text for the terminal.
     pub(super) fn text(&self) -> String {
         let is_given = self.probabilities.iter().any(|said| said.answers > 0);
         let trust = match is_given {

@@ -19,7 +19,6 @@ use crate::sequence::{self, SequenceOptions, Task};
 use crate::trust;
 use crate::truths::{TruthOptions, Truths};
 
-/// Notes below the options in the help text.
 pub const NOTES: &str = "\
 Shares are of the truths: the scans taken that have a true pose. Only those are searched.
 cpu is of one thread from the scan to the verdict, decoding excluded; prepare is of the map.
@@ -64,11 +63,7 @@ pub struct Config {
     sequence: SequenceOptions,
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
-/// and the next one follows.
-///
-/// # Errors
-/// The options or the given map cannot be used, or output cannot be written.
+/// Evaluates the files; one that cannot be evaluated is reported, and the next one follows.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (options, bags) = config.options.sorted(&config.bags);
     let config = &Config {
@@ -138,7 +133,6 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
 }
 
 impl Config {
-    /// Requirements that these figures miss, one sentence each.
     fn missed(&self, found: &Evaluation) -> Vec<String> {
         let truths = self.truths.missed(found.truths).into_iter();
         truths.chain(self.limits.missed(found)).collect()
@@ -169,7 +163,6 @@ fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
     outcomes.finish()
 }
 
-/// Prints figures as a table or as JSON.
 struct Printer {
     /// `None` for JSON.
     table: Option<Table>,
@@ -202,7 +195,6 @@ impl Printer {
     }
 }
 
-/// Evaluates one file, unless it is damaged.
 fn evaluate(
     bag: &Path,
     config: &Config,
@@ -233,8 +225,7 @@ fn evaluate(
     Ok((judge, effort))
 }
 
-/// Searches and judges the scans with a true pose. Also returns the counts of accepted and rejected
-/// scans, and the number of scans read.
+/// Judges the scans with a true pose; also counts those accepted, rejected and read.
 fn judge_all(
     session: &mut Session<'_>,
     truths: &Truths,

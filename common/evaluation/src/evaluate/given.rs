@@ -1,5 +1,4 @@
-//! Poses that another program found, read from a text: a trajectory as TUM, or lines of JSON.
-//! Pure.
+//! Poses that another program found, read from a text as TUM or lines of JSON. Pure.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -14,7 +13,6 @@ const SAME_NS: i64 = 1_000_000;
 /// Latest stamp in seconds, shortly before the nanoseconds overflow.
 const MAX_S: f64 = 9e9;
 
-/// The formats, as errors name them.
 const TUM: &str = "lines of 8 numbers, stamp_s x y z qx qy qz qw";
 const JSON: &str =
     "lines of JSON with whole stamp_ns, x, y, yaw, and optionally verdict, probability";
@@ -55,9 +53,7 @@ enum Verdict {
 impl GivenPoses {
     /// Parses lines of JSON if the first line starts with `{`, else TUM. Blank lines and those
     /// that start with `#` are skipped.
-    ///
-    /// # Errors
-    /// There is no pose, or one cannot be used: the number of its line, and what is allowed.
+    /// Fails if there is no pose, or one cannot be used; names its line and what is allowed.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let lines = (1..).zip(text.lines().map(str::trim));
         let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
@@ -86,15 +82,13 @@ impl GivenPoses {
         self.0.len() as u64
     }
 
-    /// First and last stamp, in nanoseconds.
     pub(super) fn span_ns(&self) -> [i64; 2] {
         let mut stamps = self.0.keys();
         let first = stamps.next().copied().unwrap_or_default();
         [first, stamps.next_back().copied().unwrap_or(first)]
     }
 
-    /// Pose of a stamp, else between two that are no more than `gap_ns` apart; then it is as sure
-    /// as the less sure one.
+    /// Pose of a stamp, else between two up to `gap_ns` apart, as sure as the less sure one.
     pub(super) fn at(&self, stamp_ns: i64, gap_ns: i64) -> Option<GivenPose> {
         let same = self.0.range(stamp_ns - SAME_NS..=stamp_ns + SAME_NS);
         if let Some((_, pose)) = same.min_by_key(|(other_ns, _)| other_ns.abs_diff(stamp_ns)) {
@@ -111,7 +105,6 @@ impl GivenPoses {
     }
 }
 
-/// Formats a stamp as seconds.
 pub(super) fn seconds(stamp_ns: i64) -> String {
     format!("{:.3}", stamp_ns as f64 / 1e9)
 }
@@ -197,11 +190,8 @@ mod tests {
             let between = at(text, middle_ns, 1_000_000_000).unwrap();
             assert_eq!(between.is_unique, text == tum);
             assert!((between.pose.yaw - 0.5 * FRAC_PI_2).abs() < 1e-6);
-            assert_eq!(
-                at(text, 1_137_772_795_000_000_000, i64::MAX),
-                None,
-                "the last"
-            );
+            let later_ns = 1_137_772_795_000_000_000;
+            assert_eq!(at(text, later_ns, i64::MAX), None, "the last");
         }
         let second = at(json, 1_137_772_794_500_000_000, 0).unwrap();
         assert_eq!((second.is_unique, second.probability), (false, Some(0.5)));

@@ -45,7 +45,6 @@ impl Effort {
     }
 }
 
-/// Results of all files together.
 pub(super) struct Total {
     judge: Judge,
     effort: Effort,
@@ -53,7 +52,6 @@ pub(super) struct Total {
 }
 
 impl Total {
-    /// Creates the total of no file.
     pub(super) fn new() -> Self {
         Total {
             judge: Judge::new(),
@@ -157,7 +155,6 @@ impl Judge {
         }
     }
 
-    /// Adds the answer of another program.
     pub(super) fn given(
         &mut self,
         truth: Pose,
@@ -211,12 +208,10 @@ impl Judge {
         self.in_ellipse += other.in_ellipse;
     }
 
-    /// Number of scans judged so far.
     pub(super) fn truths(&self) -> u64 {
         self.accuracy.figures().truths
     }
 
-    /// Message about rejected scans, if there were any.
     pub(super) fn complaint(&self) -> Option<String> {
         let reason = self.first_refusal.as_ref()?;
         let refused = self.refused;

@@ -32,51 +32,55 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Requirements that the file misses, one sentence each. A figure that is not known, because no
-    /// result was right, misses its requirement.
+    /// Requirements that the file misses, one sentence each; an unknown figure misses its own.
     pub(super) fn missed(&self, found: &Evaluation) -> Vec<String> {
-        let success = found.success_50cm_10deg.map(|share| 100.0 * share);
-        let error_cm = found.error_m.median.map(|metres| 100.0 * metres);
-        let most = |found: Option<f64>, most| found.is_some_and(|found| found <= most);
+        let percent = |share: Option<f64>| share.map(|share| 100.0 * share);
         let text = |found: Option<f64>, unit: &str| match found {
             Some(found) => format!("{found:.1} {unit}"),
             None => "not known, as no answer is right".to_owned(),
         };
         let mut missed = Vec::new();
-        if let Some(least) = self.min_success
-            && success.is_none_or(|found| found < least)
-        {
-            let found = text(success, "%");
-            missed.push(format!("success is {found}, --min-success {least}"));
+        let unique = share(found.unique, found.truths);
+        for (what, found, option, least) in [
+            (
+                "success is",
+                found.success_50cm_10deg,
+                "min-success",
+                self.min_success,
+            ),
+            ("Unique are", unique, "min-unique", self.min_unique),
+        ] {
+            let found = percent(found);
+            if let Some(least) = least.filter(|&least| found.is_none_or(|found| found < least)) {
+                let found = text(found, "%");
+                missed.push(format!("{what} {found}, --{option} {least}"));
+            }
         }
-        let unique = share(found.unique, found.truths).map(|share| 100.0 * share);
-        if let Some(least) = self.min_unique
-            && unique.is_none_or(|found| found < least)
-        {
-            let found = text(unique, "%");
-            missed.push(format!("Unique are {found}, --min-unique {least}"));
-        }
-        if let Some(most) = self.max_wrong
-            && found.unique_wrong > most
-        {
+        if let Some(most) = self.max_wrong.filter(|&most| found.unique_wrong > most) {
             let found = found.unique_wrong;
             missed.push(format!("Unique and wrong are {found}, --max-wrong {most}"));
         }
-        if let Some(limit) = self.max_p90_ms
-            && !most(found.cpu_ms.p90, limit)
-        {
-            let found = text(found.cpu_ms.p90, "ms");
-            missed.push(format!(
-                "the 90th percentile is {found}, --max-p90-ms {limit}"
-            ));
-        }
-        if let Some(limit) = self.max_error_cm
-            && !most(error_cm, limit)
-        {
-            let found = text(error_cm, "cm");
-            missed.push(format!(
-                "the median error is {found}, --max-error-cm {limit}"
-            ));
+        let error_cm = found.error_m.median.map(|metres| 100.0 * metres);
+        for (what, found, unit, option, most) in [
+            (
+                "the 90th percentile",
+                found.cpu_ms.p90,
+                "ms",
+                "max-p90-ms",
+                self.max_p90_ms,
+            ),
+            (
+                "the median error",
+                error_cm,
+                "cm",
+                "max-error-cm",
+                self.max_error_cm,
+            ),
+        ] {
+            if let Some(most) = most.filter(|&most| found.is_none_or(|found| found > most)) {
+                let found = text(found, unit);
+                missed.push(format!("{what} is {found}, --{option} {most}"));
+            }
         }
         missed
     }

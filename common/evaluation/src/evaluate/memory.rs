@@ -8,17 +8,12 @@ use nix::sys::resource::{UsageWho, getrusage};
 const FORGET_PEAK: &str = "5";
 
 /// Resets the peak to the memory in use now.
-///
-/// # Errors
-/// The system does not allow it; the peak then covers the whole process.
+/// Fails if the system does not allow it; the peak then covers the whole process.
 pub(super) fn forget_peak() -> io::Result<()> {
     fs::write("/proc/self/clear_refs", FORGET_PEAK)
 }
 
 /// Peak of the resident memory since the last reset, in megabytes of 10⁶ bytes.
-///
-/// # Errors
-/// The system does not report it.
 pub(super) fn peak_mb() -> io::Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kib = match peak_in(&status) {

@@ -42,19 +42,12 @@ impl Table {
         }
     }
 
-    /// Names of the columns, without a line break.
     pub(super) fn header(&self) -> String {
         self.line(NAME, &COLUMNS.map(|(name, _)| name.to_owned()))
     }
 
-    /// A row, without a line break.
     pub(super) fn row(&self, evaluation: &Evaluation) -> String {
-        let Evaluation {
-            cpu_ms,
-            error_m,
-            error_deg,
-            ..
-        } = evaluation;
+        let (error_m, error_deg) = (evaluation.error_m, evaluation.error_deg);
         let cells = [
             evaluation.map_cells.to_string(),
             evaluation.scans.to_string(),
@@ -65,9 +58,9 @@ impl Table {
             evaluation.unique.to_string(),
             evaluation.unique_wrong.to_string(),
             percent(share(evaluation.unique_in_ellipse, evaluation.unique)),
-            number(cpu_ms.median, 1),
-            number(cpu_ms.p90, 1),
-            number(cpu_ms.max, 1),
+            number(evaluation.cpu_ms.median, 1),
+            number(evaluation.cpu_ms.p90, 1),
+            number(evaluation.cpu_ms.max, 1),
             number(Some(evaluation.prepare_cpu_ms), 0),
             number(Some(evaluation.peak_rss_mb), 0),
             number(error_m.median, 3),

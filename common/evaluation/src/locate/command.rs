@@ -46,10 +46,6 @@ pub struct Config {
 
 /// Prints a line for each scan, for a rejected one with the reason. A scan that cannot be decoded
 /// is lost, and is reported on standard error.
-///
-/// # Errors
-/// Map or recording cannot be used, every scan was rejected, or the recording is damaged; damage is
-/// reported after the scans before it.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let (options, files) = config.options.sorted(&config.recordings);
     let config = &Config {

@@ -1,7 +1,4 @@
-//! A scan and its hypotheses as JSON. Pure.
-//!
-//! Every line has the same keys; a rejected scan has null for the results, any other scan has null
-//! for the reason.
+//! A scan and its hypotheses as JSON, each line with the same keys. Pure.
 
 use std::iter;
 
@@ -100,25 +97,20 @@ impl Object {
         object
     }
 
-    /// Adds initial particles.
     pub(super) fn with(self, particles: Option<Particles>) -> Self {
         Object { particles, ..self }
     }
 
-    /// Frame whose pose the row has.
     pub(super) fn frame(&self) -> Frame {
         self.answer.best.frame
     }
 
-    /// Formats the row of the table that `backcast run` prints, with the reason for a rejection,
-    /// followed by the particles.
+    /// Formats the row of `backcast run`, the reason for a rejection, and the particles.
     pub(super) fn text(&self) -> String {
         let refused = self.refused.iter().map(|reason| format!("  {reason}"));
         let particles = self.particles.iter().map(Particles::text);
-        iter::once(self.answer.text())
-            .chain(refused)
-            .chain(particles)
-            .collect()
+        let all = iter::once(self.answer.text()).chain(refused);
+        all.chain(particles).collect()
     }
 
     fn fill(&mut self, answer: &Answer<'_>, base_from_laser: Option<Pose>) {

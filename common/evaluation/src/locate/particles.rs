@@ -39,9 +39,6 @@ pub(super) struct Particles {
 
 impl Particles {
     /// Draws the requested number of particles; `None` without `--particles`.
-    ///
-    /// # Errors
-    /// The hypotheses are not finite.
     pub(super) fn draw(
         options: &ParticlesOptions,
         scan: &TakenScan,

@@ -7,8 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// Expected result of a scan, as it was written. Values that another version wrote, or did not know
-/// yet, are not compared.
+/// Expected result of a scan; values that this version does not know are not compared.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(crate) struct Expected {
     pub(super) stamp_ns: i64,

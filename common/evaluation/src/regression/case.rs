@@ -11,7 +11,6 @@ use serde::Deserialize;
 
 use super::answer::{Answer, Expected};
 
-/// Files of a case.
 const RECORDING: &str = "recording.mcap";
 const MAP: &str = "map.yaml";
 const EXPECTATION: &str = "expected.json";
@@ -37,14 +36,10 @@ pub(crate) enum Expectation {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Case {
     pub(super) name: String,
-    /// Absolute path.
     pub(super) folder: PathBuf,
 }
 
 /// Returns the cases of these folders: each folder itself if it is one, else all in it, sorted.
-///
-/// # Errors
-/// A folder cannot be read or contains no case, or a case has no recording.
 pub(super) fn all_in(folders: &[PathBuf]) -> anyhow::Result<Vec<Case>> {
     let mut found = Vec::new();
     for folder in folders {
@@ -98,9 +93,6 @@ impl Case {
     }
 
     /// Path of the map; `None` if it is to be taken from the recording.
-    ///
-    /// # Errors
-    /// The recording cannot be read or has no map either.
     pub(super) fn map(&self) -> anyhow::Result<Option<PathBuf>> {
         let map = self.folder.join(MAP);
         if map.exists() {
@@ -120,9 +112,7 @@ impl Case {
     }
 
     /// Reads the expected results; `None` if the file does not exist.
-    ///
-    /// # Errors
-    /// The file cannot be read, or has another format or a later version.
+    /// Fails if the file cannot be read, or has another format or a later version.
     pub(super) fn expected(&self) -> anyhow::Result<Option<Vec<Expected>>> {
         let file = self.expectation();
         let text = match std::fs::read_to_string(&file) {
@@ -141,10 +131,6 @@ impl Case {
         }
     }
 
-    /// Writes these results as the expected ones.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub(super) fn accept(&self, answers: &[Answer]) -> anyhow::Result<()> {
         let file = self.expectation();
         // Strings and finite numbers always serialize.
@@ -195,10 +181,8 @@ mod tests {
         assert_eq!(names(&["x/b"]).unwrap(), ["b"]);
         assert_eq!(names(&["x", "y"]).unwrap(), ["x_a", "x_b", "y_a"]);
         let half = names(&["x", "z"]).unwrap_err();
-        assert!(
-            half.contains("z/c has expected.json, but no recording"),
-            "{half}"
-        );
+        let is_so = half.contains("z/c has expected.json, but no recording");
+        assert!(is_so, "{half}");
     }
 
     #[test]
@@ -217,10 +201,8 @@ mod tests {
         let without = RecordingWriter::create(case.recording(), Packing::Plain).unwrap();
         without.finish().unwrap();
         let neither = case.map().unwrap_err().to_string();
-        assert!(
-            neither.ends_with("has no map.yaml, and its recording no map"),
-            "{neither}"
-        );
+        let is_so = neither.ends_with("has no map.yaml, and its recording no map");
+        assert!(is_so, "{neither}");
         std::fs::write(folder.path().join(MAP), "").unwrap();
         assert_eq!(case.map().unwrap(), Some(folder.path().join(MAP)));
     }
@@ -247,10 +229,8 @@ mod tests {
         let later = r#"{"version": 1, "answers": [{"stamp_ns": 6, "new": {}}], "more": 0}"#;
         assert_eq!(read(later), Ok(6));
         let wrong = read(r#"{"version": 2, "answers": []}"#).unwrap_err();
-        assert!(
-            wrong.ends_with("has version 2, and this release knows 1"),
-            "{wrong}"
-        );
+        let is_so = wrong.ends_with("has version 2, and this release knows 1");
+        assert!(is_so, "{wrong}");
         let wrong = read("[{}]").unwrap_err();
         assert!(wrong.ends_with("does not say what is expected"), "{wrong}");
     }

@@ -13,11 +13,9 @@ use transport::GraphName;
 
 use super::case::{self, Case};
 use super::compare::{Tolerance, differences, summary, table};
-use super::junit::{self, Outcome};
-use super::object::Object;
-use super::play::{self, Played};
+use super::outcome::{self, Object, Outcome};
+use super::play;
 
-/// Notes below the options in the help text.
 pub const NOTES: &str = "\
 A case is a folder with recording.mcap (or the folder recording, of a bag), expected.json, and
 map.yaml unless the recording holds the map. With --tolerance exact, votes, verdicts, the tracker's states and counts must
@@ -73,11 +71,7 @@ impl Config {
     }
 }
 
-/// Replays one recording after another. One whose graph fails is reported, and the next one
-/// follows.
-///
-/// # Errors
-/// There is no recording, the graph cannot be built, or a file cannot be written.
+/// Replays the recordings; one whose graph fails is reported, and the next one follows.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     transport::node::start_logging().map_err(wrong_use)?;
     if let Some(file) = &config.junit {
@@ -100,7 +94,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         outcomes.push(outcome);
     }
     if let Some(file) = &config.junit {
-        let report = junit::report(&outcomes).map_err(std::io::Error::other);
+        let report = outcome::report(&outcomes).map_err(std::io::Error::other);
         report
             .and_then(|text| std::fs::write(file, text))
             .with_context(|| case::failed("write", file))?;
@@ -123,12 +117,9 @@ fn replay(config: &Config, case: &Case) -> Outcome {
         took: start.elapsed(),
         result: Ok(Vec::new()),
     };
-    match judge(config, case, &mut outcome) {
-        Ok(()) => {}
-        Err(error) => {
-            say(&format!("{}: {error:#}", case.name));
-            outcome.result = Err(format!("{error:#}"));
-        }
+    if let Err(error) = judge(config, case, &mut outcome) {
+        say(&format!("{}: {error:#}", case.name));
+        outcome.result = Err(format!("{error:#}"));
     }
     outcome.took = start.elapsed();
     outcome
@@ -139,12 +130,8 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> anyhow::Result<
     let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     play::direct(&mut descriptor, case)?;
     let name = GraphName::new(&format!("rg{}", std::process::id()))?;
-    let Played {
-        answers: found,
-        is_tracked,
-        truths,
-        damage,
-    } = play::play(descriptor, &name, &case.recording())?;
+    let played = play::play(descriptor, &name, &case.recording())?;
+    let found = &played.answers;
     outcome.scans = found.iter().map(|answer| answer.stamp_ns).collect();
     // With `--accept` an unreadable expectation is overwritten.
     let expected = match config.accept {
@@ -155,14 +142,14 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> anyhow::Result<
         outcome.result = Err(format!("there is no expected.json; {}", config.hint(case)));
         return Ok(());
     };
-    if !is_tracked {
+    if !played.is_tracked {
         // A graph without a tracker has no poses to compare.
         for answer in &mut expected {
             answer.values.remove("pose");
         }
     }
-    let all = differences(&expected, &found, config.tolerance, &truths);
-    if let Some(damage) = damage {
+    let all = differences(&expected, found, config.tolerance, &played.truths);
+    if let Some(damage) = played.damage {
         // Accepting a truncated replay would drop the expectations of the missing scans.
         outcome.result = Err(format!(
             "{damage}; only what lies before was played and compared, with {} differences",
@@ -172,16 +159,14 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> anyhow::Result<
     }
     outcome.result = Ok(all);
     match config.accept {
-        true => case.accept(&found),
+        true => case.accept(found),
         false => Ok(()),
     }
 }
 
 fn text(outcome: &Outcome, accepted: bool) -> String {
-    let Outcome {
-        name, scans, took, ..
-    } = outcome;
-    let (scans, seconds) = (scans.len(), took.as_secs_f64());
+    let (name, scans) = (&outcome.name, outcome.scans.len());
+    let seconds = outcome.took.as_secs_f64();
     let word = match (&outcome.result, accepted) {
         (Ok(_), true) => "accepted: ",
         _ => "",

@@ -21,20 +21,12 @@ pub(super) enum Tolerance {
 }
 
 impl Tolerance {
-    /// Tolerance in metres. `Exact`: far below the resolution of lasers, far above rounding.
-    /// `Pose`: a usual cell of a map.
-    fn position_m(self) -> f64 {
+    /// Tolerance in metres and degrees. `Exact`: far below the resolution of lasers, far above
+    /// rounding. `Pose`: a usual cell of a map; one degree moves a point 3 m away by a cell of 5 cm.
+    fn limits(self) -> (f64, f64) {
         match self {
-            Tolerance::Exact => 0.001,
-            Tolerance::Pose => 0.05,
-        }
-    }
-
-    /// Tolerance in degrees. `Pose`: one degree moves a point 3 m away by a cell of 5 cm.
-    fn heading_deg(self) -> f64 {
-        match self {
-            Tolerance::Exact => 0.01,
-            Tolerance::Pose => 1.0,
+            Tolerance::Exact => (0.001, 0.01),
+            Tolerance::Pose => (0.05, 1.0),
         }
     }
 }
@@ -46,7 +38,6 @@ const SHARE: f64 = 0.001;
 /// Name of the verdict and the state that stand for one place.
 const UNIQUE: &str = "Unique";
 
-/// How a value of a result is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Rule {
     /// Always, and exactly: the verdict or the state.
@@ -121,12 +112,8 @@ pub(super) fn differences(
             truth: truths.get(&stamp_ns).copied(),
             all: &mut all,
         };
-        scan.note(
-            "scan",
-            expected.len() == found.len(),
-            &expected.len(),
-            &found.len(),
-        );
+        let (before, now) = (expected.len(), found.len());
+        scan.note("scan", before == now, &before, &now);
         for (expected, found) in expected.iter().zip(&found) {
             scan.compare(&expected.values, found);
         }
@@ -134,7 +121,6 @@ pub(super) fn differences(
     all
 }
 
-/// Comparison of one scan.
 struct Scan<'a> {
     stamp_ns: i64,
     tolerance: Tolerance,
@@ -188,7 +174,7 @@ impl Scan<'_> {
                 }
                 Rule::Share if is_exact => self.near(what, number, now, SHARE),
                 Rule::Position if is_exact || is_unique => {
-                    self.near(what, number, now, self.tolerance.position_m());
+                    self.near(what, number, now, self.tolerance.limits().0);
                 }
                 Rule::Heading if is_exact || is_unique => self.near_heading(what, (number, now)),
                 _ => {}
@@ -206,17 +192,11 @@ impl Scan<'_> {
         both.is_some_and(|(pose, truth)| pose.is_within(truth, metres, degrees.to_radians()))
     }
 
-    /// Compares headings on the circle.
     fn near_heading(&mut self, what: &'static str, (expected, found): (Option<f64>, Option<f64>)) {
         let turned = expected.zip(found).map(|(expected, found)| {
             expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
         });
-        self.near(
-            what,
-            expected,
-            turned.or(found),
-            self.tolerance.heading_deg(),
-        );
+        self.near(what, expected, turned.or(found), self.tolerance.limits().1);
     }
 
     fn near(&mut self, what: &'static str, expected: Option<f64>, found: Option<f64>, by: f64) {
@@ -246,7 +226,6 @@ impl Scan<'_> {
     }
 }
 
-/// Formats a value without quotes.
 fn shown(value: &Value) -> String {
     value.as_str().map_or(value.to_string(), str::to_owned)
 }
@@ -256,20 +235,17 @@ pub(super) fn table(differences: &[Difference]) -> String {
         "  {:>20} {:<16} {:>14} {:>14}\n",
         "stamp ns", "what", "expected", "found"
     );
-    for difference in differences {
-        let Difference {
-            stamp_ns,
-            what,
-            expected,
-            found,
-        } = difference;
-        text += &format!("  {stamp_ns:>20} {what:<16} {expected:>14} {found:>14}\n");
+    for of in differences {
+        let (what, expected, found) = (of.what, &of.expected, &of.found);
+        text += &format!(
+            "  {:>20} {what:<16} {expected:>14} {found:>14}\n",
+            of.stamp_ns
+        );
     }
     text
 }
 
-/// Formats one line per kind of difference: number of scans, largest difference of numbers, and the
-/// first scan.
+/// Formats a line per kind: number of scans, largest difference of numbers, and the first scan.
 pub(super) fn summary(differences: &[Difference]) -> String {
     let mut kinds: BTreeMap<&str, Vec<&Difference>> = BTreeMap::new();
     for difference in differences {
@@ -328,51 +304,46 @@ mod tests {
     }
 
     /// Names of the values that differ after `spoil` has changed a result.
-    fn spoilt(spoil: fn(&mut Answer)) -> Vec<&'static str> {
+    fn spoilt(spoil: fn(&mut Answer), tolerance: Tolerance) -> Vec<&'static str> {
         let mut found = answer(1);
         spoil(&mut found);
-        names(&differences(&[answer(1)], &[found], Tolerance::Exact))
+        names(&differences(&[answer(1)], &[found], tolerance))
     }
 
     fn names(differences: &[Difference]) -> Vec<&'static str> {
-        differences
-            .iter()
-            .map(|difference| difference.what)
-            .collect()
+        differences.iter().map(|it| it.what).collect()
     }
 
     #[test]
     fn integers_are_compared_exactly_and_poses_within_a_millimetre() {
-        assert!(spoilt(|_| {}).is_empty());
-        assert_eq!(spoilt(|a| a.best += 1), ["best"]);
-        assert_eq!(spoilt(|a| a.verdict = "PoorFit".to_owned()), ["verdict"]);
-        assert!(spoilt(|a| a.x_m = Some(1.0009)).is_empty());
-        assert_eq!(spoilt(|a| a.x_m = Some(1.0011)), ["x_m"]);
-        assert!(
-            spoilt(|a| a.heading_deg = Some(-179.999)).is_empty(),
-            "past the half turn"
-        );
-        assert_eq!(spoilt(|a| a.heading_deg = Some(-179.9)), ["heading_deg"]);
-        assert_eq!(spoilt(|a| a.score = None), ["score"]);
-        assert_eq!(spoilt(|a| a.confidence = f32::NAN), ["confidence"]);
-    }
-
-    #[test]
-    fn the_trackers_pose_is_compared_with_the_scan() {
         fn pose(answer: &mut Answer) -> &mut TrackedPose {
             answer.pose.as_mut().unwrap()
         }
-        assert_eq!(spoilt(|a| a.pose = None), ["pose"]);
-        let state = spoilt(|a| pose(a).state = "Lost".to_owned());
-        assert_eq!(state, ["pose.state"]);
-        assert_eq!(spoilt(|a| pose(a).places = 2), ["pose.places"]);
-        assert!(spoilt(|a| pose(a).x_m = Some(1.0009)).is_empty());
-        assert_eq!(spoilt(|a| pose(a).x_m = None), ["pose.x_m"]);
-        assert!(spoilt(|a| pose(a).heading_deg = Some(179.995)).is_empty());
-        let heading = spoilt(|a| pose(a).heading_deg = Some(179.9));
-        assert_eq!(heading, ["pose.heading_deg"]);
-        let probability = spoilt(|a| pose(a).probability = 0.5);
-        assert_eq!(probability, ["pose.probability"]);
+        let cases: [(fn(&mut Answer), Option<&str>); 16] = [
+            (|_| {}, None),
+            (|a| a.best += 1, Some("best")),
+            (|a| a.verdict = "PoorFit".to_owned(), Some("verdict")),
+            (|a| a.x_m = Some(1.0009), None),
+            (|a| a.x_m = Some(1.0011), Some("x_m")),
+            // Past the half turn.
+            (|a| a.heading_deg = Some(-179.999), None),
+            (|a| a.heading_deg = Some(-179.9), Some("heading_deg")),
+            (|a| a.score = None, Some("score")),
+            (|a| a.confidence = f32::NAN, Some("confidence")),
+            (|a| a.pose = None, Some("pose")),
+            (|a| pose(a).state = "Lost".to_owned(), Some("pose.state")),
+            (|a| pose(a).places = 2, Some("pose.places")),
+            (|a| pose(a).x_m = None, Some("pose.x_m")),
+            (|a| pose(a).heading_deg = Some(179.995), None),
+            (
+                |a| pose(a).heading_deg = Some(179.9),
+                Some("pose.heading_deg"),
+            ),
+            (|a| pose(a).probability = 0.5, Some("pose.probability")),
+        ];
+        for (spoil, expected) in cases {
+            assert_eq!(spoilt(spoil, Tolerance::Exact), Vec::from_iter(expected));
+        }
     }
 
     #[test]
@@ -389,11 +360,7 @@ mod tests {
 
     #[test]
     fn another_version_may_count_otherwise_but_not_place_the_robot_elsewhere() {
-        let spoilt = |spoil: fn(&mut Answer)| {
-            let mut found = answer(1);
-            spoil(&mut found);
-            names(&differences(&[answer(1)], &[found], Tolerance::Pose))
-        };
+        let spoilt = |spoil| spoilt(spoil, Tolerance::Pose);
         let counted_otherwise = |a: &mut Answer| {
             (a.best, a.floor, a.votes, a.hypotheses) = (1, 2, 3, 4);
             (a.score, a.confidence) = (None, 0.5);
@@ -439,10 +406,7 @@ mod tests {
             found.pose.as_mut().unwrap().y_m = Some(2.0);
             let truths = BTreeMap::from([(1, truth)]);
             let before = expected(std::slice::from_ref(&before));
-            let all = super::differences(&before, &[found], tolerance, &truths);
-            all.iter()
-                .map(|difference| difference.what)
-                .collect::<Vec<_>>()
+            names(&super::differences(&before, &[found], tolerance, &truths))
         };
         let right = Pose::new(1.1, 2.1, std::f64::consts::PI);
         assert_eq!(of(Tolerance::Pose, right), [""; 0]);

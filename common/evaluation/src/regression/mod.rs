@@ -2,16 +2,15 @@
 //! expected one.
 //!
 //! `case` finds the recordings, `play` runs the graph, `answer` is the result of a scan, `compare`
-//! compares (pure), `object` is printed for programs, `junit` written for a build server.
+//! compares (pure), `outcome` is printed for programs and written for a build server.
 
 mod answer;
 mod case;
 mod command;
 mod compare;
-mod junit;
-mod object;
+mod outcome;
 mod play;
 
 pub(crate) use case::Expectation;
 pub use command::{Config, NOTES, run};
-pub(crate) use object::Object;
+pub(crate) use outcome::Object;

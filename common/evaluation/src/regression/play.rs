@@ -19,7 +19,6 @@ use transport::{
 use super::answer::Answer;
 use super::case::Case;
 
-/// Node name in the graph.
 const NAME: &str = "regress";
 /// Interval between checks of the processes.
 const TICK: Duration = Duration::from_millis(20);
@@ -27,9 +26,6 @@ const TICK: Duration = Duration::from_millis(20);
 const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Configures the graph to replay this recording on its map, as fast as it can process it.
-///
-/// # Errors
-/// The graph has no map server, or the case no map.
 pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> anyhow::Result<()> {
     let Descriptor { dataflow, file, .. } = descriptor;
     leave_out_monitors(dataflow);
@@ -58,7 +54,6 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> anyhow::Result
     Ok(())
 }
 
-/// Results of playing a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Played {
     /// Results of all scans, in order of arrival.
@@ -71,10 +66,6 @@ pub(super) struct Played {
     pub(super) damage: Option<String>,
 }
 
-/// Plays the readable part of a recording.
-///
-/// # Errors
-/// The graph fails, or some scans have no result.
 pub(super) fn play(
     descriptor: Descriptor,
     name: &GraphName,
@@ -106,9 +97,7 @@ pub(super) fn play(
 fn look_at(path: &Path) -> anyhow::Result<(usize, BTreeMap<i64, Pose>, Option<String>)> {
     let recording = Recording::open(path)?;
     let topic = recording.required_topic(Kind::Scan)?;
-    let of_topic = recording
-        .channels()
-        .filter(|channel| channel.topic == topic);
+    let of_topic = recording.channels().filter(|it| it.topic == topic);
     let scans = of_topic.map(|channel| channel.messages as usize).sum();
     let truths = recording.ground_truths()?.into_iter();
     Ok((
@@ -161,7 +150,6 @@ fn collect(
     Ok(received.answers())
 }
 
-/// Messages received so far.
 #[derive(Default)]
 struct Received {
     is_tracked: bool,
@@ -213,14 +201,10 @@ impl Received {
     /// Joins votes, hypotheses and the tracker's pose of each scan.
     fn answers(&self) -> Vec<Answer> {
         let of = |(header, items): &(HypothesesHeader, Vec<Hypothesis>)| {
-            let votes = self
-                .votes
-                .iter()
-                .find(|votes| votes.stamp.is_of(header.stamp))?;
-            let pose = self
-                .poses
-                .iter()
-                .find(|pose| pose.stamp.is_of(header.stamp));
+            let mut votes = self.votes.iter();
+            let votes = votes.find(|votes| votes.stamp.is_of(header.stamp))?;
+            let mut poses = self.poses.iter();
+            let pose = poses.find(|pose| pose.stamp.is_of(header.stamp));
             Some(Answer::of(votes, header, items, pose))
         };
         self.hypotheses.iter().filter_map(of).collect()

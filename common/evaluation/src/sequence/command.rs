@@ -11,14 +11,10 @@ use super::drive::Moment;
 use super::errors::Samples;
 use super::figures::{Figures, Judged};
 use super::run::Said;
-use super::{SequenceOptions, Task, course, drive, follow, jumps, outages, starts, stress};
+use super::{SequenceOptions, Task, course, drive, follow, interruption, starts, stress};
 use crate::outcomes::{Outcomes, total_line};
 
-/// Evaluates one file after another. A file that cannot be evaluated is reported on standard error,
-/// and the next one follows.
-///
-/// # Errors
-/// A file of an option cannot be written or is not to be overwritten, or output cannot be written.
+/// Evaluates the files; one that cannot be evaluated is reported, and the next one follows.
 pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Result<()> {
     let names = names::of(task.bags);
     task.sequence.prepare(&names, task.report.force)?;
@@ -67,9 +63,7 @@ pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Resu
 }
 
 fn one((bag, file_name): (&Path, &str), task: &Task<'_>) -> anyhow::Result<Judged> {
-    let Task {
-        options, sequence, ..
-    } = task;
+    let (options, sequence) = (task.options, task.sequence);
     let (recording, truths) = task.truths.open(bag, options)?;
     let mut session = Session::open(&recording, options, task.map)?;
     let name = bag.display().to_string();
@@ -96,10 +90,10 @@ fn one((bag, file_name): (&Path, &str), task: &Task<'_>) -> anyhow::Result<Judge
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
     let followed = follow::evaluate(world, &moments, config, true)?;
-    let chosen = jumps::choose(&moments, sequence.kidnaps);
-    let jumps = jumps::evaluate(world, &moments, &chosen, config)?;
-    let chosen = outages::choose(&moments, sequence.outages);
-    let outages = outages::evaluate(world, &moments, &chosen, config)?;
+    let chosen = interruption::jumps(&moments, sequence.kidnaps);
+    let jumps = interruption::evaluate(world, &moments, &chosen, config)?;
+    let chosen = interruption::outages(&moments, sequence.outages);
+    let outages = interruption::evaluate(world, &moments, &chosen, config)?;
     for (start, scan, off_m) in &starts.wrong {
         progress.say(&format!(
             "{name}: started at scan {start}, Unique and {off_m:.1} m off at scan {scan}"
@@ -109,7 +103,7 @@ fn one((bag, file_name): (&Path, &str), task: &Task<'_>) -> anyhow::Result<Judge
     if !lost.is_empty() {
         progress.say(&format!("{name}: lost at scans {}", lost.join(", ")));
     }
-    for (from, to) in &jumps.wrong {
+    for (from, to, _) in &jumps.wrong {
         progress.say(&format!(
             "{name}: put from scan {from} to {to}, Unique and wrong"
         ));

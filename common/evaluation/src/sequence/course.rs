@@ -1,5 +1,4 @@
-//! Runs the tracker over the whole drive from its first scan, without an initial pose, and writes
-//! trajectories and a picture.
+//! Runs the tracker over a whole drive without an initial pose; writes trajectories and a picture.
 
 use std::path::Path;
 
@@ -13,10 +12,6 @@ use super::drive::Moment;
 use super::run::{Run, Said};
 use super::trajectory;
 
-/// Results of the tracker for each moment.
-///
-/// # Errors
-/// The CPU clock cannot be read.
 pub(super) fn of(
     world: &World,
     moments: &[Moment],
@@ -27,11 +22,7 @@ pub(super) fn of(
     indices.map(|i| run.take(i, moments[i].moved)).collect()
 }
 
-/// Writes trajectories of the first laser: the tracker's, for scans where it was Unique or Doubtful,
-/// and the true one.
-///
-/// # Errors
-/// A file cannot be written.
+/// Writes the trajectories of the first laser: the tracker's, where believed, and the true one.
 pub(super) fn write(
     folder: &Path,
     name: &str,

@@ -52,10 +52,6 @@ impl Moment {
     }
 }
 
-/// Searches all scans of a recording.
-///
-/// # Errors
-/// The recording cannot be read, or holds no usable scan.
 pub(super) fn read(
     session: &mut Session<'_>,
     truths: &Truths,
@@ -83,9 +79,6 @@ pub(super) fn read(
 }
 
 /// Searches one scan; `None` if it is rejected.
-///
-/// # Errors
-/// The CPU clock cannot be read.
 pub(super) fn search(
     session: &mut Session<'_>,
     scan: &TakenScan,
@@ -123,14 +116,12 @@ pub(super) fn search(
     }))
 }
 
-/// Target for hypotheses that stay poses of the first laser. Messages store scores as 32 bits, as
-/// in the graph.
+/// Target for hypotheses that stay poses of the first laser, as in the graph.
 fn of_laser() -> Target {
     Target::of(None, false)
 }
 
-/// Fills in the motion of the target frame between moments: from odometry, with its error scaled by
-/// `noise`, or unknown without odometry.
+/// Fills in the motion between moments, from odometry with its error scaled by `noise`.
 pub(super) fn connect(moments: &mut [Moment], (without_odometry, noise): (bool, f64)) {
     for i in 1..moments.len() {
         let (by_odometry, truly) = steps(&moments[i - 1], &moments[i]);

@@ -59,7 +59,6 @@ impl Samples {
         }
     }
 
-    /// Adds the errors of another drive.
     pub(super) fn merge(&mut self, other: &Self) {
         self.absolute_m.extend(&other.absolute_m);
         self.relative_m.extend(&other.relative_m);
@@ -77,7 +76,6 @@ impl Samples {
 }
 
 impl Errors {
-    /// Formats the errors as a line for the terminal.
     pub(crate) fn text(&self) -> String {
         let spread = |spread: Option<Spread>, decimals| match spread {
             Some(Spread { rmse, median, max }) => [rmse, median, max]
@@ -127,24 +125,17 @@ mod tests {
             (at(1.0, 0.1), at(1.0, 0.0)),
             (at(2.0, 0.4), at(2.0, 0.0)),
         ];
-        let Errors {
-            poses,
-            ape_m,
-            rpe_m,
-            rpe_deg,
-        } = Samples::of(&pairs).figures();
+        let errors = Samples::of(&pairs).figures();
         let near = |found: Option<Spread>, expected: [f64; 3]| {
             let found = found.unwrap();
             let found = [found.rmse, found.median, found.max];
-            let is_near = found
-                .iter()
-                .zip(expected)
-                .all(|(f, e)| (f - e).abs() < 1e-12);
+            let mut both = found.iter().zip(expected);
+            let is_near = both.all(|(f, e)| (f - e).abs() < 1e-12);
             assert!(is_near, "{found:?} {expected:?}");
         };
-        assert_eq!(poses, 3);
-        near(ape_m, [0.06f64.sqrt(), 0.1, 0.4]);
-        near(rpe_m, [0.045f64.sqrt(), 0.15, 0.3]);
-        near(rpe_deg, [0.0; 3]);
+        assert_eq!(errors.poses, 3);
+        near(errors.ape_m, [0.06f64.sqrt(), 0.1, 0.4]);
+        near(errors.rpe_m, [0.045f64.sqrt(), 0.15, 0.3]);
+        near(errors.rpe_deg, [0.0; 3]);
     }
 }

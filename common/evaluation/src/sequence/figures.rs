@@ -6,27 +6,24 @@ use statistics::{Distribution, Spread};
 
 use super::errors::{Errors, Samples};
 use super::follow::Followed;
-use super::jumps::Jumps;
+use super::interruption::Interruptions;
 use super::limits::Reached;
-use super::outages::Outages;
 use super::starts::{After, Starts};
 use crate::text::{number, percent, share};
 
-/// Results of one drive, or of several.
 #[derive(Debug, Default)]
 pub(super) struct Judged {
     /// Number of scans with a true pose.
     pub(super) truths: u64,
     pub(super) starts: Starts,
     pub(super) followed: Followed,
-    pub(super) jumps: Jumps,
-    pub(super) outages: Outages,
+    pub(super) jumps: Interruptions,
+    pub(super) outages: Interruptions,
     pub(super) from_first_scan: Samples,
     pub(super) searching_ms: Vec<f64>,
 }
 
 impl Judged {
-    /// Adds another drive.
     pub(super) fn merge(&mut self, other: &Self) {
         self.truths += other.truths;
         self.starts.merge(&other.starts);
@@ -81,13 +78,8 @@ fn spread_of(times_ms: impl IntoIterator<Item = f64>) -> Spread {
 
 impl Figures {
     pub(super) fn of(bag: String, judged: &Judged) -> Self {
-        let Judged {
-            starts,
-            followed,
-            jumps,
-            outages,
-            ..
-        } = judged;
+        let (starts, followed) = (&judged.starts, &judged.followed);
+        let (jumps, outages) = (&judged.jumps, &judged.outages);
         let hourly = |count: u64| count as f64 / followed.hours;
         Figures {
             bag,
@@ -104,12 +96,12 @@ impl Figures {
             in_ellipse: followed.in_ellipse(),
             unique_share: followed.unique_share(),
             false_alarms_per_hour: (followed.hours > 0.0).then(|| hourly(followed.false_alarms)),
-            kidnaps: jumps.jumps,
-            kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
-            kidnaps_right_after_5_m: share(jumps.right, jumps.jumps),
+            kidnaps: jumps.count,
+            kidnaps_noticed_within_2: share(jumps.noticed, jumps.count),
+            kidnaps_right_after_5_m: share(jumps.right, jumps.count),
             kidnaps_wrong: jumps.wrong.len() as u64,
-            outages: outages.outages,
-            outages_right_after_5_m: share(outages.right, outages.outages),
+            outages: outages.count,
+            outages_right_after_5_m: share(outages.right, outages.count),
             outages_wrong: outages.wrong.len() as u64,
             from_first_scan: judged.from_first_scan.figures(),
             searched_share: share(starts.searches, starts.scans),
@@ -128,7 +120,6 @@ impl Figures {
         }
     }
 
-    /// Formats the figures as text for the terminal.
     pub(super) fn text(&self) -> String {
         let row = |after: &After| {
             let shares = after.0.iter().map(|&(_, share)| percent(share));

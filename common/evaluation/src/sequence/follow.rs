@@ -12,7 +12,6 @@ use crate::text::share;
 const LOSS: (f64, f64) = (1.0, 20.0);
 const LOSS_TRUTHS: u32 = 3;
 
-/// Results of following a drive.
 #[derive(Debug, Default)]
 pub(super) struct Followed {
     /// Index and result of each moment after the first truth.
@@ -27,7 +26,6 @@ pub(super) struct Followed {
     pub(super) tracking_ms: Vec<f64>,
 }
 
-/// Sums over the moments of a drive.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     moments: u32,
@@ -88,8 +86,7 @@ impl Followed {
     }
 }
 
-/// Follows the drive. With `puts_back` a lost robot is put back to the truth; otherwise it must
-/// recover by itself, and no loss is counted.
+/// Follows the drive. Without `puts_back` a lost robot must recover by itself, and is no loss.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
@@ -155,7 +152,6 @@ fn sum_up(all: &mut Followed, moments: &[Moment]) {
     all.sums = sums;
 }
 
-/// True if the true position is inside the 95 % ellipse.
 fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
     let Some(((target, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
         return false;

@@ -68,7 +68,6 @@ pub(super) struct Reached {
     pub(super) right: After,
 }
 
-/// Parses a finite number above 0.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|n: &f64| n.is_finite() && *n > 0.0);

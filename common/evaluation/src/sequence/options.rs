@@ -5,10 +5,24 @@ use std::path::PathBuf;
 use anyhow::Context;
 use command_line::{number, output};
 use engine::tracking::TrackingConfig;
+use map::OccupancyGrid;
+use offline::Options;
 
 use super::limits::SequenceLimits;
 use super::stress::Stress;
 use super::trajectory;
+use crate::outcomes::ReportOptions;
+use crate::truths::TruthOptions;
+
+pub(crate) struct Task<'a> {
+    pub(crate) bags: &'a [PathBuf],
+    /// The map, unless it is that of each recording.
+    pub(crate) map: Option<&'a OccupancyGrid>,
+    pub(crate) options: &'a Options,
+    pub(crate) sequence: &'a SequenceOptions,
+    pub(crate) truths: &'a TruthOptions,
+    pub(crate) report: &'a ReportOptions,
+}
 
 /// Options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
@@ -75,38 +89,30 @@ pub(crate) struct SequenceOptions {
 }
 
 impl SequenceOptions {
-    /// Makes the folders of trajectories and pictures, and checks that the files of the drives with
-    /// these names can be written there.
-    ///
-    /// # Errors
-    /// One cannot, or it exists and is not to be overwritten.
+    /// Makes the folders, and checks that the files of these drives can be written there.
     pub(super) fn prepare(&self, names: &[String], force: bool) -> anyhow::Result<()> {
         for folder in self.trajectories.iter().chain(&self.pictures) {
             output::make_folder(folder)
                 .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
-        let (lines, drawn) = match &self.stress {
-            None => (
-                trajectory::ENDINGS.map(str::to_owned).to_vec(),
-                vec![".png".to_owned()],
-            ),
+        let (lines, drawn): (&[&str], Vec<String>) = match &self.stress {
+            None => (&trajectory::ENDINGS, vec![".png".to_owned()]),
             Some(stress) => {
-                let variants = stress.names().into_iter();
+                let variants = stress.variants().into_iter();
                 (
-                    Vec::new(),
-                    variants.map(|name| format!("_{name}.png")).collect(),
+                    &[],
+                    variants.map(|it| format!("_{}.png", it.name)).collect(),
                 )
             }
         };
-        for (folder, endings) in [(&self.trajectories, lines), (&self.pictures, drawn)] {
-            let files = names
-                .iter()
-                .flat_map(|name| endings.iter().map(move |e| format!("{name}{e}")));
-            for file in folder
-                .iter()
-                .flat_map(|folder| files.clone().map(|file| folder.join(file)))
-            {
-                output::prepare(&file, force)?;
+        let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
+        for (folder, endings) in [(&self.trajectories, lines), (&self.pictures, &drawn[..])] {
+            if let Some(folder) = folder {
+                for name in names {
+                    for ending in endings {
+                        output::prepare(&folder.join(format!("{name}{ending}")), force)?;
+                    }
+                }
             }
         }
         Ok(())

@@ -19,7 +19,6 @@ pub(super) struct Run<'a> {
     pub(super) searches: u64,
 }
 
-/// Result of the tracker for one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Said {
     pub(super) report: Report,
@@ -50,7 +49,6 @@ impl Tally {
         }
     }
 
-    /// Sum of both.
     pub(super) fn with(mut self, other: &Self) -> Self {
         self.scans += other.scans;
         self.unique += other.unique;
@@ -119,8 +117,7 @@ impl<'a> Run<'a> {
         self.tracker.start_at(&[seen], (0, pose), covariance);
     }
 
-    /// Follows the robot to a moment, from a truth at least `metres` before it; true if the tracker
-    /// is right there.
+    /// Follows the robot from a truth `metres` before a moment; true if the tracker is right there.
     pub(super) fn follow_to(&mut self, last: usize, metres: f64) -> anyhow::Result<bool> {
         let moments = self.moments;
         let begin = moments.partition_point(|m| m.gone_m < moments[last].gone_m - metres);

@@ -14,14 +14,12 @@ use crate::text::share;
 /// Distances at which a start is judged, in metres.
 pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
 
-/// Tolerance in metres: a start is judged at a distance if its drive ends no more than this before
-/// it, since the last scan may be one step short.
+/// Tolerance in metres of the end of a drive before a distance: the last scan may be a step short.
 const STEP_M: f64 = 1.2;
 
 /// Starts keep this distance from the end of the drive: the smaller of metres and share.
 const LEFT: (f64, f64) = (5.0, 0.3);
 
-/// Results of the starts of a drive.
 #[derive(Debug, Default)]
 pub(super) struct Starts {
     pub(super) starts: u64,
@@ -38,7 +36,6 @@ pub(super) struct Starts {
 }
 
 impl Starts {
-    /// Adds the starts of another drive.
     pub(super) fn merge(&mut self, other: &Self) {
         self.starts += other.starts;
         for i in 0..AFTER_M.len() {

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use geometry::Pose;
 
+use crate::text::seconds;
+
 /// Poses by stamp, in nanoseconds.
 pub(super) type Poses = [(i64, Pose)];
 
-/// Ends of the names of the files of a drive.
 pub(super) const ENDINGS: [&str; 6] = [
     ".tum",
     "_truth.tum",
@@ -17,8 +18,7 @@ pub(super) const ENDINGS: [&str; 6] = [
     "_truth.kitti",
 ];
 
-/// Contents of the files with these [`ENDINGS`]. Files of KITTI have no stamps, so that they hold
-/// only the scans of which both poses are known.
+/// Contents of [`ENDINGS`]. KITTI has no stamps, so its files hold the scans with both poses.
 pub(super) fn files(tracked: &Poses, truths: &Poses, pairs: &[(Pose, Pose)]) -> [String; 6] {
     [
         tum(tracked),
@@ -34,18 +34,14 @@ pub(super) fn files(tracked: &Poses, truths: &Poses, pairs: &[(Pose, Pose)]) -> 
 fn tum(poses: &Poses) -> String {
     let mut lines = String::new();
     for &(stamp_ns, Pose { x, y, yaw }) in poses {
-        let (seconds, rest) = (
-            stamp_ns.div_euclid(1_000_000_000),
-            stamp_ns.rem_euclid(1_000_000_000),
-        );
+        let seconds = seconds(stamp_ns);
         let (sin, cos) = (0.5 * yaw).sin_cos();
         // Writing to a string cannot fail.
-        let _ = writeln!(lines, "{seconds}.{rest:09} {x} {y} 0 0 0 {sin} {cos}");
+        let _ = writeln!(lines, "{seconds} {x} {y} 0 0 0 {sin} {cos}");
     }
     lines
 }
 
-/// One line per pose, after one with the names.
 fn csv(poses: &Poses) -> String {
     let mut lines = "stamp_ns,x_m,y_m,yaw_rad\n".to_owned();
     for (stamp_ns, Pose { x, y, yaw }) in poses {
@@ -87,10 +83,8 @@ mod tests {
         assert_eq!(found, [1.5e9, 1.5, -2.0, std::f64::consts::FRAC_PI_2]);
         let expected = [0.0, -1.0, 0.0, 1.5, 1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 1.0, 0.0];
         let found = numbers(&kitti, ' ');
-        let near = found
-            .iter()
-            .zip(expected)
-            .all(|(a, b)| (a - b).abs() < 1e-15);
+        let mut both = found.iter().zip(expected);
+        let near = both.all(|(a, b)| (a - b).abs() < 1e-15);
         assert!(near && found.len() == 12, "{found:?}");
     }
 }

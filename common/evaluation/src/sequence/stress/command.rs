@@ -18,11 +18,7 @@ use super::variants::{Stress, Variant};
 use crate::outcomes::Outcomes;
 use crate::trust::Trust;
 
-/// Evaluates the variants of one file after another. A file that cannot be evaluated is reported on
-/// standard error, and the next one follows.
-///
-/// # Errors
-/// The other map cannot be read, or output cannot be written.
+/// Evaluates the variants of the files; one that cannot be evaluated is reported, and skipped.
 pub(in super::super) fn evaluate(
     task: &Task<'_>,
     (names, stress): (&[String], &Stress),
@@ -37,13 +33,8 @@ pub(in super::super) fn evaluate(
             .map(|file| task.options.with_map(file).load_map(&[]))
             .transpose()?;
         let so_far = (&mut trust, &mut *outcomes);
-        match one(
-            (bag, name),
-            task,
-            other.flatten().as_ref(),
-            &variants,
-            so_far,
-        ) {
+        let other = other.flatten();
+        match one((bag, name), task, other.as_ref(), &variants, so_far) {
             Ok(()) => {}
             Err(error) if error.is::<OutputError>() => return Err(error),
             Err(error) => outcomes.failed(&bag.display().to_string(), &error, say),
@@ -85,7 +76,7 @@ fn one(
         progress: &progress,
     };
     if !json {
-        stdout::print(&format!("{name}\n{}", Figures::header()))?;
+        stdout::print(&format!("{name}\n{}", Figures::HEADER))?;
     }
     for variant in variants {
         let means = variant.means(sequence.seed, other_map);
@@ -141,7 +132,6 @@ fn words(wrong: &Wrong) -> String {
     format!("{start}, Unique and wrong at scan {}: {off}", wrong.scan)
 }
 
-/// Draws the drive up to the first wrong moment.
 fn picture(
     folder: &Path,
     (name, variant): (&str, &str),

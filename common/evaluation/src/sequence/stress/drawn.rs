@@ -68,8 +68,7 @@ fn large(walls: &[Cell], resolution_m: f64) -> Vec<Cell> {
     large
 }
 
-/// Returns the end points of straight walls, longest first; each cell belongs to one wall only (a
-/// greedy Hough transform).
+/// Returns the end points of straight walls, longest first (a greedy Hough transform).
 fn lines(walls: &[Cell], resolution_m: f64) -> Vec<((f64, f64), (f64, f64))> {
     let mut bins: BTreeMap<(usize, i64), Vec<usize>> = BTreeMap::new();
     let normals: Vec<(f64, f64)> = (0..DIRECTIONS)

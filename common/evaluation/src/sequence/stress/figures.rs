@@ -33,12 +33,6 @@ impl Figures {
         (starts, followed): (&Starts, &Followed),
         tally: Tally,
     ) -> Self {
-        let Tally {
-            scans,
-            unique,
-            wrong,
-            trust,
-        } = tally;
         let mut right = After::of(&starts.right, &starts.judged);
         right.0.retain(|(metres, _)| [5.0, 10.0].contains(metres));
         Figures {
@@ -46,31 +40,17 @@ impl Figures {
             variant,
             starts: starts.starts,
             wrong_starts: starts.wrong.len() as u64,
-            scans,
-            unique_scans: unique,
-            wrong_scans: wrong,
+            scans: tally.scans,
+            unique_scans: tally.unique,
+            wrong_scans: tally.wrong,
             losses: followed.losses.len() as u64,
             right,
             rms_m: followed.rms_m(),
-            probabilities: trust.said().to_vec(),
+            probabilities: tally.trust.said().to_vec(),
         }
     }
 
-    pub(super) fn header() -> String {
-        format!(
-            "  {:<22}{:>7}{:>7}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n",
-            "variant",
-            "starts",
-            "wrong",
-            "scans",
-            "unique",
-            "wrong",
-            "losses",
-            "5 m, %",
-            "10 m, %",
-            "RMS, m"
-        )
-    }
+    pub(super) const HEADER: &str = "  variant                starts  wrong   scans   unique   wrong  losses  5 m, % 10 m, %  RMS, m\n";
 
     pub(super) fn row(&self) -> String {
         format!(

@@ -40,8 +40,7 @@ pub(super) fn mirror(it: &mut Material) -> Change<()> {
     Ok(())
 }
 
-/// Turns the laser by 180° without changing its mount. The truth stays, so a base that is found
-/// turned is wrong.
+/// Turns the laser by 180°, not its mount: a base that is found turned is wrong.
 pub(super) fn turn(it: &mut Material) -> Change<()> {
     each(it, |scan| {
         let by = if scan.angle_min > 0.0 { -PI } else { PI };
@@ -57,12 +56,8 @@ pub(super) fn shift(it: &mut Material) -> Change<()> {
         let turn = OFF.1.to_radians();
         let beams = scan.ranges.len() as f32;
         let mut ranges = vec![f32::INFINITY; scan.ranges.len()];
-        for (i, &range) in scan
-            .ranges
-            .iter()
-            .enumerate()
-            .filter(|(_, r)| r.is_finite())
-        {
+        let all = scan.ranges.iter().enumerate();
+        for (i, &range) in all.filter(|(_, range)| range.is_finite()) {
             let bearing = scan.angle_min + i as f32 * scan.angle_increment;
             let (x, y) = (range * bearing.cos(), range * bearing.sin() - OFF.0);
             let beyond = (y.atan2(x) - turn - scan.angle_min).rem_euclid(TAU);
@@ -96,10 +91,8 @@ pub(super) fn freeze(it: &mut Material) -> Change<()> {
         return Err("the drive has one scan");
     };
     for step in after {
-        step.scan
-            .message
-            .ranges
-            .clone_from(&last.scan.message.ranges);
+        let ranges = &last.scan.message.ranges;
+        step.scan.message.ranges.clone_from(ranges);
         for (other, last) in step.scan.others.iter_mut().zip(&last.scan.others) {
             other.message.ranges.clone_from(&last.message.ranges);
         }
@@ -141,7 +134,6 @@ pub(super) fn narrow(it: &mut Material, degrees: f32) -> Change<()> {
     is_narrowed.then_some(()).ok_or("it sees no more than that")
 }
 
-/// Limits the maximum range.
 pub(super) fn shorten(it: &mut Material, metres: f32) -> Change<()> {
     each(it, |scan| {
         scan.range_max = scan.range_max.min(metres);
@@ -171,7 +163,6 @@ pub(super) fn add_noise(it: &mut Material, means: &mut Means<'_>, sigma_m: f32) 
     Ok(())
 }
 
-/// Adds normal errors to the readings of one scan.
 pub(super) fn noise(scan: &mut LaserScan, means: &mut Means<'_>, sigma_m: f32) {
     for range in scan.ranges.iter_mut().filter(|range| range.is_finite()) {
         let error: f32 = StandardNormal.sample(&mut means.rng);

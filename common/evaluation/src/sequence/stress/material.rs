@@ -16,7 +16,6 @@ use crate::truths::Truths;
 /// Random numbers and another map for a change.
 pub(super) struct Means<'a> {
     pub(super) rng: Xoshiro256PlusPlus,
-    /// Map of another building.
     pub(super) other_map: Option<&'a OccupancyGrid>,
 }
 
@@ -35,7 +34,6 @@ pub(super) struct Material {
     pub(super) starts_until_m: f64,
 }
 
-/// A scan and its pose.
 #[derive(Clone)]
 pub(super) struct Step {
     pub(super) scan: TakenScan,
@@ -47,10 +45,6 @@ pub(super) struct Step {
 }
 
 impl Material {
-    /// Reads a recording, and the scans of its session.
-    ///
-    /// # Errors
-    /// The recording cannot be read.
     pub(super) fn read(
         recording: &Recording,
         session: &mut Session<'_>,
@@ -82,10 +76,6 @@ impl Material {
         })
     }
 
-    /// Searches all scans.
-    ///
-    /// # Errors
-    /// The CPU clock cannot be read.
     pub(super) fn search(
         &self,
         session: &mut Session<'_>,
@@ -110,9 +100,6 @@ impl Material {
     }
 
     /// Copies of moments with their search results, and with this odometry.
-    ///
-    /// # Errors
-    /// The recording cannot be read.
     pub(super) fn with_odometry(
         &self,
         session: &mut Session<'_>,

@@ -28,11 +28,8 @@ const SILENT_S: (f64, f64) = (10.0, 40.0);
 /// Repeats measurements at one place, with odometry that agrees.
 pub(super) fn stand(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     let middle = it.steps.len() / 2;
-    let known = it
-        .steps
-        .iter()
-        .skip(middle)
-        .find(|step| step.truth.is_some());
+    let mut later = it.steps.iter().skip(middle);
+    let known = later.find(|step| step.truth.is_some());
     let Some(place) = known.cloned() else {
         return Err("no truth is known in its second half");
     };
@@ -67,8 +64,7 @@ pub(super) fn stand(it: &mut Material, means: &mut Means<'_>) -> Change<()> {
     Ok(())
 }
 
-/// Starts the drive off the map: makes all cells unknown that are nearer to its first part than to
-/// the rest.
+/// Starts off the map: makes all cells unknown that are nearer to its first part than to the rest.
 pub(super) fn start_off_map(it: &mut Material) -> Change<()> {
     let off_map_m = OFF_MAP_M.min(it.length_m() / 3.0);
     let until = it.steps.partition_point(|step| step.gone_m <= off_map_m);
@@ -103,8 +99,7 @@ pub(super) fn start_off_map(it: &mut Material) -> Change<()> {
     }
 }
 
-/// Kidnaps the robot repeatedly while its odometry reports no motion: cuts the drive into pieces
-/// and reorders them.
+/// Kidnaps the robot repeatedly while its odometry stands still: reorders pieces of the drive.
 pub(super) fn carry_away(moments: &mut Vec<Moment>) -> Change<()> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let piece_m = CARRIED_M.min(total / 4.0);
@@ -113,10 +108,7 @@ pub(super) fn carry_away(moments: &mut Vec<Moment>) -> Change<()> {
     }
     let of = |moment: &Moment| (moment.gone_m / piece_m) as usize;
     let pieces: Vec<&[Moment]> = moments.chunk_by(|a, b| of(a) == of(b)).collect();
-    let Some(period_ns) = moments
-        .get(1)
-        .map(|second| second.stamp_ns - moments[0].stamp_ns)
-    else {
+    let Some(period_ns) = moments.get(1).map(|it| it.stamp_ns - moments[0].stamp_ns) else {
         return Err("the drive has one scan");
     };
     let half = pieces.len() / 2;

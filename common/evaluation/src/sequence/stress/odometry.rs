@@ -15,7 +15,6 @@ fn middle(odometry: &[Odometry]) -> usize {
     odometry.partition_point(|one| one.stamp.measured_ns < first + (last - first) / 2)
 }
 
-/// Ends the odometry in mid-drive.
 pub(super) fn end(odometry: &mut Vec<Odometry>) {
     odometry.truncate(middle(odometry));
 }
@@ -43,12 +42,10 @@ pub(super) fn turn_more(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(step.x, step.y, 1.1 * step.yaw));
 }
 
-/// Swaps forwards and backwards.
 pub(super) fn reverse(odometry: &mut [Odometry]) {
     each_step(odometry, |step| Pose::new(-step.x, step.y, step.yaw));
 }
 
-/// Delays the stamps.
 pub(super) fn delay(odometry: &mut Vec<Odometry>) {
     for one in odometry {
         one.stamp.measured_ns += LATE_NS;

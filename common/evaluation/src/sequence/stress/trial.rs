@@ -13,7 +13,6 @@ use super::material::Material;
 use super::material::{Change, Means};
 use super::variants::{Variant, Way};
 
-/// A drive that has been read and searched as recorded.
 pub(super) struct Recorded<'a> {
     pub(super) recording: &'a Recording,
     pub(super) options: &'a Options,
@@ -22,12 +21,10 @@ pub(super) struct Recorded<'a> {
     pub(super) progress: &'a Progress,
 }
 
-/// Results of a variant.
 pub(super) struct Trial {
     pub(super) starts: Starts,
     pub(super) followed: Followed,
     pub(super) first_wrong: Option<Wrong>,
-    /// Map that was searched.
     pub(super) map: ::map::OccupancyGrid,
 }
 
@@ -45,9 +42,6 @@ pub(super) struct Wrong {
 
 impl Recorded<'_> {
     /// Creates and judges a variant, or returns the reason why it does not apply.
-    ///
-    /// # Errors
-    /// The changed map cannot be used, or the CPU clock cannot be read.
     pub(super) fn judge(
         &self,
         session: &mut Session<'_>,

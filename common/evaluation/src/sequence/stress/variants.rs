@@ -13,15 +13,14 @@ use super::super::drive::{Moment, connect};
 use super::material::{Change, Material, Means};
 use super::{drawn, laser, map, motion, odometry, world};
 
-pub(super) struct Variant {
-    pub(super) name: &'static str,
+pub(in super::super) struct Variant {
+    pub(in super::super) name: &'static str,
     pub(super) way: Way,
 }
 
 /// Stage at which a variant changes the drive.
 #[derive(Clone, Copy)]
 pub(super) enum Way {
-    /// No change.
     Undisturbed,
     /// Changes the map or the scans; everything is searched again.
     Drive(fn(&mut Material, &mut Means<'_>) -> Change<()>),
@@ -149,20 +148,13 @@ const GROUPS: [(&str, &[Variant]); 5] = [
 /// Selection of variants, in the order of the tables above.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Stress {
-    /// Names of variants and groups.
     Of(Vec<String>),
     /// All variants; the option's value was a file instead of a list.
     AllOf(PathBuf),
 }
 
 impl Stress {
-    /// Names of the selected variants.
-    pub(in super::super) fn names(&self) -> Vec<&'static str> {
-        let variants = self.variants().into_iter();
-        variants.map(|variant| variant.name).collect()
-    }
-
-    pub(super) fn variants(&self) -> Vec<&'static Variant> {
+    pub(in super::super) fn variants(&self) -> Vec<&'static Variant> {
         let is_meant = |group: &str, name: &str| match self {
             Stress::AllOf(_) => true,
             Stress::Of(names) => names

@@ -10,8 +10,7 @@ use simulation::Obstacles;
 use super::material::Material;
 use super::material::{Change, Means};
 
-/// Radius of a standing person (a disc), distance from the laser, and distance from the robot's
-/// path, all in metres.
+/// Radius of a person (a disc), distance from the laser and from the robot's path, in metres.
 const RADIUS_M: f64 = 0.2;
 const STANDS_M: std::ops::Range<f64> = 0.7..3.0;
 const FROM_WAY_M: f64 = 0.5;
@@ -83,7 +82,6 @@ fn hide(scan: &mut TakenScan, people: &[Place]) -> f64 {
     f64::from(hidden) / scan.message.ranges.len().max(1) as f64
 }
 
-/// People near a laser, in its frame.
 fn seen_from(people: &[Place], at: Pose) -> Vec<Place> {
     let from = at.inverse();
     let seen = people.iter().map(|&(x, y)| from.transform(x, y));
@@ -112,7 +110,6 @@ pub(super) fn stand_people(it: &mut Material, means: &mut Means<'_>, share: f64)
     Ok(())
 }
 
-/// Share of a scan's beams that people hide.
 fn hidden_at(it: &Material, i: usize, people: &[Place]) -> f64 {
     let step = &it.steps[i];
     hide(

@@ -1,13 +1,16 @@
-//! Report for a build server.
+//! Outcome of a recording: as JSON, and as a report for a build server.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::compare::{Difference, table};
+use crate::outcomes::not_passed;
+use crate::text;
 
-/// Outcome of one recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outcome {
     pub(super) name: String,
@@ -32,11 +35,37 @@ impl Outcome {
     }
 }
 
-/// Formats a JUnit report: a suite per recording, and a test case per scan, which fails if a result
-/// differs. A recording that was not replayed to its end has an additional test case with an error.
-///
-/// # Errors
-/// A text contains characters that XML does not allow.
+/// Outcome of a recording, as JSON.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Object<'a> {
+    /// Name of the recording among the others.
+    case: &'a str,
+    /// Number of scans with results.
+    scans: usize,
+    seconds: f64,
+    /// True if the results were written as the new expectation.
+    accepted: bool,
+    /// Why the recording could not be played or compared to its end.
+    error: Option<&'a str>,
+    differences: &'a [Difference],
+}
+
+impl<'a> Object<'a> {
+    /// `accepts` is true with `--accept`.
+    pub(super) fn of(outcome: &'a Outcome, accepts: bool) -> Self {
+        let result = outcome.result.as_ref();
+        Object {
+            case: &outcome.name,
+            scans: outcome.scans.len(),
+            seconds: outcome.took.as_secs_f64(),
+            accepted: accepts && result.is_ok(),
+            error: result.err().map(String::as_str),
+            differences: result.map_or(&[], Vec::as_slice),
+        }
+    }
+}
+
+/// Formats a JUnit report: a suite per recording, and a test case per scan and per error.
 pub(super) fn report(outcomes: &[Outcome]) -> Result<String, quick_junit::SerializeError> {
     let mut report = Report::new("backcast regress");
     report.add_test_suites(outcomes.iter().map(suite));
@@ -45,8 +74,7 @@ pub(super) fn report(outcomes: &[Outcome]) -> Result<String, quick_junit::Serial
 
 fn suite(outcome: &Outcome) -> TestSuite {
     let mut by_scan: BTreeMap<i64, Vec<Difference>> = BTreeMap::new();
-    let differences = outcome.result.as_ref().map_or(&[][..], Vec::as_slice);
-    for difference in differences {
+    for difference in outcome.result.iter().flatten() {
         let of_scan = by_scan.entry(difference.stamp_ns).or_default();
         of_scan.push(difference.clone());
     }
@@ -57,25 +85,18 @@ fn suite(outcome: &Outcome) -> TestSuite {
             [] => TestCaseStatus::success(),
             differences => failed(differences),
         };
-        let (seconds, ns) = (
-            stamp_ns.div_euclid(1_000_000_000),
-            stamp_ns.rem_euclid(1_000_000_000),
-        );
-        let mut case = TestCase::new(format!("scan {seconds}.{ns:09}"), status);
+        let mut case = TestCase::new(format!("scan {}", text::seconds(stamp_ns)), status);
         case.set_classname(outcome.name.clone());
         case
     };
-    for &stamp_ns in &outcome.scans {
-        let differences = by_scan.remove(&stamp_ns).unwrap_or_default();
-        suite.add_test_case(scan(stamp_ns, &differences));
-    }
-    // Expected scans without a result.
-    for (stamp_ns, differences) in by_scan {
+    let mut of = |&stamp_ns: &i64| (stamp_ns, by_scan.remove(&stamp_ns).unwrap_or_default());
+    let found: Vec<_> = outcome.scans.iter().map(&mut of).collect();
+    // Last, expected scans without a result.
+    for (stamp_ns, differences) in found.into_iter().chain(by_scan) {
         suite.add_test_case(scan(stamp_ns, &differences));
     }
     if let Err(problem) = &outcome.result {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_message(problem.clone());
+        let status = not_passed(NonSuccessKind::Error, problem.clone());
         let mut case = TestCase::new("recording", status);
         case.set_classname(outcome.name.clone());
         suite.add_test_case(case);
@@ -84,12 +105,8 @@ fn suite(outcome: &Outcome) -> TestSuite {
 }
 
 fn failed(differences: &[Difference]) -> TestCaseStatus {
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    let names: Vec<&str> = differences
-        .iter()
-        .map(|difference| difference.what)
-        .collect();
-    status.set_message(names.join(", "));
+    let names: Vec<&str> = differences.iter().map(|it| it.what).collect();
+    let mut status = not_passed(NonSuccessKind::Failure, names.join(", "));
     status.set_description(table(differences));
     status
 }
@@ -117,12 +134,12 @@ mod tests {
             difference(7_000_000_001, "x_m"),
             difference(9, "scan"),
         ];
-        let text = report(&[
+        let outcomes = [
             outcome("sound", &[1, 2], Ok(Vec::new())),
             outcome("changed", &[7_000_000_001, 8_000_000_000], Ok(differences)),
             outcome("broken", &[], Err("no map".to_owned())),
-        ])
-        .unwrap();
+        ];
+        let text = report(&outcomes).unwrap();
         for part in [
             "tests=\"6\"",
             "failures=\"2\"",
@@ -136,5 +153,13 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
+        let printed = |i: usize| serde_json::to_value(Object::of(&outcomes[i], true)).unwrap();
+        let changed = printed(1);
+        assert_eq!(changed["case"], "changed");
+        assert_eq!(changed["scans"], 2);
+        assert!(changed["accepted"] == true && changed["error"].is_null());
+        assert_eq!(changed["differences"][2]["what"], "scan");
+        let broken = printed(2);
+        assert!(broken["accepted"] == false && broken["error"] == "no map");
     }
 }
