@@ -15,9 +15,6 @@ const LITTLE_ENDIAN: [u8; 2] = [0, 1];
 
 /// Decodes a message. Bytes after its last field are ignored, as in ROS: writers add padding, and a
 /// later version of a type may have more fields.
-///
-/// # Errors
-/// The reason if it cannot be decoded.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     let Some((&[kind, format, _, _], body)) = bytes.split_first_chunk() else {
         return Err(format!(

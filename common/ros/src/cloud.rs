@@ -94,9 +94,6 @@ impl Cloud {
     }
 
     /// Decodes the bytes of a message with such a schema.
-    ///
-    /// # Errors
-    /// The reason if it cannot be decoded.
     pub fn decode(schema: &str, bytes: &[u8]) -> Result<Self, String> {
         match schema == PointCloud2::SCHEMA {
             true => cdr::decode(bytes).map(Cloud::Points),

@@ -1,159 +1,145 @@
-//! Text of message definitions, concatenated at compile time.
+//! Types of ROS, each declared once: the struct, and the text of its definition from the same
+//! fields.
 //!
-//! Types that several messages share are defined here once.
+//! ```text
+//! message Name = "package/msg/Name" with "CONSTANTS" [Used] { field: type = default, … }
+//! part Name = "package/Name" with "CONSTANTS" [Used] { … }
+//! call Name [Used] { … }
+//! service Name = "package/srv/Name": Request -> Response;
+//! ```
+//!
+//! `message` is a [`RosMessage`](crate::RosMessage), `part` a type that others use, and `call` the
+//! request or response of a service. `Used` are the parts whose definitions follow, each with those
+//! that it uses itself. A part defines a macro of its name, so parts come first.
 
-/// Fields of a message, then each type that it uses: a shared type by its name, which includes the
-/// types that it uses itself, or any other by its name and fields.
-macro_rules! definition {
-    ($fields:literal $(, $part:tt)+ $(,)?) => {
-        concat!($fields $(, $crate::definition::part!($part))+)
+/// An opaque byte, `byte`.
+pub(crate) type Byte = u8;
+
+/// A text of at most 255 bytes.
+pub(crate) type ShortString = String;
+
+/// A sequence of at most one element.
+pub(crate) type AtMostOne<T> = Vec<T>;
+
+/// A covariance row by row over x, y and yaw.
+pub(crate) type Rows3 = [f64; 9];
+
+/// A covariance row by row over x, y, z and the rotations about them.
+pub(crate) type Rows6 = [[f64; 6]; 6];
+
+macro_rules! declare {
+    () => {};
+    (
+        $(#[$about:meta])*
+        message $name:ident = $schema:literal $(with $constants:literal)?
+        [$($used:ident),*] $fields:tt
+        $($rest:tt)*
+    ) => {
+        structure!($(#[$about])* $name $fields);
+        impl $crate::RosMessage for $name {
+            const SCHEMA: &'static str = $schema;
+            const DEFINITION: &'static str = concat!($($constants,)? lines!($fields [$($used),*]));
+        }
+        declare!($($rest)*);
+    };
+    (
+        $(#[$about:meta])*
+        part $name:ident = $ros:literal $(with $constants:literal)? [$($used:ident),*] $fields:tt
+        $($rest:tt)*
+    ) => {
+        structure!($(#[$about])* $name $fields);
+        part!($name = $ros, $($constants,)? lines!($fields [$($used),*]));
+        declare!($($rest)*);
+    };
+    ($(#[$about:meta])* call $name:ident [$($used:ident),*] $fields:tt $($rest:tt)*) => {
+        structure!($(#[$about])* $name $fields);
+        impl $name {
+            pub(crate) const DEFINITION: &'static str = lines!($fields [$($used),*]);
+        }
+        declare!($($rest)*);
+    };
+    (service $name:ident = $ros:literal: $request:ident -> $response:ident; $($rest:tt)*) => {
+        #[derive(Debug)]
+        pub enum $name {}
+        impl $crate::RosService for $name {
+            const NAME: &'static str = $ros;
+            const REQUEST: &'static str = $request::DEFINITION;
+            const RESPONSE: &'static str = $response::DEFINITION;
+            type Request = $request;
+            type Response = $response;
+        }
+        declare!($($rest)*);
     };
 }
 
-/// Definition of a type, with the separator line above it.
+/// Defines the macro of a part: its name as a type, and its definition with the separator above.
 macro_rules! part {
-    (Header) => {
-        definition!(
-            "",
-            "\
-std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-",
-            Time
-        )
-    };
-    (Time) => {
-        $crate::definition::part!(
-            "\
-builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-"
-        )
-    };
-    (PoseWithCovariance) => {
-        definition!(
-            "",
-            "\
-geometry_msgs/PoseWithCovariance
-geometry_msgs/Pose pose
-float64[36] covariance
-",
-            Pose
-        )
-    };
-    (Pose) => {
-        definition!(
-            "",
-            "\
-geometry_msgs/Pose
-geometry_msgs/Point position
-geometry_msgs/Quaternion orientation
-",
-            "\
-geometry_msgs/Point
-float64 x
-float64 y
-float64 z
-",
-            Quaternion
-        )
-    };
-    (Quaternion) => {
-        $crate::definition::part!(
-            "\
-geometry_msgs/Quaternion
-float64 x 0
-float64 y 0
-float64 z 0
-float64 w 1
-"
-        )
-    };
-    (Vector3) => {
-        $crate::definition::part!(
-            "\
-geometry_msgs/Vector3
-float64 x
-float64 y
-float64 z
-"
-        )
-    };
-    (Pose2D) => {
-        $crate::definition::part!(
-            "\
-geometry_msgs/Pose2D
-float64 x
-float64 y
-float64 theta
-"
-        )
-    };
-    (State) => {
-        $crate::definition::part!(
-            "\
-lifecycle_msgs/State
-uint8 id
-string label
-"
-        )
-    };
-    (Transition) => {
-        $crate::definition::part!(
-            "\
-lifecycle_msgs/Transition
-uint8 id
-string label
-"
-        )
-    };
-    (ParameterValue) => {
-        $crate::definition::part!(
-            "\
-rcl_interfaces/ParameterValue
-uint8 type
-bool bool_value
-int64 integer_value
-float64 double_value
-string string_value
-byte[] byte_array_value
-bool[] bool_array_value
-int64[] integer_array_value
-float64[] double_array_value
-string[] string_array_value
-"
-        )
-    };
-    (Parameter) => {
-        definition!(
-            "",
-            "\
-rcl_interfaces/Parameter
-string name
-rcl_interfaces/ParameterValue value
-",
-            ParameterValue
-        )
-    };
-    (SetParametersResult) => {
-        $crate::definition::part!(
-            "\
-rcl_interfaces/SetParametersResult
-bool successful
-string reason
-"
-        )
-    };
-    ($name_and_fields:literal) => {
-        concat!(
-            "\
+    ($name:ident = $ros:literal, $($text:tt)*) => {
+        macro_rules! $name {
+            (name) => {
+                $ros
+            };
+            (part) => {
+                concat!(
+                    "\
 ================================================================================
 MSG: ",
-            $name_and_fields
+                    $ros, "\n", $($text)*
+                )
+            };
+        }
+    };
+}
+
+macro_rules! structure {
+    ($(#[$about:meta])* $name:ident { $(
+        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)? $(= $default:literal)?,
+    )* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+        pub struct $name { $( $(#[$of])* pub $field: $kind $(<$item>)?, )* }
+    };
+}
+
+/// Fields of a definition, and the parts that it uses.
+macro_rules! lines {
+    ({ $(
+        $(#[$of:meta])* $field:ident: $kind:ident $(<$item:ident>)? $(= $default:literal)?,
+    )* } [$($used:ident),*]) => {
+        concat!(
+            $(kind!($kind $($item)?), " ", name!($field) $(, " ", $default)?, "\n",)*
+            $($used!(part),)*
         )
     };
 }
 
-pub(super) use {definition, part};
+macro_rules! name {
+    (r#type) => {
+        "type"
+    };
+    ($field:ident) => {
+        stringify!($field)
+    };
+}
+
+#[rustfmt::skip]
+macro_rules! kind {
+    (bool) => { "bool" };
+    (Byte) => { "byte" };
+    (i8) => { "int8" };
+    (u8) => { "uint8" };
+    (u16) => { "uint16" };
+    (i32) => { "int32" };
+    (u32) => { "uint32" };
+    (i64) => { "int64" };
+    (u64) => { "uint64" };
+    (f32) => { "float32" };
+    (f64) => { "float64" };
+    (Rows3) => { "float64[9]" };
+    (Rows6) => { "float64[36]" };
+    (String) => { "string" };
+    (ShortString) => { "string<=255" };
+    (Vec $item:ident) => { concat!(kind!($item), "[]") };
+    (AtMostOne $item:ident) => { concat!(kind!($item), "[<=1]") };
+    ($part:ident) => { $part!(name) };
+}

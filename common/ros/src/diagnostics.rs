@@ -1,8 +1,49 @@
-//! Converts a node's health to a message of ROS.
+//! `diagnostic_msgs/msg/DiagnosticArray`, and a node's health as such a message.
 
 use messages::{HealthHeader, NodeState};
 
-use crate::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
+use crate::definition::Byte;
+use crate::{Header, Time};
+
+declare! {
+    /// `diagnostic_msgs/msg/DiagnosticStatus`.
+    part DiagnosticStatus = "diagnostic_msgs/DiagnosticStatus" with "\
+byte OK=0
+byte WARN=1
+byte ERROR=2
+byte STALE=3
+" [] {
+        /// One of the constants above.
+        level: Byte,
+        name: String,
+        /// State in words.
+        message: String,
+        hardware_id: String,
+        values: Vec<KeyValue>,
+    }
+
+    /// `diagnostic_msgs/msg/KeyValue`.
+    part KeyValue = "diagnostic_msgs/KeyValue" [] {
+        key: String,
+        value: String,
+    }
+
+    /// States of a robot's components.
+    message DiagnosticArray = "diagnostic_msgs/msg/DiagnosticArray"
+        [Header, DiagnosticStatus, KeyValue] {
+        /// Time; the frame is not used.
+        header: Header,
+        status: Vec<DiagnosticStatus>,
+    }
+}
+
+impl DiagnosticStatus {
+    pub const OK: u8 = 0;
+    pub const WARN: u8 = 1;
+    pub const ERROR: u8 = 2;
+    /// No data is received from the component.
+    pub const STALE: u8 = 3;
+}
 
 /// Converts the health of a node and its last error; `stamp` is the time of the header.
 #[must_use]

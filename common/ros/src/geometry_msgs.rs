@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ConversionError;
+use super::definition::Rows6;
 
 /// Tolerance of a quaternion's squared length around 1, as in tf2.
 const ROTATION_TOLERANCE: f64 = 0.01;
@@ -36,23 +37,6 @@ impl std::fmt::Display for Mend {
 /// Indices of x, y and yaw among x, y, z and the rotations about them.
 const PLANAR_AXES: [usize; 3] = [0, 1, 5];
 
-/// `geometry_msgs/msg/Point`, in metres.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Point {
-    pub x: f64,
-    pub y: f64,
-    pub z: f64,
-}
-
-/// `geometry_msgs/msg/Vector3`: metres, metres per second or radians per second along or about the
-/// frame's axes.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Vector3 {
-    pub x: f64,
-    pub y: f64,
-    pub z: f64,
-}
-
 /// `geometry_msgs/msg/Quaternion`; `w` is the real part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quaternion {
@@ -62,44 +46,68 @@ pub struct Quaternion {
     pub w: f64,
 }
 
-/// `geometry_msgs/msg/Pose`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Pose {
-    pub position: Point,
-    pub orientation: Quaternion,
-}
+part!(
+    Quaternion = "geometry_msgs/Quaternion",
+    "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"
+);
 
-/// `geometry_msgs/msg/PoseWithCovariance`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct PoseWithCovariance {
-    pub pose: Pose,
-    /// Row by row over x, y, z and the rotations about them.
-    pub covariance: [[f64; 6]; 6],
-}
+declare! {
+    /// `geometry_msgs/msg/Point`, in metres.
+    #[derive(Copy)]
+    part Point = "geometry_msgs/Point" [] {
+        x: f64,
+        y: f64,
+        z: f64,
+    }
 
-/// `geometry_msgs/msg/Twist`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Twist {
-    /// Metres per second.
-    pub linear: Vector3,
-    /// Radians per second.
-    pub angular: Vector3,
-}
+    /// `geometry_msgs/msg/Vector3`: metres, metres per second or radians per second along or about
+    /// the frame's axes.
+    #[derive(Copy)]
+    part Vector3 = "geometry_msgs/Vector3" [] {
+        x: f64,
+        y: f64,
+        z: f64,
+    }
 
-/// `geometry_msgs/msg/TwistWithCovariance`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct TwistWithCovariance {
-    pub twist: Twist,
-    /// Row by row over x, y, z and the rotations about them.
-    pub covariance: [[f64; 6]; 6],
-}
+    /// `geometry_msgs/msg/Pose`.
+    #[derive(Copy)]
+    part Pose = "geometry_msgs/Pose" [Point, Quaternion] {
+        position: Point,
+        orientation: Quaternion,
+    }
 
-/// `geometry_msgs/msg/Transform`: pose of the child frame in the parent frame.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Transform {
-    /// Position of the child frame's origin, in metres.
-    pub translation: Vector3,
-    pub rotation: Quaternion,
+    /// `geometry_msgs/msg/PoseWithCovariance`.
+    #[derive(Copy)]
+    part PoseWithCovariance = "geometry_msgs/PoseWithCovariance" [Pose] {
+        pose: Pose,
+        /// Row by row over x, y, z and the rotations about them.
+        covariance: Rows6,
+    }
+
+    /// `geometry_msgs/msg/Twist`.
+    #[derive(Copy)]
+    part Twist = "geometry_msgs/Twist" [Vector3] {
+        /// Metres per second.
+        linear: Vector3,
+        /// Radians per second.
+        angular: Vector3,
+    }
+
+    /// `geometry_msgs/msg/TwistWithCovariance`.
+    #[derive(Copy)]
+    part TwistWithCovariance = "geometry_msgs/TwistWithCovariance" [Twist] {
+        twist: Twist,
+        /// Row by row over x, y, z and the rotations about them.
+        covariance: Rows6,
+    }
+
+    /// `geometry_msgs/msg/Transform`: pose of the child frame in the parent frame.
+    #[derive(Copy)]
+    part Transform = "geometry_msgs/Transform" [Vector3, Quaternion] {
+        /// Position of the child frame's origin, in metres.
+        translation: Vector3,
+        rotation: Quaternion,
+    }
 }
 
 impl Default for Quaternion {
@@ -129,9 +137,6 @@ impl Quaternion {
 
     /// Heading of the rotated x axis, radians in `[-π, π]`, after the correction by
     /// [`Quaternion::mended`].
-    ///
-    /// # Errors
-    /// If the quaternion is no rotation.
     pub fn yaw(self) -> Result<f64, ConversionError> {
         let (Quaternion { x, y, z, w }, _) = self.mended()?;
         // Both arguments scale with the squared length, so it does not need to be 1.
@@ -140,9 +145,6 @@ impl Quaternion {
 
     /// Corrects the quaternion: all zeros, as in a field that was never set, become the identity,
     /// and a rounded one gets the length 1. Also returns the correction that was applied.
-    ///
-    /// # Errors
-    /// If the quaternion is no rotation.
     pub fn mended(self) -> Result<(Self, Option<Mend>), ConversionError> {
         let Quaternion { x, y, z, w } = self;
         let squared = x * x + y * y + z * z + w * w;
@@ -179,9 +181,6 @@ impl Pose {
     }
 
     /// Projects the pose to the plane.
-    ///
-    /// # Errors
-    /// If its position is not finite, or its orientation is no rotation.
     pub fn planar(&self) -> Result<geometry::Pose, ConversionError> {
         let Point { x, y, .. } = self.position;
         if !(x.is_finite() && y.is_finite()) {
@@ -287,7 +286,7 @@ mod tests {
             w,
             ..Quaternion::default()
         };
-        assert_eq!(of_length(0.0).yaw().unwrap(), 0.0, "nobody filled it in");
+        assert_eq!(of_length(0.0).yaw().unwrap(), 0.0, "it was never set");
         assert_eq!(of_length(0.96).yaw().unwrap(), 0.0, "it was rounded");
         let message = of_length(0.9).yaw().unwrap_err().to_string();
         assert_eq!(

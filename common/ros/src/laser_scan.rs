@@ -1,34 +1,33 @@
 //! `sensor_msgs/msg/LaserScan`.
 
 use messages::ScanHeader;
-use serde::{Deserialize, Serialize};
 
-use super::definition::definition;
-use super::{Header, RosMessage, Time};
+use super::{Header, Time};
 
-/// One revolution of a laser.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LaserScan {
-    /// Time of the first beam, and the laser's frame.
-    pub header: Header,
-    /// Bearing of the first beam, in radians counter-clockwise from ahead.
-    pub angle_min: f32,
-    /// Bearing of the last beam, in radians.
-    pub angle_max: f32,
-    /// Angle between beams, in radians.
-    pub angle_increment: f32,
-    /// Time between beams, in seconds.
-    pub time_increment: f32,
-    /// Time between scans, in seconds.
-    pub scan_time: f32,
-    /// Smallest valid range, in metres.
-    pub range_min: f32,
-    /// Largest valid range, in metres.
-    pub range_max: f32,
-    /// Ranges in metres; infinity if nothing returned.
-    pub ranges: Vec<f32>,
-    /// Intensities in the device's own unit; empty if it has none.
-    pub intensities: Vec<f32>,
+declare! {
+    /// One revolution of a laser.
+    message LaserScan = "sensor_msgs/msg/LaserScan" [Header] {
+        /// Time of the first beam, and the laser's frame.
+        header: Header,
+        /// Bearing of the first beam, in radians counter-clockwise from ahead.
+        angle_min: f32,
+        /// Bearing of the last beam, in radians.
+        angle_max: f32,
+        /// Angle between beams, in radians.
+        angle_increment: f32,
+        /// Time between beams, in seconds.
+        time_increment: f32,
+        /// Time between scans, in seconds.
+        scan_time: f32,
+        /// Smallest valid range, in metres.
+        range_min: f32,
+        /// Largest valid range, in metres.
+        range_max: f32,
+        /// Ranges in metres; infinity if nothing returned.
+        ranges: Vec<f32>,
+        /// Intensities in the device's own unit; empty if it has none.
+        intensities: Vec<f32>,
+    }
 }
 
 impl LaserScan {
@@ -50,23 +49,4 @@ impl LaserScan {
             intensities: Vec::new(),
         }
     }
-}
-
-impl RosMessage for LaserScan {
-    const SCHEMA: &'static str = "sensor_msgs/msg/LaserScan";
-    const DEFINITION: &'static str = definition!(
-        "\
-std_msgs/Header header
-float32 angle_min
-float32 angle_max
-float32 angle_increment
-float32 time_increment
-float32 scan_time
-float32 range_min
-float32 range_max
-float32[] ranges
-float32[] intensities
-",
-        Header,
-    );
 }

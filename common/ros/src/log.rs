@@ -1,26 +1,31 @@
 //! `rcl_interfaces/msg/Log`.
 
 use messages::LogHeader;
-use serde::{Deserialize, Serialize};
 
-use super::definition::definition;
-use super::{RosMessage, Time};
+use super::Time;
 
-/// A line of a node's log.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Log {
-    pub stamp: Time,
-    /// Severity: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
-    pub level: u8,
-    /// Name of the node.
-    pub name: String,
-    pub msg: String,
-    /// Source file, if known.
-    pub file: String,
-    /// Function, if known.
-    pub function: String,
-    /// Source line; 0 if unknown.
-    pub line: u32,
+declare! {
+    /// A line of a node's log.
+    message Log = "rcl_interfaces/msg/Log" with "\
+byte DEBUG=10
+byte INFO=20
+byte WARN=30
+byte ERROR=40
+byte FATAL=50
+" [Time] {
+        stamp: Time,
+        /// Severity: 10 debug, 20 info, 30 warning, 40 error, 50 fatal.
+        level: u8,
+        /// Name of the node.
+        name: String,
+        msg: String,
+        /// Source file, if known.
+        file: String,
+        /// Function, if known.
+        function: String,
+        /// Source line; 0 if unknown.
+        line: u32,
+    }
 }
 
 impl Log {
@@ -36,27 +41,6 @@ impl Log {
             ..Log::default()
         }
     }
-}
-
-impl RosMessage for Log {
-    const SCHEMA: &'static str = "rcl_interfaces/msg/Log";
-    const DEFINITION: &'static str = definition!(
-        "\
-byte DEBUG=10
-byte INFO=20
-byte WARN=30
-byte ERROR=40
-byte FATAL=50
-builtin_interfaces/Time stamp
-uint8 level
-string name
-string msg
-string file
-string function
-uint32 line
-",
-        Time,
-    );
 }
 
 #[cfg(test)]

@@ -11,9 +11,6 @@ use crate::ConversionError;
 use crate::{LaserScan, PoseStamped, Time};
 
 /// Converts the name of a frame.
-///
-/// # Errors
-/// If it is longer than a message of the graph can hold.
 pub fn frame(frame: &str) -> Result<FrameName, ConversionError> {
     if frame.len() <= FrameName::CAPACITY {
         return Ok(FrameName::new(frame));
@@ -45,9 +42,6 @@ pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> 
 }
 
 /// Converts odometry.
-///
-/// # Errors
-/// If the pose is invalid, or the name of a frame is too long.
 pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     Ok(Odometry {
         stamp: measured(message.header.stamp),
@@ -60,9 +54,6 @@ pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
 }
 
 /// Converts the true pose of a laser.
-///
-/// # Errors
-/// Same as [`odometry`].
 pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, ConversionError> {
     Ok(GroundTruth {
         stamp: measured(message.header.stamp),

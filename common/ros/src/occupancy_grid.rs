@@ -2,32 +2,30 @@
 
 use map::OccupancyGrid;
 use messages::{FieldHeader, MapHeader};
-use serde::{Deserialize, Serialize};
 
-use super::definition::definition;
-use super::{ConversionError, Header, Pose, RosMessage, Time, planar};
+use super::{ConversionError, Header, Pose, Time, planar};
 
-/// An occupancy grid.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct OccupancyGridMsg {
-    /// Time of publication, and the map's frame.
-    pub header: Header,
-    pub info: MapMetaData,
-    /// Row by row from the lowest y: 0 (free) to 100 (occupied), -1 unknown.
-    pub data: Vec<i8>,
-}
+declare! {
+    /// `nav_msgs/msg/MapMetaData`.
+    part MapMetaData = "nav_msgs/MapMetaData" [Pose] {
+        /// Time at which the map was loaded.
+        map_load_time: Time,
+        /// Side of a cell, in metres.
+        resolution: f32,
+        width: u32,
+        height: u32,
+        /// Pose of the grid in the map frame: its origin is the lower left corner of cell (0, 0).
+        origin: Pose,
+    }
 
-/// `nav_msgs/msg/MapMetaData`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct MapMetaData {
-    /// Time at which the map was loaded.
-    pub map_load_time: Time,
-    /// Side of a cell, in metres.
-    pub resolution: f32,
-    pub width: u32,
-    pub height: u32,
-    /// Pose of the grid in the map frame: its origin is the lower left corner of cell (0, 0).
-    pub origin: Pose,
+    /// An occupancy grid.
+    message OccupancyGridMsg = "nav_msgs/msg/OccupancyGrid" [Header, MapMetaData] {
+        /// Time of publication, and the map's frame.
+        header: Header,
+        info: MapMetaData,
+        /// Row by row from the lowest y: 0 (free) to 100 (occupied), -1 unknown.
+        data: Vec<i8>,
+    }
 }
 
 impl OccupancyGridMsg {
@@ -35,9 +33,6 @@ impl OccupancyGridMsg {
     ///
     /// The resolution is the shortest decimal that rounds to the message's 32 bits: a map of 0.05 m
     /// has exactly 0.05 m, as in the file that it was loaded from.
-    ///
-    /// # Errors
-    /// If the message is invalid.
     pub fn to_grid(&self) -> Result<OccupancyGrid, ConversionError> {
         let cells = self.data.iter().enumerate().map(cell);
         let cells: Vec<u8> = cells.collect::<Result<_, _>>()?;
@@ -119,27 +114,6 @@ fn shortest_decimal(value: f32) -> f64 {
     // An f32 prints as its shortest decimal, which is parsed as f64; NaN stays NaN and is rejected
     // later.
     value.to_string().parse().unwrap_or(f64::NAN)
-}
-
-impl RosMessage for OccupancyGridMsg {
-    const SCHEMA: &'static str = "nav_msgs/msg/OccupancyGrid";
-    const DEFINITION: &'static str = definition!(
-        "\
-std_msgs/Header header
-nav_msgs/MapMetaData info
-int8[] data
-",
-        Header,
-        "\
-nav_msgs/MapMetaData
-builtin_interfaces/Time map_load_time
-float32 resolution
-uint32 width
-uint32 height
-geometry_msgs/Pose origin
-",
-        Pose,
-    );
 }
 
 #[cfg(test)]

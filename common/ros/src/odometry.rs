@@ -1,21 +1,19 @@
 //! `nav_msgs/msg/Odometry`.
 
-use serde::{Deserialize, Serialize};
+use super::{Header, PoseWithCovariance, Time, Twist, TwistWithCovariance, planar};
 
-use super::definition::definition;
-use super::{Header, PoseWithCovariance, RosMessage, Time, Twist, TwistWithCovariance, planar};
-
-/// Pose and velocity from wheel odometry.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Odometry {
-    /// Time, and the frame of the pose.
-    pub header: Header,
-    /// Moving frame, in which the twist is given.
-    pub child_frame_id: String,
-    /// Pose of the child frame.
-    pub pose: PoseWithCovariance,
-    /// Velocity in the child frame.
-    pub twist: TwistWithCovariance,
+declare! {
+    /// Pose and velocity from wheel odometry.
+    message Odometry = "nav_msgs/msg/Odometry" [Header, PoseWithCovariance, TwistWithCovariance] {
+        /// Time, and the frame of the pose.
+        header: Header,
+        /// Moving frame, in which the twist is given.
+        child_frame_id: String,
+        /// Pose of the child frame.
+        pose: PoseWithCovariance,
+        /// Velocity in the child frame.
+        twist: TwistWithCovariance,
+    }
 }
 
 impl Odometry {
@@ -32,31 +30,6 @@ impl Odometry {
             },
         }
     }
-}
-
-impl RosMessage for Odometry {
-    const SCHEMA: &'static str = "nav_msgs/msg/Odometry";
-    const DEFINITION: &'static str = definition!(
-        "\
-std_msgs/Header header
-string child_frame_id
-geometry_msgs/PoseWithCovariance pose
-geometry_msgs/TwistWithCovariance twist
-",
-        Header,
-        PoseWithCovariance,
-        "\
-geometry_msgs/TwistWithCovariance
-geometry_msgs/Twist twist
-float64[36] covariance
-",
-        "\
-geometry_msgs/Twist
-geometry_msgs/Vector3 linear
-geometry_msgs/Vector3 angular
-",
-        Vector3,
-    );
 }
 
 #[cfg(test)]

@@ -8,60 +8,12 @@
 //! | `time`, `time_stamp` | Velodyne: seconds since the stamp |
 //! | `timestamp` | Hesai, `RoboSense`: seconds since 1970; `livox_ros_driver2`: nanoseconds |
 
-use serde::{Deserialize, Serialize};
+use super::{ConversionError, Header};
 
-use super::definition::definition;
-use super::{ConversionError, Header, RosMessage};
-
-/// A cloud of points in the frame of its header.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct PointCloud2 {
-    pub header: Header,
-    /// Number of rows; 1 if the cloud is not organised.
-    pub height: u32,
-    /// Number of points of a row.
-    pub width: u32,
-    pub fields: Vec<PointField>,
-    /// Byte order of the points, whatever that of the message is.
-    pub is_bigendian: bool,
-    /// Size of a point, in bytes.
-    pub point_step: u32,
-    /// Size of a row, in bytes.
-    pub row_step: u32,
-    pub data: Vec<u8>,
-    /// True if there are no invalid points; not relied on.
-    pub is_dense: bool,
-}
-
-/// A field of each point.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct PointField {
-    pub name: String,
-    /// Bytes from the start of the point.
-    pub offset: u32,
-    /// 1 `int8`, 2 `uint8`, 3 `int16`, 4 `uint16`, 5 `int32`, 6 `uint32`, 7 `float32`, 8 `float64`.
-    pub datatype: u8,
-    /// Number of values; some writers leave it at 0 for one.
-    pub count: u32,
-}
-
-impl RosMessage for PointCloud2 {
-    const SCHEMA: &'static str = "sensor_msgs/msg/PointCloud2";
-    const DEFINITION: &'static str = definition!(
-        "\
-std_msgs/Header header
-uint32 height
-uint32 width
-sensor_msgs/PointField[] fields
-bool is_bigendian
-uint32 point_step
-uint32 row_step
-uint8[] data
-bool is_dense
-",
-        Header,
-        "\
-sensor_msgs/PointField
+declare! {
+    /// A field of each point.
+    #[derive(Eq)]
+    part PointField = "sensor_msgs/PointField" with "\
 uint8 INT8=1
 uint8 UINT8=2
 uint8 INT16=3
@@ -70,15 +22,36 @@ uint8 INT32=5
 uint8 UINT32=6
 uint8 FLOAT32=7
 uint8 FLOAT64=8
-string name
-uint32 offset
-uint8 datatype
-uint32 count
-",
-    );
+" [] {
+        name: String,
+        /// Bytes from the start of the point.
+        offset: u32,
+        /// One of the constants above.
+        datatype: u8,
+        /// Number of values; some writers leave it at 0 for one.
+        count: u32,
+    }
+
+    /// A cloud of points in the frame of its header.
+    message PointCloud2 = "sensor_msgs/msg/PointCloud2" [Header, PointField] {
+        header: Header,
+        /// Number of rows; 1 if the cloud is not organised.
+        height: u32,
+        /// Number of points of a row.
+        width: u32,
+        fields: Vec<PointField>,
+        /// Byte order of the points, whatever that of the message is.
+        is_bigendian: bool,
+        /// Size of a point, in bytes.
+        point_step: u32,
+        /// Size of a row, in bytes.
+        row_step: u32,
+        data: Vec<u8>,
+        /// True if there are no invalid points; not relied on.
+        is_dense: bool,
+    }
 }
 
-/// A point of a cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CloudPoint {
     /// Place in the frame of the sensor, in metres; not finite or all zero without a return.
@@ -87,7 +60,6 @@ pub struct CloudPoint {
     pub time_s: f64,
 }
 
-/// Names of the time of a point.
 const TIMES: [&str; 5] = ["t", "time", "offset_time", "timestamp", "time_stamp"];
 
 /// Floats above this are nanoseconds: as seconds, they are after the year 5000.

@@ -21,21 +21,10 @@ pub struct Nothing {
     structure_needs_at_least_one_member: u8,
 }
 
-/// Declares a service type: its name, then type and definition of the request and the response.
-macro_rules! service {
-    ($service:ident, $name:literal, $request:ty: $asks:expr, $response:ty: $answers:expr $(,)?) => {
-        #[derive(Debug)]
-        pub enum $service {}
-
-        impl $crate::RosService for $service {
-            const NAME: &'static str = $name;
-            const REQUEST: &'static str = $asks;
-            const RESPONSE: &'static str = $answers;
-            type Request = $request;
-            type Response = $response;
-        }
-    };
+impl Nothing {
+    pub(crate) const DEFINITION: &'static str = "";
 }
-pub(crate) use service;
 
-service!(Empty, "std_srvs/srv/Empty", Nothing: "", Nothing: "");
+declare! {
+    service Empty = "std_srvs/srv/Empty": Nothing -> Nothing;
+}

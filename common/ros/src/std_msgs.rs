@@ -1,14 +1,46 @@
-//! `std_msgs/msg/Header`, `std_msgs/msg/String` and `builtin_interfaces/msg/Time`.
+//! `std_msgs`, and other types of few fields.
 
-use serde::{Deserialize, Serialize};
+declare! {
+    /// Time and frame of a measurement.
+    part Header = "std_msgs/Header" [Time] {
+        stamp: Time,
+        frame_id: String,
+    }
 
-use super::RosMessage;
+    /// Time since 1970.
+    #[derive(Copy, Eq)]
+    part Time = "builtin_interfaces/Time" [] {
+        sec: i32,
+        /// Nanoseconds within the second.
+        nanosec: u32,
+    }
 
-/// Time and frame of a measurement.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Header {
-    pub stamp: Time,
-    pub frame_id: String,
+    /// `std_msgs/msg/String`.
+    #[derive(Eq)]
+    message Text = "std_msgs/msg/String" [] {
+        data: String,
+    }
+
+    /// `rosgraph_msgs/msg/Clock`: time of a simulation.
+    #[derive(Copy, Eq)]
+    message Clock = "rosgraph_msgs/msg/Clock" [Time] {
+        clock: Time,
+    }
+
+    /// `bond/msg/Status`: heartbeat by which two nodes monitor each other.
+    message BondStatus = "bond/msg/Status" [Header] {
+        header: Header,
+        /// Id of the bond, the same for both nodes.
+        id: String,
+        /// Id of the sending node.
+        instance_id: String,
+        /// False if the bond ends.
+        active: bool,
+        /// Seconds without a heartbeat after which the bond is broken.
+        heartbeat_timeout: f32,
+        /// Seconds between heartbeats.
+        heartbeat_period: f32,
+    }
 }
 
 impl Header {
@@ -19,25 +51,6 @@ impl Header {
             frame_id: frame.to_owned(),
         }
     }
-}
-
-/// `std_msgs/msg/String`.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Text {
-    pub data: String,
-}
-
-impl RosMessage for Text {
-    const SCHEMA: &'static str = "std_msgs/msg/String";
-    const DEFINITION: &'static str = "string data\n";
-}
-
-/// Time since 1970.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Time {
-    pub sec: i32,
-    /// Nanoseconds within the second.
-    pub nanosec: u32,
 }
 
 impl Time {

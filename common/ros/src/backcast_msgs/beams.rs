@@ -1,39 +1,35 @@
 //! `backcast_msgs/msg/Beams`.
 
-use serde::{Deserialize, Serialize};
-
 use super::Pose2D;
-use crate::definition::definition;
-use crate::{Header, RosMessage};
+use crate::Header;
 
-/// Result of each beam of a scan: topic `beams` of the graph.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Beams {
-    /// Time of the scan, and the frame of the map.
-    pub header: Header,
-    /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
-    pub entered_ns: i64,
-    /// Number of the scan.
-    pub counter: u64,
-    /// Id of the map that the beams were compared with; 0 if there was none.
-    pub map_id: u64,
-    /// Pose of the laser in the map at which they were compared.
-    pub map_from_laser: Pose2D,
-    /// Beams that voted, by bearing, followed by beams without a return.
-    pub beams: Vec<Beam>,
-}
+declare! {
+    /// `backcast_msgs/msg/Beam`.
+    #[derive(Copy)]
+    part Beam = "backcast_msgs/Beam" with "\
+uint32 HIT=0
+uint32 SHORT=1
+uint32 THROUGH=2
+uint32 UNKNOWN=3
+uint32 NO_RETURN=4
+" [] {
+        bearing: f32,
+        range_m: f32,
+        weight: f32,
+        fate: u32,
+    }
 
-/// `backcast_msgs/msg/Beam`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Beam {
-    /// Counter-clockwise from ahead, in radians.
-    pub bearing: f32,
-    /// Metres; infinity if nothing returned.
-    pub range_m: f32,
-    /// Weight of its vote.
-    pub weight: f32,
-    /// A `messages::BeamFate`.
-    pub fate: u32,
+    /// Result of each beam of a scan: topic `beams` of the graph.
+    message Beams = "backcast_msgs/msg/Beams" with "\
+# What became of each beam of a scan at the best pose.
+" [Header, Pose2D, Beam] {
+        header: Header,
+        entered_ns: i64,
+        counter: u64,
+        map_id: u64,
+        map_from_laser: Pose2D,
+        beams: Vec<Beam>,
+    }
 }
 
 impl Beams {
@@ -55,33 +51,4 @@ impl Beams {
             beams: items.iter().map(beam).collect(),
         }
     }
-}
-
-impl RosMessage for Beams {
-    const SCHEMA: &'static str = "backcast_msgs/msg/Beams";
-    const DEFINITION: &'static str = definition!(
-        "\
-# What became of each beam of a scan at the best pose.
-std_msgs/Header header
-int64 entered_ns
-uint64 counter
-uint64 map_id
-geometry_msgs/Pose2D map_from_laser
-backcast_msgs/Beam[] beams
-",
-        Header,
-        Pose2D,
-        "\
-backcast_msgs/Beam
-uint32 HIT=0
-uint32 SHORT=1
-uint32 THROUGH=2
-uint32 UNKNOWN=3
-uint32 NO_RETURN=4
-float32 bearing
-float32 range_m
-float32 weight
-uint32 fate
-",
-    );
 }

@@ -1,62 +1,46 @@
 //! `backcast_msgs/msg/Hypotheses`.
 
-use serde::{Deserialize, Serialize};
-
 use super::Pose2D;
-use crate::definition::definition;
-use crate::{Header, RosMessage};
+use crate::Header;
+use crate::definition::Rows3;
 
-/// Possible poses of the robot by one scan: topic `hypotheses` of the graph.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Hypotheses {
-    /// Time of the scan, and the frame of the map.
-    pub header: Header,
-    /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
-    pub entered_ns: i64,
-    /// Number of the scan.
-    pub counter: u64,
-    /// Id of the map that was searched; 0 if there was none.
-    pub map_id: u64,
-    /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
-    pub sent_ns: i64,
-    /// Computing time from scan to votes, in nanoseconds.
-    pub search_ns: u64,
-    /// Computing time from votes to hypotheses, in nanoseconds.
-    pub extract_ns: u64,
-    /// A `messages::Verdict`.
-    pub verdict: u32,
-    /// Number of other places that fit about as well as the best.
-    pub alternatives: u32,
-    /// Probability of the best pose, 0..=1.
-    pub confidence: f32,
-    /// Share of the beams' weight that agrees with the best pose, 0..=1.
-    pub inlier_share: f32,
-    /// Highest intensity of any pose.
-    pub best: u32,
-    /// Intensity of a pose that every beam agrees with fully.
-    pub highest_possible: u32,
-    /// True if the laser's mount was given.
-    pub mount_known: bool,
-    pub hypotheses: Vec<Hypothesis>,
-}
+declare! {
+    /// `backcast_msgs/msg/Hypothesis`.
+    #[derive(Copy)]
+    part Hypothesis = "backcast_msgs/Hypothesis" [Pose2D] {
+        map_from_laser: Pose2D,
+        map_from_base: Pose2D,
+        covariance: Rows3,
+        score: f32,
+        probability: f32,
+        intensity: u64,
+        support: u64,
+    }
 
-/// `backcast_msgs/msg/Hypothesis`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Hypothesis {
-    /// Pose of the laser in the map.
-    pub map_from_laser: Pose2D,
-    /// Pose of the robot's base in the map.
-    pub map_from_base: Pose2D,
-    /// Covariance of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
-    pub covariance: [f64; 9],
-    /// Fit of the scan to the map at this pose, at most 1.
-    pub score: f32,
-    /// Probability that the robot is there, 0..=1.
-    pub probability: f32,
-    /// Intensity of the best search pose that led to this hypothesis.
-    pub intensity: u64,
-    /// Number of search poses that led to this hypothesis.
-    pub support: u64,
+    /// Possible poses of the robot by one scan: topic `hypotheses` of the graph.
+    message Hypotheses = "backcast_msgs/msg/Hypotheses" with "\
+# Where the robot may be, by one scan.
+uint32 NO_SCAN=0
+uint32 UNIQUE=1
+uint32 AMBIGUOUS=2
+uint32 POOR_FIT=3
+" [Header, Hypothesis] {
+        header: Header,
+        entered_ns: i64,
+        counter: u64,
+        map_id: u64,
+        sent_ns: i64,
+        search_ns: u64,
+        extract_ns: u64,
+        verdict: u32,
+        alternatives: u32,
+        confidence: f32,
+        inlier_share: f32,
+        best: u32,
+        highest_possible: u32,
+        mount_known: bool,
+        hypotheses: Vec<Hypothesis>,
+    }
 }
 
 impl Hypotheses {
@@ -95,44 +79,4 @@ impl Hypotheses {
             hypotheses: from.on_map(items).map(hypothesis).collect(),
         }
     }
-}
-
-impl RosMessage for Hypotheses {
-    const SCHEMA: &'static str = "backcast_msgs/msg/Hypotheses";
-    const DEFINITION: &'static str = definition!(
-        "\
-# Where the robot may be, by one scan.
-uint32 NO_SCAN=0
-uint32 UNIQUE=1
-uint32 AMBIGUOUS=2
-uint32 POOR_FIT=3
-std_msgs/Header header
-int64 entered_ns
-uint64 counter
-uint64 map_id
-int64 sent_ns
-uint64 search_ns
-uint64 extract_ns
-uint32 verdict
-uint32 alternatives
-float32 confidence
-float32 inlier_share
-uint32 best
-uint32 highest_possible
-bool mount_known
-backcast_msgs/Hypothesis[] hypotheses
-",
-        Header,
-        "\
-backcast_msgs/Hypothesis
-geometry_msgs/Pose2D map_from_laser
-geometry_msgs/Pose2D map_from_base
-float64[9] covariance
-float32 score
-float32 probability
-uint64 intensity
-uint64 support
-",
-        Pose2D,
-    );
 }

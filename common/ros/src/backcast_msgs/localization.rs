@@ -3,31 +3,20 @@
 use messages::PoseHeader;
 use serde::{Deserialize, Serialize};
 
-use crate::definition::definition;
 use crate::{Header, PoseWithCovariance, RosMessage, Time, planar};
 
 /// Pose of the robot and its certainty, for programs of a robot: the part of the tracker's verdict
-/// on a scan that they base decisions on.
+/// on a scan that they base decisions on. The definition says what the fields mean.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Localization {
-    /// Time of the scan, and the frame of the map.
     pub header: Header,
-    /// State of the tracker: a `messages::TrackState`.
     pub state: u8,
-    /// Probability that the robot is at `pose`, 0..=1.
     pub probability: f64,
-    /// Start of the state.
     pub since: Time,
-    /// Number of other possible places.
     pub alternatives: u32,
-    /// Id of the map, 16 hexadecimal digits; empty if there is none.
     pub map_id: String,
-    /// True if there is a pose.
     pub pose_known: bool,
-    /// Pose of the robot's base in the map: at the place that the tracker believes, otherwise at
-    /// the leading one.
     pub pose: PoseWithCovariance,
-    /// Reason for the state and advice, in words.
     pub reason: String,
 }
 
@@ -65,7 +54,7 @@ pub fn map_id(from: &PoseHeader) -> String {
 
 impl RosMessage for Localization {
     const SCHEMA: &'static str = "backcast_msgs/msg/Localization";
-    const DEFINITION: &'static str = definition!(
+    const DEFINITION: &'static str = concat!(
         "\
 # Where the robot is, and how sure that is: the tracker's verdict on a scan.
 uint8 SEARCHING=0
@@ -92,8 +81,8 @@ geometry_msgs/PoseWithCovariance pose
 # Why, and what to do, in words.
 string reason
 ",
-        Header,
-        PoseWithCovariance,
+        Header!(part),
+        PoseWithCovariance!(part),
     );
 }
 
