@@ -5,39 +5,35 @@
 //! encode a missing echo in many ways, all of which the engine handles.
 
 use messages::{
-    AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
-    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose,
-    InitialPoseKind, LogHeader, LogLevel, MapHeader, MapSet, MapsHeader, NodeState, Odometry,
-    Particle, ParticlesHeader, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader,
-    SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesByMapHeader,
-    VotesHeader, topic,
+    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, FieldKind, GroundTruth,
+    HealthHeader, HypothesesHeader, Hypothesis, InitialPose, InitialPoseKind, LogHeader, LogLevel,
+    MapHeader, MapSet, MapsHeader, NodeState, Odometry, Particle, ParticlesHeader, Pose2,
+    PoseHeader, Reading, ReadingsHeader, RegionHeader, ScanHeader, Topic, TrackReason, TrackState,
+    Verdict, Vote, VotesByMapHeader, VotesHeader,
 };
 
 use crate::WireError;
 
 type Checked = Result<(), WireError>;
 
-/// Allowed values of a number.
-const FINITE: &str = "a finite number";
-
-pub(crate) fn scan(header: &ScanHeader, _: &[f32]) -> Checked {
-    let refuse = Refuse::on::<topic::Scan>();
-    refuse.unless_finite("angle_min", header.angle_min)?;
-    refuse.unless_finite("angle_increment", header.angle_increment)?;
-    refuse.unless_pose("base_from_laser", header.base_from_laser)
+/// Refuses fields with a number that is not finite.
+macro_rules! finite {
+    ($refuse:ident, $of:ident: $($field:ident),+) => {
+        Ok(())$(.and_then(|()| $refuse.unless_finite(stringify!($field), &$of.$field)))+
+    };
 }
 
-pub(crate) fn odometry(header: &Odometry, items: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::OdometryTopic>();
-    refuse.unless_pose("odom_from_child", header.odom_from_child)?;
-    refuse.unless_pose("twist", header.twist)?;
+pub(crate) fn scan(refuse: Refuse, header: &ScanHeader, _: &[f32]) -> Checked {
+    finite!(refuse, header: angle_min, angle_increment, base_from_laser)
+}
+
+pub(crate) fn odometry(refuse: Refuse, header: &Odometry, items: &[u8]) -> Checked {
+    finite!(refuse, header: odom_from_child, twist)?;
     refuse.unless_count("items", items.len(), 0)
 }
 
-pub(crate) fn map(header: &MapHeader, cells: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::Map>();
-    refuse.unless_finite("resolution_m", header.resolution_m)?;
-    refuse.unless_pose("map_from_grid", header.map_from_grid)?;
+pub(crate) fn map(refuse: Refuse, header: &MapHeader, cells: &[u8]) -> Checked {
+    finite!(refuse, header: resolution_m, map_from_grid)?;
     refuse.unless_count("cells", cells.len(), area(header.width, header.height))?;
     header.check_id(cells).or_else(|error| {
         let expected = format!("{:016x}, that of the cells", error.expected);
@@ -45,144 +41,108 @@ pub(crate) fn map(header: &MapHeader, cells: &[u8]) -> Checked {
     })
 }
 
-pub(crate) fn boundary(header: &BoundaryHeader, cells: &[BoundaryCell]) -> Checked {
-    let refuse = Refuse::on::<topic::Boundary>();
+pub(crate) fn boundary(refuse: Refuse, header: &BoundaryHeader, cells: &[BoundaryCell]) -> Checked {
     refuse.unless_count("cells", cells.len(), header.boundary_cells)
 }
 
-pub(crate) fn maps(header: &MapsHeader, items: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::Maps>();
+pub(crate) fn maps(refuse: Refuse, header: &MapsHeader, items: &[u8]) -> Checked {
     match MapSet::read(header, items) {
         Ok(_) => Ok(()),
         Err(error) => refuse.refuse("items", &error, "a set of maps".into()),
     }
 }
 
-pub(crate) fn votes_by_map(_: &VotesByMapHeader, maps: &[VotesHeader]) -> Checked {
-    let refuse = Refuse::on::<topic::VotesByMap>();
+pub(crate) fn votes_by_map(refuse: Refuse, _: &VotesByMapHeader, maps: &[VotesHeader]) -> Checked {
     maps.iter()
         .try_for_each(|header| votes_header(refuse, header))
 }
 
 fn votes_header(refuse: Refuse, header: &VotesHeader) -> Checked {
-    refuse.unless_finite("known_heading", header.known_heading)?;
-    refuse.unless_finite("bearing_rounding", header.bearing_rounding)?;
-    refuse.unless_finite("beam_arc_m", header.beam_arc_m)?;
-    refuse.unless_pose("base_from_laser", header.base_from_laser)
+    finite!(refuse, header: known_heading, bearing_rounding, beam_arc_m, base_from_laser)
 }
 
-pub(crate) fn votes(header: &VotesHeader, votes: &[Vote]) -> Checked {
-    let refuse = Refuse::on::<topic::Votes>();
+pub(crate) fn votes(refuse: Refuse, header: &VotesHeader, votes: &[Vote]) -> Checked {
     votes_header(refuse, header)?;
     refuse.unless_count("votes", votes.len(), header.total)
 }
 
-pub(crate) fn readings(_: &ReadingsHeader, readings: &[Reading]) -> Checked {
-    let refuse = Refuse::on::<topic::Readings>();
+pub(crate) fn readings(refuse: Refuse, _: &ReadingsHeader, readings: &[Reading]) -> Checked {
     for reading in readings {
-        refuse.unless_finite("from_x", reading.from_x)?;
-        refuse.unless_finite("from_y", reading.from_y)?;
-        refuse.unless_finite("bearing", reading.bearing)?;
-        refuse.unless_finite("weight", reading.weight)?;
+        finite!(refuse, reading: from_x, from_y, bearing, weight)?;
     }
     Ok(())
 }
 
-pub(crate) fn field(header: &FieldHeader, pixels: &[u16]) -> Checked {
-    let refuse = Refuse::on::<topic::Field>();
-    refuse.unless_finite("heading", header.heading)?;
+pub(crate) fn field(refuse: Refuse, header: &FieldHeader, pixels: &[u16]) -> Checked {
+    finite!(refuse, header: heading)?;
     refuse.unless_known("kind", header.kind, FieldKind::from_code)?;
     refuse.unless_count("pixels", pixels.len(), area(header.width, header.height))
 }
 
-pub(crate) fn hypotheses(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Checked {
-    let refuse = Refuse::on::<topic::Hypotheses>();
+pub(crate) fn hypotheses(
+    refuse: Refuse,
+    header: &HypothesesHeader,
+    hypotheses: &[Hypothesis],
+) -> Checked {
     refuse.unless_known("verdict", header.verdict, Verdict::from_code)?;
-    refuse.unless_finite("confidence", header.confidence.into())?;
-    refuse.unless_finite("inlier_share", header.inlier_share.into())?;
+    finite!(refuse, header: confidence, inlier_share)?;
     for hypothesis in hypotheses {
-        refuse.unless_pose("map_from_laser", hypothesis.map_from_laser)?;
-        refuse.unless_pose("map_from_base", hypothesis.map_from_base)?;
-        refuse.unless_finite("score", hypothesis.score.into())?;
-        refuse.unless_finite("probability", hypothesis.probability.into())?;
-        refuse.unless_all_finite("covariance", &hypothesis.covariance)?;
+        finite!(refuse, hypothesis: map_from_laser, map_from_base, score, probability, covariance)?;
     }
     Ok(())
 }
 
-pub(crate) fn particles(_: &ParticlesHeader, particles: &[Particle]) -> Checked {
-    let refuse = Refuse::on::<topic::Particles>();
+pub(crate) fn particles(refuse: Refuse, _: &ParticlesHeader, particles: &[Particle]) -> Checked {
     for particle in particles {
-        refuse.unless_pose("map_from_base", particle.map_from_base)?;
+        finite!(refuse, particle: map_from_base)?;
     }
     Ok(())
 }
 
-pub(crate) fn tracked(header: &PoseHeader, words: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::Tracked>();
+pub(crate) fn tracked(refuse: Refuse, header: &PoseHeader, words: &[u8]) -> Checked {
     refuse.unless_known("state", header.state, TrackState::from_code)?;
     refuse.unless_known("reason", header.reason, TrackReason::from_code)?;
-    refuse.unless_pose("map_from_laser", header.map_from_laser)?;
-    refuse.unless_pose("map_from_base", header.map_from_base)?;
-    refuse.unless_pose("map_from_odom", header.map_from_odom)?;
-    refuse.unless_all_finite("laser_covariance", &header.laser_covariance)?;
-    refuse.unless_all_finite("base_covariance", &header.base_covariance)?;
-    refuse.unless_finite("since_m", header.since_m)?;
-    refuse.unless_finite("probability", header.probability)?;
-    refuse.unless_finite("lead", header.lead)?;
-    refuse.unless_finite("score", header.score)?;
+    finite!(refuse, header: map_from_laser, map_from_base, map_from_odom)?;
+    finite!(refuse, header: laser_covariance, base_covariance, since_m, probability, lead, score)?;
     refuse.unless_text("words", words, PoseHeader::WORDS_CAPACITY)
 }
 
-pub(crate) fn attention(_: &AttentionHeader, items: &[u8]) -> Checked {
-    Refuse::on::<topic::Attention>().unless_count("items", items.len(), 0)
+pub(crate) fn no_items<H>(refuse: Refuse, _: &H, items: &[u8]) -> Checked {
+    refuse.unless_count("items", items.len(), 0)
 }
 
-pub(crate) fn initial_pose(header: &InitialPose, items: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::InitialPoseTopic>();
+pub(crate) fn initial_pose(refuse: Refuse, header: &InitialPose, items: &[u8]) -> Checked {
     refuse.unless_known("kind", header.kind, InitialPoseKind::from_code)?;
-    refuse.unless_pose("map_from_base", header.map_from_base)?;
-    refuse.unless_all_finite("covariance", &header.covariance)?;
+    finite!(refuse, header: map_from_base, covariance)?;
     refuse.unless_count("items", items.len(), 0)
 }
 
-pub(crate) fn beams(header: &BeamsHeader, beams: &[Beam]) -> Checked {
-    let refuse = Refuse::on::<topic::Beams>();
-    refuse.unless_pose("map_from_laser", header.map_from_laser)?;
+pub(crate) fn beams(refuse: Refuse, header: &BeamsHeader, beams: &[Beam]) -> Checked {
+    finite!(refuse, header: map_from_laser)?;
     for beam in beams {
-        refuse.unless_finite("bearing", beam.bearing.into())?;
-        refuse.unless_finite("weight", beam.weight.into())?;
+        finite!(refuse, beam: bearing, weight)?;
     }
     Ok(())
 }
 
-pub(crate) fn ground_truth(header: &GroundTruth, items: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::GroundTruthTopic>();
-    refuse.unless_pose("map_from_laser", header.map_from_laser)?;
+pub(crate) fn ground_truth(refuse: Refuse, header: &GroundTruth, items: &[u8]) -> Checked {
+    finite!(refuse, header: map_from_laser)?;
     refuse.unless_count("items", items.len(), 0)
 }
 
-pub(crate) fn region(_: &RegionHeader, corners: &[Corner]) -> Checked {
-    let refuse = Refuse::on::<topic::Region>();
+pub(crate) fn region(refuse: Refuse, _: &RegionHeader, corners: &[Corner]) -> Checked {
     for corner in corners {
-        refuse.unless_finite("x", corner.x)?;
-        refuse.unless_finite("y", corner.y)?;
+        finite!(refuse, corner: x, y)?;
     }
     Ok(())
 }
 
-pub(crate) fn save(_: &SaveHeader, items: &[u8]) -> Checked {
-    Refuse::on::<topic::Save>().unless_count("items", items.len(), 0)
-}
-
-pub(crate) fn health(header: &HealthHeader, error: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::Health>();
+pub(crate) fn health(refuse: Refuse, header: &HealthHeader, error: &[u8]) -> Checked {
     refuse.unless_known("state", header.state, NodeState::from_code)?;
     refuse.unless_text("last error", error, HealthHeader::ERROR_CAPACITY)
 }
 
-pub(crate) fn log(header: &LogHeader, line: &[u8]) -> Checked {
-    let refuse = Refuse::on::<topic::Log>();
+pub(crate) fn log(refuse: Refuse, header: &LogHeader, line: &[u8]) -> Checked {
     refuse.unless_known("level", header.level, LogLevel::from_code)?;
     refuse.unless_text("line", line, LogHeader::TEXT_CAPACITY)
 }
@@ -191,31 +151,51 @@ fn area(width: u32, height: u32) -> u64 {
     u64::from(width) * u64::from(height)
 }
 
+/// A field of numbers.
+trait Numbers {
+    fn numbers(&self) -> impl IntoIterator<Item = f64>;
+}
+
+impl Numbers for f64 {
+    fn numbers(&self) -> impl IntoIterator<Item = f64> {
+        [*self]
+    }
+}
+
+impl Numbers for f32 {
+    fn numbers(&self) -> impl IntoIterator<Item = f64> {
+        [f64::from(*self)]
+    }
+}
+
+impl Numbers for Pose2 {
+    fn numbers(&self) -> impl IntoIterator<Item = f64> {
+        [self.x, self.y, self.yaw]
+    }
+}
+
+impl Numbers for [f64; 9] {
+    fn numbers(&self) -> impl IntoIterator<Item = f64> {
+        *self
+    }
+}
+
 /// Builds the errors of one topic.
 #[derive(Clone, Copy)]
-struct Refuse {
+pub(crate) struct Refuse {
     topic: &'static str,
 }
 
 impl Refuse {
-    fn on<T: Topic>() -> Self {
+    pub(crate) fn on<T: Topic>() -> Self {
         Refuse { topic: T::NAME }
     }
 
-    fn unless_finite(&self, field: &'static str, value: f64) -> Checked {
-        if value.is_finite() {
-            return Ok(());
+    fn unless_finite(&self, field: &'static str, of: &impl Numbers) -> Checked {
+        match of.numbers().into_iter().find(|number| !number.is_finite()) {
+            Some(found) => self.refuse(field, &found, "a finite number".into()),
+            None => Ok(()),
         }
-        self.refuse(field, &value, FINITE.into())
-    }
-
-    fn unless_pose(&self, field: &'static str, pose: Pose2) -> Checked {
-        self.unless_all_finite(field, &[pose.x, pose.y, pose.yaw])
-    }
-
-    fn unless_all_finite(&self, field: &'static str, values: &[f64]) -> Checked {
-        let mut values = values.iter();
-        values.try_for_each(|&value| self.unless_finite(field, value))
     }
 
     fn unless_count(&self, field: &'static str, found: usize, header: u64) -> Checked {
@@ -269,10 +249,13 @@ impl Refuse {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
+    use messages::topic;
 
     use super::*;
+    use crate::Wire;
 
-    fn check(outcome: Checked, expected: &str) {
+    fn check<T: Wire>(header: &T::Header, items: &[T::Item], expected: &str) {
+        let outcome = T::check(header, items);
         let said = outcome.err().map_or("accepted".into(), |e| e.to_string());
         assert_eq!(said, expected);
     }
@@ -280,16 +263,16 @@ mod tests {
     #[test]
     fn numbers_that_are_none_are_refused() {
         let mut header: ScanHeader = Zeroable::zeroed();
-        check(scan(&header, &[f32::NAN, f32::INFINITY]), "accepted");
+        check::<topic::Scan>(&header, &[f32::NAN, f32::INFINITY], "accepted");
         header.angle_increment = f64::NAN;
         let expected = "topic scan: angle_increment is NaN, but must be a finite number";
-        check(scan(&header, &[]), expected);
+        check::<topic::Scan>(&header, &[], expected);
 
         let mut place: Hypothesis = Zeroable::zeroed();
-        check(hypotheses(&Zeroable::zeroed(), &[place]), "accepted");
+        check::<topic::Hypotheses>(&Zeroable::zeroed(), &[place], "accepted");
         place.map_from_laser.yaw = f64::NEG_INFINITY;
         let expected = "topic hypotheses: map_from_laser is -inf, but must be a finite number";
-        check(hypotheses(&Zeroable::zeroed(), &[place]), expected);
+        check::<topic::Hypotheses>(&Zeroable::zeroed(), &[place], expected);
     }
 
     #[test]
@@ -301,7 +284,7 @@ mod tests {
         };
         let expected =
             "topic map: cells is 3, but must be 18446744065119617025, as the header says";
-        check(map(&header, &[0; 3]), expected);
+        check::<topic::Map>(&header, &[0; 3], expected);
         let mut header = MapHeader {
             width: 3,
             height: 1,
@@ -311,12 +294,13 @@ mod tests {
             "topic map: map_id is 0000000000000000, but must be {:016x}, that of the cells",
             header.id_of(&[0; 3])
         );
-        check(map(&header, &[0; 3]), &expected);
+        check::<topic::Map>(&header, &[0; 3], &expected);
         header.map_id = header.id_of(&[0; 3]);
-        check(map(&header, &[0; 3]), "accepted");
-        check(boundary(&Zeroable::zeroed(), &[]), "accepted");
-        check(
-            votes(&Zeroable::zeroed(), &[Zeroable::zeroed()]),
+        check::<topic::Map>(&header, &[0; 3], "accepted");
+        check::<topic::Boundary>(&Zeroable::zeroed(), &[], "accepted");
+        check::<topic::Votes>(
+            &Zeroable::zeroed(),
+            &[Zeroable::zeroed()],
             "topic votes: votes is 1, but must be 0, as the header says",
         );
     }
@@ -324,16 +308,18 @@ mod tests {
     #[test]
     fn text_and_codes_are_those_of_this_version() {
         let mut header: HealthHeader = Zeroable::zeroed();
-        check(health(&header, b"all is well"), "accepted");
-        check(
-            health(&header, &[b'x'; 1025]),
+        check::<topic::Health>(&header, b"all is well", "accepted");
+        check::<topic::Health>(
+            &header,
+            &[b'x'; 1025],
             "topic health: last error is 1025, but must be at most 1024 bytes",
         );
-        let outcome = health(&header, &[0xff]).unwrap_err().to_string();
-        assert!(outcome.ends_with("but must be UTF-8"), "{outcome}");
+        let error = topic::Health::check(&header, &[0xff]).unwrap_err();
+        assert!(error.to_string().ends_with("but must be UTF-8"), "{error}");
         header.state = 5;
-        check(
-            health(&header, b""),
+        check::<topic::Health>(
+            &header,
+            b"",
             "topic health: state is 5, but must be one of the codes of this version",
         );
     }

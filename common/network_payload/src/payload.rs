@@ -3,8 +3,8 @@
 //! | field | postcard | meaning |
 //! |---|---|---|
 //! | `sender` | varint(u64) | the session id of the sending process, a random number |
-//! | `sequence` | varint(u64) | number of the message, from 0 for each topic of a sender |
-//! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent |
+//! | `sequence` | varint(u64) | number of the message, from 0 for each topic of a sender: a gap is a loss |
+//! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent, to convert times in it |
 //! | header | its fields in order | see `messages` |
 //! | items | varint(count), then each | see `messages` |
 
@@ -17,20 +17,14 @@ const LEVEL: i32 = 1;
 /// Characters of an unknown encoding shown in an error.
 const SHOWN: usize = 80;
 
-/// Fields in front of each message.
+/// Fields in front of each message; see the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Preamble {
-    /// Session id: a random number of the sending process.
     pub sender: u64,
-    /// Number of the message, counted from 0 for each topic of a sender: a gap is a loss, and a
-    /// number at or below the last one is a repetition.
     pub sequence: u64,
-    /// The sender's `CLOCK_MONOTONIC` in nanoseconds when it was sent; with it the receiver
-    /// converts the times in the message to its own clock.
     pub clock_ns: i64,
 }
 
-/// A received message that passed all checks.
 #[derive(Debug)]
 pub struct Received<T: Wire> {
     pub preamble: Preamble,
@@ -52,7 +46,6 @@ impl<T: Wire> Received<T> {
     }
 }
 
-/// Returns the encoding of a topic's payloads.
 #[must_use]
 pub fn encoding<T: Wire>() -> String {
     let packed = if T::COMPRESSED { "+zstd" } else { "" };
@@ -60,9 +53,6 @@ pub fn encoding<T: Wire>() -> String {
 }
 
 /// Encodes a message.
-///
-/// # Errors
-/// The message would be rejected by [`decode`].
 pub fn encode<T: Wire>(
     preamble: &Preamble,
     header: &T::Header,
