@@ -31,30 +31,18 @@ impl KeyError {
 /// Error of opening a session.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// Zenoh's configuration file cannot be used.
     #[error("cannot use {}", file.display())]
-    ConfigFile {
-        file: PathBuf,
-        /// Error of Zenoh or of reading the file.
-        source: Cause,
-    },
-    /// The configuration file has an unknown extension.
+    ConfigFile { file: PathBuf, source: Cause },
     #[error("{} is not a configuration file: allowed are files in JSON5 that end in .json5 or .json", file.display())]
-    Format {
-        /// Path as given.
-        file: PathBuf,
-    },
-    /// An option is invalid in Zenoh's configuration.
+    Format { file: PathBuf },
     #[error("{value} is nothing for {key} of Zenoh's configuration")]
     Setting {
-        /// Key in the configuration.
         key: &'static str,
         value: String,
         source: Cause,
     },
     #[error("cannot open the Zenoh session")]
     Session(#[source] Cause),
-    /// The graph failed in the meantime.
     #[error(transparent)]
     Transport(#[from] TransportError),
 }

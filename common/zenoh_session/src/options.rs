@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-/// Network options.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Network")]
 pub struct Options {

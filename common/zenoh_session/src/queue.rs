@@ -99,9 +99,6 @@ struct Waiting {
 impl Queue {
     /// Subscribes to `key`.
     ///
-    /// # Errors
-    /// Zenoh cannot subscribe.
-    ///
     /// # Panics
     /// `limits.messages` is 0.
     pub fn open(

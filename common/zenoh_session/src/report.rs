@@ -40,9 +40,6 @@ impl Report {
     }
 
     /// Reports that everything needed is there.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn ready(&mut self) -> Result<(), TransportError> {
         self.is_map_refused = false;
         self.waiting_for(None)
@@ -51,9 +48,6 @@ impl Report {
     /// Reports what is waited for, as words after "waiting for"; empty if it is too early to say,
     /// `None` if everything needed is there. The words are the last error in health while they
     /// hold.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn waiting_for(&mut self, words: Option<&str>) -> Result<(), TransportError> {
         if self.waiting.as_deref() != words {
             self.waiting = words.map(str::to_owned);
@@ -70,9 +64,6 @@ impl Report {
     }
 
     /// Reports that a map was accepted, which ends the state after a rejected one.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn map_taken(&mut self) -> Result<(), TransportError> {
         self.is_map_refused = false;
         self.health.state(self.state())
@@ -87,27 +78,19 @@ impl Report {
     }
 
     /// Publishes health when due; to be called regularly.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn tick(&mut self) -> Result<(), TransportError> {
         self.health.tick()
     }
 
-    /// Counts a received message.
     pub fn received(&mut self) {
         self.health.count_received(1);
     }
 
-    /// Counts a sent message.
     pub fn sent(&mut self) {
         self.health.count_sent(1);
     }
 
     /// Counts a message as sent, or reports why it was not.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn outcome(
         &mut self,
         sent: Result<(), impl Error + 'static>,
@@ -119,15 +102,11 @@ impl Report {
         Ok(())
     }
 
-    /// Counts lost messages.
     pub fn dropped(&mut self, messages: u64) {
         self.health.count_dropped(messages);
     }
 
     /// Reports a rejected map; the previous one stays in use.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn map_refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.refused(error)?;
         self.is_map_refused = true;
@@ -135,9 +114,6 @@ impl Report {
     }
 
     /// Counts a rejected message, and logs it unless one was logged just before.
-    ///
-    /// # Errors
-    /// The graph failed.
     pub fn refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.health.count_refused(1);
         let now_ns = monotonic_ns();

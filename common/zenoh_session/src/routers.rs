@@ -13,9 +13,6 @@ pub struct Routers {
 
 impl Routers {
     /// Reads the endpoints from the options or the configuration file.
-    ///
-    /// # Errors
-    /// The file or an option cannot be used.
     pub fn of(options: &Options) -> Result<Self, NetworkError> {
         let named = settings(options)?.get_json(CONNECT).unwrap_or_default();
         // If the file has endpoints by mode, they are ignored and none is reported missing.

@@ -97,9 +97,6 @@ fn start(
 }
 
 /// Returns the configuration that [`open`] passes to Zenoh.
-///
-/// # Errors
-/// The file or an option cannot be used.
 pub fn settings(options: &Options) -> Result<Config, NetworkError> {
     let (mut settings, named) = match &options.config {
         None => (Config::default(), Value::Null),

@@ -16,7 +16,6 @@ pub enum ServerError {
     Start(#[source] std::io::Error),
     #[error("the thread that serves viewers has failed; see its panic above")]
     Thread,
-    /// A channel cannot be opened.
     #[error("cannot show {topic}")]
     Channel {
         topic: String,

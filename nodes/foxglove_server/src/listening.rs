@@ -22,7 +22,6 @@ const SECOND: Duration = Duration::from_secs(1);
 /// Number of messages queued for each viewer; beyond it the oldest ones are dropped.
 const BACKLOG: usize = 256;
 
-/// Server for viewers, on one address.
 pub(crate) struct Listening {
     context: Arc<Context>,
     handle: Handle,

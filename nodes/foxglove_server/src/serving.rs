@@ -15,16 +15,12 @@ pub(crate) struct Serving(Runtime);
 
 impl Serving {
     /// Starts the thread.
-    ///
-    /// # Errors
-    /// If the thread cannot be started.
     pub(crate) fn start() -> std::io::Result<Self> {
         let mut one_thread = Builder::new_multi_thread();
         one_thread.worker_threads(1).thread_name("viewers");
         one_thread.enable_all().build().map(Serving)
     }
 
-    /// Returns the handle for the server.
     pub(crate) fn handle(&self) -> &Handle {
         self.0.handle()
     }
