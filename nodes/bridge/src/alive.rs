@@ -17,7 +17,6 @@ use crate::BridgeError;
 /// Time without a report after which a node counts as dead, nanoseconds; nodes report every second.
 const SILENCE_NS: i64 = 5_000_000_000;
 
-/// Owner of the tokens of one graph.
 pub(crate) struct Alive {
     session: Session,
     robot: String,

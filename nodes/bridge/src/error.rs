@@ -18,25 +18,19 @@ pub enum BridgeError {
         id: String,
         allowed: String,
     },
-    /// A topic is both sent and received, which would be a loop.
     #[error(
         "topic {topic} goes out and comes in: it would come back for ever; \
          take it out of the inputs or the outputs of the bridge"
     )]
-    Circle {
-        /// Name of the topic.
-        topic: String,
-    },
+    Circle { topic: String },
     #[error(transparent)]
     Network(#[from] NetworkError),
     #[error(transparent)]
     Key(#[from] KeyError),
     #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
-    /// A map is too large for the graph.
     #[error(transparent)]
     Map(#[from] map::MapError),
-    /// A message cannot be encoded or decoded.
     #[error(transparent)]
     Wire(#[from] WireError),
     #[error(transparent)]

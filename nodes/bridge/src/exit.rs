@@ -8,10 +8,8 @@ use crossbeam::channel::{Receiver, Sender, TrySendError, bounded, unbounded};
 use zenoh::Wait;
 use zenoh_ext::AdvancedPublisher;
 
-/// Result of sending a payload.
 type Outcome = zenoh::Result<()>;
 
-/// Sender for the payloads of one topic.
 pub(crate) enum Exit {
     /// Sends on the calling thread.
     Here(AdvancedPublisher<'static>),
@@ -19,7 +17,6 @@ pub(crate) enum Exit {
     Aside(Aside),
 }
 
-/// Sender thread and its channels.
 pub(crate) struct Aside {
     to: Sender<Vec<u8>>,
     /// Receiver of the thread's queue, to remove a payload that the thread has not taken.

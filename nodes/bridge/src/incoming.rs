@@ -7,10 +7,10 @@ use map::MemoryLimit;
 use messages::{MapHeader, Topic, topic};
 use network_payload::{Arrival, Arrivals, Received, Wire, WireError};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
-use zenoh::Session;
 use zenoh_session::{Past, Queue, QueueLimits, Report};
 
 use crate::BridgeError;
+use crate::route::{Ends, Route};
 
 pub(crate) struct Incoming<T: Wire> {
     queue: Queue,
@@ -22,51 +22,20 @@ pub(crate) struct Incoming<T: Wire> {
 }
 
 impl<T: Wire> Incoming<T> {
-    pub(crate) fn open(
-        graph: &Graph,
-        session: &Session,
-        robot: &str,
-        memory_limit: MemoryLimit,
-    ) -> Result<Self, BridgeError> {
-        let key = network_payload::key::<T>(robot);
+    pub(crate) fn open(ends: Ends<'_>) -> Result<Self, BridgeError> {
+        let graph = ends.graph;
+        let key = network_payload::key::<T>(ends.robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
         let limits = QueueLimits::for_any(T::DEPTH.max(4), T::MAX_BYTES);
         let publisher = graph.publisher()?;
-        let queue = Queue::open(session, &key, past, limits, graph.waker()?)?;
+        let queue = Queue::open(ends.session, &key, past, limits, graph.waker()?)?;
         Ok(Incoming {
             queue,
             publisher,
             arrivals: Arrivals::default(),
             last: None,
-            memory_limit,
+            memory_limit: ends.config.memory.limit(),
         })
-    }
-
-    /// Publishes the valid messages received since the last call.
-    pub(crate) fn step(&mut self, report: &mut Report) -> Result<(), BridgeError> {
-        report.dropped(self.queue.dropped());
-        while let Some(found) = self.queue.next_too_long() {
-            report.received();
-            let (topic, most) = (T::NAME, T::MAX_BYTES);
-            let error = WireError::TooLong { topic, found, most };
-            report.refused(&BridgeError::from(error))?;
-        }
-        // Limited to one queue length, so that a flood does not block the other topics.
-        for _ in 0..self.queue.limits().messages {
-            let Some(sample) = self.queue.next() else {
-                break;
-            };
-            report.received();
-            let encoding = sample.encoding().to_string();
-            match network_payload::decode::<T>(&encoding, &sample.payload().to_bytes()) {
-                Ok(message) => match refuse_too_large(&message, self.memory_limit) {
-                    Ok(()) => self.enter(message, report)?,
-                    Err(error) => report.map_refused(&error)?,
-                },
-                Err(error) => report.refused(&BridgeError::from(error))?,
-            }
-        }
-        Ok(())
     }
 
     fn enter(
@@ -99,6 +68,34 @@ impl<T: Wire> Incoming<T> {
     fn is_last(&self, header: &T::Header) -> bool {
         let last = self.last.as_ref();
         last.is_some_and(|last| bytemuck::bytes_of(last) == bytemuck::bytes_of(header))
+    }
+}
+
+impl<T: Wire> Route for Incoming<T> {
+    fn step(&mut self, _: &Graph, _: bool, report: &mut Report) -> Result<(), BridgeError> {
+        report.dropped(self.queue.dropped());
+        while let Some(found) = self.queue.next_too_long() {
+            report.received();
+            let (topic, most) = (T::NAME, T::MAX_BYTES);
+            let error = WireError::TooLong { topic, found, most };
+            report.refused(&BridgeError::from(error))?;
+        }
+        // Limited to one queue length, so that a flood does not block the other topics.
+        for _ in 0..self.queue.limits().messages {
+            let Some(sample) = self.queue.next() else {
+                break;
+            };
+            report.received();
+            let encoding = sample.encoding().to_string();
+            match network_payload::decode::<T>(&encoding, &sample.payload().to_bytes()) {
+                Ok(message) => match refuse_too_large(&message, self.memory_limit) {
+                    Ok(()) => self.enter(message, report)?,
+                    Err(error) => report.map_refused(&error)?,
+                },
+                Err(error) => report.refused(&BridgeError::from(error))?,
+            }
+        }
+        Ok(())
     }
 }
 

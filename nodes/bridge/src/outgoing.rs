@@ -14,9 +14,10 @@ use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
 use zenoh_session::{KeyError, Report};
 
+use crate::BridgeError;
 use crate::exit::{Aside, Exit};
 use crate::rates::Limit;
-use crate::{BridgeError, Rate};
+use crate::route::{Ends, Route};
 
 /// Interval at which readers learn whether they missed the newest kept message.
 const HEARTBEAT: Duration = Duration::from_millis(500);
@@ -31,20 +32,14 @@ pub(crate) struct Outgoing<T: Wire> {
 }
 
 impl<T: Wire> Outgoing<T> {
-    pub(crate) fn open(
-        graph: &Graph,
-        session: &Session,
-        robot: &str,
-        sender: u64,
-        rates: &[Rate],
-    ) -> Result<Self, BridgeError> {
+    pub(crate) fn open(ends: Ends<'_>) -> Result<Self, BridgeError> {
         let subscriber = if T::ON_DEMAND {
             None
         } else {
-            Some(Rc::new(graph.subscriber()?))
+            Some(Rc::new(ends.graph.subscriber()?))
         };
-        let key = network_payload::key::<T>(robot);
-        let publisher = declare::<T>(session, &key)?;
+        let key = network_payload::key::<T>(ends.robot);
+        let publisher = declare::<T>(ends.session, &key)?;
         let exit = if T::KEPT {
             Exit::Aside(Aside::new(publisher))
         } else {
@@ -54,42 +49,13 @@ impl<T: Wire> Outgoing<T> {
             subscriber,
             key,
             exit,
-            limit: Limit::of::<T>(rates),
+            limit: Limit::of::<T>(&ends.config.rate),
             next: Preamble {
-                sender,
+                sender: ends.sender,
                 sequence: 0,
                 clock_ns: 0,
             },
         })
-    }
-
-    /// Returns the input for the event loop.
-    pub(crate) fn input(&self) -> Option<Rc<dyn Input>> {
-        let subscriber = self.subscriber.clone()?;
-        Some(subscriber)
-    }
-
-    /// Sends the samples received since the last call.
-    pub(crate) fn step(
-        &mut self,
-        graph: &Graph,
-        tick: bool,
-        report: &mut Report,
-    ) -> Result<(), BridgeError> {
-        if tick && T::ON_DEMAND {
-            self.follow(graph)?;
-        }
-        while let Some(outcome) = self.exit.outcome() {
-            self.report(outcome, report)?;
-        }
-        let Some(subscriber) = self.subscriber.clone() else {
-            return Ok(());
-        };
-        while let Some(sample) = subscriber.receive()? {
-            report.received();
-            self.send(&sample, report)?;
-        }
-        Ok(())
     }
 
     /// Subscribes to the topic while there is a remote subscriber.
@@ -127,6 +93,30 @@ impl<T: Wire> Outgoing<T> {
                 report.dropped(1);
                 report.refused(&KeyError::when("send on", &self.key)(source))?;
             }
+        }
+        Ok(())
+    }
+}
+
+impl<T: Wire> Route for Outgoing<T> {
+    fn input(&self) -> Option<Rc<dyn Input>> {
+        let subscriber = self.subscriber.clone()?;
+        Some(subscriber)
+    }
+
+    fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError> {
+        if tick && T::ON_DEMAND {
+            self.follow(graph)?;
+        }
+        while let Some(outcome) = self.exit.outcome() {
+            self.report(outcome, report)?;
+        }
+        let Some(subscriber) = self.subscriber.clone() else {
+            return Ok(());
+        };
+        while let Some(sample) = subscriber.receive()? {
+            report.received();
+            self.send(&sample, report)?;
         }
         Ok(())
     }

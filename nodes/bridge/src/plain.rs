@@ -5,15 +5,15 @@ use std::rc::Rc;
 use messages::Topic;
 use network_payload::Wire;
 use transport::{Graph, Input, Subscriber, monotonic_ns};
+use zenoh::Wait;
 use zenoh::bytes::Encoding;
 use zenoh::pubsub::Publisher;
 use zenoh::qos::CongestionControl;
-use zenoh::{Session, Wait};
 use zenoh_session::{KeyError, Report};
 
+use crate::BridgeError;
 use crate::rates::Limit;
-use crate::route::Route;
-use crate::{BridgeError, Rate};
+use crate::route::{Ends, Route};
 
 /// Sender of a topic as JSON while there is a subscriber.
 pub(crate) struct Plain<T: Topic> {
@@ -26,23 +26,22 @@ pub(crate) struct Plain<T: Topic> {
 
 impl<T: Wire> Plain<T> {
     pub(crate) fn open(
-        (graph, session): (&Graph, &Session),
-        robot: &str,
-        rates: &[Rate],
+        ends: Ends<'_>,
         write: fn(&T::Header, &[T::Item]) -> String,
     ) -> Result<Self, BridgeError> {
-        let key = format!("{}/json", network_payload::key::<T>(robot));
-        let publisher = session
+        let key = format!("{}/json", network_payload::key::<T>(ends.robot));
+        let publisher = ends
+            .session
             .declare_publisher(key.clone())
             .encoding(Encoding::APPLICATION_JSON)
             .congestion_control(CongestionControl::Drop)
             .wait()
             .map_err(KeyError::when("publish", &key))?;
         Ok(Plain {
-            subscriber: Rc::new(graph.subscriber()?),
+            subscriber: Rc::new(ends.graph.subscriber()?),
             key,
             publisher,
-            limit: Limit::of::<T>(rates),
+            limit: Limit::of::<T>(&ends.config.rate),
             write,
         })
     }

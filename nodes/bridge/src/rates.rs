@@ -9,7 +9,6 @@ use std::str::FromStr;
 use messages::{Topic, topic};
 use network_payload::{Visit, Wire};
 
-/// Rate limit of one topic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rate {
     pub topic: String,

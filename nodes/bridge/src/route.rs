@@ -3,12 +3,28 @@
 use std::rc::Rc;
 
 use transport::{Graph, Input};
+use zenoh::Session;
 use zenoh_session::Report;
 
-use crate::BridgeError;
+use crate::{BridgeError, Config};
 
-/// One topic, sent or received.
+/// Context in which topics are opened.
+#[derive(Clone, Copy)]
+pub(crate) struct Ends<'a> {
+    pub(crate) graph: &'a Graph,
+    pub(crate) session: &'a Session,
+    pub(crate) robot: &'a str,
+    pub(crate) config: &'a Config,
+    /// Session id of this process.
+    pub(crate) sender: u64,
+}
+
 pub(crate) trait Route {
-    fn input(&self) -> Option<Rc<dyn Input>>;
+    /// Returns the input for the event loop, if it is a topic of the graph.
+    fn input(&self) -> Option<Rc<dyn Input>> {
+        None
+    }
+
+    /// Carries the messages since the last call.
     fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;
 }

@@ -1,12 +1,10 @@
 //! Opens both sides and carries messages between them.
 
-use std::rc::Rc;
 use std::time::Duration;
 
 use messages::{Topic, topic};
 use network_payload::{Visit, Wire};
 use transport::{Flow, Graph, Input};
-use zenoh::Session;
 use zenoh_session::Report;
 
 use crate::alive::Alive;
@@ -14,7 +12,7 @@ use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
 use crate::plain::Plain;
 use crate::ports::Ports;
-use crate::route::Route;
+use crate::route::{Ends, Route};
 use crate::{BridgeError, Config, json};
 
 /// Longest delay for a late joiner of the graph, a remote subscriber to the image, and the
@@ -34,7 +32,14 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
-    let mut ways = ways(graph, &session, &robot, &ports, config)?;
+    let ends = Ends {
+        graph,
+        session: &session,
+        robot: &robot,
+        config,
+        sender: getrandom::u64().map_err(BridgeError::Random)?,
+    };
+    let mut ways = ways(ends, &ports)?;
     let health_comes_in = ports.into.iter().any(|name| name == topic::Health::NAME);
     let mut alive = Alive::open(graph, &session, &robot, health_comes_in)?;
     let inputs: Vec<_> = ways.iter().filter_map(|way| way.input()).collect();
@@ -50,106 +55,39 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     })
 }
 
-impl<T: Wire> Route for Outgoing<T> {
-    fn input(&self) -> Option<Rc<dyn Input>> {
-        self.input()
-    }
-
-    fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError> {
-        self.step(graph, tick, report)
-    }
-}
-
-impl<T: Wire> Route for Incoming<T> {
-    fn input(&self) -> Option<Rc<dyn Input>> {
-        None
-    }
-
-    fn step(&mut self, _: &Graph, _: bool, report: &mut Report) -> Result<(), BridgeError> {
-        self.step(report)
-    }
-}
-
 /// Opens all topics of the ports; `network_payload` knows every topic that a descriptor may name.
-fn ways(
-    graph: &Graph,
-    session: &Session,
-    robot: &str,
-    ports: &Ports,
-    config: &Config,
-) -> Result<Vec<Box<dyn Route>>, BridgeError> {
-    let sender = getrandom::u64().map_err(BridgeError::Random)?;
-    let out = ports.out.iter().filter_map(|name| {
-        let rates = &config.rate;
-        let open = Outward {
-            graph,
-            session,
-            robot,
-            sender,
-            rates,
-        };
-        network_payload::by_name(name, open)
-    });
-    let memory_limit = config.memory.limit();
-    let into = ports.into.iter().filter_map(|name| {
-        let open = Inward {
-            graph,
-            session,
-            robot,
-            memory_limit,
-        };
-        network_payload::by_name(name, open)
-    });
+fn ways(ends: Ends<'_>, ports: &Ports) -> Result<Vec<Box<dyn Route>>, BridgeError> {
+    let out = ports.out.iter();
+    let out = out.filter_map(|name| network_payload::by_name(name, Outward(ends)));
+    let into = ports.into.iter();
+    let into = into.filter_map(|name| network_payload::by_name(name, Inward(ends)));
     let mut ways: Vec<Box<dyn Route>> = out.chain(into).collect::<Result<_, _>>()?;
     let goes_out = |name: &str| ports.out.iter().any(|out| out == name);
-    let (ends, rates) = ((graph, session), &config.rate);
     if goes_out(topic::Tracked::NAME) {
-        let pose = Plain::<topic::Tracked>::open(ends, robot, rates, json::pose)?;
-        ways.push(Box::new(pose));
+        ways.push(Box::new(Plain::<topic::Tracked>::open(ends, json::pose)?));
     }
     if goes_out(topic::Health::NAME) {
-        let health = Plain::<topic::Health>::open(ends, robot, rates, json::health)?;
-        ways.push(Box::new(health));
+        ways.push(Box::new(Plain::<topic::Health>::open(ends, json::health)?));
     }
     Ok(ways)
 }
 
-struct Outward<'a> {
-    graph: &'a Graph,
-    session: &'a Session,
-    robot: &'a str,
-    sender: u64,
-    rates: &'a [crate::Rate],
-}
+struct Outward<'a>(Ends<'a>);
 
 impl Visit for Outward<'_> {
     type Output = Result<Box<dyn Route>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
-        let Outward {
-            graph,
-            session,
-            robot,
-            sender,
-            rates,
-        } = self;
-        let way = Outgoing::<T>::open(graph, session, robot, sender, rates)?;
-        Ok(Box::new(way))
+        Ok(Box::new(Outgoing::<T>::open(self.0)?))
     }
 }
 
-struct Inward<'a> {
-    graph: &'a Graph,
-    session: &'a Session,
-    robot: &'a str,
-    memory_limit: map::MemoryLimit,
-}
+struct Inward<'a>(Ends<'a>);
 
 impl Visit for Inward<'_> {
     type Output = Result<Box<dyn Route>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
-        let way = Incoming::<T>::open(self.graph, self.session, self.robot, self.memory_limit)?;
-        Ok(Box::new(way))
+        Ok(Box::new(Incoming::<T>::open(self.0)?))
     }
 }

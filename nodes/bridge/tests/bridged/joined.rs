@@ -25,7 +25,6 @@ use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
 use zenoh::bytes::Encoding;
 use zenoh::sample::SampleKind;
 use zenoh::{Session, Wait};
-use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
 
 /// Machine with the laser and the map.
 const LASER: &str = "nodes:
@@ -313,49 +312,15 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
 
 /// Opens the session of another client, connected to `endpoint`.
 fn connect(endpoint: &str) -> Session {
-    let folder = tempfile::tempdir().unwrap();
-    let session = zenoh::open(client(folder.path(), endpoint)).wait();
-    session.unwrap()
-}
-
-fn client(folder: &Path, endpoint: &str) -> zenoh::Config {
-    let file = folder.join("zenoh.json5");
-    let text = format!(
-        "{{ mode: 'client', connect: {{ endpoints: ['{endpoint}'] }}, \
-         scouting: {{ multicast: {{ enabled: false }} }} }}"
-    );
-    std::fs::write(&file, text).unwrap();
-    zenoh::Config::from_file(&file).unwrap()
-}
-
-/// A reader that uses only Zenoh receives the map with its encoding.
-#[test]
-fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
-    let laser = machine("reader", LASER);
-    let endpoint = laser.loopback();
-    let maps = laser.graph.publisher::<topic::Map>().unwrap();
-    let sent = map(0, 30, 20);
-    send(&maps, &sent);
-    let bridge = laser.joined_bridge(&["--listen", &endpoint]);
-    // The only message that the bridge has sent is the map, since no one receives its health.
-    let health = laser.graph.subscriber::<topic::Health>().unwrap();
-    let (report, _) = wait_for_health(&laser.graph, &health, |report| report.sent > 0);
-    assert_eq!(report.sent, 1);
-    let reader = connect(&endpoint);
-    let (sender, samples) = std::sync::mpsc::channel();
-    let _subscriber = reader
-        .declare_subscriber("backcast/*/map")
-        .callback(move |sample| drop(sender.send(sample)))
-        .history(HistoryConfig::default().detect_late_publishers())
-        .wait()
-        .unwrap();
-    let sample = samples.recv().unwrap();
-    assert_eq!(sample.key_expr().as_str(), "backcast/r1/map");
-    let encoding = sample.encoding().to_string();
-    let map =
-        network_payload::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
-    assert_eq!((map.header.map_id, map.items), (sent.0.map_id, sent.1));
-    bridge.stop();
+    let mut config = zenoh::Config::default();
+    for (key, value) in [
+        ("mode", "'client'"),
+        ("connect/endpoints", &format!("['{endpoint}']")),
+        ("scouting/multicast/enabled", "false"),
+    ] {
+        config.insert_json5(key, value).unwrap();
+    }
+    zenoh::open(config).wait().unwrap()
 }
 
 /// Runs the example of docs/bridge.md with Zenoh's Python library.
