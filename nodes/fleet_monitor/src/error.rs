@@ -16,18 +16,13 @@ pub enum FleetError {
     Key(#[from] KeyError),
     #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
-    /// A message is invalid, or a robot's name is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
     #[error(
         "there are {} robots, which is the maximum; {robot} is ignored",
         Robots::MAX
     )]
-    TooMany {
-        /// Name of the robot that is ignored.
-        robot: String,
-    },
-    /// A message contradicts itself in a way that is only detected when it is shown.
+    TooMany { robot: String },
     #[error("{problem} of {robot}")]
     Unusable {
         problem: &'static str,

@@ -2,7 +2,6 @@
 
 use std::marker::PhantomData;
 
-use messages::Topic;
 use network_payload::{Received, Wire, WireError};
 use transport::{Waker, monotonic_ns};
 use zenoh::Session;
@@ -20,21 +19,17 @@ const WAITING: usize = 1024;
 /// Largest number of waiting bytes per topic; a real map takes about a thousandth of it.
 const WAITING_BYTES: usize = 128 << 20;
 
-/// Subscription to a topic, until dropped.
 pub(crate) struct Feed<T: Wire> {
     queue: Queue,
     topic: PhantomData<T>,
 }
 
-/// Received message and the robot that sent it.
 pub(crate) struct FleetMessage<T: Wire> {
     pub(crate) robot: String,
     pub(crate) message: Received<T>,
 }
 
 impl<T: Wire> Feed<T> {
-    pub(crate) const NAME: &'static str = <T as Topic>::NAME;
-
     /// Subscribes to the topic of one robot, or of [`ALL`].
     pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
         let key = network_payload::key::<T>(robot);
@@ -59,7 +54,7 @@ impl<T: Wire> Feed<T> {
     /// Their number is limited, so that a flood does not block other topics. Times are converted to
     /// this machine's clock.
     pub(crate) fn waiting(&self) -> impl Iterator<Item = Result<FleetMessage<T>, WireError>> {
-        let (topic, most) = (Self::NAME, T::MAX_BYTES);
+        let (topic, most) = (T::NAME, T::MAX_BYTES);
         let too_long = std::iter::from_fn(move || {
             let found = self.queue.next_too_long()?;
             Some(Err(WireError::TooLong { topic, found, most }))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use dashboard::{Abilities, Request, Robot, Robots};
-use messages::topic;
+use messages::{Topic, topic};
 use network_payload::{Arrival, Arrivals, Preamble, Wire};
 use transport::{Graph, monotonic_ns};
 use zenoh::Session;
@@ -14,7 +14,6 @@ use crate::FleetError;
 use crate::feed::{Feed, FleetMessage};
 use crate::requests::Requests;
 
-/// All robots, with the data reported by their bridges.
 pub(crate) struct Fleet {
     robots: Robots,
     members: BTreeMap<String, Member>,
@@ -41,72 +40,23 @@ pub(crate) enum Taken {
     Repeated,
 }
 
-/// Message that can be shown.
-pub(crate) trait Shown: Wire + Sized {
-    /// Passes the message to its robot, or returns what is wrong with it.
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str>;
+/// Passes a message to its robot, or returns what is wrong with it.
+pub(crate) type Show<T> =
+    fn(&Robot, &<T as Topic>::Header, &[<T as Topic>::Item]) -> Result<(), &'static str>;
+
+/// The result of showing a message that is only shown if it is sound.
+pub(crate) fn sound(is_sound: bool, problem: &'static str) -> Result<(), &'static str> {
+    is_sound.then_some(()).ok_or(problem)
 }
 
-impl Shown for topic::Map {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &received.message;
-        let is_sound = robot.on_map(&message.header, &message.items);
-        is_sound
-            .then_some(())
-            .ok_or("the map contradicts its header")
-    }
-}
-
-impl Shown for topic::Hypotheses {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &received.message;
-        robot.on_answer(&message.header, &message.items, monotonic_ns());
-        Ok(())
-    }
-}
-
-impl Shown for topic::Tracked {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &received.message;
-        robot.on_pose(&message.header, &message.items, monotonic_ns());
-        Ok(())
-    }
-}
-
-impl Shown for topic::Beams {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.on_beams(&received.message.header, &received.message.items);
-        Ok(())
-    }
-}
-
-impl Shown for topic::Health {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let is_shown = robot.on_health(&received.message.header, &received.message.items);
-        let problem = "a report of more nodes than are shown";
-        is_shown.then_some(()).ok_or(problem)
-    }
-}
-
-impl Shown for topic::Log {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.on_log(&received.message.header, &received.message.items);
-        Ok(())
-    }
-}
-
-impl Shown for topic::Field {
-    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &received.message;
-        let is_sound = robot.on_field(&message.header, &message.items);
-        is_sound
-            .then_some(())
-            .ok_or("the image contradicts its header")
-    }
-}
+const SHOW_FIELD: Show<topic::Field> = |robot, header, pixels| {
+    sound(
+        robot.on_field(header, pixels),
+        "the image contradicts its header",
+    )
+};
 
 impl Fleet {
-    /// Creates a fleet without robots; new ones are added to `robots`.
     pub(crate) fn new(robots: Robots) -> Self {
         Fleet {
             robots,
@@ -115,9 +65,10 @@ impl Fleet {
     }
 
     /// Shows a message, and adds its robot if it is new.
-    pub(crate) fn take<T: Shown>(
+    pub(crate) fn take<T: Wire>(
         &mut self,
         received: &FleetMessage<T>,
+        show: Show<T>,
         join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<Taken, FleetError> {
         if !self.members.contains_key(&received.robot) {
@@ -127,7 +78,7 @@ impl Fleet {
         let member = member.ok_or_else(|| FleetError::TooMany {
             robot: received.robot.clone(),
         })?;
-        member.take(received)
+        member.take(received, show)
     }
 
     fn welcome(
@@ -185,7 +136,7 @@ impl Fleet {
             // A slow reader wants the newest image, so skipped ones are no loss.
             for received in field.waiting() {
                 let received = received.map_err(FleetError::from);
-                outcomes.push(received.and_then(|received| member.take(&received)));
+                outcomes.push(received.and_then(|received| member.take(&received, SHOW_FIELD)));
             }
             member.field = Some(field);
         }
@@ -194,18 +145,23 @@ impl Fleet {
 }
 
 impl Member {
-    fn take<T: Shown>(&mut self, received: &FleetMessage<T>) -> Result<Taken, FleetError> {
+    fn take<T: Wire>(
+        &mut self,
+        received: &FleetMessage<T>,
+        show: Show<T>,
+    ) -> Result<Taken, FleetError> {
+        let message = &received.message;
         let Preamble {
             sender, sequence, ..
-        } = received.message.preamble;
-        let arrivals = self.arrivals.entry(Feed::<T>::NAME).or_default();
+        } = message.preamble;
+        let arrivals = self.arrivals.entry(T::NAME).or_default();
         let lost = match arrivals.note(sender, sequence) {
             Arrival::Repeated => return Ok(Taken::Repeated),
             // A kept message is complete in itself; missing earlier ones are no loss.
             Arrival::New { .. } if T::KEPT => 0,
             Arrival::New { lost } => lost,
         };
-        let shown = T::show(received, &self.robot);
+        let shown = show(&self.robot, &message.header, &message.items);
         shown.map_err(|problem| FleetError::Unusable {
             problem,
             robot: received.robot.clone(),

@@ -12,7 +12,6 @@ use zenoh_session::KeyError;
 
 use crate::FleetError;
 
-/// Publishers of the requests to one robot.
 pub(crate) struct Requests {
     regions: AdvancedPublisher<'static>,
     saves: AdvancedPublisher<'static>,

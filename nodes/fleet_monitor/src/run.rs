@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use dashboard::{Robots, Server};
 use messages::topic;
-use transport::{Flow, Graph};
+use network_payload::Wire;
+use transport::{Flow, Graph, monotonic_ns};
 use zenoh::Session;
 use zenoh_session::Report;
 
 use crate::feed::{ALL, Feed};
-use crate::fleet::{Fleet, Shown, Taken};
+use crate::fleet::{Fleet, Show, Taken, sound};
 use crate::requests::Requests;
 use crate::{Config, FleetError};
 
@@ -30,7 +31,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
         return Ok(());
     };
     let mut node = Node {
-        inputs: Inputs::open(graph, &session)?,
+        inputs: inputs(graph, &session)?,
         fleet: Fleet::new(robots),
         sender: getrandom::u64().map_err(FleetError::Random)?,
         session,
@@ -44,67 +45,85 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     })
 }
 
-/// Topics with a permanent subscription.
-struct Inputs {
-    maps: Feed<topic::Map>,
-    hypotheses: Feed<topic::Hypotheses>,
-    poses: Feed<topic::Tracked>,
-    beams: Feed<topic::Beams>,
-    health: Feed<topic::Health>,
-    log: Feed<topic::Log>,
-}
-
 struct Node {
     session: Session,
-    inputs: Inputs,
+    inputs: Vec<Box<dyn Input>>,
     fleet: Fleet,
     /// Session id by which robots recognize this process.
     sender: u64,
     report: Report,
 }
 
-impl Inputs {
-    fn open(graph: &Graph, session: &Session) -> Result<Self, FleetError> {
-        Ok(Inputs {
-            maps: Feed::open(session, ALL, graph.waker()?)?,
-            hypotheses: Feed::open(session, ALL, graph.waker()?)?,
-            poses: Feed::open(session, ALL, graph.waker()?)?,
-            beams: Feed::open(session, ALL, graph.waker()?)?,
-            health: Feed::open(session, ALL, graph.waker()?)?,
-            log: Feed::open(session, ALL, graph.waker()?)?,
-        })
+/// A topic with a permanent subscription.
+trait Input {
+    fn take(&self, intake: &mut Intake<'_>) -> Result<(), FleetError>;
+}
+
+impl<T: Wire> Input for (Feed<T>, Show<T>) {
+    fn take(&self, intake: &mut Intake<'_>) -> Result<(), FleetError> {
+        intake.take(&self.0, self.1)
     }
 }
 
+/// Subscribes to all topics, maps before the results that refer to them.
+fn inputs(graph: &Graph, session: &Session) -> Result<Vec<Box<dyn Input>>, FleetError> {
+    fn input<T: Wire>(
+        (graph, session): (&Graph, &Session),
+        show: Show<T>,
+    ) -> Result<Box<dyn Input>, FleetError> {
+        let feed = Feed::<T>::open(session, ALL, graph.waker()?)?;
+        Ok(Box::new((feed, show)))
+    }
+    let ends = (graph, session);
+    Ok(vec![
+        input::<topic::Map>(ends, |robot, header, cells| {
+            sound(
+                robot.on_map(header, cells),
+                "the map contradicts its header",
+            )
+        })?,
+        input::<topic::Hypotheses>(ends, |robot, header, items| {
+            robot.on_answer(header, items, monotonic_ns());
+            Ok(())
+        })?,
+        input::<topic::Tracked>(ends, |robot, header, words| {
+            robot.on_pose(header, words, monotonic_ns());
+            Ok(())
+        })?,
+        input::<topic::Beams>(ends, |robot, header, beams| {
+            robot.on_beams(header, beams);
+            Ok(())
+        })?,
+        input::<topic::Health>(ends, |robot, report, error| {
+            let problem = "a report of more nodes than are shown";
+            sound(robot.on_health(report, error), problem)
+        })?,
+        input::<topic::Log>(ends, |robot, header, line| {
+            robot.on_log(header, line);
+            Ok(())
+        })?,
+    ])
+}
+
 impl Node {
-    /// Processes everything that has arrived, maps before the results that refer to them.
+    /// Processes everything that has arrived.
     fn step(&mut self, graph: &Graph, tick: bool) -> Result<(), FleetError> {
-        let Node {
-            session,
-            inputs,
-            fleet,
-            sender,
-            report,
-        } = self;
         let mut intake = Intake {
-            session,
-            fleet,
-            sender: *sender,
-            report,
+            session: &self.session,
+            fleet: &mut self.fleet,
+            sender: self.sender,
+            report: &mut self.report,
         };
-        intake.take(&inputs.maps)?;
-        intake.take(&inputs.hypotheses)?;
-        intake.take(&inputs.poses)?;
-        intake.take(&inputs.beams)?;
-        intake.take(&inputs.health)?;
-        intake.take(&inputs.log)?;
+        for input in &self.inputs {
+            input.take(&mut intake)?;
+        }
         intake.take_fields()?;
         if tick {
-            for granted in fleet.tick(graph, session)? {
-                report.outcome(granted)?;
+            for granted in self.fleet.tick(graph, &self.session)? {
+                self.report.outcome(granted)?;
             }
         }
-        report.tick().map_err(FleetError::from)
+        self.report.tick().map_err(FleetError::from)
     }
 }
 
@@ -116,13 +135,13 @@ struct Intake<'a> {
 }
 
 impl Intake<'_> {
-    fn take<T: Shown>(&mut self, feed: &Feed<T>) -> Result<(), FleetError> {
+    fn take<T: Wire>(&mut self, feed: &Feed<T>, show: Show<T>) -> Result<(), FleetError> {
         self.report.dropped(feed.dropped());
         let (session, sender) = (self.session, self.sender);
         let join = |robot: &str| Requests::open(session, robot, sender);
         for message in feed.waiting() {
             let message = message.map_err(FleetError::from);
-            let outcome = message.and_then(|message| self.fleet.take(&message, join));
+            let outcome = message.and_then(|message| self.fleet.take(&message, show, join));
             self.note(outcome)?;
         }
         Ok(())

@@ -235,16 +235,9 @@ fn robots_come_with_what_they_say_and_stay_apart() {
     let known = world.wait_for("/api/v1/robots/a", |known| known["map"]["width"] == 3);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 1.5);
     assert_eq!(world.site.get("/api/v1/robots/b")["map"], Value::Null);
-}
-
-#[test]
-fn the_pose_of_a_robots_tracker_is_shown() {
-    let world = World::new("fleet-pose");
-    let a = world.robot("a");
-    a.answer(0, 9.0);
-    a.track(0, 1.5);
+    a.track(0, 2.5);
     let known = world.wait_for("/api/v1/robots/a", |known| {
-        known["pose"]["laser"]["x"] == 1.5
+        known["pose"]["laser"]["x"] == 2.5
     });
     assert_eq!(known["pose"]["state"], "Doubtful");
     assert_eq!(known["pose"]["says"], "the scans do not fit");
