@@ -8,14 +8,13 @@ use geometry::Pose;
 use ros::{Header, TfMessage, Time, TransformStamped};
 
 use crate::GatewayError;
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 use crate::stamps::{Forward, stamp};
 
 /// Number of sent transforms that are recognised when they come back: as many as slow subscribers
 /// keep.
 const MAX_KNOWN: usize = 100;
 
-/// Publisher of the transform.
 pub(crate) struct Broadcaster {
     transforms: Publisher<TfMessage>,
     forward: Forward,
@@ -29,7 +28,7 @@ pub(crate) struct Sent(Rc<RefCell<VecDeque<Time>>>);
 impl Broadcaster {
     pub(crate) fn open(member: &Member, topic: &str, sent: Sent) -> Result<Self, GatewayError> {
         Ok(Broadcaster {
-            transforms: Publisher::open(member, topic, MAX_KNOWN)?,
+            transforms: Publisher::open(member, topic, Keeping::Reliable, MAX_KNOWN)?,
             forward: Forward::default(),
             sent,
         })

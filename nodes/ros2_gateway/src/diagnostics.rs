@@ -6,10 +6,9 @@ use transport::{TransportError, monotonic_ns, wall_ns};
 use zenoh_session::Report;
 
 use crate::GatewayError;
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 use crate::stamps::stamp;
 
-/// Publisher of the diagnostics, stamped by the robot's clock.
 pub(crate) struct Diagnostics {
     publisher: Publisher<DiagnosticArray>,
     /// Stamp of the newest scan, which relates the robot's clock to the host's.
@@ -21,13 +20,12 @@ pub(crate) struct Diagnostics {
 impl Diagnostics {
     pub(crate) fn open(member: &Member, topic: &str) -> Result<Self, GatewayError> {
         Ok(Diagnostics {
-            publisher: Publisher::open(member, topic, 10)?,
+            publisher: Publisher::open(member, topic, Keeping::Reliable, 10)?,
             newest: None,
             sim_ns: None,
         })
     }
 
-    /// Takes the stamp of the newest scan.
     pub(crate) fn on_scan(&mut self, stamp: Stamp) {
         self.newest = Some(stamp);
     }
@@ -37,7 +35,6 @@ impl Diagnostics {
         self.sim_ns = Some(now_ns);
     }
 
-    /// Sends the robot the state of a node.
     pub(crate) fn health(
         &mut self,
         health: &HealthHeader,

@@ -24,7 +24,6 @@ const MAX_NAME: usize = 256;
 /// Largest number of mounts kept: a robot has some lasers, each with one frame.
 const MAX_MOUNTS: usize = 64;
 
-/// Transforms, mounts and recent odometry of the robot.
 #[derive(Debug)]
 pub(crate) struct Frames {
     fixed: TransformTree,
@@ -63,9 +62,6 @@ impl Frames {
     }
 
     /// Takes transforms that never change. An invalid one does not keep the others from being used.
-    ///
-    /// # Errors
-    /// Returns the error of the first transform that cannot be used.
     pub(crate) fn on_static_transforms(&mut self, message: &TfMessage) -> Result<(), GatewayError> {
         let outcomes: Vec<_> = message.transforms.iter().map(|t| self.add(t)).collect();
         outcomes.into_iter().collect()

@@ -33,7 +33,6 @@ const MAX_MAP_BYTES: usize = (64 << 20) + 4096;
 /// Time after a message on the odometry topic for which odometry in /tf is ignored, nanoseconds.
 const ODOMETRY_NS: i64 = 1_000_000_000;
 
-/// Subscriptions to the robot's topics, and the outlet to the graph.
 pub(crate) struct Incoming {
     fixed: Subscription<TfMessage>,
     moving: Option<Subscription<TfMessage>>,
@@ -115,7 +114,6 @@ impl Incoming {
         })
     }
 
-    /// Sets the rules for scans and maps from now on.
     pub(crate) fn set_rules(&mut self, rules: Rules) {
         self.outlet.rules = rules;
     }
@@ -125,12 +123,10 @@ impl Incoming {
         self.outlet.sent()
     }
 
-    /// Number of odometry messages sent.
     pub(crate) fn odometry_sent(&self) -> u64 {
         self.outlet.odometry_sent()
     }
 
-    /// Returns the frame of the robot's map, if one came.
     pub(crate) fn map_frame(&self) -> Option<&str> {
         self.map_frame.as_deref()
     }
@@ -143,79 +139,68 @@ impl Incoming {
         mut on_belief: impl FnMut(Belief),
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let Incoming {
-            fixed,
-            moving,
-            odometry,
-            scans,
-            clouds,
-            cloud,
-            maps,
-            beliefs,
-            outlet,
-            odom_frame,
-            odometry_ns,
-            map_frame,
-            mended,
-            sent,
-            tf,
-        } = self;
-        take(fixed, report, |message, _| {
+        take(&mut self.fixed, report, |message, _| {
             frames.on_static_transforms(&message)
         })?;
-        take_if(odometry, report, |message, report| {
+        take_if(&mut self.odometry, report, |message, report| {
             let odometry = sound_odometry(&message)?;
-            note("the odometry", message.pose.pose.orientation, mended);
-            *odometry_ns = Some(monotonic_ns());
+            note(
+                "the odometry",
+                message.pose.pose.orientation,
+                &mut self.mended,
+            );
+            self.odometry_ns = Some(monotonic_ns());
             frames.on_odometry(&odometry);
-            outlet.send_odometry(odometry, report)
+            self.outlet.send_odometry(odometry, report)
         })?;
-        let alone = odometry_ns.is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
-        take_if(moving, report, |message, report| {
+        let alone = self
+            .odometry_ns
+            .is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
+        take_if(&mut self.moving, report, |message, report| {
             // The other transforms of the message are used.
             let mut second = None;
             for transform in message.transforms {
-                if sent.is_from_another(&transform, odom_frame) {
+                if self.sent.is_from_another(&transform, &self.odom_frame) {
                     second = Some(GatewayError::SecondBroadcaster {
                         parent: transform.header.frame_id,
                         child: transform.child_frame_id,
-                        topic: tf.clone(),
+                        topic: self.tf.clone(),
                     });
                     continue;
                 }
-                if !alone && transform.header.frame_id.trim_start_matches('/') == odom_frame {
+                if !alone && transform.header.frame_id.trim_start_matches('/') == self.odom_frame {
                     let turn = transform.transform.rotation;
                     let odometry = odometry_of(transform)?;
-                    note("the odometry on /tf", turn, mended);
+                    note("the odometry on /tf", turn, &mut self.mended);
                     frames.on_odometry(&odometry);
-                    outlet.send_odometry(odometry, report)?;
+                    self.outlet.send_odometry(odometry, report)?;
                 }
             }
             second.map_or(Ok(()), Err)
         })?;
-        take_if(maps, report, |message, report| {
+        take_if(&mut self.maps, report, |message, report| {
             let frame = message.header.frame_id.clone();
-            outlet.send_map(&message, report)?;
-            *map_frame = Some(frame).filter(|frame| !frame.is_empty());
+            self.outlet.send_map(&message, report)?;
+            self.map_frame = Some(frame).filter(|frame| !frame.is_empty());
             Ok(())
         })?;
-        for (laser, scans) in scans.iter_mut().enumerate() {
+        for (laser, scans) in self.scans.iter_mut().enumerate() {
             take(scans, report, |message, report| {
-                outlet.send_scan(laser, &message, frames, report)
+                self.outlet.send_scan(laser, &message, frames, report)
             })?;
         }
-        take_if(clouds, report, |message, report| {
-            let mount = frames.cloud_mount(cloud.cloud_mount, &message.header.frame_id)?;
-            let scan = Cloud::Points(message).scan(&mount, cloud.heights)?;
-            outlet.send_scan(0, &scan, frames, report)
+        take_if(&mut self.clouds, report, |message, report| {
+            let mount = frames.cloud_mount(self.cloud.cloud_mount, &message.header.frame_id)?;
+            let scan = Cloud::Points(message).scan(&mount, self.cloud.heights)?;
+            self.outlet.send_scan(0, &scan, frames, report)
         })?;
-        take_if(beliefs, report, |message, _| {
+        take_if(&mut self.beliefs, report, |message, _| {
             let turn = message.pose.pose.orientation;
             on_belief(Belief {
                 measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
                 map_from_base: message.pose.pose.planar()?,
             });
-            note("the particle filter's pose", turn, mended);
+            note("the particle filter's pose", turn, &mut self.mended);
             Ok(())
         })
     }
@@ -230,7 +215,6 @@ fn note(whose: &'static str, turn: Quaternion, mended: &mut BTreeSet<&'static st
     }
 }
 
-/// Context for opening subscriptions.
 struct Opening<'a> {
     graph: &'a Graph,
     member: &'a Member,
@@ -245,7 +229,7 @@ impl Opening<'_> {
         depth: usize,
         max_bytes: usize,
     ) -> Result<Subscription<M>, GatewayError> {
-        self.watch.expect::<M>(topic)?;
+        self.watch.expected.expect::<M>(topic)?;
         Subscription::open(self.graph, self.member, topic, keeping, depth, max_bytes)
     }
 

@@ -14,17 +14,14 @@ use crate::waiting::{Input, Status, Waiting};
 /// Time between two looks, nanoseconds.
 const PERIOD_NS: i64 = 200_000_000;
 
-/// Checks the robot's inputs periodically.
 #[derive(Default)]
 pub(crate) struct Inputs {
     waiting: Waiting,
     /// Time of the last look; `None` before the first.
     looked_ns: Option<i64>,
-    /// Text of the last log line.
     said: Option<String>,
 }
 
-/// Inputs of the robot, while the gateway takes them.
 pub(crate) struct Taken<'a> {
     pub(crate) incoming: &'a Incoming,
     pub(crate) watch: &'a Watch,
@@ -84,7 +81,7 @@ impl Taken<'_> {
         let (maps, scans) = self.incoming.sent();
         let input = |topic: &'t str, received, comes_once| Input {
             topic,
-            publishing: self.watch.publishing(topic),
+            publishing: self.watch.expected.publishing(topic),
             received,
             comes_once,
             from_frame: None,

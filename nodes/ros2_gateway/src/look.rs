@@ -26,7 +26,6 @@ const TYPES: [(&str, &str); 4] = [
     ("tf2_msgs::msg::dds_::TFMessage_", "transforms"),
 ];
 
-/// A topic that a node publishes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub(crate) struct Published {
     rmw: Rmw,
@@ -87,7 +86,7 @@ fn look_at(
     found: &mut BTreeSet<Published>,
 ) -> Result<(), GatewayError> {
     let mut watch = Watch::open(graph, member, "")?;
-    watch.expect_everything();
+    watch.expected.expect_everything();
     let end = Instant::now() + Duration::from_secs_f64(seconds);
     graph.run(&[], TICK, |_| {
         member.tick();

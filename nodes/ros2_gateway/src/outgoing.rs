@@ -3,7 +3,6 @@
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, Verdict};
 use ros::{PoseArray, PoseWithCovarianceStamped};
-use transport::TransportError;
 use zenoh_session::Report;
 
 use crate::GatewayError;
@@ -11,7 +10,7 @@ use crate::broadcast::{Broadcaster, Sent};
 use crate::config::{Config, Reach};
 use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
 use crate::stamps::in_map;
 use crate::topics::Topics;
@@ -20,7 +19,6 @@ use crate::topics::Topics;
 /// hypotheses, one is near any pose.
 pub(crate) const LIKELY: f32 = 0.01;
 
-/// Publishers to the robot.
 pub(crate) struct Outgoing {
     initial_pose: Publisher<PoseWithCovarianceStamped>,
     hypotheses: Publisher<PoseArray>,
@@ -47,7 +45,7 @@ impl Outgoing {
             .then(|| Broadcaster::open(member, &topics.tf, sent));
         Ok(Outgoing {
             initial_pose: Publisher::open_blocking(member, &topics.initial_pose, 1)?,
-            hypotheses: Publisher::open(member, &topics.hypotheses, 10)?,
+            hypotheses: Publisher::open(member, &topics.hypotheses, Keeping::Reliable, 10)?,
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             broadcaster: broadcaster.transpose()?,
             ahead_ns: (config.tf_ahead * 1e9) as i64,
@@ -57,35 +55,19 @@ impl Outgoing {
         })
     }
 
-    /// Sends the robot the hypotheses of a scan.
     pub(crate) fn answer(
         &mut self,
-        header: &HypothesesHeader,
-        items: &[Hypothesis],
+        (header, items): (&HypothesesHeader, &[Hypothesis]),
         map_frame: &str,
         frames: &Frames,
         seeding: &mut Seeding,
         report: &mut Report,
-    ) -> Result<(), TransportError> {
+    ) -> Result<(), GatewayError> {
         self.diagnostics.on_scan(header.stamp);
-        let answer = answer(header, items);
         let reason = match self.is_tracked {
             true => None,
-            false => seeding.on_answer(answer),
+            false => seeding.on_answer(answer(header, items)),
         };
-        let outcome = self.send_answer(header, items, map_frame, frames, reason, report);
-        outcome.or_else(|error| report.refused(&error))
-    }
-
-    fn send_answer(
-        &mut self,
-        header: &HypothesesHeader,
-        items: &[Hypothesis],
-        map_frame: &str,
-        frames: &Frames,
-        reason: Option<Reason>,
-        report: &mut Report,
-    ) -> Result<(), GatewayError> {
         let in_map = in_map(header.stamp, map_frame)?;
         let best = ros::poses::best(in_map.clone(), header, items);
         if let (Some(reason), Some(best), Some(pose)) = (reason, items.first(), best) {
@@ -112,31 +94,19 @@ impl Outgoing {
         self.is_tracked = true;
     }
 
-    /// Sends the robot the tracker's pose at a scan.
     pub(crate) fn tracked(
         &mut self,
         header: &PoseHeader,
         map_frame: &str,
         seeding: &mut Seeding,
         report: &mut Report,
-    ) -> Result<(), TransportError> {
+    ) -> Result<(), GatewayError> {
         self.expect_tracker();
         if header.from_scan != 1 {
             return Ok(());
         }
         self.diagnostics.on_scan(header.stamp);
         let reason = seeding.on_answer(tracked(header));
-        let outcome = self.show_tracked(header, map_frame, reason, report);
-        outcome.or_else(|error| report.refused(&error))
-    }
-
-    fn show_tracked(
-        &mut self,
-        header: &PoseHeader,
-        map_frame: &str,
-        reason: Option<Reason>,
-        report: &mut Report,
-    ) -> Result<(), GatewayError> {
         let in_map = in_map(header.stamp, map_frame)?;
         let pose = ros::poses::tracked(in_map.clone(), header);
         if let (Some(reason), Some(pose)) = (reason, pose) {
@@ -204,7 +174,6 @@ fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
     }
 }
 
-/// Converts the tracker's pose to an answer for its scan.
 fn tracked(header: &PoseHeader) -> Answer {
     let base = header.base();
     Answer {

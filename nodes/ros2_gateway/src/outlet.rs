@@ -14,7 +14,6 @@ use crate::frames::Frames;
 use crate::stamps::Forward;
 use crate::topics::Scans;
 
-/// Rules that are applied to scans and maps on the way.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Rules {
     /// Readings below this are no returns, metres; the laser's own limit counts if it is higher.
@@ -25,7 +24,6 @@ pub(crate) struct Rules {
     pub(crate) first_map_only: bool,
 }
 
-/// A laser whose scans are sent.
 struct Laser {
     name: Name,
     sent: u64,

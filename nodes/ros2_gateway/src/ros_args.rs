@@ -36,9 +36,6 @@ const NAMES: [(&str, &str); 11] = [
 ];
 
 /// Translates a command line, whose first word is the name of the program.
-///
-/// # Errors
-/// Returns a text that says what is wrong and what is allowed.
 pub fn translated(words: impl Iterator<Item = OsString>) -> Result<Vec<String>, String> {
     let text = |word: OsString| {
         let refused = |word: OsString| format!("{word:?}: allowed is text in UTF-8");

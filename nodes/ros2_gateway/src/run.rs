@@ -123,20 +123,17 @@ impl Gateway {
         }
         while let Some(sample) = hypotheses.receive()? {
             report.received();
-            self.outgoing.answer(
-                sample.header(),
-                sample.items(),
-                map_frame,
-                &self.frames,
-                &mut self.seeding,
-                report,
-            )?;
+            let (answer, seeding) = ((sample.header(), sample.items()), &mut self.seeding);
+            let outgoing = &mut self.outgoing;
+            let sent = outgoing.answer(answer, map_frame, &self.frames, seeding, report);
+            sent.or_else(|error| report.refused(&error))?;
         }
         while let Some(sample) = poses.receive()? {
             report.received();
             let header = sample.header();
-            self.outgoing
-                .tracked(header, map_frame, &mut self.seeding, report)?;
+            let (outgoing, seeding) = (&mut self.outgoing, &mut self.seeding);
+            let sent = outgoing.tracked(header, map_frame, seeding, report);
+            sent.or_else(|error| report.refused(&error))?;
             let verdict = match &mut self.verdict {
                 Some(verdict) => verdict,
                 none => match Verdict::open(&self.member, topics) {
@@ -164,7 +161,6 @@ impl Gateway {
         }
     }
 
-    /// Handles newly discovered subscribers and publishers.
     fn look(&mut self, report: &mut Report) -> Result<(), TransportError> {
         self.watch.look(&self.member, report, |node| {
             tracing::info!(node, "subscribes to the initial pose");
@@ -172,7 +168,6 @@ impl Gateway {
         })
     }
 
-    /// Answers requests for an initial pose.
     fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
         let answered = self.service.serve(report, |_| Nothing::default())?;
         if answered > 0 {

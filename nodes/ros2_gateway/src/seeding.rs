@@ -19,7 +19,6 @@ const SAME_TIME_NS: i64 = 250_000_000;
 /// Number of poses in a row that must be far from all hypotheses.
 const ENOUGH: u32 = 2;
 
-/// Possible poses of the robot according to one scan.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Answer {
     pub(crate) measured_ns: i64,
@@ -29,19 +28,16 @@ pub(crate) struct Answer {
     pub(crate) map_from_base: Vec<Pose>,
 }
 
-/// Pose of the robot according to the particle filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Belief {
     pub(crate) measured_ns: i64,
     pub(crate) map_from_base: Pose,
 }
 
-/// Reason for an initial pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reason {
     /// The filter has just started.
     New,
-    /// It was requested.
     Asked,
     /// The filter's pose is far from all hypotheses.
     Lost,
@@ -80,18 +76,15 @@ impl Seeding {
         }
     }
 
-    /// Notes a request for an initial pose.
     pub(crate) fn ask(&mut self) {
         self.wanted = Some(Reason::Asked);
     }
 
-    /// True if an initial pose is due.
     #[cfg(test)]
     fn is_wanted(&self) -> bool {
         self.wanted.is_some()
     }
 
-    /// Takes the pose of the particle filter.
     pub(crate) fn on_belief(&mut self, belief: Belief) {
         // Poses from before the initial pose do not count.
         if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
@@ -165,12 +158,12 @@ mod tests {
         Seeding::new(when, beyond)
     }
 
-    fn answer(ms: i64, is_unique: bool, places: &[f64]) -> Answer {
-        Answer {
+    fn answer(to: &mut Seeding, ms: i64, is_unique: bool, places: &[f64]) -> Option<Reason> {
+        to.on_answer(Answer {
             measured_ns: ms * MS,
             is_unique,
             map_from_base: places.iter().map(|x| Pose::new(*x, 0.0, 0.0)).collect(),
-        }
+        })
     }
 
     fn belief(ms: i64, x: f64) -> Belief {
@@ -184,62 +177,47 @@ mod tests {
     fn a_new_filter_gets_one_pose_by_a_unique_verdict() {
         for when in [Seed::Once, Seed::Lost] {
             let mut seeding = seeding(when);
-            assert_eq!(
-                seeding.on_answer(answer(0, true, &[1.0])),
-                None,
-                "nobody there"
-            );
+            // There is no filter yet.
+            assert_eq!(answer(&mut seeding, 0, true, &[1.0]), None);
             seeding.greet();
-            assert_eq!(seeding.on_answer(answer(100, false, &[1.0, 9.0])), None);
-            assert_eq!(
-                seeding.on_answer(answer(200, true, &[1.0])),
-                Some(Reason::New)
-            );
-            assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
+            assert_eq!(answer(&mut seeding, 100, false, &[1.0, 9.0]), None);
+            assert_eq!(answer(&mut seeding, 200, true, &[1.0]), Some(Reason::New));
+            assert_eq!(answer(&mut seeding, 300, true, &[1.0]), None);
         }
         let mut seeding = seeding(Seed::Never);
         seeding.greet();
-        assert_eq!(seeding.on_answer(answer(200, true, &[1.0])), None);
+        assert_eq!(answer(&mut seeding, 200, true, &[1.0]), None);
         seeding.ask();
-        assert_eq!(
-            seeding.on_answer(answer(300, true, &[1.0])),
-            Some(Reason::Asked)
-        );
+        assert_eq!(answer(&mut seeding, 300, true, &[1.0]), Some(Reason::Asked));
     }
 
     #[test]
     fn a_lost_filter_gets_another_after_the_second_sign() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.on_answer(answer(0, true, &[1.0]));
+        answer(&mut seeding, 0, true, &[1.0]);
         seeding.on_belief(belief(0, 1.5));
         seeding.on_belief(belief(0, 9.0));
-        assert_eq!(seeding.on_answer(answer(100, true, &[1.0])), None);
+        assert_eq!(answer(&mut seeding, 100, true, &[1.0]), None);
         // This one comes before its answer does.
         seeding.on_belief(belief(200, 9.0));
         assert!(!seeding.is_wanted());
-        assert_eq!(
-            seeding.on_answer(answer(200, true, &[1.0])),
-            Some(Reason::Lost)
-        );
+        assert_eq!(answer(&mut seeding, 200, true, &[1.0]), Some(Reason::Lost));
         // Poses from before the initial pose do not count.
         seeding.on_belief(belief(200, 9.0));
         seeding.on_belief(belief(150, 9.0));
-        assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
+        assert_eq!(answer(&mut seeding, 300, true, &[1.0]), None);
     }
 
     #[test]
     fn a_pose_at_any_hypothesis_or_with_no_unique_verdict_is_not_lost() {
         let mut seeding = seeding(Seed::Lost);
         for ms in (0..1000).step_by(100) {
-            assert_eq!(
-                seeding.on_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
-                None
-            );
+            assert_eq!(answer(&mut seeding, ms, ms % 200 == 0, &[1.0, 20.0]), None);
             seeding.on_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
         }
         assert!(!seeding.is_wanted());
         // Turned around at the right place.
-        seeding.on_answer(answer(2000, true, &[1.0]));
+        answer(&mut seeding, 2000, true, &[1.0]);
         for _ in 0..2 {
             let mut turned = belief(2000, 1.0);
             turned.map_from_base.yaw = 3.0;
@@ -254,7 +232,7 @@ mod tests {
     #[test]
     fn only_what_is_of_one_time_is_compared() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.on_answer(answer(1000, true, &[1.0]));
+        answer(&mut seeding, 1000, true, &[1.0]);
         seeding.on_belief(belief(700, 9.0));
         seeding.on_belief(belief(600, 9.0));
         assert!(!seeding.is_wanted());
@@ -263,7 +241,7 @@ mod tests {
     #[test]
     fn once_means_once() {
         let mut seeding = seeding(Seed::Once);
-        seeding.on_answer(answer(0, true, &[1.0]));
+        answer(&mut seeding, 0, true, &[1.0]);
         seeding.on_belief(belief(0, 9.0));
         seeding.on_belief(belief(0, 9.0));
         assert!(!seeding.is_wanted());
@@ -273,8 +251,8 @@ mod tests {
     fn a_clock_that_is_set_back_begins_again() {
         let mut seeding = seeding(Seed::Lost);
         seeding.ask();
-        assert!(seeding.on_answer(answer(5000, true, &[1.0])).is_some());
-        assert_eq!(seeding.on_answer(answer(0, true, &[1.0])), None);
+        assert!(answer(&mut seeding, 5000, true, &[1.0]).is_some());
+        assert_eq!(answer(&mut seeding, 0, true, &[1.0]), None);
         seeding.on_belief(belief(0, 9.0));
         seeding.on_belief(belief(0, 9.0));
         assert!(seeding.is_wanted());

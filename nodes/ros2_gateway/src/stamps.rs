@@ -6,9 +6,6 @@ use ros::{Header, Time};
 use crate::GatewayError;
 
 /// The header of a message about a scan, in the frame of the map.
-///
-/// # Errors
-/// [`GatewayError::Unstampable`].
 pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
     Ok(Header::new(stamp(of.measured_ns)?, map_frame))
 }
@@ -56,7 +53,6 @@ impl Forward {
         !(0..=SET_BACK_NS).contains(&behind_ns)
     }
 
-    /// Keeps a time as the last one.
     pub(crate) fn note(&mut self, at_ns: i64) {
         self.last_ns = at_ns;
     }

@@ -3,10 +3,10 @@
 use messages::Name;
 use ros::lasers;
 
-use crate::config::{Config, Names};
+use crate::config::Config;
 use crate::{GatewayError, rmw};
 
-/// Full names: those of [`Names`], resolved, and those that are fixed.
+/// Full names: those of the options, resolved, and those that are fixed.
 #[derive(Debug, Clone)]
 pub(crate) struct Topics {
     pub(crate) scans: Vec<Scans>,
@@ -31,7 +31,6 @@ pub(crate) struct Topics {
     pub(crate) rosout: String,
 }
 
-/// The scans of a laser.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scans {
     pub(crate) topic: String,
@@ -47,30 +46,19 @@ impl Topics {
         };
         // Checked here, before anything is opened: the name becomes a part of every token.
         resolve("node", config.node())?;
-        let Names {
-            odom,
-            tf,
-            tf_static,
-            amcl_pose,
-            initial_pose,
-            hypotheses,
-            localization,
-            diagnostics,
-            reinitialize,
-            ..
-        } = &config.names;
+        let names = &config.names;
         Ok(Topics {
             scans: named(&config.scans(), |name| resolve("scan", name))?,
-            odom: resolve("odom", odom)?,
+            odom: resolve("odom", &names.odom)?,
             map: resolve("map", config.map())?,
-            tf: resolve("tf", tf)?,
-            tf_static: resolve("tf-static", tf_static)?,
-            amcl_pose: resolve("amcl-pose", amcl_pose)?,
-            initial_pose: resolve("initial-pose", initial_pose)?,
-            hypotheses: resolve("hypotheses", hypotheses)?,
-            localization: resolve("localization", localization)?,
-            diagnostics: resolve("diagnostics", diagnostics)?,
-            reinitialize: resolve("reinitialize", reinitialize)?,
+            tf: resolve("tf", &names.tf)?,
+            tf_static: resolve("tf-static", &names.tf_static)?,
+            amcl_pose: resolve("amcl-pose", &names.amcl_pose)?,
+            initial_pose: resolve("initial-pose", &names.initial_pose)?,
+            hypotheses: resolve("hypotheses", &names.hypotheses)?,
+            localization: resolve("localization", &names.localization)?,
+            diagnostics: resolve("diagnostics", &names.diagnostics)?,
+            reinitialize: resolve("reinitialize", &names.reinitialize)?,
             particle_cloud: resolve("namespace", "particle_cloud")?,
             set_initial_pose: resolve("namespace", "set_initial_pose")?,
             nomotion: resolve("namespace", "request_nomotion_update")?,

@@ -29,7 +29,6 @@ pub(crate) struct Position {
     deviation_range: Option<f64>,
 }
 
-/// Converts the tracker's pose.
 pub(crate) fn of(from: &PoseHeader) -> Position {
     // The pose of a laser is not the robot's.
     let localized = from.is_believed() && from.mount_known == 1;

@@ -10,12 +10,11 @@ use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
 use zenoh_session::{KeyError, Report};
 
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::{GatewayError, vda5050};
 
-/// Publishers of the verdict, with one message per scan.
 pub(crate) struct Verdict {
     topic: Publisher<Localization>,
     fleet: Fleet,
@@ -43,11 +42,11 @@ impl Verdict {
             }
             None => {
                 let topic = format!("{}/vda5050", topics.localization);
-                Fleet::Topic(Publisher::open(member, &topic, 1)?)
+                Fleet::Topic(Publisher::open(member, &topic, Keeping::Reliable, 1)?)
             }
         };
         Ok(Verdict {
-            topic: Publisher::open_kept(member, &topics.localization, 1)?,
+            topic: Publisher::open(member, &topics.localization, Keeping::Kept, 1)?,
             fleet,
         })
     }

@@ -6,11 +6,8 @@ const PATIENCE_NS: i64 = 3_000_000_000;
 /// Publisher of a topic, by how well it fits the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Publishing {
-    /// No publisher.
     Nobody,
-    /// Publisher of another message type.
     OtherType,
-    /// Publisher of another version of the type.
     OtherVersion,
     /// Best-effort or volatile publisher, while the input needs a reliable or transient local one.
     OtherQuality,
@@ -48,10 +45,8 @@ impl Input<'_> {
     }
 }
 
-/// State of all inputs.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Status<'a> {
-    /// All inputs arrive.
     Flows,
     /// Some have not arrived yet, and it is too early to report them.
     Begins,
@@ -59,7 +54,6 @@ pub(crate) enum Status<'a> {
     Waits(&'a str),
 }
 
-/// Detects silent inputs.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
     /// Message count of each input, and the time of its last change in nanoseconds.

@@ -18,14 +18,12 @@ use crate::topics::Topics;
 use crate::{Config, GatewayError};
 use parts::Parts;
 
-/// Subscribers to the graph's results.
 pub(super) struct Said {
     pub(super) hypotheses: Subscriber<topic::Hypotheses>,
     pub(super) poses: Subscriber<topic::Tracked>,
     pub(super) health: Subscriber<topic::Health>,
 }
 
-/// Context that the parts of the node share.
 #[derive(Clone, Copy)]
 pub(super) struct Joined<'a> {
     pub(super) graph: &'a Graph,
@@ -34,7 +32,6 @@ pub(super) struct Joined<'a> {
     pub(super) topics: &'a Topics,
 }
 
-/// The node without its lifecycle state.
 pub(super) struct Body<'a> {
     joined: Joined<'a>,
     map_frame: String,
@@ -89,15 +86,15 @@ impl<'a> Body<'a> {
     }
 
     fn activate(&mut self, parameters: &Parameters) -> Result<(), GatewayError> {
-        let Joined {
-            member,
-            config,
-            topics,
-            ..
-        } = self.joined;
+        let joined = self.joined;
         let period_s = parameters.number("bond_heartbeat_period");
         if period_s > 0.0 {
-            self.bond = Some(Bond::open(member, &topics.bond, config.node(), period_s)?);
+            self.bond = Some(Bond::open(
+                joined.member,
+                &joined.topics.bond,
+                joined.config.node(),
+                period_s,
+            )?);
         }
         let is_first = !std::mem::replace(&mut self.was_active, true);
         if self.pending.is_none() {
@@ -125,7 +122,6 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// Returns the saved pose of the last run, if the parameters ask for it.
     fn saved(&self, parameters: &Parameters) -> Option<InitialPose> {
         if !parameters.is_on("initialize_at_saved_pose") {
             return None;
@@ -168,15 +164,10 @@ impl<'a> Body<'a> {
         parameters: &Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let Joined {
-            member,
-            config,
-            topics,
-            ..
-        } = self.joined;
+        let joined = self.joined;
         let (map_frame, pending) = (&self.map_frame, &mut self.pending);
         if let Some(parts) = &mut self.parts {
-            parts.take(member, parameters, map_frame, pending, report)?;
+            parts.take(joined.member, parameters, map_frame, pending, report)?;
         }
         match &mut self.parts {
             Some(parts) if self.is_active => {
@@ -185,9 +176,9 @@ impl<'a> Body<'a> {
             _ => drain(said)?,
         }
         let taken = self.parts.as_ref().map(Parts::taken);
-        let place = (config, topics);
+        let place = (joined.config, joined.topics);
         self.inputs
-            .look(place, member, taken, missing(state), report)?;
+            .look(place, joined.member, taken, missing(state), report)?;
         if let Some(bond) = &mut self.bond
             && let Err(error) = bond.tick()
         {
@@ -209,7 +200,6 @@ fn missing(state: Primary) -> Option<&'static str> {
     }
 }
 
-/// Discards the queued results of the graph.
 fn drain(said: &Said) -> Result<(), TransportError> {
     while said.hypotheses.receive()?.is_some() {}
     while said.poses.receive()?.is_some() {}

@@ -11,7 +11,6 @@ use crate::rmw::{Member, Publisher};
 /// nav2.
 const TIMEOUT_S: f32 = 4.0;
 
-/// The node's end of the bond.
 pub(super) struct Bond {
     publisher: Publisher<BondStatus>,
     /// Name of the node, without its namespace.
@@ -40,7 +39,6 @@ impl Bond {
         })
     }
 
-    /// Sends a heartbeat if one is due.
     pub(super) fn tick(&mut self) -> Result<(), GatewayError> {
         let now_ns = monotonic_ns();
         let is_due = |sent_ns| now_ns - sent_ns >= self.period_ns;
@@ -50,7 +48,6 @@ impl Bond {
         }
     }
 
-    /// Tells the manager that the bond ends.
     pub(super) fn end(mut self) -> Result<(), GatewayError> {
         self.send(false)
     }

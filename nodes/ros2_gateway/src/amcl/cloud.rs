@@ -11,23 +11,18 @@ use ros::{Header, planar};
 
 use crate::outgoing::LIKELY;
 
-/// Number of particles for each pose.
 const POINTS: usize = 64;
 
-/// Largest number of hypotheses shown.
 const MOST: usize = 16;
 
-/// A possible pose of the robot: the pose, its covariance and its probability.
 type Place = (Pose, Covariance, f64);
 
-/// Makes the cloud around the pose that the tracker believes.
 pub(super) fn of_pose(header: Header, from: &PoseHeader) -> ParticleCloud {
     let covariance = Covariance::from_rows(from.base_covariance);
     let place = (from.map_from_base.into(), covariance, from.probability);
     cloud(header, [place].into_iter())
 }
 
-/// Makes the cloud around the likely hypotheses of a scan.
 pub(super) fn of_hypotheses(
     header: Header,
     from: &HypothesesHeader,

@@ -41,13 +41,7 @@ pub(super) fn of_message(
         kind: InitialPoseKind::Hint as u64,
         map_from_base: now.into(),
         covariance: covariance
-            .carried(
-                pose,
-                Pose {
-                    yaw: pose.yaw,
-                    ..now
-                },
-            )
+            .carried(pose, Pose::new(now.x, now.y, pose.yaw))
             .to_rows(),
     })
 }
@@ -69,7 +63,6 @@ pub(super) fn of_kind(kind: InitialPoseKind, pose: InitialPose) -> InitialPose {
     }
 }
 
-/// Returns the request to localize anywhere on the map.
 pub(super) fn anywhere() -> InitialPose {
     InitialPose {
         stamp: Stamp::default(),

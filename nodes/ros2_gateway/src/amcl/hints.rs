@@ -13,14 +13,12 @@ use crate::incoming::{MAX_BYTES, take};
 use crate::rmw::{Keeping, Member, Service, Subscription, Watch};
 use crate::topics::Topics;
 
-/// Sources of initial poses, and the publisher to the tracker.
 pub(super) struct Hints {
     initial_poses: Subscription<PoseWithCovarianceStamped>,
     set_initial_pose: Service<SetInitialPose>,
     reinitialize: Service<Empty>,
     publisher: Publisher<topic::InitialPoseTopic>,
     sent: u64,
-    /// Kind of the initial poses: hint or believed.
     kind: InitialPoseKind,
 }
 
@@ -34,7 +32,7 @@ impl Hints {
         are_believed: bool,
     ) -> Result<Self, GatewayError> {
         let topic = &topics.initial_pose;
-        watch.expect::<PoseWithCovarianceStamped>(topic)?;
+        watch.expected.expect::<PoseWithCovarianceStamped>(topic)?;
         let reliable = Keeping::Reliable;
         Ok(Hints {
             initial_poses: Subscription::open(graph, member, topic, reliable, 10, MAX_BYTES)?,
@@ -108,7 +106,6 @@ impl Hints {
     }
 }
 
-/// Returns the kind of initial poses: believed or hint.
 pub(super) fn kind(are_believed: bool) -> InitialPoseKind {
     match are_believed {
         true => InitialPoseKind::Believed,

@@ -13,7 +13,6 @@ use super::lifecycle::{self, Change, Lifecycle};
 use crate::GatewayError;
 use crate::rmw::{Member, Publisher, Service};
 
-/// The node's lifecycle with its services and events.
 pub(super) struct Life {
     pub(super) lifecycle: Lifecycle,
     change: Service<ChangeState>,
@@ -25,7 +24,6 @@ pub(super) struct Life {
 }
 
 impl Life {
-    /// Opens the services of the node with this full name.
     pub(super) fn open(graph: &Graph, member: &Member, node: &str) -> Result<Self, GatewayError> {
         let name = |service: &str| format!("{node}/{service}");
         Ok(Life {
@@ -45,18 +43,9 @@ impl Life {
         mut act: impl FnMut(Change) -> bool,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let Life {
-            lifecycle,
-            change,
-            state,
-            states,
-            transitions,
-            graph,
-            events,
-        } = self;
-        change.serve(report, |request| {
-            let success = match lifecycle.asked(&request.transition) {
-                Ok(change) => turn(lifecycle, events, change, &mut act),
+        self.change.serve(report, |request| {
+            let success = match self.lifecycle.asked(&request.transition) {
+                Ok(change) => turn(&mut self.lifecycle, &mut self.events, change, &mut act),
                 Err(reason) => {
                     tracing::warn!("change_state refused: {reason}");
                     false
@@ -64,23 +53,23 @@ impl Life {
             };
             ChangeStateResponse { success }
         })?;
-        let current_state = || lifecycle.state();
-        state.serve(report, |_| GetStateResponse {
-            current_state: current_state(),
+        self.state.serve(report, |_| GetStateResponse {
+            current_state: self.lifecycle.state(),
         })?;
-        states.serve(report, |_| GetAvailableStatesResponse {
+        self.states.serve(report, |_| GetAvailableStatesResponse {
             available_states: lifecycle::states(),
         })?;
-        transitions.serve(report, |_| GetAvailableTransitionsResponse {
-            available_transitions: lifecycle.available(),
-        })?;
-        graph.serve(report, |_| GetAvailableTransitionsResponse {
-            available_transitions: lifecycle::graph(),
-        })?;
+        self.transitions
+            .serve(report, |_| GetAvailableTransitionsResponse {
+                available_transitions: self.lifecycle.available(),
+            })?;
+        self.graph
+            .serve(report, |_| GetAvailableTransitionsResponse {
+                available_transitions: lifecycle::graph(),
+            })?;
         Ok(())
     }
 
-    /// Configures and activates the node without a request.
     pub(super) fn start(&mut self, mut act: impl FnMut(Change) -> bool) {
         for change in [Change::Configure, Change::Activate] {
             turn(&mut self.lifecycle, &mut self.events, change, &mut act);

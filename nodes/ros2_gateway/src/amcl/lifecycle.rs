@@ -15,7 +15,6 @@ pub(crate) enum Primary {
     Finalized = 4,
 }
 
-/// Transition that others may request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Change {
     Configure,
@@ -40,7 +39,6 @@ const STATES: [(u8, &str); 11] = [
     (15, "errorprocessing"),
 ];
 
-/// Transition that others may request.
 struct Asked {
     id: u8,
     label: &'static str,
@@ -175,7 +173,6 @@ impl Lifecycle {
             .collect()
     }
 
-    /// Returns the transitions that begin in the state of the node.
     pub(crate) fn available(&self) -> Vec<TransitionDescription> {
         let here = self.state as u8;
         let all = graph().into_iter();

@@ -2,9 +2,9 @@
 //! pose without an initial guess.
 //!
 //! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud` and `standing` are pure. `life` and
-//! `parameter_services` offer the first two to other nodes, `rosout` publishes the log, and
-//! `type_descriptions` is a service that each node has. `body` is the part that a lifecycle manager
-//! configures and activates, with `parts` while it is configured.
+//! `parameter_services` offer the first two to other nodes, and `rosout` publishes the log. `body`
+//! is the part that a lifecycle manager configures and activates, with `parts` while it is
+//! configured.
 
 mod body;
 mod bond;
@@ -21,7 +21,6 @@ mod rosout;
 mod saved_pose;
 mod sim_clock;
 mod standing;
-mod type_descriptions;
 
 use std::path::Path;
 use std::time::Duration;
@@ -39,7 +38,6 @@ use life::Life;
 use parameter_services::ParameterServices;
 use parameters::Parameters;
 use rosout::Rosout;
-use type_descriptions::TypeDescriptions;
 
 /// Runs in AMCL's place until the stop flag is set; takes a step at least every `tick`.
 pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), GatewayError> {
@@ -72,7 +70,6 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     let mut life = Life::open(graph, &member, &node)?;
     let events = &topics.parameter_events;
     let mut services = ParameterServices::open(graph, &member, &node, events)?;
-    let types = TypeDescriptions::open(graph, &member, &node)?;
     let mut rosout = Rosout::open(graph, &member, &topics.rosout, &node)?;
     let map_frame = config
         .map_frame
@@ -97,7 +94,6 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     graph.run(&[&said.hypotheses, &said.poses, &said.health], tick, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
-        types.serve(&mut report)?;
         rosout.send(&mut report)?;
         let state = life.lifecycle.primary();
         body.step(&said, state, &parameters, &mut report)?;
@@ -162,7 +158,7 @@ mod tests {
             ("odom_frame_id", "o"),
             ("map_topic", "m"),
         ] {
-            let value = parameters::Value::Text(value.to_owned());
+            let value = parameters::Value::Text(value.into());
             assert_eq!(parameters.load(name, value).unwrap(), None);
         }
         let config = Config::parse_from(["ros2_gateway", "--as", "amcl"]);

@@ -14,12 +14,11 @@ use crate::GatewayError;
 use crate::broadcast::{Broadcaster, Sent};
 use crate::diagnostics::Diagnostics;
 use crate::outgoing::odometry_of;
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 use crate::stamps::in_map;
 use crate::topics::Topics;
 use crate::verdict::Verdict;
 
-/// Publishers to the robot, while the node is active.
 pub(super) struct Outgoing {
     pose: Publisher<PoseWithCovarianceStamped>,
     cloud: Publisher<ParticleCloud>,
@@ -46,8 +45,8 @@ impl Outgoing {
         sent: Sent,
     ) -> Result<Self, GatewayError> {
         Ok(Outgoing {
-            pose: Publisher::open_kept(member, &topics.amcl_pose, 1)?,
-            cloud: Publisher::open_fresh(member, &topics.particle_cloud, 5)?,
+            pose: Publisher::open(member, &topics.amcl_pose, Keeping::Kept, 1)?,
+            cloud: Publisher::open(member, &topics.particle_cloud, Keeping::Fresh, 5)?,
             broadcaster: Broadcaster::open(member, &topics.tf, sent)?,
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             verdict: Verdict::open(member, topics)?,
@@ -164,7 +163,6 @@ impl Outgoing {
         report.outcome(sent)
     }
 
-    /// Sends the transform if it is due.
     pub(super) fn tick(
         &mut self,
         map_frame: &str,

@@ -1,4 +1,5 @@
-//! Services by which other nodes read and set the parameters.
+//! Services that each node of ROS has: those by which others read and set the parameters, and the
+//! one that describes message types, which answers each request with a failure.
 
 use ros::Time;
 use ros::rcl_interfaces::{
@@ -7,6 +8,7 @@ use ros::rcl_interfaces::{
     ParameterEvent, SetParameters, SetParametersAtomically, SetParametersAtomicallyResponse,
     SetParametersResponse,
 };
+use ros::type_description_interfaces::{GetTypeDescription, GetTypeDescriptionResponse};
 use transport::{Graph, TransportError, wall_ns};
 use zenoh_session::Report;
 
@@ -17,7 +19,6 @@ use crate::rmw::{Member, Publisher, Service};
 /// Number of events kept for slow subscribers; the same as in ROS.
 const EVENTS: usize = 1000;
 
-/// Parameter services of a node of ROS.
 pub(super) struct ParameterServices {
     describe: Service<DescribeParameters>,
     get: Service<GetParameters>,
@@ -25,13 +26,14 @@ pub(super) struct ParameterServices {
     list: Service<ListParameters>,
     set: Service<SetParameters>,
     set_all: Service<SetParametersAtomically>,
+    /// A client that gets an answer looks elsewhere at once, and one that finds no service waits.
+    descriptions: Service<GetTypeDescription>,
     events: Publisher<ParameterEvent>,
     /// Full name of the node.
     node: String,
 }
 
 impl ParameterServices {
-    /// Opens the services of the node with this full name.
     pub(super) fn open(
         graph: &Graph,
         member: &Member,
@@ -46,39 +48,36 @@ impl ParameterServices {
             list: Service::open(graph, member, &name("list_parameters"))?,
             set: Service::open(graph, member, &name("set_parameters"))?,
             set_all: Service::open(graph, member, &name("set_parameters_atomically"))?,
+            descriptions: Service::open(graph, member, &name("get_type_description"))?,
             events: Publisher::open_blocking(member, events, EVENTS)?,
             node: node.to_owned(),
         })
     }
 
-    /// Answers queued requests.
     pub(super) fn serve(
         &mut self,
         parameters: &mut Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        self.describe
-            .serve(report, |request| DescribeParametersResponse {
-                descriptors: request
-                    .names
-                    .iter()
-                    .map(|name| parameters.describe(name))
-                    .collect(),
-            })?;
-        self.get.serve(report, |request| GetParametersResponse {
-            values: request
-                .names
-                .iter()
-                .map(|name| parameters.get(name))
-                .collect(),
+        self.describe.serve(report, |request| {
+            let descriptors = each(&request.names, |name| parameters.describe(name));
+            DescribeParametersResponse { descriptors }
         })?;
-        self.types
-            .serve(report, |request| GetParameterTypesResponse {
-                types: request
-                    .names
-                    .iter()
-                    .map(|name| parameters.get(name).r#type)
-                    .collect(),
+        self.get.serve(report, |request| {
+            let values = each(&request.names, |name| parameters.get(name));
+            GetParametersResponse { values }
+        })?;
+        self.types.serve(report, |request| {
+            let types = each(&request.names, |name| parameters.get(name).r#type);
+            GetParameterTypesResponse { types }
+        })?;
+        self.descriptions
+            .serve(report, |request| GetTypeDescriptionResponse {
+                failure_reason: format!(
+                    "this node describes no types: the package of {:?} has its definition",
+                    request.type_name
+                ),
+                ..GetTypeDescriptionResponse::default()
             })?;
         self.list.serve(report, |request| ListParametersResponse {
             result: parameters.list(&request.prefixes, request.depth),
@@ -103,11 +102,8 @@ impl ParameterServices {
             let values = values.map(|parameter| (&*parameter.name, &parameter.value));
             let result = parameters.set_all(values);
             if result.successful {
-                let names = request
-                    .parameters
-                    .into_iter()
-                    .map(|parameter| parameter.name);
-                changes.push(names.map(|name| parameters.named(name)).collect());
+                let set = request.parameters.into_iter();
+                changes.push(set.map(|set| parameters.named(set.name)).collect());
             }
             SetParametersAtomicallyResponse { result }
         })?;
@@ -131,4 +127,8 @@ impl ParameterServices {
         });
         report.outcome(sent)
     }
+}
+
+fn each<T>(names: &[String], of: impl Fn(&str) -> T) -> Vec<T> {
+    names.iter().map(|name| of(name)).collect()
 }

@@ -4,6 +4,7 @@
 
 mod declared;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -17,22 +18,20 @@ use crate::GatewayError;
 pub(crate) use declared::FILE;
 use declared::{ALL, Counts, Declared};
 
-/// Value of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
     Bool(bool),
     Integer(i64),
     Double(f64),
-    Text(String),
+    Text(Cow<'static, str>),
 }
 
-/// All parameters with their values.
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters(BTreeMap<&'static str, Value>);
 
 impl Default for Parameters {
     fn default() -> Self {
-        Parameters(ALL.iter().map(|d| (d.name, d.default.into())).collect())
+        Parameters(ALL.iter().map(|d| (d.name, d.default.clone())).collect())
     }
 }
 
@@ -55,7 +54,6 @@ impl Parameters {
             .then(|| format!("parameter {name} has no meaning here: {meaning}")))
     }
 
-    /// Sets a value while the node runs.
     pub(super) fn set(&mut self, name: &str, value: &ParameterValue) -> SetParametersResult {
         let outcome = self.checked(name, value);
         match outcome {
@@ -75,7 +73,6 @@ impl Parameters {
         }
     }
 
-    /// Sets all of the values or none.
     pub(super) fn set_all<'a>(
         &mut self,
         values: impl Iterator<Item = (&'a str, &'a ParameterValue)>,
@@ -120,7 +117,6 @@ impl Parameters {
             .unwrap_or_default()
     }
 
-    /// Returns the parameter of that name with its value.
     pub(super) fn named(&self, name: String) -> Parameter {
         let value = self.get(&name);
         Parameter { name, value }
@@ -186,7 +182,6 @@ impl Parameters {
         }
     }
 
-    /// True if there is a parameter of that name.
     pub(super) fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }
@@ -205,15 +200,12 @@ impl Parameters {
         (!file.is_empty()).then(|| Path::new(file))
     }
 
-    /// True if the file of the saved pose is the default.
     pub(super) fn has_default_file(&self) -> bool {
-        let default = declared(FILE).map(|declared| Value::from(declared.default));
-        self.0.get(FILE) == default.as_ref()
+        self.0.get(FILE) == declared(FILE).map(|declared| &declared.default)
     }
 
-    /// Turns off saving the pose.
     pub(super) fn clear_saved_pose_file(&mut self) {
-        self.0.insert(FILE, Value::Text(String::new()));
+        self.0.insert(FILE, Value::Text("".into()));
     }
 
     pub(super) fn is_on(&self, name: &str) -> bool {
@@ -228,7 +220,6 @@ impl Parameters {
         }
     }
 
-    /// Returns the initial pose of the parameters.
     pub(super) fn initial_pose(&self) -> Pose {
         let of = |axis: &str| self.number(&format!("initial_pose.{axis}"));
         Pose::new(of("x"), of("y"), of("yaw"))
@@ -241,12 +232,11 @@ fn declared(name: &str) -> Option<&'static Declared> {
 
 /// Converts a value to the parameter's type and checks its range: an integer is a number, too.
 fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
-    let value = match (Value::from(declared.default), value) {
+    let value = match (&declared.default, value) {
         (Value::Double(_), Value::Integer(whole)) => Value::Double(whole as f64),
         (_, value) => value,
     };
-    let is_same =
-        std::mem::discriminant(&value) == std::mem::discriminant(&Value::from(declared.default));
+    let is_same = std::mem::discriminant(&value) == std::mem::discriminant(&declared.default);
     let is_within = match (&value, declared.range) {
         (Value::Double(number), Some((least, most))) => (least..=most).contains(number),
         (Value::Double(number), None) => number.is_finite(),
@@ -261,7 +251,7 @@ fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
 }
 
 fn refused(declared: &Declared, found: &str) -> GatewayError {
-    let allowed = match (Value::from(declared.default), declared.range) {
+    let allowed = match (&declared.default, declared.range) {
         (Value::Bool(_), _) => "true and false".to_owned(),
         (Value::Integer(_), _) => "whole numbers".to_owned(),
         (Value::Double(_), None) => "finite numbers".to_owned(),
@@ -310,7 +300,7 @@ impl From<&Value> for ParameterValue {
                 ..of(ParameterType::Double)
             },
             Value::Text(text) => ParameterValue {
-                string_value: text.clone(),
+                string_value: text.clone().into_owned(),
                 ..of(ParameterType::String)
             },
         }
@@ -325,7 +315,7 @@ impl TryFrom<&ParameterValue> for Value {
             Some(ParameterType::Bool) => Ok(Value::Bool(value.bool_value)),
             Some(ParameterType::Integer) => Ok(Value::Integer(value.integer_value)),
             Some(ParameterType::Double) => Ok(Value::Double(value.double_value)),
-            Some(ParameterType::String) => Ok(Value::Text(value.string_value.clone())),
+            Some(ParameterType::String) => Ok(Value::Text(value.string_value.clone().into())),
             Some(other) => Err(format!("of type {other:?}")),
             None => Err(format!("of type {}", value.r#type)),
         }

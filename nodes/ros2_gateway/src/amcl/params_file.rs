@@ -14,7 +14,6 @@ use serde_json::Value as Json;
 use super::parameters::{Parameters, Value};
 use crate::GatewayError;
 
-/// Key above the parameters of a node.
 const PARAMETERS: &str = "ros__parameters";
 
 /// Largest size of a file in bytes, and its largest depth: many times those of a whole robot.
@@ -40,13 +39,13 @@ pub(super) fn load(
         )));
     }
     let root: Json = serde_saphyr::from_str(text).map_err(|error| refuse(error.to_string()))?;
-    let mut found = Found::default();
+    let mut found = Found::new();
     find(&root, "", MAX_DEPTH, &mut found).map_err(&refuse)?;
     let mut remarks = Vec::new();
     // Wildcards sort before names, so that names override them.
-    found.nodes.sort_by(|a, b| a.0.cmp(&b.0));
+    found.sort_by(|a, b| a.0.cmp(&b.0));
     let mut is_there = false;
-    for (name, values) in found.nodes.iter().filter(|(name, _)| is_meant(name, node)) {
+    for (name, values) in found.iter().filter(|(name, _)| is_meant(name, node)) {
         is_there = true;
         let mut flat = Vec::new();
         flatten(values, String::new(), MAX_DEPTH, &mut flat).map_err(&refuse)?;
@@ -73,12 +72,7 @@ pub(super) fn load(
         }
     }
     if !is_there {
-        let names: Vec<&str> = found
-            .nodes
-            .iter()
-            .map(|(name, _)| &**name)
-            .take(20)
-            .collect();
+        let names: Vec<&str> = found.iter().map(|(name, _)| &**name).take(20).collect();
         let names = names.join(", ");
         remarks.push(format!(
             "{file} has no parameters for {node}, but for: {names}"
@@ -106,10 +100,8 @@ pub(super) fn set(
     load(parameters, &text, rule, node)
 }
 
-#[derive(Default)]
-struct Found<'a> {
-    nodes: Vec<(String, &'a Json)>,
-}
+/// Values of nodes by name.
+type Found<'a> = Vec<(String, &'a Json)>;
 
 /// Collects all nodes below, with their names so far.
 fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> Result<(), String> {
@@ -127,7 +119,7 @@ fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> 
     }
     for (key, below) in keys {
         if key == PARAMETERS {
-            found.nodes.push((name.to_owned(), below));
+            found.push((name.to_owned(), below));
         } else {
             let key = key.trim_matches('/');
             find(below, &format!("{name}/{key}"), depth - 1, found)?;
@@ -138,22 +130,20 @@ fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> 
 
 /// True if the pattern, which may have wildcards, matches the name of the node.
 fn is_meant(pattern: &str, node: &str) -> bool {
-    let parts = |name: &str| -> Vec<String> {
-        name.split('/')
-            .filter(|p| !p.is_empty())
-            .map(str::to_owned)
-            .collect()
-    };
-    fits(&parts(pattern), &parts(node))
+    let [pattern, node] = [pattern, node].map(|name| {
+        let parts = name.split('/').filter(|part| !part.is_empty());
+        parts.collect::<Vec<_>>()
+    });
+    fits(&pattern, &node)
 }
 
-fn fits(pattern: &[String], node: &[String]) -> bool {
+fn fits(pattern: &[&str], node: &[&str]) -> bool {
     match (pattern, node) {
         ([], []) => true,
-        ([any, rest @ ..], _) if any == "**" => {
+        (["**", rest @ ..], _) => {
             (0..=node.len()).any(|n| node.get(n..).is_some_and(|node| fits(rest, node)))
         }
-        ([one, rest @ ..], [name, others @ ..]) if one == "*" || one == name => fits(rest, others),
+        ([one, rest @ ..], [name, others @ ..]) if *one == "*" || one == name => fits(rest, others),
         _ => false,
     }
 }
@@ -190,7 +180,7 @@ fn value(json: &Json) -> Option<Value> {
             Some(whole) => Value::Integer(whole),
             None => Value::Double(number.as_f64()?),
         },
-        Json::String(text) => Value::Text(text.clone()),
+        Json::String(text) => Value::Text(text.clone().into()),
         Json::Null | Json::Array(_) | Json::Object(_) => return None,
     })
 }

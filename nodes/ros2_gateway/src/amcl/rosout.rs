@@ -7,7 +7,7 @@ use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::config::NODE;
-use crate::rmw::{Member, Publisher};
+use crate::rmw::{Keeping, Member, Publisher};
 
 /// Number of lines kept for late subscribers; the same as in ROS.
 const LINES: usize = 1000;
@@ -21,7 +21,6 @@ pub(super) struct Rosout {
 }
 
 impl Rosout {
-    /// Opens the log of the node with this full name.
     pub(super) fn open(
         graph: &Graph,
         member: &Member,
@@ -30,12 +29,11 @@ impl Rosout {
     ) -> Result<Self, GatewayError> {
         Ok(Rosout {
             lines: graph.subscriber()?,
-            publisher: Publisher::open_kept(member, topic, LINES)?,
+            publisher: Publisher::open(member, topic, Keeping::Kept, LINES)?,
             logger: node.trim_matches('/').replace('/', "."),
         })
     }
 
-    /// Publishes the queued lines.
     pub(super) fn send(&mut self, report: &mut Report) -> Result<(), TransportError> {
         while let Some(line) = self.lines.receive()? {
             let header = line.header();

@@ -39,7 +39,6 @@ impl SavedPose {
         }
     }
 
-    /// Forgets the pose, because it is wrong.
     pub(super) fn forget(&mut self) {
         self.last = None;
     }
@@ -58,7 +57,6 @@ impl SavedPose {
         Some(due)
     }
 
-    /// Returns the pose that is still to be saved at the end.
     pub(super) fn left(&mut self, rate: f64) -> Option<(Pose, i64)> {
         self.last.take().filter(|_| rate > 0.0)
     }

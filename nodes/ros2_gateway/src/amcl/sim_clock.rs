@@ -10,7 +10,6 @@ use crate::incoming::{MAX_BYTES, take};
 use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::topics::Topics;
 
-/// Subscription to the clock, with its newest time.
 pub(super) struct SimClock {
     clocks: Subscription<Clock>,
     now_ns: Option<i64>,
@@ -24,7 +23,7 @@ impl SimClock {
         topics: &Topics,
         watch: &mut Watch,
     ) -> Result<Self, GatewayError> {
-        watch.expect::<Clock>(&topics.clock)?;
+        watch.expected.expect::<Clock>(&topics.clock)?;
         Ok(SimClock {
             clocks: Subscription::open(graph, member, &topics.clock, Keeping::Fresh, 1, MAX_BYTES)?,
             now_ns: None,
@@ -33,14 +32,9 @@ impl SimClock {
     }
 
     pub(super) fn take(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        let SimClock {
-            clocks,
-            now_ns,
-            received,
-        } = self;
-        take(clocks, report, |message, _| {
-            *now_ns = Some(measured_ns("the clock", message.clock)?);
-            *received += 1;
+        take(&mut self.clocks, report, |message, _| {
+            self.now_ns = Some(measured_ns("the clock", message.clock)?);
+            self.received += 1;
             Ok(())
         })
     }

@@ -18,7 +18,6 @@ const SCANS: i64 = 4;
 const LEAST_NS: i64 = 300_000_000;
 const MOST_NS: i64 = 1_000_000_000;
 
-/// The last scan and its transform.
 #[derive(Debug, Default)]
 pub(super) struct Standing {
     last: Option<Last>,

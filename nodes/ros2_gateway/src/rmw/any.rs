@@ -12,7 +12,6 @@ use super::expected::Expected;
 use super::received::{Identity, Received, Senders};
 use super::{Keeping, Seen, dds, description, zenoh as rmw_zenoh};
 use crate::middleware::{self, Rmw};
-use crate::waiting::Publishing;
 use crate::{Config, GatewayError};
 
 /// The gateway as a node of ROS that others see, until this is dropped.
@@ -39,7 +38,6 @@ impl Member {
         })
     }
 
-    /// Returns Zenoh's session, if Zenoh was chosen.
     pub(crate) fn session(&self) -> Option<&Session> {
         match self {
             Member::Zenoh(member) => Some(member.session()),
@@ -71,7 +69,6 @@ impl Member {
     }
 }
 
-/// A topic to the robot.
 pub(crate) struct Publisher<M> {
     topic: String,
     sink: Sink,
@@ -84,39 +81,25 @@ enum Sink {
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Opens a reliable topic that keeps the last `depth` messages for slow subscribers. For
-    /// messages that come with each scan: they are dropped if the robot's network is slower than
-    /// the graph, since only fresh ones are of use.
-    pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
-        Self::with(member, topic, (Keeping::Reliable, depth), false)
+    /// Opens a topic that keeps the last `depth` messages, for slow subscribers or late ones.
+    /// Messages are dropped if the robot's network is slower than the graph: most come with each
+    /// scan, and only fresh ones are of use.
+    pub(crate) fn open(
+        member: &Member,
+        topic: &str,
+        keeping: Keeping,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (keeping, depth), false)
     }
 
-    /// Like [`Publisher::open`], for rare messages that must arrive: sending waits for a slow
-    /// network.
+    /// Opens a reliable topic for rare messages that must arrive: sending waits for a slow network.
     pub(crate) fn open_blocking(
         member: &Member,
         topic: &str,
         depth: usize,
     ) -> Result<Self, GatewayError> {
         Self::with(member, topic, (Keeping::Reliable, depth), true)
-    }
-
-    /// Opens a best-effort topic, like those of sensors, for messages whose loss does not matter.
-    pub(crate) fn open_fresh(
-        member: &Member,
-        topic: &str,
-        depth: usize,
-    ) -> Result<Self, GatewayError> {
-        Self::with(member, topic, (Keeping::Fresh, depth), false)
-    }
-
-    /// Opens a reliable, transient local topic: late subscribers get the last `depth` messages.
-    pub(crate) fn open_kept(
-        member: &Member,
-        topic: &str,
-        depth: usize,
-    ) -> Result<Self, GatewayError> {
-        Self::with(member, topic, (Keeping::Kept, depth), false)
     }
 
     fn with(
@@ -228,10 +211,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         let mut lost = 0;
         let decode = |bytes: &[u8], identity: Option<Identity>| {
             lost = identity.map_or(0, |identity| self.senders.lost_before(identity));
-            ros::cdr::decode(bytes).map_err(|reason| GatewayError::Message {
-                topic: self.topic.clone(),
-                reason,
-            })
+            ros::cdr::decode(bytes).map_err(GatewayError::decoding(&self.topic))
         };
         let message = match &self.source {
             Source::Zenoh(subscription) => subscription.next(decode),
@@ -245,7 +225,6 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     }
 }
 
-/// Offers a service until it is dropped.
 pub(crate) enum Service<S> {
     Zenoh(Box<rmw_zenoh::Service<S>>),
     Dds(Box<dds::Service<S>>),
@@ -276,9 +255,8 @@ impl<S: RosService> Service<S> {
     }
 }
 
-/// Watch of the robot's domain.
 pub(crate) struct Watch {
-    expected: Expected,
+    pub(crate) expected: Expected,
     discovery: Discovery,
 }
 
@@ -303,30 +281,6 @@ impl Watch {
         })
     }
 
-    /// Also reports publishers of `topic` whose messages cannot be received as `M`.
-    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
-        self.expected.expect::<M>(topic)
-    }
-
-    /// Reports publishers of all topics instead.
-    pub(crate) fn expect_everything(&mut self) {
-        self.expected.expect_everything();
-    }
-
-    /// Returns the kind of the topic's publisher; a matching one counts before others.
-    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
-        self.expected.publishing(topic)
-    }
-
-    /// Returns the number of events dropped since the last call because there were too many.
-    pub(crate) fn dropped(&self) -> u64 {
-        match &self.discovery {
-            Discovery::Zenoh(watch) => watch.dropped(),
-            Discovery::Dds(_) => 0,
-        }
-    }
-
-    /// Returns the next event of interest.
     pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
         match (&mut self.discovery, member) {
             (Discovery::Zenoh(watch), Member::Zenoh(member)) => {
@@ -345,7 +299,9 @@ impl Watch {
         report: &mut Report,
         mut on_subscriber: impl FnMut(String),
     ) -> Result<(), TransportError> {
-        report.dropped(self.dropped());
+        if let Discovery::Zenoh(watch) = &self.discovery {
+            report.dropped(watch.dropped());
+        }
         while let Some(seen) = self.next(member) {
             match seen {
                 Seen::Subscriber(node) => on_subscriber(node),

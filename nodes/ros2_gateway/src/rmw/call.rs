@@ -14,14 +14,10 @@ pub(super) fn answer<S: RosService>(
     respond: impl FnOnce(S::Request) -> S::Response,
 ) -> Result<Vec<u8>, GatewayError> {
     let (found, most) = (request.len(), MAX_BYTES);
-    let named = || topic.to_owned();
     if found > most {
-        let topic = named();
+        let topic = topic.to_owned();
         return Err(GatewayError::TooLong { topic, found, most });
     }
-    let request = ros::cdr::decode(request).map_err(|reason| GatewayError::Message {
-        topic: named(),
-        reason,
-    })?;
+    let request = ros::cdr::decode(request).map_err(GatewayError::decoding(topic))?;
     ros::cdr::encode(&respond(request)).map_err(GatewayError::encoding(topic))
 }

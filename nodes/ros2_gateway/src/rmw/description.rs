@@ -47,7 +47,6 @@ int32 sec
 uint32 nanosec
 ";
 
-/// Returns name and hash of a message type, as keys hold them.
 pub(super) fn of_message<M: RosMessage>() -> Result<TypeInfo, GatewayError> {
     let mut parts = parts(M::SCHEMA, M::DEFINITION)?;
     let main = parts.remove(M::SCHEMA).unwrap_or_default();

@@ -8,7 +8,6 @@ use super::description::{self, TypeInfo};
 use crate::GatewayError;
 use crate::waiting::Publishing;
 
-/// Event of interest.
 #[derive(Debug)]
 pub(crate) enum Seen {
     /// A node subscribes to the topic that is watched: namespace and name of the node.
@@ -25,7 +24,6 @@ pub(crate) enum Seen {
     Stranger(GatewayError),
 }
 
-/// A topic of another node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Endpoint {
     pub(super) is_publisher: bool,
@@ -37,7 +35,7 @@ pub(super) struct Endpoint {
 
 /// Topics that other nodes are expected to subscribe to or to publish.
 #[derive(Debug)]
-pub(super) struct Expected {
+pub(crate) struct Expected {
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
     is_everything: bool,
@@ -46,7 +44,6 @@ pub(super) struct Expected {
 }
 
 impl Expected {
-    /// Expects subscribers of `subscribed`.
     pub(super) fn new(subscribed: &str) -> Self {
         Expected {
             subscribed: subscribed.to_owned(),
@@ -56,20 +53,19 @@ impl Expected {
         }
     }
 
-    /// Also expects publishers of `topic`.
-    pub(super) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
+    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
         let info = description::of_message::<M>()?;
         self.published.push((topic.to_owned(), info));
         Ok(())
     }
 
     /// Reports publishers of all topics instead.
-    pub(super) fn expect_everything(&mut self) {
+    pub(crate) fn expect_everything(&mut self) {
         self.is_everything = true;
     }
 
     /// Returns the kind of the topic's publisher; a matching one counts before others.
-    pub(super) fn publishing(&self, topic: &str) -> Publishing {
+    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
         let found = self.found.get(topic);
         found.copied().unwrap_or(Publishing::Nobody)
     }
@@ -120,7 +116,6 @@ impl Expected {
     }
 }
 
-/// Compares the type of a topic with the expected one.
 fn judge(found: &TypeInfo, expected: &TypeInfo) -> Publishing {
     match () {
         () if found == expected => Publishing::Expected,

@@ -1,9 +1,6 @@
 //! Full names of topics and services, as ROS 2 resolves them.
 
 /// Returns the full name of `name` in `namespace`; a name that begins with a slash is full.
-///
-/// # Errors
-/// Returns the reason if the name is invalid.
 pub(crate) fn resolve(namespace: &str, name: &str) -> Result<String, String> {
     let whole = if name.starts_with('/') {
         name.to_owned()

@@ -36,10 +36,7 @@ impl Driven {
     fn new(tag: &str) -> Option<Self> {
         let joined = Joined::new(tag, "/", &["--as", "amcl", "--mount", "0.78,0,0"])?;
         let transforms = cyclone(&joined.domain, "/")?;
-        let start = |name: &&str| {
-            let executable = executables::path(name);
-            NodeProcess::start(executable.to_str().unwrap(), &joined.graph, [""; 0])
-        };
+        let start = |name: &&str| executables::start(name, &joined.graph, &[]);
         let nodes = ENGINE.iter().map(start).collect();
         let mut driven = Driven {
             nodes,

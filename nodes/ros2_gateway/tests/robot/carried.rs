@@ -1,6 +1,6 @@
 //! A robot that is carried away, with the gateway in AMCL's place.
 
-use super::client::{active, of_scan, planar, state, until_now};
+use super::client::{active, join, of_scan, planar, state, until_now};
 use super::filter::{NODES, start, wait_until_all_ready};
 use super::*;
 
@@ -24,10 +24,7 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let robot = &mut joined.robot;
     robot.order("follow", json!({}));
-    robot.order(
-        "join",
-        json!({ "name": "docking", "topic": "localization" }),
-    );
+    join(robot, "docking", "localization");
     robot.order("arrive", json!({}));
     wait_until_all_ready(graph, &NODES);
     let truths = World::of("malaga_corridor").truths();

@@ -2,7 +2,7 @@
 
 use messages::InitialPose;
 
-use super::client::{active, of_scan, planar};
+use super::client::{active, join, of_scan, planar};
 use super::filter::{NODES, start, wait_until_all_ready};
 use super::*;
 
@@ -19,7 +19,7 @@ fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
     let robot = &mut joined.robot;
-    robot.order("join", json!({ "name": "rviz" }));
+    join(robot, "rviz", "amcl_pose");
     robot.order("arrive", json!({}));
     wait_until_all_ready(graph, &NODES);
     let truths = World::of("malaga_corridor").truths();

@@ -83,6 +83,11 @@ pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
     }
 }
 
+/// Starts a subscriber of that name, which also wants the last message.
+pub(super) fn join(robot: &mut Robot, name: &str, topic: &str) {
+    robot.order("join", json!({ "name": name, "topic": topic }));
+}
+
 pub(super) fn planar(value: &Value) -> Pose {
     let of = |index: usize| value[index].as_f64().unwrap();
     Pose::new(of(0), of(1), of(2))

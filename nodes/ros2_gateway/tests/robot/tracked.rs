@@ -1,5 +1,6 @@
 //! A graph with a tracker.
 
+use super::client::join;
 use super::*;
 
 /// Returns the pose of a tracker that is sure of it.
@@ -63,9 +64,7 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
         String::from_utf8_lossy(error).contains(named).then_some(())
     });
     // The verdict is a topic as soon as there is a tracker.
-    joined
-        .robot
-        .order("join", json!({ "name": "fleet", "topic": "localization" }));
+    join(&mut joined.robot, "fleet", "localization");
     let said = joined.robot.wait_for("localization");
     assert_eq!((&said["same"], &said["state"]), (&json!(true), &json!(1)));
     assert_eq!(said["reason"], "one place");

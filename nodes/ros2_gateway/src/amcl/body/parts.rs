@@ -23,7 +23,6 @@ use crate::rmw::{Member, Service, Watch};
 pub(super) struct Parts {
     watch: Watch,
     incoming: Incoming,
-    /// Open if the parameter `use_sim_time` is true.
     clock: Option<SimClock>,
     hints: Hints,
     nomotion: Service<Empty>,
@@ -98,7 +97,6 @@ impl Parts {
         self.offered = saved;
     }
 
-    /// Returns the inputs to wait for.
     pub(super) fn taken(&self) -> Taken<'_> {
         Taken {
             incoming: &self.incoming,
@@ -183,7 +181,6 @@ fn save(
     }
 }
 
-/// Returns the rules for scans and maps that the parameters set.
 fn rules(parameters: &Parameters) -> Rules {
     let limit = |name: &str| Some(parameters.number(name) as f32).filter(|limit| *limit > 0.0);
     Rules {

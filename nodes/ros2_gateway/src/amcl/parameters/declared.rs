@@ -1,12 +1,13 @@
 //! The parameters of AMCL: types, defaults and meanings here; some have no meaning.
 
+use std::borrow::Cow;
+
 use super::Value;
 
-/// Declaration of a parameter.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Declared {
     pub(super) name: &'static str,
-    pub(super) default: Plain,
+    pub(super) default: Value,
     pub(super) meaning: &'static str,
     pub(super) counts: Counts,
     /// Smallest and largest value of a number.
@@ -16,7 +17,6 @@ pub(super) struct Declared {
 /// When a parameter takes effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Counts {
-    /// Once it is set.
     Always,
     /// At the start of the node; it cannot be set later.
     AtStart,
@@ -24,27 +24,7 @@ pub(super) enum Counts {
     Never,
 }
 
-/// Default value, as written in the source.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Plain {
-    Bool(bool),
-    Integer(i64),
-    Double(f64),
-    Text(&'static str),
-}
-
-impl From<Plain> for Value {
-    fn from(plain: Plain) -> Self {
-        match plain {
-            Plain::Bool(value) => Value::Bool(value),
-            Plain::Integer(value) => Value::Integer(value),
-            Plain::Double(value) => Value::Double(value),
-            Plain::Text(value) => Value::Text(value.to_owned()),
-        }
-    }
-}
-
-use Plain::{Bool, Double, Integer, Text};
+use Value::{Bool, Double, Integer};
 
 const PARTICLES: &str = "no particles are drawn to localize: all poses are searched";
 const MOTION: &str = "how odometry errs is learned from scans, not set";
@@ -64,7 +44,7 @@ pub(super) const ALL: &[Declared] = &[
     never("alpha5", Double(0.2), MOTION),
     always("always_reset_initial_pose", Bool(false), "each activation begins with initial_pose, not the first alone"),
     start("autostart_node", Bool(false), "the node configures and activates itself, with no lifecycle manager"),
-    start("base_frame_id", Text("base_footprint"), "the frame whose pose is published"),
+    start("base_frame_id", text("base_footprint"), "the frame whose pose is published"),
     never("beam_skip_distance", Double(0.5), SENSOR),
     never("beam_skip_error_threshold", Double(0.9), SENSOR),
     never("beam_skip_threshold", Double(0.3), SENSOR),
@@ -72,7 +52,7 @@ pub(super) const ALL: &[Declared] = &[
     never("do_beamskip", Bool(false), SENSOR),
     always("first_map_only", Bool(false), "maps after the first are not taken"),
     never("freespace_downsampling", Bool(false), PARTICLES),
-    start("global_frame_id", Text("map"), "the map's frame"),
+    start("global_frame_id", text("map"), "the map's frame"),
     ranged(always("initial_pose.x", Double(0.0), "metres; see set_initial_pose"), FINITE),
     ranged(always("initial_pose.y", Double(0.0), "metres; see set_initial_pose"), FINITE),
     ranged(always("initial_pose.yaw", Double(0.0), "radians; see set_initial_pose"), FINITE),
@@ -82,22 +62,22 @@ pub(super) const ALL: &[Declared] = &[
     never("laser_likelihood_max_dist", Double(2.0), SENSOR),
     ranged(always("laser_max_range", Double(100.0), "readings beyond are no returns, metres; below 0 the laser's own limit"), FINITE),
     ranged(always("laser_min_range", Double(-1.0), "readings below are no returns, metres; below 0 the laser's own limit"), FINITE),
-    never("laser_model_type", Text("likelihood_field"), SENSOR),
-    start("map_topic", Text("map"), "where the map comes from"),
+    never("laser_model_type", text("likelihood_field"), SENSOR),
+    start("map_topic", text("map"), "where the map comes from"),
     never("max_beams", Integer(60), SENSOR),
     never("max_particles", Integer(2000), PARTICLES),
     never("min_particles", Integer(500), PARTICLES),
-    start("odom_frame_id", Text("odom"), "the odometry's frame, on /tf"),
+    start("odom_frame_id", text("odom"), "the odometry's frame, on /tf"),
     never("pf_err", Double(0.05), PARTICLES),
     never("pf_z", Double(0.99), PARTICLES),
     never("random_seed", Integer(-1), "nothing is random"),
     never("recovery_alpha_fast", Double(0.0), PARTICLES),
     never("recovery_alpha_slow", Double(0.0), PARTICLES),
     never("resample_interval", Integer(1), PARTICLES),
-    never("robot_model_type", Text("nav2_amcl::DifferentialMotionModel"), MOTION),
+    never("robot_model_type", text("nav2_amcl::DifferentialMotionModel"), MOTION),
     ranged(always("save_pose_rate", Double(0.5), "how often the pose is saved at most, hertz; never at 0 and below"), FINITE),
-    start(FILE, Text("/tmp/amcl_saved_pose"), "the file of the saved pose; empty for none"),
-    start("scan_topic", Text("scan"), "where scans come from; --scan counts before it"),
+    start(FILE, text("/tmp/amcl_saved_pose"), "the file of the saved pose; empty for none"),
+    start("scan_topic", text("scan"), "where scans come from; --scan counts before it"),
     always("set_initial_pose", Bool(false), "the first activation begins with initial_pose, which a scan must confirm"),
     never("sigma_hit", Double(0.2), SENSOR),
     always("tf_broadcast", Bool(true), "the transform from map to odometry is published"),
@@ -113,7 +93,11 @@ pub(super) const ALL: &[Declared] = &[
 
 const FINITE: (f64, f64) = (-1e9, 1e9);
 
-const fn of(name: &'static str, default: Plain, meaning: &'static str, counts: Counts) -> Declared {
+const fn text(value: &'static str) -> Value {
+    Value::Text(Cow::Borrowed(value))
+}
+
+const fn of(name: &'static str, default: Value, meaning: &'static str, counts: Counts) -> Declared {
     Declared {
         name,
         default,
@@ -123,21 +107,19 @@ const fn of(name: &'static str, default: Plain, meaning: &'static str, counts: C
     }
 }
 
-const fn always(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+const fn always(name: &'static str, default: Value, meaning: &'static str) -> Declared {
     of(name, default, meaning, Counts::Always)
 }
 
-const fn start(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+const fn start(name: &'static str, default: Value, meaning: &'static str) -> Declared {
     of(name, default, meaning, Counts::AtStart)
 }
 
-const fn never(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+const fn never(name: &'static str, default: Value, meaning: &'static str) -> Declared {
     of(name, default, meaning, Counts::Never)
 }
 
-const fn ranged(declared: Declared, range: (f64, f64)) -> Declared {
-    Declared {
-        range: Some(range),
-        ..declared
-    }
+const fn ranged(mut declared: Declared, range: (f64, f64)) -> Declared {
+    declared.range = Some(range);
+    declared
 }

@@ -12,7 +12,6 @@ pub(super) const TOPIC: &str = "ros_discovery_info";
 /// Type of these messages.
 pub(super) const TYPE: &str = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
-/// The number of an endpoint.
 pub(super) type Gid = [u8; 16];
 
 /// Format of endpoint numbers.
@@ -22,7 +21,6 @@ pub(super) enum Format {
     Iron,
 }
 
-/// A node and its endpoints.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Node {
     pub(super) namespace: String,
@@ -32,7 +30,6 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// Returns namespace and name.
     pub(super) fn whole_name(&self) -> String {
         format!("{}/{}", self.namespace.trim_end_matches('/'), self.name)
     }

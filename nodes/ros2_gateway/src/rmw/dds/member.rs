@@ -105,7 +105,6 @@ impl Drop for Member {
     }
 }
 
-/// Participant, publisher and subscriber.
 type Parts<'a> = (
     &'a DomainParticipant,
     &'a rustdds::Publisher,

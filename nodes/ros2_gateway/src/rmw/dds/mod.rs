@@ -14,16 +14,14 @@ mod discovery;
 mod entities;
 mod member;
 mod node;
-mod publisher;
 mod quality;
 mod raw;
 mod reader;
 mod service;
-mod subscription;
+mod topic;
 mod watch;
 
 pub(super) use member::Member;
-pub(super) use publisher::Publisher;
 pub(super) use service::Service;
-pub(super) use subscription::Subscription;
+pub(super) use topic::{Publisher, Subscription};
 pub(super) use watch::Watch;

@@ -101,7 +101,6 @@ impl Node {
         }
     }
 
-    /// Says that the node is gone.
     pub(super) fn leave(&self) {
         if let Some(format) = self.state.borrow().format {
             self.send(format, None);

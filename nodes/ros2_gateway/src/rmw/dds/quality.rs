@@ -8,7 +8,6 @@ use crate::rmw::Keeping;
 /// Time that a message that must arrive waits for a slow network.
 const MAX_BLOCKING: Duration = Duration::from_millis(100);
 
-/// Returns the policies of a topic that is published.
 pub(super) fn offered((keeping, depth): (Keeping, usize), blocks: bool) -> QosPolicies {
     let wait = match blocks {
         true => MAX_BLOCKING,
@@ -48,7 +47,6 @@ fn reliable(max_blocking_time: Duration) -> Reliability {
     Reliability::Reliable { max_blocking_time }
 }
 
-/// Describes the policies in the words of ROS.
 pub(super) fn in_words(quality: &QosPolicies) -> String {
     let reliability = match quality.is_reliable() {
         true => "reliable",

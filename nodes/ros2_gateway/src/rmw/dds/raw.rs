@@ -9,7 +9,6 @@ use rustdds::no_key::{Decode, DeserializerAdapter, SerializerAdapter};
 /// Bytes before the fields of a message in CDR.
 pub(super) const HEADER: usize = 4;
 
-/// A received message.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Payload {
     /// The message with its header.

@@ -26,7 +26,6 @@ pub(super) struct Sample {
     pub(super) related: Option<SampleIdentity>,
 }
 
-/// Wakes the event loop of the graph.
 struct GraphWaker(transport::Waker);
 
 impl Wake for GraphWaker {
@@ -58,7 +57,6 @@ impl Reader {
         self.reader.guid()
     }
 
-    /// Returns the next message, or the reason why it cannot be taken.
     pub(super) fn next(&self) -> Option<Result<Sample, GatewayError>> {
         if let Some(next) = self.take() {
             return Some(next);
@@ -70,17 +68,14 @@ impl Reader {
     }
 
     fn take(&self) -> Option<Result<Sample, GatewayError>> {
-        match self.reader.try_take_one_with(AtMost(self.max_bytes)) {
-            Ok(None) => None,
-            Ok(Some(change)) => Some(self.sample(change)),
-            Err(ReadError::Deserialization { .. }) => Some(Err(GatewayError::Message {
-                topic: self.topic.clone(),
-                reason: "its representation is not plain CDR".to_owned(),
-            })),
-            Err(error) => Some(Err(GatewayError::Message {
-                topic: self.topic.clone(),
-                reason: error.to_string(),
-            })),
+        let taken = self.reader.try_take_one_with(AtMost(self.max_bytes));
+        let taken = taken.map_err(|error| match error {
+            ReadError::Deserialization { .. } => "its representation is not plain CDR".to_owned(),
+            error => error.to_string(),
+        });
+        match taken.map_err(GatewayError::decoding(&self.topic)) {
+            Ok(change) => change.map(|change| self.sample(change)),
+            Err(error) => Some(Err(error)),
         }
     }
 

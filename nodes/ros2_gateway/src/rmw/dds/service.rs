@@ -40,7 +40,6 @@ const CYCLONE: [u8; 2] = [0x01, 0x10];
 /// Number of bytes before the fields, on Cyclone DDS.
 const CALL: usize = 16;
 
-/// Offers the service until it is dropped.
 pub(crate) struct Service<S> {
     topic: String,
     participant: DomainParticipant,
@@ -164,16 +163,9 @@ impl<S: RosService> Service<S> {
             // Each client keeps some responses only, and would lose its own among many others.
             options = options.to_single_reader(client);
         }
-        let sent = self
-            .responses
-            .write_with_options(response.fields, options.build());
-        match sent {
-            Ok(_) => Ok(()),
-            Err(error) => Err(GatewayError::Send {
-                topic: self.topic.clone(),
-                reason: error.to_string(),
-            }),
-        }
+        let responses = &self.responses;
+        let sent = responses.write_with_options(response.fields, options.build());
+        sent.map(drop).map_err(GatewayError::sending(&self.topic))
     }
 
     fn look_for_readers(&self, state: &mut State) {

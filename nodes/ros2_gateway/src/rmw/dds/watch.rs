@@ -26,7 +26,6 @@ const PARTICIPANT: usize = 12;
 
 pub(crate) struct Watch {
     listener: DomainParticipantStatusListener,
-    /// Number of the participant.
     own: [u8; 16],
     /// True once the endpoints that were there before were looked at.
     has_begun: bool,
@@ -35,7 +34,6 @@ pub(crate) struct Watch {
     pending: Vec<Pending>,
 }
 
-/// An endpoint that is not fully known yet.
 struct Pending {
     guid: GUID,
     since: Instant,
@@ -58,7 +56,6 @@ impl Watch {
         }
     }
 
-    /// Returns the next event of interest.
     pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.begin(member, expected);
@@ -89,7 +86,6 @@ impl Watch {
         self.settle(member, expected)
     }
 
-    /// Adds the endpoints that were there before.
     fn begin(&mut self, member: &Member, expected: &Expected) {
         for reader in member.participant().discovered_readers() {
             let data = &reader.subscription_topic_data;
@@ -119,7 +115,6 @@ impl Watch {
         );
     }
 
-    /// Queues an endpoint that is of interest.
     fn add(
         &mut self,
         expected: &Expected,

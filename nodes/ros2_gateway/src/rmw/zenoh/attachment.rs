@@ -14,7 +14,6 @@ use zenoh_ext::{ZDeserializer, ZSerializer};
 
 use crate::GatewayError;
 
-/// Sender, sequence number and time of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Attachment {
     pub(crate) sequence: i64,

@@ -20,13 +20,11 @@ use crate::rmw::Keeping;
 use crate::rmw::description::TypeInfo;
 use crate::{Config, GatewayError};
 
-/// Prefix of all tokens.
 const TOKENS: &str = "@ros2_lv";
 
 /// Text that ROS 2 Humble writes in the place of a type's hash.
 const NO_HASH: &str = "TypeHashNotSupported";
 
-/// Kind of an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Publisher,
@@ -63,7 +61,6 @@ pub(super) struct Endpoint {
     pub(super) key: String,
     /// Key that nodes of ROS 2 Humble use.
     pub(super) humble_key: String,
-    /// Identifies the sender of a message.
     pub(super) sender: [u8; 16],
     token: String,
 }
@@ -100,7 +97,6 @@ impl Member {
         }))
     }
 
-    /// Returns the missing routers; empty if all are there.
     pub(crate) fn missing(&self) -> String {
         self.routers.missing(&self.session)
     }
@@ -109,7 +105,6 @@ impl Member {
         &self.session
     }
 
-    /// Returns the full name of the node.
     pub(super) fn node(&self) -> &str {
         &self.node
     }
@@ -175,7 +170,6 @@ fn encoded((keeping, depth): (Keeping, usize)) -> String {
     format!("{start}:,{depth}:,:,:,,")
 }
 
-/// Content of another node's token.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Token {
     pub(super) session: String,

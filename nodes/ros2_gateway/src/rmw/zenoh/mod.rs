@@ -15,14 +15,12 @@
 
 mod attachment;
 mod entity;
-mod publisher;
 mod service;
-mod subscription;
+mod topic;
 mod watch;
 
 use attachment::Attachment;
 pub(super) use entity::Member;
-pub(super) use publisher::Publisher;
 pub(super) use service::Service;
-pub(super) use subscription::Subscription;
+pub(super) use topic::{Publisher, Subscription};
 pub(super) use watch::Watch;

@@ -17,10 +17,8 @@ use super::{Attachment, Member};
 use crate::GatewayError;
 use crate::rmw::{Keeping, call, description};
 
-/// Largest number of queued calls; more are turned away.
 const MAX_WAITING: usize = 16;
 
-/// Offers the service until it is dropped.
 pub(crate) struct Service<S> {
     topic: String,
     calls: Arc<ArrayQueue<Query>>,

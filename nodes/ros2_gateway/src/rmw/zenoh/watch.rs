@@ -78,7 +78,6 @@ impl Watch {
     }
 }
 
-/// Topic that each node publishes.
 const EVENTS: &str = "/parameter_events";
 
 /// True if the token shows that another process has a node of this name.

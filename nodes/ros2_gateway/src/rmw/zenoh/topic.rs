@@ -1,19 +1,20 @@
-//! A topic to the robot.
+//! A topic to the robot, and a topic from it.
 
-use transport::wall_ns;
+use transport::{Graph, wall_ns};
 use zenoh::Wait;
 use zenoh::bytes::ZBytes;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
-use zenoh_session::KeyError;
+use zenoh_session::{KeyError, Past, Queue, QueueLimits};
 
 use super::entity::{Endpoint, Kind};
 use super::{Attachment, Member};
 use crate::GatewayError;
 use crate::rmw::Keeping;
 use crate::rmw::description::TypeInfo;
+use crate::rmw::received::Identity;
 
 pub(crate) struct Publisher {
     endpoint: Endpoint,
@@ -24,9 +25,7 @@ pub(crate) struct Publisher {
 }
 
 enum Sink {
-    /// Late subscribers get no message.
     Volatile(ZenohPublisher<'static>),
-    /// Late subscribers get the last messages.
     Kept(AdvancedPublisher<'static>),
 }
 
@@ -43,8 +42,9 @@ impl Publisher {
             true => CongestionControl::Block,
             false => CongestionControl::Drop,
         };
-        Self::with(member, (topic, info), quality, |key| {
-            let publisher = member.session().declare_publisher(key);
+        let endpoint = member.endpoint(Kind::Publisher, topic, info, quality);
+        let declare = |key: &String| -> zenoh::Result<Sink> {
+            let publisher = member.session().declare_publisher(key.clone());
             // Not express: each message would take one of the two batches of its priority, so that
             // a third one at once is dropped, and Zenoh may go on dropping.
             let publisher = publisher.congestion_control(congestion);
@@ -62,17 +62,8 @@ impl Publisher {
                     Sink::Kept(publisher.wait()?)
                 }
             })
-        })
-    }
-
-    fn with(
-        member: &Member,
-        (topic, info): (&str, &TypeInfo),
-        quality: (Keeping, usize),
-        declare: impl Fn(String) -> zenoh::Result<Sink>,
-    ) -> Result<Self, GatewayError> {
-        let endpoint = member.endpoint(Kind::Publisher, topic, info, quality);
-        let declared = |key: &String| declare(key.clone()).map_err(KeyError::when("publish", key));
+        };
+        let declared = |key: &String| declare(key).map_err(KeyError::when("publish", key));
         let sinks = [declared(&endpoint.key)?, declared(&endpoint.humble_key)?];
         Ok(Publisher {
             _token: member.show(&endpoint)?,
@@ -83,7 +74,6 @@ impl Publisher {
         })
     }
 
-    /// Sends a message in CDR.
     pub(crate) fn send(&mut self, bytes: Vec<u8>) -> Result<(), GatewayError> {
         let attachment = Attachment {
             sequence: self.sequence,
@@ -101,5 +91,77 @@ impl Publisher {
             sent.map_err(KeyError::when("send on", &self.endpoint.key))?;
         }
         Ok(())
+    }
+}
+
+pub(crate) struct Subscription {
+    topic: String,
+    /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
+    queues: [Queue; 2],
+    _token: LivelinessToken,
+}
+
+impl Subscription {
+    /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        (topic, info): (&str, &TypeInfo),
+        (keeping, depth): (Keeping, usize),
+        max_bytes: usize,
+    ) -> Result<Self, GatewayError> {
+        let endpoint = member.endpoint(Kind::Subscription, topic, info, (keeping, depth));
+        let past = match keeping {
+            Keeping::Fresh | Keeping::Reliable => Past::Gone,
+            Keeping::Kept => Past::Last(depth),
+        };
+        let limits = QueueLimits::for_any(depth, max_bytes);
+        let open = |key: &str| -> Result<Queue, GatewayError> {
+            let waker = graph.waker()?;
+            Ok(Queue::open(member.session(), key, past, limits, waker)?)
+        };
+        Ok(Subscription {
+            topic: topic.to_owned(),
+            queues: [open(&endpoint.key)?, open(&endpoint.humble_key)?],
+            _token: member.show(&endpoint)?,
+        })
+    }
+
+    /// Returns the number of messages lost since the last call because the queue was full.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.queues.iter().map(Queue::dropped).sum()
+    }
+
+    pub(crate) fn depth(&self) -> usize {
+        self.queues
+            .iter()
+            .map(|queue| queue.limits().messages)
+            .sum()
+    }
+
+    /// Returns an error for each message that was too long to be queued.
+    pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
+        let mut queues = self.queues.iter();
+        let (found, most) = queues
+            .find_map(|queue| Some((queue.next_too_long()?, queue.limits().message_bytes)))?;
+        Some(GatewayError::TooLong {
+            topic: self.topic.clone(),
+            found,
+            most,
+        })
+    }
+
+    pub(crate) fn next<M>(
+        &self,
+        decode: impl FnOnce(&[u8], Option<Identity>) -> Result<M, GatewayError>,
+    ) -> Option<Result<M, GatewayError>> {
+        let sample = self.queues.iter().find_map(Queue::next)?;
+        // Scripts that use plain Zenoh may leave it out.
+        let attachment = sample.attachment();
+        let attachment = attachment.map(|bytes| Attachment::decode(&self.topic, bytes));
+        Some(attachment.transpose().and_then(|attachment| {
+            let identity = attachment.map(|of| (of.sender, of.sequence));
+            decode(&sample.payload().to_bytes(), identity)
+        }))
     }
 }

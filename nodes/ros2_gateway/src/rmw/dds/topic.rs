@@ -1,14 +1,48 @@
-//! A topic from the robot.
+//! A topic to the robot, and a topic from it.
 
+use rustdds::RTPSEntity;
+use rustdds::bytes::Bytes;
+use rustdds::no_key::DataWriter;
 use transport::Graph;
 
 use super::node::Shown;
+use super::raw::{Raw, fields};
 use super::reader::Reader;
 use super::{Member, quality};
 use crate::GatewayError;
 use crate::rmw::Keeping;
 use crate::rmw::description::TypeInfo;
 use crate::rmw::received::Identity;
+
+pub(crate) struct Publisher {
+    topic: String,
+    writer: DataWriter<Bytes, Raw>,
+    _shown: Shown,
+}
+
+impl Publisher {
+    /// Opens the topic. If earlier messages are not taken in time, one that blocks waits a moment
+    /// before it drops the next one.
+    pub(crate) fn open(
+        member: &Member,
+        (topic, info): (&str, &TypeInfo),
+        quality: (Keeping, usize),
+        blocks: bool,
+    ) -> Result<Self, GatewayError> {
+        let quality = quality::offered(quality, blocks);
+        let writer = member.writer((&format!("rt{topic}"), &info.name), &quality)?;
+        Ok(Publisher {
+            _shown: member.node().show_writer(writer.guid()),
+            topic: topic.to_owned(),
+            writer,
+        })
+    }
+
+    pub(crate) fn send(&self, bytes: Vec<u8>) -> Result<(), GatewayError> {
+        let sent = self.writer.write(fields(bytes), None);
+        sent.map_err(GatewayError::sending(&self.topic))
+    }
+}
 
 pub(crate) struct Subscription {
     reader: Reader,
@@ -17,7 +51,6 @@ pub(crate) struct Subscription {
 }
 
 impl Subscription {
-    /// Takes messages of at most `max_bytes`.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -35,12 +68,10 @@ impl Subscription {
         })
     }
 
-    /// Returns the largest number of queued messages.
     pub(crate) fn depth(&self) -> usize {
         self.depth
     }
 
-    /// Passes the next message to `decode`.
     pub(crate) fn next<M>(
         &self,
         decode: impl FnOnce(&[u8], Option<Identity>) -> Result<M, GatewayError>,
