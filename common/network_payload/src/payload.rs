@@ -3,8 +3,8 @@
 //! | field | postcard | meaning |
 //! |---|---|---|
 //! | `sender` | varint(u64) | the session id of the sending process, a random number |
-//! | `sequence` | varint(u64) | number of the message, from 0 for each topic of a sender: a gap is a loss |
-//! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent, to convert times in it |
+//! | `sequence` | varint(u64) | number from 0 for each topic of a sender; a gap is a loss |
+//! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent; [`Received::rebase`] |
 //! | header | its fields in order | see `messages` |
 //! | items | varint(count), then each | see `messages` |
 

@@ -191,18 +191,14 @@ mod tests {
 
     /// Two rows of one point, with four bytes after each row.
     fn organised(is_bigendian: bool) -> PointCloud2 {
+        let word = |word: u32| match is_bigendian {
+            true => word.to_be_bytes(),
+            false => word.to_le_bytes(),
+        };
         let mut data = Vec::new();
         for point in [[1.0f32, 2.0, 3.0], [4.0, 5.0, 6.0]] {
-            for number in point {
-                data.extend(match is_bigendian {
-                    true => number.to_be_bytes(),
-                    false => number.to_le_bytes(),
-                });
-            }
-            data.extend(match is_bigendian {
-                true => 1_000_000u32.to_be_bytes(),
-                false => 1_000_000u32.to_le_bytes(),
-            });
+            data.extend(point.into_iter().flat_map(|number| word(number.to_bits())));
+            data.extend(word(1_000_000));
             data.extend([9; 4]);
         }
         PointCloud2 {

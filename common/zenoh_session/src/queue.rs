@@ -10,15 +10,11 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use crossbeam::queue::ArrayQueue;
 use transport::Waker;
 use zenoh::bytes::{Encoding, ZBytes};
-use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
-use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
+use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
 
 use crate::KeyError;
-
-/// Verb for errors.
-const ACTION: &str = "subscribe to";
 
 /// Largest size of what comes with a payload: the encoding and an attachment, in bytes.
 pub const ENVELOPE_BYTES: usize = 4096;
@@ -71,17 +67,7 @@ pub enum Past {
 /// Waiting messages of one subscription, which ends when this is dropped.
 pub struct Queue {
     waiting: Arc<Waiting>,
-    _subscriber: Subscription,
-}
-
-/// Subscription to a key; ends when it is dropped.
-enum Subscription {
-    /// Only new messages. The advanced subscriber is not used: it would take a message for a
-    /// repetition if its time is before that of an earlier one by the same clock, and a router that
-    /// adds the times has one clock for all its senders.
-    Live { _subscriber: Subscriber<()> },
-    /// New and earlier messages. Their senders number them.
-    Kept { _subscriber: AdvancedSubscriber<()> },
+    _subscriber: Box<dyn Send + Sync>,
 }
 
 struct Waiting {
@@ -124,18 +110,19 @@ impl Queue {
                 waker.wake();
             }
         });
-        let _subscriber = match past {
-            Past::Gone => Subscription::Live {
-                _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
-            },
+        let failed = KeyError::when("subscribe to", key);
+        let _subscriber: Box<dyn Send + Sync> = match past {
+            // The advanced subscriber is not used: it would take a message for a repetition if its
+            // time is before that of an earlier one by the same clock, and a router that adds the
+            // times has one clock for all its senders.
+            Past::Gone => Box::new(subscriber.wait().map_err(failed)?),
+            // Senders number the messages that they keep.
             Past::Last(messages) => {
                 let history = HistoryConfig::default().max_samples(messages);
                 let subscriber = subscriber
                     .history(history.detect_late_publishers())
                     .recovery(RecoveryConfig::default().heartbeat());
-                Subscription::Kept {
-                    _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
-                }
+                Box::new(subscriber.wait().map_err(failed)?)
             }
         };
         Ok(Queue {
