@@ -47,24 +47,19 @@ impl Requests {
     pub(crate) fn region(&mut self, corners: &[[f64; 2]]) -> Result<(), FleetError> {
         let corners: Vec<_> = corners.iter().map(|&[x, y]| Corner { x, y }).collect();
         let (preamble, stamp) = self.stamp();
-        let header = RegionHeader { stamp };
-        let payload = network_payload::encode::<topic::Region>(&preamble, &header, &corners)?;
-        put(&self.regions, payload)
+        put::<topic::Region>(&self.regions, preamble, &RegionHeader { stamp }, &corners)
     }
 
     pub(crate) fn save(&mut self) -> Result<(), FleetError> {
         let (preamble, stamp) = self.stamp();
-        let payload =
-            network_payload::encode::<topic::Save>(&preamble, &SaveHeader { stamp }, &[])?;
-        put(&self.saves, payload)
+        put::<topic::Save>(&self.saves, preamble, &SaveHeader { stamp }, &[])
     }
 
     /// Tells the tracker where the robot's base probably is.
     pub(crate) fn hint(&mut self, map_from_base: Pose2) -> Result<(), FleetError> {
         let (preamble, stamp) = self.stamp();
         let header = dashboard::hint(map_from_base, stamp);
-        let payload = network_payload::encode::<topic::InitialPoseTopic>(&preamble, &header, &[])?;
-        put(&self.hints, payload)
+        put::<topic::InitialPoseTopic>(&self.hints, preamble, &header, &[])
     }
 
     /// Returns a stamp of the current time, without a time of measurement.
@@ -102,12 +97,16 @@ fn declare<T: Wire>(
     } else {
         publisher
     };
-    let publisher = publisher.wait().map_err(KeyError::when("publish", &key))?;
-    Ok(publisher)
+    Ok(publisher.wait().map_err(KeyError::when("publish", &key))?)
 }
 
-fn put(publisher: &AdvancedPublisher<'_>, payload: Vec<u8>) -> Result<(), FleetError> {
+fn put<T: Wire>(
+    publisher: &AdvancedPublisher<'_>,
+    preamble: Preamble,
+    header: &T::Header,
+    items: &[T::Item],
+) -> Result<(), FleetError> {
+    let payload = network_payload::encode::<T>(&preamble, header, items)?;
     let sent = publisher.put(payload).wait();
-    sent.map_err(KeyError::when("send on", publisher.key_expr()))?;
-    Ok(())
+    Ok(sent.map_err(KeyError::when("send on", publisher.key_expr()))?)
 }
