@@ -14,7 +14,7 @@ use crate::broadcast::Sent;
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
-use crate::outlet::{Outlet, Rules};
+use crate::outlet::Outlet;
 use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::role::Role;
 use crate::seeding::Belief;
@@ -44,12 +44,12 @@ pub(crate) struct Incoming {
     cloud: CloudOptions,
     maps: Option<Subscription<OccupancyGridMsg>>,
     beliefs: Option<Subscription<PoseWithCovarianceStamped>>,
-    outlet: Outlet,
+    pub(crate) outlet: Outlet,
     odom_frame: String,
     /// Time of the last message on the odometry topic, nanoseconds.
     odometry_ns: Option<i64>,
     /// Frame of the robot's map.
-    map_frame: Option<String>,
+    pub(crate) map_frame: Option<String>,
     /// Sources whose rotation was repaired; each is logged once.
     mended: BTreeSet<&'static str>,
     /// Stamps of the transforms to the odometry that the gateway sent.
@@ -112,23 +112,6 @@ impl Incoming {
             sent,
             tf: topics.tf.clone(),
         })
-    }
-
-    pub(crate) fn set_rules(&mut self, rules: Rules) {
-        self.outlet.rules = rules;
-    }
-
-    /// Returns the number of maps sent, and that of scans of each laser.
-    pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
-        self.outlet.sent()
-    }
-
-    pub(crate) fn odometry_sent(&self) -> u64 {
-        self.outlet.odometry_sent()
-    }
-
-    pub(crate) fn map_frame(&self) -> Option<&str> {
-        self.map_frame.as_deref()
     }
 
     /// Handles the messages since the last call: those that others need come first. Poses of the

@@ -78,7 +78,7 @@ impl Inputs {
 impl Taken<'_> {
     /// Lists the inputs to wait for, without topics that `--bring` leaves out.
     fn inputs<'t>(&self, config: &'t Config, topics: &'t Topics) -> Vec<Input<'t>> {
-        let (maps, scans) = self.incoming.sent();
+        let (maps, scans) = self.incoming.outlet.sent();
         let input = |topic: &'t str, received, comes_once| Input {
             topic,
             publishing: self.watch.expected.publishing(topic),
@@ -90,7 +90,7 @@ impl Taken<'_> {
         let needs_odometry = config.amcl.role == Role::Amcl && config.brings(Brought::Odometry);
         let odometry = needs_odometry.then(|| Input {
             from_frame: Some(config.odom_frame()),
-            ..input(&topics.tf, self.incoming.odometry_sent(), false)
+            ..input(&topics.tf, self.incoming.outlet.odometry_sent, false)
         });
         let map = config
             .brings(Brought::Map)

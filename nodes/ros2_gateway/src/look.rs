@@ -86,7 +86,7 @@ fn look_at(
     found: &mut BTreeSet<Published>,
 ) -> Result<(), GatewayError> {
     let mut watch = Watch::open(graph, member, "")?;
-    watch.expected.expect_everything();
+    watch.expected.is_everything = true;
     let end = Instant::now() + Duration::from_secs_f64(seconds);
     graph.run(&[], TICK, |_| {
         member.tick();

@@ -59,7 +59,7 @@ pub(crate) struct Outlet {
     memory_limit: MemoryLimit,
     cells: CellRules,
     lasers: Vec<Laser>,
-    odometry_sent: u64,
+    pub(crate) odometry_sent: u64,
     maps_sent: u64,
     map_id: Option<u64>,
     pub(crate) rules: Rules,
@@ -88,10 +88,6 @@ impl Outlet {
     /// Returns the number of maps sent, and that of scans of each laser.
     pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
         (self.maps_sent, self.lasers.iter().map(|laser| laser.sent))
-    }
-
-    pub(crate) fn odometry_sent(&self) -> u64 {
-        self.odometry_sent
     }
 
     /// Sends a scan of the laser with this index; a scan that was sent before is dropped.

@@ -116,7 +116,7 @@ impl Gateway {
         // gets the initial pose from that scan.
         self.look(report)?;
         self.serve(report)?;
-        let robots = self.incoming.map_frame();
+        let robots = self.incoming.map_frame.as_deref();
         let map_frame = self.map_frame.as_deref().or(robots).unwrap_or(MAP_FRAME);
         if poses.has_publishers() {
             self.outgoing.expect_tracker();

@@ -106,7 +106,7 @@ impl<'a> Body<'a> {
             false => None,
         };
         if let Some(parts) = &mut self.parts {
-            parts.offer(saved);
+            parts.offered = saved;
         }
         self.is_active = true;
         Ok(())

@@ -101,7 +101,7 @@ const ERROR: &str = "transition_error";
 
 #[derive(Debug)]
 pub(crate) struct Lifecycle {
-    state: Primary,
+    pub(super) state: Primary,
 }
 
 impl Lifecycle {
@@ -113,10 +113,6 @@ impl Lifecycle {
 
     pub(crate) fn state(&self) -> State {
         state(self.state as u8)
-    }
-
-    pub(crate) fn primary(&self) -> Primary {
-        self.state
     }
 
     /// Finds the requested transition: by name if there is one, else by number.

@@ -95,7 +95,7 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
         rosout.send(&mut report)?;
-        let state = life.lifecycle.primary();
+        let state = life.lifecycle.state;
         body.step(&said, state, &parameters, &mut report)?;
         report.tick()?;
         Ok(Flow::Continue)

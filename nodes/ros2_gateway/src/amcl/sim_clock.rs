@@ -12,8 +12,9 @@ use crate::topics::Topics;
 
 pub(super) struct SimClock {
     clocks: Subscription<Clock>,
-    now_ns: Option<i64>,
-    received: u64,
+    /// Nanoseconds since 1970; `None` before the first message.
+    pub(super) now_ns: Option<i64>,
+    pub(super) received: u64,
 }
 
 impl SimClock {
@@ -37,14 +38,5 @@ impl SimClock {
             self.received += 1;
             Ok(())
         })
-    }
-
-    /// Returns the newest time, nanoseconds since 1970; `None` before the first message.
-    pub(super) fn now_ns(&self) -> Option<i64> {
-        self.now_ns
-    }
-
-    pub(super) fn received(&self) -> u64 {
-        self.received
     }
 }

@@ -40,15 +40,15 @@ impl Member {
 
     pub(crate) fn session(&self) -> Option<&Session> {
         match self {
-            Member::Zenoh(member) => Some(member.session()),
+            Member::Zenoh(member) => Some(&member.session),
             Member::Dds(_) => None,
         }
     }
 
     pub(crate) fn domain(&self) -> u32 {
         match self {
-            Member::Zenoh(member) => member.domain(),
-            Member::Dds(member) => member.domain(),
+            Member::Zenoh(member) => member.domain,
+            Member::Dds(member) => member.domain,
         }
     }
 

@@ -38,7 +38,8 @@ pub(super) struct Endpoint {
 pub(crate) struct Expected {
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
-    is_everything: bool,
+    /// True if publishers of all topics are reported instead.
+    pub(crate) is_everything: bool,
     /// Kind of publisher of each published topic; a matching one counts before others.
     found: BTreeMap<String, Publishing>,
 }
@@ -57,11 +58,6 @@ impl Expected {
         let info = description::of_message::<M>()?;
         self.published.push((topic.to_owned(), info));
         Ok(())
-    }
-
-    /// Reports publishers of all topics instead.
-    pub(crate) fn expect_everything(&mut self) {
-        self.is_everything = true;
     }
 
     /// Returns the kind of the topic's publisher; a matching one counts before others.

@@ -29,8 +29,9 @@ pub(super) struct Parts {
     outgoing: Outgoing,
     frames: Frames,
     saved: SavedPose,
-    /// Saved pose of the last run, until the tracker's first pose shows if it is needed.
-    offered: Option<InitialPose>,
+    /// Saved pose of the last run, for a tracker without a pose: one that believes a pose would
+    /// forget it. Kept until the tracker's first pose.
+    pub(super) offered: Option<InitialPose>,
 }
 
 impl Parts {
@@ -46,7 +47,7 @@ impl Parts {
         let outgoing = Outgoing::open(member, topics, uses_sim_time, sent.clone())?;
         let mut watch = Watch::open(graph, member, &topics.initial_pose)?;
         let mut incoming = Incoming::open(graph, member, config, topics, (&mut watch, sent))?;
-        incoming.set_rules(rules(parameters));
+        incoming.outlet.rules = rules(parameters);
         let are_believed = config.amcl.believe_initial_pose;
         let hints = Hints::open(graph, member, topics, &mut watch, are_believed)?;
         let clock = match uses_sim_time {
@@ -78,11 +79,11 @@ impl Parts {
     ) -> Result<(), TransportError> {
         if let Some(clock) = &mut self.clock {
             clock.take(report)?;
-            if let Some(now_ns) = clock.now_ns() {
+            if let Some(now_ns) = clock.now_ns {
                 self.outgoing.on_sim_time(now_ns);
             }
         }
-        self.incoming.set_rules(rules(parameters));
+        self.incoming.outlet.rules = rules(parameters);
         // No particle filter is seeded.
         self.incoming.step(&mut self.frames, |_| {}, report)?;
         self.watch.look(member, report, |_| {})?;
@@ -92,16 +93,11 @@ impl Parts {
         Ok(())
     }
 
-    /// Keeps the saved pose for a tracker without a pose: one that believes a pose would forget it.
-    pub(super) fn offer(&mut self, saved: Option<InitialPose>) {
-        self.offered = saved;
-    }
-
     pub(super) fn taken(&self) -> Taken<'_> {
         Taken {
             incoming: &self.incoming,
             watch: &self.watch,
-            clock: self.clock.as_ref().map(SimClock::received),
+            clock: self.clock.as_ref().map(|clock| clock.received),
         }
     }
 

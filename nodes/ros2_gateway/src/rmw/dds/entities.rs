@@ -3,7 +3,6 @@
 //! An endpoint's number has 16 bytes since ROS 2 Iron, and 24 up to Humble, whose nodes
 //! fail on messages of the other kind.
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Topic of these messages, without the prefix that others have.
@@ -21,12 +20,18 @@ pub(super) enum Format {
     Iron,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Node {
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Node<G = Gid> {
     pub(super) namespace: String,
     pub(super) name: String,
-    pub(super) readers: Vec<Gid>,
-    pub(super) writers: Vec<Gid>,
+    pub(super) readers: Vec<G>,
+    pub(super) writers: Vec<G>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Info<G> {
+    participant: G,
+    nodes: Vec<Node<G>>,
 }
 
 impl Node {
@@ -35,18 +40,17 @@ impl Node {
     }
 }
 
-#[derive(Serialize, Deserialize)]
-struct Info<G> {
-    participant: G,
-    nodes: Vec<NodeInfo<G>>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct NodeInfo<G> {
-    namespace: String,
-    name: String,
-    readers: Vec<G>,
-    writers: Vec<G>,
+impl<G> Node<G> {
+    /// Converts the numbers.
+    fn with<H>(self, gid: impl Fn(G) -> H) -> Node<H> {
+        let all = |gids: Vec<G>| gids.into_iter().map(&gid).collect();
+        Node {
+            namespace: self.namespace,
+            name: self.name,
+            readers: all(self.readers),
+            writers: all(self.writers),
+        }
+    }
 }
 
 /// Encodes the message of a participant with one node or none, in CDR.
@@ -55,56 +59,31 @@ pub(super) fn encode(
     participant: Gid,
     node: Option<&Node>,
 ) -> Result<Vec<u8>, String> {
+    let node = node.cloned();
     match format {
-        Format::Iron => encode_as(|gid| gid, participant, node),
-        Format::Humble => encode_as(long, participant, node),
+        Format::Iron => encode_as(participant, node),
+        Format::Humble => encode_as(long(participant), node.map(|node| node.with(long))),
     }
+}
+
+fn encode_as<G: Serialize>(participant: G, node: Option<Node<G>>) -> Result<Vec<u8>, String> {
+    let nodes = node.into_iter().collect();
+    ros::cdr::encode(&Info { participant, nodes }).map_err(|error| error.to_string())
 }
 
 /// Decodes the nodes of a message; the format of their numbers is known only if there is a node.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Option<Format>, Vec<Node>), String> {
     // Numbers of 16 bytes read as of 24 leave the number of nodes to be letters of a name, and so
     // more nodes than there are bytes. The other way round, it is the zeros that fill up the first.
-    let (format, nodes) = match decode_as(bytes, short) {
-        Ok(nodes) if !nodes.is_empty() => (Format::Humble, nodes),
-        _ => (Format::Iron, decode_as(bytes, |gid: Gid| gid)?),
+    let (format, nodes): (_, Vec<Node>) = match ros::cdr::decode::<Info<[u8; 24]>>(bytes) {
+        Ok(info) if !info.nodes.is_empty() => {
+            let nodes = info.nodes.into_iter().map(|node| node.with(short));
+            (Format::Humble, nodes.collect())
+        }
+        _ => (Format::Iron, ros::cdr::decode::<Info<Gid>>(bytes)?.nodes),
     };
     let format = Some(format).filter(|_| !nodes.is_empty());
     Ok((format, nodes))
-}
-
-fn encode_as<G: Serialize>(
-    gid: impl Fn(Gid) -> G,
-    participant: Gid,
-    node: Option<&Node>,
-) -> Result<Vec<u8>, String> {
-    let all = |gids: &[Gid]| gids.iter().map(|number| gid(*number)).collect();
-    let info = |node: &Node| NodeInfo {
-        namespace: node.namespace.clone(),
-        name: node.name.clone(),
-        readers: all(&node.readers),
-        writers: all(&node.writers),
-    };
-    let info = Info {
-        participant: gid(participant),
-        nodes: node.map(info).into_iter().collect(),
-    };
-    ros::cdr::encode(&info).map_err(|error| error.to_string())
-}
-
-fn decode_as<G: DeserializeOwned>(
-    bytes: &[u8],
-    gid: impl Fn(G) -> Gid,
-) -> Result<Vec<Node>, String> {
-    let info: Info<G> = ros::cdr::decode(bytes)?;
-    let all = |gids: Vec<G>| gids.into_iter().map(&gid).collect();
-    let node = |node: NodeInfo<G>| Node {
-        namespace: node.namespace,
-        name: node.name,
-        readers: all(node.readers),
-        writers: all(node.writers),
-    };
-    Ok(info.nodes.into_iter().map(node).collect())
 }
 
 fn long(gid: Gid) -> [u8; 24] {

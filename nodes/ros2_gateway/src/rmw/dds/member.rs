@@ -27,11 +27,11 @@ const FAREWELL: Duration = Duration::from_millis(100);
 
 /// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
-    domain: u32,
-    node: Rc<Node>,
+    pub(crate) domain: u32,
+    pub(super) node: Rc<Node>,
     publisher: rustdds::Publisher,
     subscriber: rustdds::Subscriber,
-    participant: DomainParticipant,
+    pub(super) participant: DomainParticipant,
 }
 
 impl Member {
@@ -56,21 +56,9 @@ impl Member {
         })
     }
 
-    pub(crate) fn domain(&self) -> u32 {
-        self.domain
-    }
-
     /// Exchanges lists of nodes and their topics with other participants.
     pub(crate) fn tick(&self) {
         self.node.tick();
-    }
-
-    pub(super) fn node(&self) -> &Rc<Node> {
-        &self.node
-    }
-
-    pub(super) fn participant(&self) -> &DomainParticipant {
-        &self.participant
     }
 
     /// Opens a writer of bytes for these names of DDS.

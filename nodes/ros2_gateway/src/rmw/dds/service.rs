@@ -77,14 +77,14 @@ impl<S: RosService> Service<S> {
         let quality = quality::requested((Keeping::Reliable, MAX_WAITING));
         let names = (&*format!("rq{topic}Request"), &*request, topic);
         let requests = member.reader(graph, names, &quality, call::MAX_BYTES)?;
-        let node = member.node();
+        let node = &member.node;
         let _shown = [
             node.show_writer(responses.guid()),
             node.show_reader(requests.guid()),
         ];
         Ok(Service {
             topic: topic.to_owned(),
-            participant: member.participant().clone(),
+            participant: member.participant.clone(),
             requests,
             responses,
             state: RefCell::default(),

@@ -32,7 +32,7 @@ impl Publisher {
         let quality = quality::offered(quality, blocks);
         let writer = member.writer((&format!("rt{topic}"), &info.name), &quality)?;
         Ok(Publisher {
-            _shown: member.node().show_writer(writer.guid()),
+            _shown: member.node.show_writer(writer.guid()),
             topic: topic.to_owned(),
             writer,
         })
@@ -62,7 +62,7 @@ impl Subscription {
         let names = (&*format!("rt{topic}"), &*info.name, topic);
         let reader = member.reader(graph, names, &quality, max_bytes)?;
         Ok(Subscription {
-            _shown: member.node().show_reader(reader.guid()),
+            _shown: member.node.show_reader(reader.guid()),
             reader,
             depth,
         })

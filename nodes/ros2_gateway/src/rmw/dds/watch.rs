@@ -46,10 +46,10 @@ struct Pending {
 
 impl Watch {
     pub(crate) fn open(member: &Member) -> Self {
-        let listener = member.participant().status_listener();
+        let listener = member.participant.status_listener();
         Watch {
             listener,
-            own: member.participant().guid().to_bytes(),
+            own: member.participant.guid().to_bytes(),
             has_begun: false,
             known: BTreeSet::new(),
             pending: Vec::new(),
@@ -87,12 +87,12 @@ impl Watch {
     }
 
     fn begin(&mut self, member: &Member, expected: &Expected) {
-        for reader in member.participant().discovered_readers() {
+        for reader in member.participant.discovered_readers() {
             let data = &reader.subscription_topic_data;
             let names = (data.topic_name().as_str(), data.type_name().as_str());
             self.add(expected, data.key(), false, names, &reader.user_data);
         }
-        for writer in member.participant().discovered_writers() {
+        for writer in member.participant.discovered_writers() {
             let data = &writer.publication_topic_data;
             let names = (data.topic_name.as_str(), data.type_name.as_str());
             self.add(expected, data.key, true, names, &writer.user_data);
@@ -148,7 +148,7 @@ impl Watch {
         let mut index = 0;
         while let Some(pending) = self.pending.get(index) {
             let waited = pending.since.elapsed();
-            let name = member.node().name_of(pending.guid);
+            let name = member.node.name_of(pending.guid);
             if waited < SETTLED || (name.is_none() && waited < NAMED) {
                 index += 1;
                 continue;

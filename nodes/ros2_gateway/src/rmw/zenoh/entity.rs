@@ -44,10 +44,10 @@ impl Kind {
 
 /// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
-    session: Session,
-    domain: u32,
+    pub(crate) session: Session,
+    pub(crate) domain: u32,
     /// Namespace and name.
-    node: String,
+    pub(super) node: String,
     /// Namespace and name, mangled.
     who: String,
     routers: Routers,
@@ -99,18 +99,6 @@ impl Member {
 
     pub(crate) fn missing(&self) -> String {
         self.routers.missing(&self.session)
-    }
-
-    pub(crate) fn session(&self) -> &Session {
-        &self.session
-    }
-
-    pub(super) fn node(&self) -> &str {
-        &self.node
-    }
-
-    pub(crate) fn domain(&self) -> u32 {
-        self.domain
     }
 
     /// Returns the key expression of all tokens on the domain.

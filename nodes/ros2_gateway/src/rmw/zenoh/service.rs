@@ -44,7 +44,7 @@ impl<S: RosService> Service<S> {
                 }
                 waker.wake();
             };
-            let queryable = member.session().declare_queryable(key.clone());
+            let queryable = member.session.declare_queryable(key.clone());
             let queryable = queryable.complete(true).callback(put).wait();
             Ok(queryable.map_err(KeyError::when("offer", key))?)
         };

@@ -44,7 +44,7 @@ impl Publisher {
         };
         let endpoint = member.endpoint(Kind::Publisher, topic, info, quality);
         let declare = |key: &String| -> zenoh::Result<Sink> {
-            let publisher = member.session().declare_publisher(key.clone());
+            let publisher = member.session.declare_publisher(key.clone());
             // Not express: each message would take one of the two batches of its priority, so that
             // a third one at once is dropped, and Zenoh may go on dropping.
             let publisher = publisher.congestion_control(congestion);
@@ -118,7 +118,7 @@ impl Subscription {
         let limits = QueueLimits::for_any(depth, max_bytes);
         let open = |key: &str| -> Result<Queue, GatewayError> {
             let waker = graph.waker()?;
-            Ok(Queue::open(member.session(), key, past, limits, waker)?)
+            Ok(Queue::open(&member.session, key, past, limits, waker)?)
         };
         Ok(Subscription {
             topic: topic.to_owned(),

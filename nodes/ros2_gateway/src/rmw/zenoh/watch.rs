@@ -43,7 +43,7 @@ impl Watch {
                 waker.wake();
             }
         };
-        let liveliness = member.session().liveliness();
+        let liveliness = member.session.liveliness();
         let subscriber = liveliness.declare_subscriber(key.clone()).history(true);
         let subscriber = subscriber.callback(put).wait();
         let subscriber = subscriber.map_err(KeyError::when("watch", &key))?;
@@ -61,12 +61,12 @@ impl Watch {
 
     /// Returns the next event of interest; a token that cannot be read is none.
     pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
-        let mine = member.session().zid().to_string();
+        let mine = member.session.zid().to_string();
         while let Some(key) = self.tokens.pop() {
             let Some(token) = Token::read(&key).filter(|token| token.session != mine) else {
                 continue;
             };
-            if is_second(&token, member.node()) {
+            if is_second(&token, &member.node) {
                 return Some(Seen::Stranger(GatewayError::SecondNode(token.node)));
             }
             let seen = endpoint(token).and_then(|other| expected.note(&other));
