@@ -235,7 +235,6 @@ impl Drive {
         each.collect()
     }
 
-    /// Samples the odometry.
     fn wheels(&mut self, time_s: f64, map_from_base: Pose) -> Wheels {
         let twist = match self.before.replace((time_s, map_from_base)) {
             Some((before_s, before)) => {

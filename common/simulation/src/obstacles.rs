@@ -143,11 +143,12 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
     use super::*;
-    use crate::testing::drawn;
 
     /// Five by five cells of 0.5 m, with a pillar in the middle.
     fn pillar() -> OccupancyGrid {
-        drawn(&[".....", ".....", "..#..", ".....", "....."], 0.5)
+        let mut cells = vec![0; 25];
+        cells[12] = 100;
+        OccupancyGrid::from_parts(5, 5, 0.5, Pose::IDENTITY, cells).unwrap()
     }
 
     #[track_caller]

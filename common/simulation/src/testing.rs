@@ -6,18 +6,6 @@ use map::OccupancyGrid;
 
 use crate::DriveConfig;
 
-/// A map drawn in text; the first row is the lowest; `#` is occupied, `?` unknown.
-pub(crate) fn drawn(rows: &[&str], resolution_m: f64) -> OccupancyGrid {
-    let cell = |cell| match cell {
-        b'#' => 100,
-        b'?' => map::UNKNOWN,
-        _ => 0,
-    };
-    let cells = rows.iter().flat_map(|row| row.bytes()).map(cell).collect();
-    let (width, height) = (rows[0].len() as u32, rows.len() as u32);
-    OccupancyGrid::from_parts(width, height, resolution_m, Pose::IDENTITY, cells).unwrap()
-}
-
 /// A room of 10 m by 8 m with walls of 0.1 m, and a pillar.
 pub(crate) fn room() -> OccupancyGrid {
     let (width, height) = (100, 80);
