@@ -20,7 +20,6 @@ pub struct Answers {
 /// of `scans` scans.
 ///
 /// `accumulator` holds further arguments of that node.
-#[must_use]
 pub fn of_graph(
     tag: &str,
     recording: &Path,
@@ -41,7 +40,6 @@ pub fn of_graph(
 
 /// Lets a replayer with these arguments feed a graph of its own until there are results of `scans`
 /// scans; the replayer ends by itself then.
-#[must_use]
 pub fn of_graph_fed_by(
     tag: &str,
     map: &Path,

@@ -35,10 +35,6 @@ fn run(folder: &Path, program: &str, arguments: &[&str]) -> Result<(), String> {
 
 /// Returns the violations of WCAG 2.2, level AA, and of axe's best practices on the current page: a
 /// line for each rule and each element.
-///
-/// # Panics
-/// If the script cannot be run.
-#[must_use]
 pub fn violations(browser: &Browser, script: &str) -> Vec<String> {
     let _ = browser.run(script);
     let found = browser.finish(

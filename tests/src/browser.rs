@@ -19,7 +19,6 @@ pub struct Browser {
 impl Browser {
     /// Opens a window of this size in pixels; below a width of 500 it is that of a telephone.
     /// Returns `None` if Chromium or its driver is not installed.
-    #[must_use]
     pub fn open(width: u32, height: u32) -> Option<Self> {
         let chromium = Command::new("chromium").arg("--version").output();
         if !chromium.is_ok_and(|outcome| outcome.status.success()) {
@@ -84,22 +83,18 @@ impl Browser {
         self.runtime.block_on(self.client.goto(url)).unwrap();
     }
 
-    /// Runs a script and returns its value.
-    #[must_use]
     pub fn run(&self, script: &str) -> Value {
         let ran = self.client.execute(script, Vec::new());
         self.runtime.block_on(ran).unwrap()
     }
 
     /// Runs a script and returns the value that it passes to `done`, sooner or later.
-    #[must_use]
     pub fn finish(&self, script: &str) -> Value {
         let script = format!("const done = arguments[0]; {script}");
         let ran = self.client.execute_async(&script, Vec::new());
         self.runtime.block_on(ran).unwrap()
     }
 
-    /// Waits until an expression is true on the page.
     pub fn wait_until(&self, expression: &str) {
         let script =
             format!("const look = () => ({expression}) ? done() : setTimeout(look, 20); look();");

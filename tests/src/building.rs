@@ -43,7 +43,6 @@ impl Laser {
     };
 
     /// Makes a scan of these readings.
-    #[must_use]
     pub fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
         Scan {
             angle_min: -self.field_of_view / 2.0,
@@ -57,7 +56,6 @@ impl Laser {
 
 impl Building {
     /// Makes open space of this size, metres.
-    #[must_use]
     pub fn new(width_m: f64, height_m: f64) -> Self {
         Building {
             size_m: [width_m, height_m],
@@ -65,14 +63,12 @@ impl Building {
         }
     }
 
-    #[must_use]
     pub fn with(mut self, obstacle: Rectangle) -> Self {
         self.obstacles.push(obstacle);
         self
     }
 
     /// Adds the four walls of a room.
-    #[must_use]
     pub fn room(self, [left, bottom, right, top]: Rectangle) -> Self {
         const THICK: f64 = 0.1;
         self.with([left, bottom, right, bottom + THICK])
@@ -82,7 +78,6 @@ impl Building {
     }
 
     /// Returns the readings of a laser at a pose, exact to the last bit.
-    #[must_use]
     pub fn ranges(&self, pose: Pose, laser: Laser) -> Vec<f32> {
         let scan = laser.scan(&[]);
         let range = |beam: usize| {
@@ -105,7 +100,6 @@ impl Building {
 
     /// Makes the map with cells of this size, metres; a cell is occupied if an obstacle covers any
     /// part of it.
-    #[must_use]
     pub fn map(&self, resolution_m: f64) -> BuildingMap {
         let cells = |metres: f64| (metres / resolution_m).ceil() as usize;
         let (width, height) = (cells(self.size_m[0]), cells(self.size_m[1]));
@@ -142,7 +136,6 @@ fn crossing(start: f64, slope: f64, [low, high]: [f64; 2]) -> (f64, f64) {
     (a.min(b), a.max(b))
 }
 
-/// The map of a building.
 #[derive(Debug, Clone)]
 pub struct BuildingMap {
     /// Resolution and pose of its grid.
@@ -154,7 +147,6 @@ pub struct BuildingMap {
 }
 
 impl BuildingMap {
-    #[must_use]
     pub fn localizer(&self, config: VoteSearchConfig) -> Localizer {
         let view = Map {
             frame: self.frame,
@@ -171,7 +163,6 @@ impl BuildingMap {
 }
 
 /// Returns the places at which a scan may have been taken.
-#[must_use]
 pub fn places(localizer: &Localizer, scan: &Scan<'_>) -> Places {
     let mut workspace = Workspace::default();
     localizer

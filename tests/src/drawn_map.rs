@@ -13,8 +13,6 @@ pub struct DrawnMap {
 }
 
 impl DrawnMap {
-    /// Makes a map of rows of `width` cells.
-    #[must_use]
     pub fn new(width: u32, resolution_m: f64, cells: Vec<u8>) -> Self {
         let mut header = MapHeader {
             width,
@@ -27,7 +25,6 @@ impl DrawnMap {
     }
 
     /// Makes two rows of three cells: free, occupied and unknown ones.
-    #[must_use]
     pub fn small() -> Self {
         DrawnMap::new(3, 0.05, vec![0, 100, 255, 0, 0, 100])
     }

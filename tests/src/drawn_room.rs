@@ -36,14 +36,12 @@ pub const MOUNT: Pose2 = Pose2 {
 };
 
 /// Returns the occupancy of a drawing in per cent, row by row from the lowest y.
-#[must_use]
 pub fn occupancy(rows: &[&str]) -> Vec<u8> {
     let cells = rows.iter().rev().flat_map(|row| row.bytes());
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
 /// Returns the header of the map in this drawing, placed by [`FRAME`].
-#[must_use]
 pub fn map_header(rows: &[&str]) -> MapHeader {
     let mut header = MapHeader {
         width: rows[0].len() as u32,
@@ -57,7 +55,6 @@ pub fn map_header(rows: &[&str]) -> MapHeader {
 }
 
 /// Returns a drawing in the engine's form.
-#[must_use]
 pub fn grid(rows: &[&str]) -> Grid {
     let cells = occupancy(rows);
     Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap()
@@ -65,7 +62,6 @@ pub fn grid(rows: &[&str]) -> Grid {
 
 /// Returns the ranges of a laser with one beam per degree all around, at a cell and a heading in
 /// degrees of the grid.
-#[must_use]
 pub fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> {
     let grid = grid(rows);
     let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
@@ -78,8 +74,6 @@ pub fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> {
     beams.collect()
 }
 
-/// Returns the scan with these ranges.
-#[must_use]
 pub fn scan(ranges: &[f32]) -> Scan<'_> {
     Scan {
         angle_min: -PI,

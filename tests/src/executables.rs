@@ -9,7 +9,6 @@ use transport::Graph;
 use transport::testing::{NodeProcess, allow_long};
 
 /// Returns the path of an executable, built in the profile of the tests.
-#[must_use]
 pub fn path(name: &str) -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
     let folder = folder();
@@ -17,8 +16,6 @@ pub fn path(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// Starts a node in a graph.
-#[must_use]
 pub fn start(name: &str, graph: &Graph, arguments: &[&str]) -> NodeProcess {
     NodeProcess::start(path(name).to_str().unwrap(), graph, arguments)
 }
@@ -36,7 +33,6 @@ pub(crate) fn target() -> PathBuf {
 
 /// Returns the command, with prepared maps cached next to the executables and not in the user's own
 /// folder.
-#[must_use]
 pub fn backcast() -> Command {
     let executable = path("backcast");
     let mut command = Command::new(&executable);

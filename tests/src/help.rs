@@ -19,7 +19,6 @@ pub struct Parameter {
     pub meaning: String,
 }
 
-/// Help of one executable.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Help {
     /// First paragraph.
@@ -32,7 +31,6 @@ pub struct Help {
 
 impl Help {
     /// Parses the text that clap prints.
-    #[must_use]
     pub fn parse(text: &str) -> Self {
         let about = text.lines().take_while(|line| !line.trim().is_empty());
         let exit_codes = text
@@ -51,27 +49,23 @@ fn parameters(text: &str) -> Vec<Parameter> {
     let mut in_arguments = false;
     let mut is_open = false;
     for line in text.lines() {
-        if let Some(text) = line.strip_prefix(TEXT_INDENT)
-            && is_open
-            && !OPTION_INDENT.iter().any(|indent| line.starts_with(indent))
-        {
-            if let Some(parameter) = all.last_mut() {
-                parameter.read(text.trim());
-            }
-            continue;
-        }
         let is_option = OPTION_INDENT.iter().any(|indent| line.starts_with(indent));
         let is_argument = in_arguments && line.starts_with("  ") && !line.starts_with("   ");
-        if is_option || is_argument {
+        if is_open
+            && !is_option
+            && let Some(text) = line.strip_prefix(TEXT_INDENT)
+            && let Some(parameter) = all.last_mut()
+        {
+            parameter.read(text.trim());
+        } else if is_option || is_argument {
             let line = line.trim();
             let (usage, text) = line.split_once("  ").unwrap_or((line, ""));
-            all.push(Parameter {
+            let mut parameter = Parameter {
                 usage: usage.trim().to_owned(),
                 ..Parameter::default()
-            });
-            if let Some(parameter) = all.last_mut() {
-                parameter.read(text.trim());
-            }
+            };
+            parameter.read(text.trim());
+            all.push(parameter);
             is_open = true;
         } else if !line.trim().is_empty() {
             in_arguments = line == "Arguments:";
@@ -171,7 +165,6 @@ impl Tables {
 }
 
 /// Returns a table of exit codes, a row for each executable.
-#[must_use]
 pub fn exit_codes<'a>(all: impl IntoIterator<Item = (&'a str, &'a Help)>) -> String {
     let mut text = "| command | exit codes |\n|---|---|\n".to_owned();
     for (name, help) in all {

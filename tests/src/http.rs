@@ -9,10 +9,6 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 /// Writes a token where only this user can read it.
-///
-/// # Panics
-/// If it cannot be written.
-#[must_use]
 pub fn token_file(folder: &Path, token: &str) -> PathBuf {
     let path = folder.join("token");
     let mut options = OpenOptions::new();
@@ -29,20 +25,12 @@ pub struct Site(pub SocketAddr);
 impl Site {
     /// Returns an address that was free a moment ago. If another process takes it meanwhile, the
     /// node takes another one and the test fails to find it.
-    ///
-    /// # Panics
-    /// If there is no free address.
-    #[must_use]
     pub fn free() -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         Site(listener.local_addr().unwrap())
     }
 
     /// Sends the request unchanged; returns status, head and body.
-    ///
-    /// # Panics
-    /// If the server does not answer.
-    #[must_use]
     pub fn raw(&self, request: &[u8]) -> (u16, String, Vec<u8>) {
         let mut stream = TcpStream::connect(self.0).unwrap();
         // The server may have answered, and closed the connection, before it has read everything.
@@ -59,10 +47,6 @@ impl Site {
     }
 
     /// Sends a request with these headers; returns status and body.
-    ///
-    /// # Panics
-    /// Like [`Site::raw`], or if the body is no text.
-    #[must_use]
     pub fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> (u16, String) {
         let host = format!("Host: {}", self.0);
         let length = format!("Content-Length: {}", body.len());
@@ -82,11 +66,6 @@ impl Site {
         (status, String::from_utf8(body).unwrap())
     }
 
-    /// Returns the JSON at a path.
-    ///
-    /// # Panics
-    /// If the status is not 200, or the body is no JSON.
-    #[must_use]
     pub fn get(&self, path: &str) -> Value {
         let (status, body) = self.ask("GET", path, &[], "");
         assert_eq!(status, 200, "{path}: {body}");

@@ -32,14 +32,12 @@ use crate::needs::Need;
 
 /// Returns the folder of recordings of other robots; `None` if it is missing, which is reported for
 /// this test.
-#[must_use]
 pub fn evaluation_data(test: &str) -> Option<PathBuf> {
     beside_the_project(test, "shared/data/evaluation")
 }
 
 /// Returns the folder of faulty recordings of users; `None` if it is missing, which is reported for
 /// this test.
-#[must_use]
 pub fn broken_recordings(test: &str) -> Option<PathBuf> {
     beside_the_project(test, "shared/cases")
 }
@@ -56,7 +54,6 @@ fn beside_the_project(test: &str, name: &str) -> Option<PathBuf> {
 }
 
 /// Runs a command that must succeed, and returns its output.
-#[must_use]
 pub fn text_of(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
@@ -65,13 +62,11 @@ pub fn text_of(command: &mut Command) -> String {
 }
 
 /// Runs a command that must succeed, and returns its output as JSON.
-#[must_use]
 pub fn json_of(command: &mut Command) -> Value {
     serde_json::from_str(&text_of(command)).unwrap()
 }
 
 /// Runs a command that must succeed, and returns each line of its output as JSON.
-#[must_use]
 pub fn json_lines_of(command: &mut Command) -> Vec<Value> {
     let text = text_of(command);
     let rows = text.lines().map(|line| serde_json::from_str(line).unwrap());
@@ -101,8 +96,6 @@ fn locked_folder(name: &str) -> (PathBuf, File) {
     (folder, lock)
 }
 
-/// Returns the root of the repository.
-#[must_use]
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .parent()

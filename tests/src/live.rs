@@ -23,10 +23,6 @@ pub struct Live {
 
 /// Returns the repository's descriptor with the executables of this test run; `more` is inserted
 /// into each node that is restarted, each line indented by four.
-///
-/// # Panics
-/// If it cannot be read.
-#[must_use]
 pub fn descriptor(more: &str) -> String {
     let text = std::fs::read_to_string(crate::root().join("dataflow.yaml")).unwrap();
     let folder = executables::path("backcast").with_file_name("");
@@ -45,19 +41,11 @@ pub fn descriptor(more: &str) -> String {
 
 impl Live {
     /// Starts the graph `name`.
-    ///
-    /// # Panics
-    /// If it cannot be started.
-    #[must_use]
     pub fn start(name: &str, more: &str) -> Self {
         Self::start_with(name, more, &[])
     }
 
     /// Starts the graph `name` with further options of `backcast run`.
-    ///
-    /// # Panics
-    /// If it cannot be started.
-    #[must_use]
     pub fn start_with(name: &str, more: &str, options: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("dataflow.yaml");
@@ -86,9 +74,6 @@ impl Live {
     }
 
     /// Waits for the pose of a scan, in any state.
-    ///
-    /// # Panics
-    /// If the graph ends before.
     pub fn pose(&mut self) -> Value {
         loop {
             let row = self.rows.next().expect("the graph goes on").unwrap();
@@ -101,25 +86,17 @@ impl Live {
     }
 
     /// Waits for `count` poses; returns the times of their scans, nanoseconds.
-    ///
-    /// # Panics
-    /// If the graph ends before.
     pub fn poses(&mut self, count: usize) -> Vec<i64> {
         let measured = |_| self.pose()["stamp_ns"].as_i64().unwrap();
         (0..count).map(measured).collect()
     }
 
     /// Process id of the launcher.
-    #[must_use]
     pub fn launcher(&self) -> Pid {
         Pid::from_raw(self.launcher.id().cast_signed())
     }
 
     /// Returns the processes that the launcher has started, by executable.
-    ///
-    /// # Panics
-    /// If the system does not report it.
-    #[must_use]
     pub fn nodes(&self) -> Vec<(String, Pid)> {
         let pid = self.launcher();
         let path = format!("/proc/{pid}/task/{pid}/children");
@@ -133,7 +110,6 @@ impl Live {
     }
 
     /// Waits for a process of this executable and returns it.
-    #[must_use]
     pub fn node(&self, executable: &str) -> Pid {
         loop {
             let nodes = self.nodes();
@@ -145,10 +121,6 @@ impl Live {
     }
 
     /// Stops the graph in order; returns exit status, summary and log.
-    ///
-    /// # Panics
-    /// If it prints no summary.
-    #[must_use]
     pub fn stop(mut self) -> (ExitStatus, Value, Vec<String>) {
         kill(self.launcher(), Signal::SIGINT).unwrap();
         let rows = self.rows.by_ref().map(Result::unwrap);
@@ -159,9 +131,6 @@ impl Live {
     }
 
     /// Kills the launcher and all nodes at the same time, as if memory ran out.
-    ///
-    /// # Panics
-    /// If one cannot be killed.
     pub fn kill_all(mut self) {
         let nodes = self.nodes();
         // They are stopped first, so that none can react to the end of another one.
@@ -202,10 +171,6 @@ impl Drop for Live {
 }
 
 /// Lists the files of a graph in shared memory and in this user's temporary folder.
-///
-/// # Panics
-/// If the name is invalid.
-#[must_use]
 pub fn files_of(name: &str) -> Vec<String> {
     let files = transport::files_of(&GraphName::new(name).unwrap());
     let text = |file: &PathBuf| file.display().to_string();

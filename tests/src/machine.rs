@@ -51,10 +51,6 @@ pub struct Machine<'a> {
 impl<'a> Machine<'a> {
     /// Makes a machine whose bridge executable `bridge` finds its ports in `descriptor`. It is in
     /// network `place`, or else in that of the test; `tag` is that of [`Isolated::new`].
-    ///
-    /// # Panics
-    /// If there is no room for temporary files.
-    #[must_use]
     pub fn new(tag: &str, bridge: &'a str, descriptor: &str, place: Option<&'a Namespace>) -> Self {
         let isolated = Isolated::new(tag);
         let folder = tempfile::tempdir().unwrap();
@@ -70,25 +66,21 @@ impl<'a> Machine<'a> {
     }
 
     /// Changes the name of the robot, which is `r1` by default.
-    #[must_use]
     pub fn of_robot(mut self, robot: &'a str) -> Self {
         self.robot = robot;
         self
     }
 
     /// Returns the machine's graph, for others to join.
-    #[must_use]
     pub fn isolated(&self) -> &Isolated {
         &self.isolated
     }
 
     /// Returns an endpoint on the test's loopback that no other machine has.
-    #[must_use]
     pub fn loopback(&self) -> String {
         format!("tcp/{}:7447", self.isolated.name().loopback())
     }
 
-    #[must_use]
     pub fn start(&self, node: &str, arguments: &[&str]) -> NodeProcess {
         let executable = executables::path(node);
         self.run(executable.to_str().unwrap(), arguments)
@@ -102,7 +94,6 @@ impl<'a> Machine<'a> {
     }
 
     /// Starts its bridge with further arguments.
-    #[must_use]
     pub fn bridge(&self, network: &[&str]) -> NodeProcess {
         let descriptor = self.folder.path().join("dataflow.yaml");
         let descriptor = descriptor.to_str().unwrap();
@@ -111,7 +102,6 @@ impl<'a> Machine<'a> {
     }
 
     /// Starts its bridge, and waits until it has joined the network.
-    #[must_use]
     pub fn joined_bridge(&self, network: &[&str]) -> NodeProcess {
         let bridge = self.bridge(network);
         wait_until_ready(&self.graph, "bridge");
@@ -119,29 +109,22 @@ impl<'a> Machine<'a> {
     }
 
     /// Starts the three nodes that locate scans.
-    #[must_use]
     pub fn engine(&self) -> Vec<NodeProcess> {
         let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
         nodes.map(|node| self.start(node, &[])).into()
     }
 
-    #[must_use]
     pub fn map_server(&self, map: &Path) -> NodeProcess {
         self.start("map_server", &["--map", map.to_str().unwrap()])
     }
 
     /// Starts the player of a recording with further arguments.
-    #[must_use]
     pub fn replayer(&self, recording: &Path, arguments: &[&str]) -> NodeProcess {
         let recording = ["--recording", recording.to_str().unwrap()];
         self.start("replayer", &[&recording[..], arguments].concat())
     }
 
     /// Copies a map and its image, so that the test may change them.
-    ///
-    /// # Panics
-    /// If it cannot be copied.
-    #[must_use]
     pub fn copy_of_map(&self, map: &Path) -> PathBuf {
         let from = map.parent().unwrap();
         for file in ["map.yaml", "map.png"] {

@@ -13,7 +13,6 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Returns the targets of all links and pictures, as they are written.
-#[must_use]
 pub fn links(text: &str) -> Vec<String> {
     let prose: Vec<&str> = prose(text).collect();
     let mut found = Vec::new();
@@ -27,7 +26,6 @@ pub fn links(text: &str) -> Vec<String> {
 }
 
 /// Returns the anchors of all headings, in the form of GitHub and mdBook.
-#[must_use]
 pub fn anchors(text: &str) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let headings = prose(text).filter_map(|line| {
@@ -55,7 +53,6 @@ fn anchor(title: &str) -> String {
 
 /// Returns the first cells of all rows of the tables below the first heading of this title, up to
 /// the next heading of any level: the text of their first code span.
-#[must_use]
 pub fn first_cells(text: &str, title: &str) -> Vec<String> {
     let mut lines = prose(text).skip_while(|line| line.trim_start_matches('#').trim() != title);
     lines.next();

@@ -33,7 +33,6 @@ pub enum Need {
 
 impl Need {
     /// Returns its name in `BACKCAST_REQUIRE`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Need::Browser => "browser",
@@ -56,9 +55,6 @@ impl Need {
     }
 
     /// Reports that a test is left out because this is missing.
-    ///
-    /// # Panics
-    /// If it must be there.
     pub fn is_missing(self, test: &str, why: &str) {
         let list = std::env::var("BACKCAST_REQUIRE").ok();
         let in_ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty());
@@ -81,7 +77,6 @@ impl Need {
 
 /// True if the calling test, named `test`, runs where the file system at `path` is its own, of this
 /// size. Otherwise it has already been run there, or the kernel forbids that, which is reported.
-#[must_use]
 pub fn has_its_own(test: &str, path: &str, size: &str) -> bool {
     // The executables are built in advance, where there is room.
     let _ = executables::path("backcast");

@@ -24,10 +24,6 @@ pub struct Namespace {
 /// True if the calling test, named `test`, may make namespaces and is to go on. Otherwise it has
 /// already been run in a user namespace, where it may, or the kernel forbids those, which is
 /// reported.
-///
-/// # Panics
-/// If the test fails there.
-#[must_use]
 pub fn is_allowed(test: &str) -> bool {
     if succeeds("unshare", &["--net", "true"]) {
         return true;
@@ -70,10 +66,6 @@ impl Default for Namespace {
 
 impl Namespace {
     /// Makes a namespace with nothing but its own loopback.
-    ///
-    /// # Panics
-    /// If it cannot be made; see [`is_allowed`].
-    #[must_use]
     pub fn new() -> Self {
         let mut holder = Command::new("unshare")
             .args(["--net", "sh", "-c", "ip link set lo up && echo up && cat"])
@@ -90,9 +82,6 @@ impl Namespace {
 
     /// Adds a cable called `name` to another namespace; the ends have these addresses, such as
     /// `10.0.1.1/24`.
-    ///
-    /// # Panics
-    /// If the system rejects it.
     pub fn connect(&self, other: &Namespace, name: &str, ends: [&str; 2]) {
         let there = other.holder.id();
         self.ip(&format!(
@@ -105,31 +94,21 @@ impl Namespace {
     }
 
     /// Unplugs the cable of that name.
-    ///
-    /// # Panics
-    /// Like [`Namespace::connect`].
     pub fn pull(&self, name: &str) {
         self.ip(&format!("link set {name} down"));
     }
 
     /// Plugs the cable of that name in again.
-    ///
-    /// # Panics
-    /// Like [`Namespace::connect`].
     pub fn plug(&self, name: &str) {
         self.ip(&format!("link set {name} up"));
     }
 
-    /// Starts a node of `graph` in this namespace.
-    #[must_use]
     pub fn start(&self, graph: &Graph, executable: &str, arguments: &[&str]) -> NodeProcess {
         let place = self.place();
         let inside = [place.as_str(), executable].into_iter();
         NodeProcess::start("nsenter", graph, inside.chain(arguments.iter().copied()))
     }
 
-    /// Returns the command of a program in this namespace.
-    #[must_use]
     pub fn command(&self, program: &str) -> Command {
         let mut command = Command::new("nsenter");
         command.args([&self.place(), program]);

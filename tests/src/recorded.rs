@@ -18,7 +18,6 @@ pub fn record(recording: &Path, map: &Path, output: &Path) {
 }
 
 /// Returns the descriptor of a graph that plays `recording`, with the executables of this test run.
-#[must_use]
 pub fn graph(recording: &Path, map: &Path) -> String {
     graph_with(recording, map, "")
 }
@@ -45,7 +44,6 @@ fn tracking_graph(recording: &Path, map: &Path) -> String {
 }
 
 /// Like [`graph`], with further lines for the accumulator, each indented by four.
-#[must_use]
 pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
     let path = |name: &str| executables::path(name).display().to_string();
     let (recording, map) = (recording.display(), map.display());
@@ -88,7 +86,6 @@ pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
 }
 
 /// Returns the messages of a recording by topic: log times and bytes, in order.
-#[must_use]
 pub fn messages(path: &Path) -> BTreeMap<String, Vec<(i64, Vec<u8>)>> {
     let recording = Recording::open(path).unwrap();
     assert_eq!(recording.damage(), None);

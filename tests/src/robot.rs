@@ -37,10 +37,6 @@ pub struct Robot {
 impl Robot {
     /// Starts a robot in `namespace` with the data of the recording, which joins the router at
     /// `endpoint`. Returns `None` if the libraries are not available, which is reported.
-    ///
-    /// # Panics
-    /// If it does not start.
-    #[must_use]
     pub fn start(endpoint: &str, recording: &Path, namespace: &str) -> Option<Self> {
         let python = python::with("robot", &LIBRARIES, "zenoh_ros2_sdk, rosbags")
             .map_err(|why| Need::Python.is_missing("a robot with ROS 2", &why))
@@ -55,10 +51,6 @@ impl Robot {
     }
 
     /// Starts a robot that is a program in Python, and waits until it is there.
-    ///
-    /// # Panics
-    /// If it does not start.
-    #[must_use]
     pub fn run(command: &mut Command) -> Self {
         let mut process = command
             .stdin(Stdio::piped())
@@ -84,19 +76,12 @@ impl Robot {
         robot
     }
 
-    /// Gives an order.
-    ///
-    /// # Panics
-    /// If the robot has ended.
     pub fn order(&mut self, what: &str, mut how: Value) {
         how["do"] = json!(what);
         writeln!(self.orders, "{how}").unwrap();
     }
 
     /// Returns the next event.
-    ///
-    /// # Panics
-    /// If the robot ends or says nothing, or a message of the gateway makes it fail.
     pub fn receive(&mut self) -> Value {
         if self.passed_over.is_empty() {
             self.read()
@@ -107,9 +92,6 @@ impl Robot {
 
     /// Waits for the next event of that name. Events before it are kept: topics reach the robot in
     /// no certain order.
-    ///
-    /// # Panics
-    /// Like [`Robot::receive`].
     pub fn wait_for(&mut self, event: &str) -> Value {
         let is_awaited = |said: &Value| said["event"] == event;
         if let Some(index) = self.passed_over.iter().position(is_awaited) {

@@ -3,9 +3,6 @@
 use serde_json::Value;
 
 /// Asserts that a line, or a file, follows a schema and has no field that the schema lacks.
-///
-/// # Panics
-/// If it does not, or is no JSON.
 #[track_caller]
 pub fn assert_follows(name: &str, text: &str) {
     let file = crate::root().join(format!("docs/schemas/{name}.json"));

@@ -17,26 +17,21 @@ pub struct World {
 }
 
 impl World {
-    /// Returns the recording of that name.
-    #[must_use]
     pub fn of(name: &str) -> Self {
         World {
             folder: crate::root().join("recordings").join(name),
         }
     }
 
-    #[must_use]
     pub fn recording(&self) -> PathBuf {
         self.folder.join("recording.mcap")
     }
 
-    #[must_use]
     pub fn map(&self) -> PathBuf {
         self.folder.join("map.yaml")
     }
 
     /// Returns the engine with its default settings, on this map.
-    #[must_use]
     pub fn vote_search(&self, prior: Prior) -> VoteSearch {
         let map = map::load(self.map()).unwrap();
         let frame = GridFrame {
@@ -48,22 +43,17 @@ impl World {
         VoteSearch::new(frame, grid, VoteSearchConfig::default(), prior).unwrap()
     }
 
-    /// Returns all scans, by time.
-    #[must_use]
     pub fn scans(&self) -> Vec<LaserScan> {
         scans_of(&self.recording())
     }
 
     /// Returns the true pose of the laser at each scan, by the scan's stamp in nanoseconds.
-    #[must_use]
     pub fn truths(&self) -> BTreeMap<i64, GroundTruth> {
         let recording = Recording::open(self.recording()).unwrap();
         recording.ground_truths().unwrap()
     }
 }
 
-/// Returns all scans of a recording, by time.
-#[must_use]
 pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
     let recording = Recording::open(recording).unwrap();
     let messages = recording.records_of(&[Kind::Scan]);
@@ -75,7 +65,6 @@ pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
 }
 
 /// Returns the header of a recorded scan in the graph's form, sent now.
-#[must_use]
 pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
     let mut header = scan_header(scan, FrameName::new("laser"), None);
     header.stamp.entered_ns = transport::monotonic_ns();
@@ -84,7 +73,6 @@ pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
 }
 
 /// Returns a recorded scan in the engine's form.
-#[must_use]
 pub fn as_engine_takes_it(scan: &LaserScan) -> Scan<'_> {
     Scan {
         angle_min: f64::from(scan.angle_min),

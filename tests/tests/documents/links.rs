@@ -114,22 +114,3 @@ fn every_link_leads_somewhere() {
     assert!(count > 100, "{count}");
     assert!(broken.is_empty(), "{broken:#?}");
 }
-
-#[test]
-fn every_document_is_reached_from_the_readme() {
-    let mut reached = BTreeSet::from([PathBuf::from("README.md")]);
-    let mut left = vec![PathBuf::from("README.md")];
-    while let Some(document) = left.pop() {
-        for (file, _) in links_of(&document) {
-            let is_document = file.extension().is_some_and(|ending| ending == "md");
-            let is_there = root().join(&file).is_file();
-            if is_document && is_there && reached.insert(file.clone()) {
-                left.push(file);
-            }
-        }
-    }
-    let mut expected = documents();
-    expected.remove(Path::new("docs/SUMMARY.md"));
-    let missed: Vec<_> = expected.difference(&reached).collect();
-    assert!(missed.is_empty(), "{missed:?}");
-}

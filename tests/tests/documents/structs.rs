@@ -8,7 +8,6 @@ use tests::{markdown, root};
 
 use crate::read;
 
-/// Returns the structs of a source file.
 fn structs(file: &str) -> Vec<ItemStruct> {
     let source = syn::parse_file(&read(&root().join(file))).unwrap();
     let structs = source.items.into_iter().filter_map(|item| match item {
@@ -28,28 +27,15 @@ fn type_name(item: &ItemStruct) -> Option<String> {
     Some(named.parse_args::<LitStr>().ok()?.value())
 }
 
-/// Returns the name that serde gives a field, from `#[serde(rename = "type")]`.
-fn renamed(attributes: &[Attribute]) -> Option<String> {
-    let attribute = attributes.iter().find(|a| a.path().is_ident("serde"))?;
-    let mut found = None;
-    // Other attributes than `rename = "text"` have no text.
-    let _ = attribute.parse_nested_meta(|meta| {
-        if meta.path.is_ident("rename") {
-            let text: LitStr = meta.value()?.parse()?;
-            found = Some(text.value());
-        }
-        Ok(())
-    });
-    found
-}
-
-/// True if the field has this word for serde, such as `flatten` or `skip`.
-fn has_word(attributes: &[Attribute], word: &str) -> bool {
-    let mut found = false;
+/// Returns the words of a field for serde, such as `flatten`, each with its text, as in
+/// `#[serde(rename = "type")]`.
+fn serde_words(attributes: &[Attribute]) -> Vec<(String, Option<String>)> {
+    let mut found = Vec::new();
     for attribute in attributes.iter().filter(|a| a.path().is_ident("serde")) {
-        // Values after a word belong to other words.
         let _ = attribute.parse_nested_meta(|meta| {
-            found |= meta.path.is_ident(word);
+            let text = meta.value().and_then(|value| value.parse::<LitStr>());
+            let word = meta.path.require_ident()?.to_string();
+            found.push((word, text.ok().map(|text| text.value())));
             Ok(())
         });
     }
@@ -62,12 +48,19 @@ fn fields(item: &ItemStruct) -> Vec<String> {
     let Fields::Named(fields) = &item.fields else {
         return Vec::new();
     };
-    let sent = fields.named.iter();
-    let sent = sent.filter(|f| !has_word(&f.attrs, "flatten") && !has_word(&f.attrs, "skip"));
-    sent.map(|field| {
-        renamed(&field.attrs).unwrap_or_else(|| field.ident.as_ref().unwrap().to_string())
-    })
-    .collect()
+    let sent = fields.named.iter().filter_map(|field| {
+        let words = serde_words(&field.attrs);
+        if words
+            .iter()
+            .any(|(word, _)| word == "flatten" || word == "skip")
+        {
+            return None;
+        }
+        let renamed = words.into_iter().find(|(word, _)| word == "rename");
+        let own = field.ident.as_ref().map(ToString::to_string);
+        renamed.and_then(|(_, text)| text).or(own)
+    });
+    sent.collect()
 }
 
 #[test]

@@ -1,8 +1,4 @@
 //! Maps with cells of any size, and lasers with any field of view and number of beams.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::f64::consts::TAU;
 

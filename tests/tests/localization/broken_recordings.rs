@@ -1,9 +1,5 @@
 //! The tracker believes no wrong pose if odometry, laser or mount are wrong, and needs no more of
 //! them than documented.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,4 @@
 //! The whole graph on the recording that `cargo run` plays.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use engine::vote_search::Prior;
 use geometry::Pose;

@@ -1,9 +1,5 @@
 //! The graph and `backcast evaluate`, which uses the engine alone, have the same results on
 //! recordings of other robots, if these are available.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::Path;
 use std::process::Command;

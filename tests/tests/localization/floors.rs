@@ -1,9 +1,5 @@
 //! A graph on several maps: one search covers all of them, as in the tools, and the tracker changes
 //! maps at transitions.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,4 @@
 //! Verdicts on scans that are ambiguous, and on scans that are unique in spite of disturbances.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use engine::peaks::Places;
 use engine::vote_search::VoteSearchConfig;

@@ -1,9 +1,5 @@
 //! A search that is lost with one of its processes: the tracker does not wait for its result until
 //! the timeout, but continues as soon as another process has taken over.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::PathBuf;
 

@@ -1,4 +1,8 @@
 //! Localization by the engine, the tools and the graph, in drawn, simulated and recorded buildings.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
 
 mod any_sensor;
 mod broken_recordings;

@@ -1,9 +1,5 @@
 //! Several maps that are searched together: a result that is Unique on its own map stays so and
 //! names that map, and no other result becomes Unique.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::{Path, PathBuf};
 

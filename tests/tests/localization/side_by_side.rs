@@ -1,8 +1,4 @@
 //! Two graphs on one machine, started as users start them.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::Path;
 use std::process::{Child, Stdio};

@@ -1,9 +1,5 @@
 //! Initial poses: the tracker forgets its pose if the robot may be anywhere, and believes at once a
 //! pose of kind `Believed`.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use geometry::{Covariance, Pose};
 use messages::{InitialPose, InitialPoseKind, PoseHeader, Stamp, TrackReason, TrackState, topic};

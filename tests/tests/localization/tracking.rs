@@ -1,9 +1,5 @@
 //! The tracker in the graph and in `backcast evaluate --sequence` has the same poses to the last
 //! bit, and searching on demand changes none of them.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::Path;
 use std::process::Command;

@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use syn::visit::Visit;
-use syn::{Attribute, Item, UseTree};
+use syn::{Attribute, Item};
 
-use crate::workspace::metadata;
+use crate::workspace::{imports, metadata, names};
 
 /// Path of a module from the root of its crate.
 type Name = Vec<String>;
@@ -27,7 +27,6 @@ struct Module {
     globs: Vec<Name>,
     /// Names of the items defined here.
     items: BTreeSet<String>,
-    /// All paths in the file.
     paths: BTreeSet<Name>,
 }
 
@@ -94,10 +93,8 @@ fn read(file: &Path, folder: &Path, name: Name, modules: &mut BTreeMap<Name, Mod
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     let is_cfg = |attribute: &&Attribute| attribute.path().is_ident("cfg");
     attributes.iter().filter(is_cfg).any(|attribute| {
-        let mut text = String::new();
-        let tokens = attribute.meta.require_list().unwrap().tokens.clone();
-        text.push_str(&tokens.to_string());
-        text.contains("test")
+        let tokens = &attribute.meta.require_list().unwrap().tokens;
+        tokens.to_string().contains("test")
     })
 }
 
@@ -106,36 +103,19 @@ fn joined<S: ToString>(name: &[String], rest: impl IntoIterator<Item = S>) -> Na
     name.iter().cloned().chain(rest).collect()
 }
 
-impl Module {
-    fn import(&mut self, before: &[String], tree: &UseTree) {
-        match tree {
-            UseTree::Path(path) => self.import(&joined(before, [&path.ident]), &path.tree),
-            UseTree::Name(name) if name.ident == "self" => {
-                self.imports
-                    .insert(before.last().unwrap().clone(), before.to_vec());
-            }
-            UseTree::Name(name) => {
-                let path = joined(before, [&name.ident]);
-                self.imports.insert(name.ident.to_string(), path);
-            }
-            UseTree::Rename(name) => {
-                let path = joined(before, [&name.ident]);
-                self.imports.insert(name.rename.to_string(), path);
-            }
-            UseTree::Glob(_) => self.globs.push(before.to_vec()),
-            UseTree::Group(group) => {
-                let trees = group.items.iter();
-                trees.for_each(|tree| self.import(before, tree));
-            }
-        }
-    }
-}
-
 impl<'ast> Visit<'ast> for Module {
     fn visit_item(&mut self, item: &'ast Item) {
         let defined = match item {
             Item::Mod(inner) if is_for_tests(&inner.attrs) => return,
-            Item::Use(import) => return self.import(&[], &import.tree),
+            Item::Use(item) => {
+                for (name, path) in imports(&[], &item.tree) {
+                    match name.as_str() {
+                        "*" => self.globs.push(path),
+                        _ => _ = self.imports.insert(name, path),
+                    }
+                }
+                return;
+            }
             Item::Const(item) => Some(&item.ident),
             Item::Enum(item) => Some(&item.ident),
             Item::Fn(item) => Some(&item.sig.ident),
@@ -151,8 +131,7 @@ impl<'ast> Visit<'ast> for Module {
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
-        let names = path.segments.iter().map(|part| part.ident.to_string());
-        self.paths.insert(names.collect());
+        self.paths.insert(names(path));
         syn::visit::visit_path(self, path);
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
+use syn::UseTree;
 
 /// Returns cargo's metadata of the workspace.
 pub(crate) fn metadata() -> Value {
@@ -42,7 +43,6 @@ pub(crate) fn folders(parent: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Returns all files below a folder.
 pub(crate) fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -61,4 +61,28 @@ pub(crate) fn files(folder: &Path) -> Vec<PathBuf> {
 pub(crate) fn known(name: &str) -> BTreeSet<String> {
     let all = folders("common");
     dependencies()[name].intersection(&all).cloned().collect()
+}
+
+/// Returns each import below `before` by its local name, which is `*` for a glob.
+pub(crate) fn imports(before: &[String], tree: &UseTree) -> Vec<(String, Vec<String>)> {
+    let joined = |name: &syn::Ident| [before, &[name.to_string()]].concat();
+    match tree {
+        UseTree::Path(path) => imports(&joined(&path.ident), &path.tree),
+        UseTree::Name(name) if name.ident == "self" => {
+            vec![(before[before.len() - 1].clone(), before.to_vec())]
+        }
+        UseTree::Name(name) => vec![(name.ident.to_string(), joined(&name.ident))],
+        UseTree::Rename(name) => vec![(name.rename.to_string(), joined(&name.ident))],
+        UseTree::Glob(_) => vec![("*".to_owned(), before.to_vec())],
+        UseTree::Group(group) => {
+            let trees = group.items.iter();
+            trees.flat_map(|tree| imports(before, tree)).collect()
+        }
+    }
+}
+
+/// Returns the names of a path in an expression or a type.
+pub(crate) fn names(path: &syn::Path) -> Vec<String> {
+    let names = path.segments.iter().map(|part| part.ident.to_string());
+    names.collect()
 }

@@ -1,11 +1,6 @@
 //! A recording through an emulated device and its reader: every scan arrives at the device's
 //! resolution, and faults never let a wrong one through.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use messages::topic;
@@ -42,9 +37,8 @@ impl Robot {
         let start = |name: &str, arguments: &[&str]| executables::start(name, &graph, arguments);
         let recording = World::of("malaga_corridor").recording();
         let recording = ["--recording", recording.to_str().unwrap()];
-        let (folder, device, reader) = ends(cable);
-        let device: Vec<&str> = device.iter().map(String::as_str).collect();
-        let reader: Vec<&str> = reader.iter().map(String::as_str).collect();
+        let (folder, ends) = ends(cable);
+        let [device, reader] = [0, 1].map(|end| Vec::from_iter(ends[end].split(' ')));
         Robot {
             emulator: start("emulator", &[&recording[..], &device, emulator].concat()),
             reader: start("lms_reader", &reader),
@@ -89,31 +83,32 @@ impl Robot {
 }
 
 /// Returns the arguments of device and reader, and the folder of the link between them.
-fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, Vec<String>, Vec<String>) {
-    let words = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
+fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, [String; 2]) {
+    // Each test has a graph of its own, and each graph an address.
     match cable {
-        Cable::Tcp(protocol) => {
-            // Each test has a graph of its own, and each graph an address.
-            (
-                None,
-                words(&["--listen", "tcp://graph:2112", "--protocol", protocol]),
-                words(&["--tcp", "graph:2112", "--protocol", protocol]),
-            )
-        }
-        Cable::Device(name) => {
-            let (none, mut device, reader) = ends(&Cable::Tcp("cola-b"));
-            device.extend(words(&["--device", name]));
-            (none, device, reader)
-        }
+        Cable::Tcp(protocol) => (
+            None,
+            [
+                format!("--listen tcp://graph:2112 --protocol {protocol}"),
+                format!("--tcp graph:2112 --protocol {protocol}"),
+            ],
+        ),
+        Cable::Device(name) => (
+            None,
+            [
+                format!("--listen tcp://graph:2112 --device {name}"),
+                "--tcp graph:2112".to_owned(),
+            ],
+        ),
         Cable::Serial => {
             let folder = tempfile::tempdir().unwrap();
-            let link: PathBuf = folder.path().join("laser");
-            let link = link.to_str().unwrap();
-            let (device, reader) = (
-                words(&["--pty", link, "--baud", "9600"]),
-                words(&["--serial", link, "--baud", "500000"]),
-            );
-            (Some(folder), device, reader)
+            let link = folder.path().join("laser");
+            let link = link.display();
+            let ends = [
+                format!("--pty {link} --baud 9600"),
+                format!("--serial {link} --baud 500000"),
+            ];
+            (Some(folder), ends)
         }
     }
 }

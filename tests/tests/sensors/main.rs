@@ -1,4 +1,8 @@
 //! Lasers and third-party recordings, up to the graph.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
 
 mod doctor;
 mod lasers;

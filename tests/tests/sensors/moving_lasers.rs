@@ -1,9 +1,5 @@
 //! Scans that take time, and several lasers: the graph and the tools bring them to one time by the
 //! same odometry, and have the same results.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::Path;
 

@@ -1,8 +1,4 @@
 //! `backcast probe` with emulated lasers, and with other things.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};

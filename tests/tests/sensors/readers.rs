@@ -1,8 +1,4 @@
 //! Third-party tools and this project read each other's recordings alike.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
