@@ -57,13 +57,7 @@ fn as_text() -> Vec<u8> {
 /// Sixteen scans of 361 readings.
 fn lms2xx_stream() -> Vec<u8> {
     let readings: Vec<u16> = (0..361).map(|beam| 100 + 13 * beam).collect();
-    let scan = Scan {
-        unit: Unit::Centimetre,
-        part: None,
-        sub_range: None,
-        readings: readings[..].into(),
-        counters: None,
-    };
+    let scan = Scan::new(Unit::Centimetre, &readings);
     let mut stream = Vec::new();
     for _ in 0..16 {
         Reply::Answer(Answer::Scan(scan), Status(0x10)).frame(&mut stream);

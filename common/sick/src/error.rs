@@ -3,10 +3,10 @@
 //! Each error gives its place: bytes of the stream count from its start, bytes of a telegram from
 //! the first byte of its content.
 
-use crate::cola::cola_b::{MAX_CONTENT, MIN_CONTENT};
-use crate::lms2xx::MAX_PAYLOAD;
+use std::ops::RangeInclusive;
 
-/// Error in a stream or telegram: the value found and the values allowed.
+/// Error in a stream or telegram: the value found and the values allowed. The `offset` is that of
+/// the first byte of the telegram or of the field.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SickError {
     /// Bytes between two CoLa B telegrams belong to neither.
@@ -14,78 +14,48 @@ pub enum SickError {
         "byte {offset} of the stream: found {found:02x?} where a CoLa B telegram starts with \
          02 02 02 02{}", hint(*found)
     )]
-    NoStart {
-        /// Byte in the stream.
-        offset: u64,
-        /// First bytes that do not fit.
-        found: [u8; 4],
-    },
+    NoStart { offset: u64, found: [u8; 4] },
     /// Bytes between two other telegrams belong to neither.
     #[error("byte {offset} of the stream: found {found:#04x} where {expected}")]
     NoTelegram {
-        /// Byte in the stream.
         offset: u64,
-        /// First byte that does not fit.
         found: u8,
-        /// Expected beginning of a telegram.
         expected: &'static str,
     },
-    /// A CoLa B telegram claims an impossible length.
+    /// A telegram claims an impossible length of its content or payload.
     #[error(
-        "byte {offset} of the stream: the telegram claims {found} bytes of content, allowed are \
-         {MIN_CONTENT} to {MAX_CONTENT}"
+        "byte {offset} of the stream: the telegram claims {found} bytes of {part}, allowed are \
+         {} to {}", allowed.start(), allowed.end()
     )]
     Length {
-        /// Start of the telegram in the stream.
         offset: u64,
         found: u32,
-    },
-    /// An LMS2xx telegram claims an impossible length.
-    #[error(
-        "byte {offset} of the stream: the telegram claims {found} bytes of payload, allowed are \
-         1 to {MAX_PAYLOAD}"
-    )]
-    PayloadLength {
-        /// Start of the telegram in the stream.
-        offset: u64,
-        found: u16,
+        part: &'static str,
+        allowed: RangeInclusive<usize>,
     },
     /// A CoLa A telegram does not end within the longest length accepted.
     #[error(
         "byte {offset} of the stream: a telegram without an end (03) in {MAX_TEXT} bytes",
         MAX_TEXT = crate::cola::cola_a::MAX_CONTENT
     )]
-    Endless {
-        /// Start of the telegram in the stream.
-        offset: u64,
-    },
+    Endless { offset: u64 },
     /// Another telegram starts before a CoLa A telegram has ended.
     #[error(
         "byte {offset} of the stream: a telegram is cut off by another one after {present} bytes"
     )]
-    CutOff {
-        /// Start of the telegram in the stream.
-        offset: u64,
-        /// Number of its bytes received.
-        present: usize,
-    },
+    CutOff { offset: u64, present: usize },
     /// The content does not start with a command.
     #[error(
         "byte {offset} of the stream: the content starts with {found:#04x}, every command with \
          's' (0x73)"
     )]
-    NotACommand {
-        /// Start of the telegram in the stream.
-        offset: u64,
-        found: u8,
-    },
+    NotACommand { offset: u64, found: u8 },
     /// The checksum is wrong: the content was changed in transit.
     #[error(
         "byte {offset} of the stream: the checksum of {length} bytes is {computed:#04x}, the \
          telegram ends with {found:#04x}"
     )]
     Checksum {
-        /// Start of the telegram in the stream.
         offset: u64,
         length: usize,
         found: u16,
@@ -93,20 +63,10 @@ pub enum SickError {
     },
     /// The checksum is right, but the content does not fit its command.
     #[error("byte {offset} of the stream: a telegram cannot be read: {reason}")]
-    Unreadable {
-        /// Start of the telegram in the stream.
-        offset: u64,
-        /// The error in the content, with its place.
-        reason: Box<SickError>,
-    },
+    Unreadable { offset: u64, reason: Box<SickError> },
     /// The stream ends inside a telegram.
     #[error("byte {offset} of the stream: it ends {present} bytes into a telegram")]
-    Truncated {
-        /// Start of the telegram in the stream.
-        offset: u64,
-        /// Number of its bytes received.
-        present: usize,
-    },
+    Truncated { offset: u64, present: usize },
     /// The content ends before a field does.
     #[error(
         "byte {offset} of the telegram: `{field}` takes {needed} bytes, {left} are left of the \
@@ -114,7 +74,6 @@ pub enum SickError {
     )]
     Short {
         field: &'static str,
-        /// Start of the field in the content.
         offset: usize,
         needed: usize,
         left: usize,
@@ -123,18 +82,13 @@ pub enum SickError {
     #[error("byte {offset} of the telegram: `{field}` is {found}, allowed is {allowed}")]
     Field {
         field: &'static str,
-        /// Start of the field in the content.
         offset: usize,
         found: String,
         allowed: &'static str,
     },
     /// The content continues after the last field.
     #[error("byte {offset} of the telegram: {left} bytes follow the last field, none may")]
-    Trailing {
-        /// End of the last field.
-        offset: usize,
-        left: usize,
-    },
+    Trailing { offset: usize, left: usize },
 }
 
 /// Returns a hint if this looks like CoLa A, the most likely mix-up.

@@ -33,14 +33,6 @@ pub trait Protocol {
     /// # Errors
     /// If the content cannot be parsed.
     fn read<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError>;
-
-    /// Parses a content that has just been parsed without an error.
-    ///
-    /// # Errors
-    /// Never for such a content.
-    fn read_again<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError> {
-        self.read(content)
-    }
 }
 
 /// Part of the stream that has not been judged.
@@ -69,7 +61,6 @@ pub enum Judgement {
         suffix: usize,
     },
     Incomplete,
-    /// Not a telegram.
     Rejected(SickError),
 }
 
@@ -223,7 +214,7 @@ impl<P: Protocol> Framer<P> {
         Ok(Frame {
             offset,
             content,
-            telegram: self.protocol.read_again(content)?,
+            telegram: self.protocol.read(content)?,
             skipped: std::mem::take(&mut self.skipped),
         })
     }

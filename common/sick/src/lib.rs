@@ -14,6 +14,7 @@
 //! of the caller.
 
 pub mod cola;
+mod cursor;
 mod error;
 pub mod framer;
 pub mod lms2xx;

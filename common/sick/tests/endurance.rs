@@ -36,13 +36,7 @@ impl Format {
             Format::ColaA => Encoding::Text.frame(&cola(number, &channel(&readings)), &mut out),
             Format::ColaB => Encoding::Binary.frame(&cola(number, &channel(&readings)), &mut out),
             Format::Lms2xx => {
-                let scan = Scan {
-                    unit: Unit::Centimetre,
-                    part: None,
-                    sub_range: None,
-                    readings: readings[..].into(),
-                    counters: None,
-                };
+                let scan = Scan::new(Unit::Centimetre, &readings);
                 Reply::Answer(Answer::Scan(scan), Status(0x10)).frame(&mut out);
             }
         }

@@ -7,187 +7,124 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use sick::Frame;
 use sick::cola::{Channel, Channels, DeviceTime, Encoding, Framer, LmdScanData, Telegram};
+use sick::framer::Protocol;
 use sick::lms2xx::{Answer, Part, Reply, ReplyFramer, Scan, Status, Unit};
 
-/// Owned data of a scan.
-#[derive(Debug, Clone)]
-struct Parts {
-    numbers: [u32; 4],
-    counters: [u16; 2],
-    layer: i16,
-    wide: Vec<(i32, u16, Vec<u16>)>,
-    narrow: Vec<u8>,
-    texts: [Option<String>; 2],
-    has_time: bool,
-}
+/// Counters and times, layer, wide and narrow channels, name and comment, and whether there is a
+/// clock.
+type Parts = (
+    ([u32; 4], [u16; 2], i16),
+    Vec<(i32, u16, Vec<u16>)>,
+    Vec<u8>,
+    [Option<String>; 2],
+    bool,
+);
 
 fn parts() -> impl Strategy<Value = Parts> {
     let text = || proptest::option::of("[ -~]{0,40}");
     let channel = (any::<i32>(), any::<u16>(), vec(any::<u16>(), 0..60));
     (
-        any::<[u32; 4]>(),
-        any::<[u16; 2]>(),
-        any::<i16>(),
+        any::<([u32; 4], [u16; 2], i16)>(),
         vec(channel, 0..4),
         vec(any::<u8>(), 0..60),
         [text(), text()],
         any::<bool>(),
     )
-        .prop_map(
-            |(numbers, counters, layer, wide, narrow, texts, has_time)| Parts {
-                numbers,
-                counters,
-                layer,
-                wide,
-                narrow,
-                texts,
-                has_time,
-            },
-        )
 }
 
-impl Parts {
-    /// Passes the scan that these parts make to `take`.
-    fn scan<R>(&self, take: impl FnOnce(LmdScanData<'_>) -> R) -> R {
-        let channel = |name, start, step, values| Channel {
-            name,
-            scale_factor: 1.5,
-            scale_offset: -0.25,
-            start_angle_raw_1e4_deg: start,
-            step_raw_1e4_deg: step,
-            values,
-        };
-        let wide: Vec<Channel<'_>> = self
-            .wide
-            .iter()
-            .enumerate()
-            .map(|(i, (start, step, values))| {
-                channel(
-                    [b'D', b'I', b'S', b'T', b'1' + i as u8],
-                    *start,
-                    *step,
-                    values[..].into(),
-                )
-            })
-            .collect();
-        let bytes: Vec<u16> = self.narrow.iter().map(|&byte| byte.into()).collect();
-        let narrow = [channel(*b"RSSI1", -1, 1, bytes[..].into())];
-        take(LmdScanData {
-            version: 1,
-            device_number: 3,
-            serial_number: self.numbers[0],
-            status: [0, 4],
-            telegram_counter: self.counters[0],
-            scan_counter: self.counters[1],
-            time_since_start_up_us: self.numbers[1],
-            time_of_transmission_us: self.numbers[2],
-            digital_inputs: [1, 0],
-            digital_outputs: [0, 255],
-            layer_angle_raw: self.layer,
-            scan_frequency_raw_1e2_hz: self.numbers[3],
-            measurement_frequency_raw: 360,
-            channels_16_bit: Channels::from(&wide[..]),
-            channels_8_bit: Channels::from(&narrow[..]),
-            name: self.texts[0].as_ref().map(String::as_bytes),
-            comment: self.texts[1].as_ref().map(String::as_bytes),
-            time: self.has_time.then_some(DeviceTime {
-                year: 2024,
-                month: 2,
-                day: 29,
-                hour: 23,
-                minute: 59,
-                second: 60,
-                microsecond: 999_999,
-            }),
-        })
-    }
-
-    fn frame(&self, encoding: Encoding) -> Vec<u8> {
-        let mut out = Vec::new();
-        self.scan(|scan| encoding.frame(&Telegram::ScanData(scan), &mut out));
-        out
-    }
+/// Passes the scan that these parts make to `take`.
+fn with_scan<R>(parts: &Parts, take: impl FnOnce(LmdScanData<'_>) -> R) -> R {
+    let ((numbers, counters, layer), wide, narrow, texts, has_time) = parts;
+    let channel = |name, start, step, values| Channel {
+        name,
+        scale_factor: 1.5,
+        scale_offset: -0.25,
+        start_angle_raw_1e4_deg: start,
+        step_raw_1e4_deg: step,
+        values,
+    };
+    let wide = (b'1'..).zip(wide).map(|(number, (start, step, values))| {
+        let name = [b'D', b'I', b'S', b'T', number];
+        channel(name, *start, *step, values[..].into())
+    });
+    let wide: Vec<Channel<'_>> = wide.collect();
+    let bytes: Vec<u16> = narrow.iter().map(|&byte| byte.into()).collect();
+    let narrow = [channel(*b"RSSI1", -1, 1, bytes[..].into())];
+    take(LmdScanData {
+        version: 1,
+        device_number: 3,
+        serial_number: numbers[0],
+        status: [0, 4],
+        telegram_counter: counters[0],
+        scan_counter: counters[1],
+        time_since_start_up_us: numbers[1],
+        time_of_transmission_us: numbers[2],
+        digital_inputs: [1, 0],
+        digital_outputs: [0, 255],
+        layer_angle_raw: *layer,
+        scan_frequency_raw_1e2_hz: numbers[3],
+        measurement_frequency_raw: 360,
+        channels_16_bit: Channels::from(&wide[..]),
+        channels_8_bit: Channels::from(&narrow[..]),
+        name: texts[0].as_ref().map(String::as_bytes),
+        comment: texts[1].as_ref().map(String::as_bytes),
+        time: has_time.then_some(DeviceTime {
+            year: 2024,
+            month: 2,
+            day: 29,
+            hour: 23,
+            minute: 59,
+            second: 60,
+            microsecond: 999_999,
+        }),
+    })
 }
 
-/// Returns the contents of the scans in a stream that is read in pieces of this length.
-fn scans(encoding: Encoding, stream: &[u8], piece: usize) -> Vec<Vec<u8>> {
-    let mut framer = Framer::new(encoding);
-    let mut found = Vec::new();
+/// Reads all frames of a stream that arrives in pieces of this length, and then ends.
+fn read<P: Protocol>(
+    mut framer: sick::Framer<P>,
+    stream: &[u8],
+    piece: usize,
+    mut see: impl FnMut(Frame<'_, P::Telegram<'_>>),
+) {
     for piece in stream.chunks(piece).chain([&[][..]]) {
         framer.push(piece);
         if piece.is_empty() {
             framer.finish();
         }
         while let Some(next) = framer.next_frame() {
-            if let Ok(frame) = next
-                && matches!(frame.telegram, Telegram::ScanData(_))
-            {
-                found.push(frame.content.to_vec());
+            if let Ok(frame) = next {
+                see(frame);
             }
         }
     }
-    found
 }
 
 fn lms_scan(readings: &[u16], quarter: u8) -> Reply<'_> {
     let scan = Scan {
-        unit: Unit::Centimetre,
         part: Part::at_quarter(quarter),
         sub_range: (quarter == 5).then_some((1, readings.len() as u16)),
-        readings: readings.into(),
         counters: (quarter == 6).then_some((1, 2)),
+        ..Scan::new(Unit::Centimetre, readings)
     };
     Reply::Answer(Answer::Scan(scan), Status(0x10))
-}
-
-/// Returns the readings of the scans in a stream that is read in pieces of this length.
-fn lms_scans(stream: &[u8], piece: usize) -> Vec<Vec<u16>> {
-    let mut framer = ReplyFramer::default();
-    let mut found = Vec::new();
-    for piece in stream.chunks(piece) {
-        framer.push(piece);
-        while let Some(next) = framer.next_frame() {
-            if let Ok(frame) = next
-                && let Reply::Answer(Answer::Scan(scan), _) = frame.telegram
-            {
-                found.push(scan.readings.collect());
-            }
-        }
-    }
-    found
 }
 
 proptest! {
     #[test]
     fn a_scan_in_either_encoding(parts in parts(), piece in 1usize..300) {
         for encoding in [Encoding::Text, Encoding::Binary] {
-            let mut framer = Framer::new(encoding);
-            for piece in parts.frame(encoding).chunks(piece) {
-                framer.push(piece);
-            }
-            let frame = framer.next_frame().unwrap().unwrap();
-            let Telegram::ScanData(found) = frame.telegram else { panic!("no scan") };
-            parts.scan(|expected| assert_eq!(found, expected));
-            prop_assert_eq!(frame.skipped, 0);
-        }
-    }
-
-    #[test]
-    fn garbage_between_scans_costs_none_of_them(
-        all in vec(parts(), 1..4),
-        garbage in vec(0u8..5, 0..40),
-        piece in 1usize..300,
-    ) {
-        // A start byte in the garbage would claim the bytes after it.
-        let garbage: Vec<u8> = garbage.into_iter().map(|byte| byte + 4).collect();
-        for encoding in [Encoding::Text, Encoding::Binary] {
             let mut stream = Vec::new();
-            for parts in &all {
-                stream.extend(&garbage);
-                stream.extend(parts.frame(encoding));
-            }
-            prop_assert_eq!(scans(encoding, &stream, piece).len(), all.len());
+            with_scan(&parts, |scan| encoding.frame(&Telegram::ScanData(scan), &mut stream));
+            let mut count = 0;
+            read(Framer::new(encoding), &stream, piece, |frame| {
+                with_scan(&parts, |scan| assert_eq!(frame.telegram, Telegram::ScanData(scan)));
+                assert_eq!(frame.skipped, 0);
+                count += 1;
+            });
+            prop_assert_eq!(count, 1);
         }
     }
 
@@ -197,12 +134,12 @@ proptest! {
     ) {
         let mut stream = Vec::new();
         lms_scan(&readings, quarter).frame(&mut stream);
-        let mut framer = ReplyFramer::default();
-        for piece in stream.chunks(piece) {
-            framer.push(piece);
-        }
-        let found = framer.next_frame().unwrap().unwrap().telegram;
-        prop_assert_eq!(found, lms_scan(&readings, quarter));
+        let mut count = 0;
+        read(ReplyFramer::default(), &stream, piece, |frame| {
+            assert_eq!(frame.telegram, lms_scan(&readings, quarter));
+            count += 1;
+        });
+        prop_assert_eq!(count, 1);
     }
 
     #[test]
@@ -218,9 +155,11 @@ proptest! {
             true => { stream.drain(at..at + 3); }
             false => stream[at % one.len()] ^= bits,
         }
-        for found in lms_scans(&stream, 64) {
-            prop_assert_eq!(&found, &readings);
-        }
+        read(ReplyFramer::default(), &stream, 64, |frame| {
+            if let Reply::Answer(Answer::Scan(scan), _) = frame.telegram {
+                assert!(scan.readings.eq(readings.iter().copied()));
+            }
+        });
     }
 
     #[test]
@@ -231,27 +170,27 @@ proptest! {
             true => bytes.iter().map(|byte| few[usize::from(*byte) % few.len()]).collect(),
             false => bytes,
         };
-        scans(Encoding::Text, &bytes, 7);
-        scans(Encoding::Binary, &bytes, 7);
-        lms_scans(&bytes, 7);
+        read(Framer::new(Encoding::Text), &bytes, 7, |_| {});
+        read(Framer::new(Encoding::Binary), &bytes, 7, |_| {});
+        read(ReplyFramer::default(), &bytes, 7, |_| {});
         let _ = Reply::read(&bytes);
         let _ = sick::lms2xx::Command::read(&bytes);
+        let _ = LmdScanData::read(Encoding::Binary, &[b"sSN LMDscandata \0\x01", &bytes[..]].concat());
     }
 
     #[test]
-    fn damaged_text_never_panics(
+    fn damaged_contents_never_panic(
         parts in parts(), edits in vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
-        let mut stream = parts.frame(Encoding::Text);
-        for (at, byte) in edits {
-            let at = at.index(stream.len());
-            stream[at] = byte;
-        }
-        // There is no checksum, but accepted scans can be read to the end.
-        let mut framer = Framer::new(Encoding::Text);
-        framer.push(&stream);
-        while let Some(next) = framer.next_frame() {
-            if let Ok(frame) = next && let Telegram::ScanData(scan) = frame.telegram {
+        for encoding in [Encoding::Text, Encoding::Binary] {
+            let mut content = Vec::new();
+            with_scan(&parts, |scan| scan.write(encoding, &mut content));
+            for (at, byte) in &edits {
+                let at = at.index(content.len());
+                content[at] = *byte;
+            }
+            // Accepted scans can be read to the end.
+            if let Ok(scan) = LmdScanData::read(encoding, &content) {
                 let channels = scan.channels_16_bit.chain(scan.channels_8_bit);
                 channels.for_each(|channel| assert_eq!(channel.values.count(), channel.len()));
             }

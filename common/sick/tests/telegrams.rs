@@ -6,49 +6,27 @@
 )]
 
 use serde_json::Value;
+use sick::Frame;
 use sick::cola::{Encoding, Framer, LmdScanData, Telegram};
-use sick::{Frame, SickError};
 
 const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
 const MANIFEST: &str = include_str!("data/tim781_manifest.json");
-/// Length of each of the 16 telegrams, with start, length and checksum.
-const TELEGRAM: usize = 3374;
 
-/// Feeds pieces and passes each frame or error to `see` in order.
-fn read<'a>(
-    pieces: impl IntoIterator<Item = &'a [u8]>,
-    mut see: impl FnMut(Result<Frame<'_, Telegram<'_>>, SickError>),
-) {
+/// Passes each frame of the capture to `see` in order.
+fn read(mut see: impl FnMut(Frame<'_, Telegram<'_>>)) {
     let mut framer = Framer::new(Encoding::Binary);
-    for piece in pieces {
-        framer.push(piece);
-        while let Some(next) = framer.next_frame() {
-            see(next);
-        }
-    }
+    framer.push(CAPTURE);
     framer.finish();
     while let Some(next) = framer.next_frame() {
-        see(next);
+        see(next.unwrap());
     }
-}
-
-/// Returns the scan counter of each scan, and the number of other items.
-fn counters(stream: &[u8]) -> (Vec<u16>, usize) {
-    let (mut good, mut errors) = (Vec::new(), 0);
-    read([stream], |next| match next.map(|frame| frame.telegram) {
-        Ok(Telegram::ScanData(data)) => good.push(data.scan_counter),
-        // Damage may turn a scan into another telegram.
-        Ok(_) | Err(_) => errors += 1,
-    });
-    (good, errors)
 }
 
 #[test]
 fn every_field_of_the_real_telegrams() {
     let manifest: Vec<Value> = serde_json::from_str(MANIFEST).unwrap();
     let mut index = 0;
-    read([CAPTURE], |next| {
-        let frame = next.unwrap();
+    read(|frame| {
         check(&frame, &manifest[index], index);
         index += 1;
     });
@@ -116,8 +94,7 @@ fn check_tail(data: &LmdScanData<'_>, content: &[u8], expected: &str) {
 
 #[test]
 fn the_real_telegrams_say_the_same_in_text_and_binary_again() {
-    read([CAPTURE], |next| {
-        let frame = next.unwrap();
+    read(|frame| {
         let mut binary = Vec::new();
         frame.telegram.write(Encoding::Binary, &mut binary);
         assert_eq!(binary, frame.content);
@@ -127,20 +104,4 @@ fn the_real_telegrams_say_the_same_in_text_and_binary_again() {
         let read = Telegram::read(Encoding::Text, &text).unwrap();
         assert_eq!(read, frame.telegram);
     });
-}
-
-#[test]
-fn every_flipped_bit_costs_one_telegram_and_is_noticed() {
-    // Damages the middle one of three telegrams, so that a wrong length has neighbours to damage.
-    let three = &CAPTURE[..3 * TELEGRAM];
-    let (all, _) = counters(three);
-    let mut stream = three.to_vec();
-    for bit in 0..TELEGRAM * 8 {
-        let at = TELEGRAM + bit / 8;
-        stream[at] ^= 1 << (bit % 8);
-        let (good, errors) = counters(&stream);
-        assert_eq!(good, [all[0], all[2]], "bit {bit}");
-        assert!(errors > 0, "bit {bit}");
-        stream[at] ^= 1 << (bit % 8);
-    }
 }

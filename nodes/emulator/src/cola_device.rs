@@ -30,7 +30,6 @@ pub(crate) struct Session {
 pub(crate) struct Model {
     /// Name that the device reports.
     name: &'static str,
-    /// Angle convention of the device.
     convention: AngleConvention,
 }
 
@@ -47,20 +46,22 @@ impl Model {
     /// Converts an angle of the recording, which counts counter-clockwise with 90° ahead, to the
     /// device's angle.
     fn turn(&self, angle_raw: i32) -> i32 {
-        let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
         match self.convention.clockwise {
-            true => ahead_raw + AHEAD_RAW - angle_raw,
-            false => ahead_raw - AHEAD_RAW + angle_raw,
+            true => self.ahead_raw() + AHEAD_RAW - angle_raw,
+            false => self.ahead_raw() - AHEAD_RAW + angle_raw,
         }
     }
 
     /// Converts a device angle to the angle of the recording.
     fn turn_back(&self, device_raw: i32) -> i32 {
-        let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
         match self.convention.clockwise {
-            true => ahead_raw + AHEAD_RAW - device_raw,
-            false => device_raw - ahead_raw + AHEAD_RAW,
+            true => self.turn(device_raw),
+            false => device_raw - self.ahead_raw() + AHEAD_RAW,
         }
+    }
+
+    fn ahead_raw(&self) -> i32 {
+        (self.convention.ahead_deg * 1e4).round() as i32
     }
 }
 
@@ -101,11 +102,7 @@ impl ColaDevice {
             encoding,
             full,
             scan: full,
-            range: OutputRange {
-                resolution_raw_1e4_deg: full.resolution_raw_1e4_deg,
-                start_angle_raw_1e4_deg: full.start_angle_raw_1e4_deg,
-                stop_angle_raw_1e4_deg: full.stop_angle_raw_1e4_deg,
-            },
+            range: full.range(),
             data: ScanDataConfig {
                 time: true,
                 ..ScanDataConfig::DISTANCES
@@ -223,15 +220,9 @@ impl ColaDevice {
         let can_resolve = resolution <= u32::from(u16::MAX)
             && resolution.checked_rem(self.full.resolution_raw_1e4_deg) == Some(0)
             && resolution > 0;
-        let field = (
-            config.start_angle_raw_1e4_deg,
-            config.stop_angle_raw_1e4_deg,
-        );
-        let full = (
-            self.full.start_angle_raw_1e4_deg,
-            self.full.stop_angle_raw_1e4_deg,
-        );
-        match (can_resolve, field == full) {
+        let has_field = config.start_angle_raw_1e4_deg == self.full.start_angle_raw_1e4_deg
+            && config.stop_angle_raw_1e4_deg == self.full.stop_angle_raw_1e4_deg;
+        match (can_resolve, has_field) {
             _ if config.frequency_raw_1e2_hz != self.full.frequency_raw_1e2_hz => 1,
             (false, true) => 2,
             (false, false) => 3,

@@ -119,9 +119,6 @@ mod tests {
             assert!(text.contains(expected), "{arguments}: {text}");
         };
         refuse("", "--listen");
-        refuse("--pty b --listen tcp://a:1", "cannot be used with");
-        refuse("--pty b --protocol cola-a", "cannot be used with");
-        refuse("--pty b --device TiM240", "cannot be used with");
         refuse("--listen tcp://a:1 --device XY7", "known are LMS1xx");
         refuse("--listen 127.0.0.1:2112", "tcp://HOST:PORT");
         refuse("--listen tcp://a:x", "0 to 65535");

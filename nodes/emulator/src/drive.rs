@@ -15,7 +15,6 @@ use crate::sweep::Sweep;
 /// Event of the drive.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Happening {
-    /// Scan with this index.
     Scan(usize),
     Odometry(Box<Odometry>),
     GroundTruth(Box<GroundTruth>),
@@ -30,25 +29,21 @@ pub(crate) struct Drive {
     pub(crate) refused: Vec<PlaybackError>,
 }
 
-/// Topics to use if the recording has several.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Topics<'a> {
-    pub(crate) scan: Option<&'a str>,
-    pub(crate) odometry: Option<&'a str>,
-}
-
 impl Drive {
-    /// Reads a recording.
+    /// Reads a recording; the topics of scans and odometry are those to use if it has several.
     ///
     /// # Errors
     /// If it cannot be read, has no scans, or its scans have different beams.
-    pub(crate) fn open(path: &Path, topics: Topics<'_>) -> Result<Self, EmulatorError> {
+    pub(crate) fn open(
+        path: &Path,
+        scan: Option<&str>,
+        odometry: Option<&str>,
+    ) -> Result<Self, EmulatorError> {
         let mut recording = Recording::open(path)?;
-        if let Some(topic) = topics.scan {
-            recording.prefer(Kind::Scan, topic)?;
-        }
-        if let Some(topic) = topics.odometry {
-            recording.prefer(Kind::Odometry, topic)?;
+        for (kind, topic) in [(Kind::Scan, scan), (Kind::Odometry, odometry)] {
+            if let Some(topic) = topic {
+                recording.prefer(kind, topic)?;
+            }
         }
         let all = Selection::all();
         let channels = Channels::of(&recording, &all)?;
@@ -110,7 +105,7 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/../../recordings/malaga_corridor/recording.mcap"
         );
-        let drive = Drive::open(Path::new(path), Topics::default()).unwrap();
+        let drive = Drive::open(Path::new(path), None, None).unwrap();
         assert!(drive.refused.is_empty());
         assert!(drive.happenings.is_sorted_by_key(|(log_ns, _)| *log_ns));
         let mut truth_us = None;

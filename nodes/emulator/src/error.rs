@@ -13,14 +13,10 @@ pub enum EmulatorError {
     #[error(transparent)]
     Playback(#[from] PlaybackError),
     #[error("{}: there is no scan in it", path.display())]
-    Empty {
-        /// Path of the recording.
-        path: PathBuf,
-    },
+    Empty { path: PathBuf },
     /// A scan of the recording cannot be sent by a device.
     #[error("scan {scan} of the recording: {field} is {found}, allowed is {allowed}")]
     Scan {
-        /// Index of the scan, from 0.
         scan: usize,
         /// Property that does not fit.
         field: &'static str,

@@ -176,13 +176,7 @@ impl Lms2xxDevice {
         }
         self.is_asked = false;
         self.fill_readings(sweep, scan);
-        let scan = Scan {
-            unit: self.configuration.unit,
-            part: None,
-            sub_range: None,
-            readings: self.readings[..].into(),
-            counters: None,
-        };
+        let scan = Scan::new(self.configuration.unit, &self.readings);
         Reply::Answer(Answer::Scan(scan), STATUS).frame(out);
     }
 
@@ -216,23 +210,15 @@ mod tests {
         Lms2xxDevice::new(Baud::B38400, &sweep()).unwrap()
     }
 
-    /// Returns the replies to a command.
     fn ask(device: &mut Lms2xxDevice, command: Command<'_>) -> Vec<Reply<'static>> {
         let mut bytes = Vec::new();
         device.receive(&command, &mut bytes);
         // Leaking is fine in a short test, and a reply borrows its bytes.
-        let bytes: &'static [u8] = bytes.leak();
-        let mut rest = bytes;
-        let mut replies = Vec::new();
-        while let Some((&first, more)) = rest.split_first() {
-            if first != 2 {
-                replies.push(Reply::read(std::slice::from_ref(&rest[0])).unwrap());
-                rest = more;
-                continue;
-            }
-            let length = usize::from(u16::from_le_bytes([rest[2], rest[3]]));
-            replies.push(Reply::read(&rest[4..4 + length]).unwrap());
-            rest = &rest[6 + length..];
+        let (acknowledgement, rest) = bytes.leak().split_at(1);
+        let mut replies = vec![Reply::read(acknowledgement).unwrap()];
+        // Start, address, length and CRC surround the payload.
+        if let Some(end) = rest.len().checked_sub(2) {
+            replies.push(Reply::read(&rest[4..end]).unwrap());
         }
         replies
     }

@@ -12,7 +12,7 @@ use replay::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
 use crate::cola_device::Model;
-use crate::drive::{Drive, Happening, Topics};
+use crate::drive::{Drive, Happening};
 use crate::faults::Faults;
 use crate::player::{Due, Player};
 use crate::sweep::Sweep;
@@ -93,10 +93,8 @@ impl Common {
             refused,
         } = Drive::open(
             &config.recording,
-            Topics {
-                scan: config.scan_topic.as_deref(),
-                odometry: config.odom_topic.as_deref(),
-            },
+            config.scan_topic.as_deref(),
+            config.odom_topic.as_deref(),
         )?;
         health.state(NodeState::Waiting)?;
         for error in &refused {

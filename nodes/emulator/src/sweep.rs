@@ -22,7 +22,6 @@ pub(crate) struct Sweep {
     pub(crate) step_raw: i32,
     /// Number of beams per scan.
     pub(crate) count: usize,
-    /// Time of a scan, seconds.
     pub(crate) scan_time_s: f64,
     /// True if the recording states the scan time; false if it is estimated.
     pub(crate) says_time: bool,
@@ -45,24 +44,24 @@ impl Sweep {
         ranges: Vec<f32>,
     ) -> Result<Self, EmulatorError> {
         let raw = |radians: f64| (radians.to_degrees() * 1e4).round() as i32;
+        let refused = |field, found, allowed: &str| EmulatorError::Scan {
+            scan: 0,
+            field,
+            found,
+            allowed: allowed.to_owned(),
+        };
         let step_raw = raw(scan.angle_increment);
         if !(1..=65_535).contains(&step_raw) || ranges.is_empty() {
-            return Err(EmulatorError::Scan {
-                scan: 0,
-                field: "the angle from beam to beam",
-                found: f64::from(step_raw) * 1e-4,
-                allowed: "0.0001° to 6.5535°, counter-clockwise".into(),
-            });
+            let allowed = "0.0001° to 6.5535°, counter-clockwise";
+            let found = f64::from(step_raw) * 1e-4;
+            return Err(refused("the angle from beam to beam", found, allowed));
         }
         let start_raw = raw(scan.angle_min);
         let sweep_raw = (ranges.len() as i64 - 1) * i64::from(step_raw);
         if !TURN.contains(&i64::from(start_raw)) || !TURN.contains(&sweep_raw) {
-            return Err(EmulatorError::Scan {
-                scan: 0,
-                field: "the angle from the first beam to the last",
-                found: sweep_raw as f64 * 1e-4,
-                allowed: "0° to 360°, from -360° on".into(),
-            });
+            let field = "the angle from the first beam to the last";
+            let found = sweep_raw as f64 * 1e-4;
+            return Err(refused(field, found, "0° to 360°, from -360° on"));
         }
         Ok(Sweep {
             start_raw: start_raw + AHEAD_RAW,
@@ -88,12 +87,6 @@ impl Sweep {
     ) -> Result<(), EmulatorError> {
         let index = self.scans.len();
         let other = Sweep::first(time_ns, scan, ranges)?;
-        let differs = |field, found: f64, allowed: f64| EmulatorError::Scan {
-            scan: index,
-            field,
-            found,
-            allowed: format!("{allowed}, as in the first"),
-        };
         let beams = [
             ("the number of beams", other.count as f64, self.count as f64),
             (
@@ -108,7 +101,12 @@ impl Sweep {
             ),
         ];
         if let Some((field, found, allowed)) = beams.into_iter().find(|(_, a, b)| a != b) {
-            return Err(differs(field, found, allowed));
+            return Err(EmulatorError::Scan {
+                scan: index,
+                field,
+                found,
+                allowed: format!("{allowed}, as in the first"),
+            });
         }
         self.times_ns.push(time_ns);
         self.stamps_us.extend(other.stamps_us);
@@ -119,13 +117,10 @@ impl Sweep {
     /// Estimates the scan time as the median interval between scans if the recording does not state
     /// it.
     pub(crate) fn measure_time(&mut self) {
-        let mut gaps: Vec<i64> = self
-            .times_ns
-            .windows(2)
-            .map(|w| w[1].saturating_sub(w[0]))
-            .collect();
-        gaps.sort_unstable();
         if self.scan_time_s.is_nan() || self.scan_time_s <= 0.0 {
+            let gaps = self.times_ns.windows(2);
+            let mut gaps: Vec<i64> = gaps.map(|w| w[1].saturating_sub(w[0])).collect();
+            gaps.sort_unstable();
             let median = gaps.get(gaps.len() / 2).copied().unwrap_or(0);
             self.scan_time_s = (median as f64 * 1e-9).max(0.001);
         }

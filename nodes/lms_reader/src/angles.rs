@@ -45,35 +45,33 @@ impl Angles {
     pub(crate) fn of(&mut self, field: Field) -> Result<(AngleConvention, f32), ConventionError> {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
         let convention = angles.convention(field)?;
-        let reach_m = angles.reach_m();
         if self.logged != Some(convention) {
-            self.log(convention);
+            self.logged = Some(convention);
+            log(angles, convention, self.stated.is_some());
         }
-        Ok((convention, reach_m))
+        Ok((convention, angles.reach_m()))
     }
+}
 
-    fn log(&mut self, convention: AngleConvention) {
-        match self.stated.as_ref().unwrap_or(&self.read) {
-            DeviceAngles::Known(row) => {
-                let stated = self.stated.is_some();
-                tracing::info!(
-                    device = row.name,
-                    stated,
-                    source = row.source,
-                    "{convention}"
-                );
-            }
-            DeviceAngles::Stated(_) => tracing::info!("{convention}, as stated"),
-            DeviceAngles::Unknown(name) => {
-                tracing::info!(%name, "{convention}: the device is not in the table, and its field is centred there");
-            }
-            DeviceAngles::Unnamed => {
-                tracing::info!(
-                    "{convention}: the device did not say its name, and its field is centred there"
-                );
-            }
+fn log(angles: &DeviceAngles, convention: AngleConvention, stated: bool) {
+    match angles {
+        DeviceAngles::Known(row) => {
+            tracing::info!(
+                device = row.name,
+                stated,
+                source = row.source,
+                "{convention}"
+            );
         }
-        self.logged = Some(convention);
+        DeviceAngles::Stated(_) => tracing::info!("{convention}, as stated"),
+        DeviceAngles::Unknown(name) => {
+            tracing::info!(%name, "{convention}: the device is not in the table, and its field is centred there");
+        }
+        DeviceAngles::Unnamed => {
+            tracing::info!(
+                "{convention}: the device did not say its name, and its field is centred there"
+            );
+        }
     }
 }
 

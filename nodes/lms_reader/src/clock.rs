@@ -24,7 +24,6 @@ struct Arrival {
     offset_us: f64,
 }
 
-/// Estimator of one device's clock.
 #[derive(Debug)]
 pub(crate) struct DeviceClock {
     /// Newest device count, the same without wraps, and its time of reception.

@@ -87,8 +87,8 @@ impl Setup {
             steps.push_back(Step::Login);
         }
         if wanted.resolution_raw_1e4_deg.is_some() {
-            let change = [Step::ReadScanConfig, Step::SetResolution];
-            steps.extend(change.into_iter().chain([Step::CheckResolution]));
+            steps.extend([Step::ReadScanConfig, Step::SetResolution]);
+            steps.push_back(Step::CheckResolution);
         }
         if wanted.field_raw_1e4_deg.is_some() {
             steps.extend([Step::CheckAhead, Step::ReadRange]);
@@ -117,7 +117,9 @@ impl Setup {
     /// # Errors
     /// [`LmsError::NoAnswer`].
     pub(crate) fn next(&mut self, now_ns: i64) -> Result<Option<Command<'static>>, LmsError> {
-        self.skip_check()?;
+        if self.steps.front() == Some(&Step::CheckAhead) && self.find_ahead()? {
+            self.advance();
+        }
         while let Some(&step) = self.steps.front() {
             let command = self.command(step);
             let patience_ns = if step == Step::SetResolution {
@@ -206,12 +208,8 @@ impl Setup {
                 )
             }
             (Step::CheckAhead, Answer::Value(Value::ScanConfig(config))) => {
-                let (start, stop) = (
-                    config.start_angle_raw_1e4_deg,
-                    config.stop_angle_raw_1e4_deg,
-                );
-                self.on_field(Field::between(start, stop))?;
-                Ok(true)
+                self.scan = Some(*config);
+                self.find_ahead()
             }
             (Step::ReadRange, Answer::Value(Value::OutputRange(range))) => {
                 self.range = Some(*range);
@@ -233,30 +231,17 @@ impl Setup {
         }
     }
 
-    /// Skips the query if the name or an earlier reading defines the convention. Fails if the
-    /// convention remains unknown, so that the field is not changed.
-    fn skip_check(&mut self) -> Result<(), LmsError> {
-        if self.steps.front() != Some(&Step::CheckAhead) {
-            return Ok(());
-        }
-        let whole = match (self.angles.certain(), self.scan) {
-            (Some(_), _) => Field::between(0, 0),
-            // Already read while setting the resolution.
-            (None, Some(scan)) => {
-                Field::between(scan.start_angle_raw_1e4_deg, scan.stop_angle_raw_1e4_deg)
-            }
-            (None, None) => return Ok(()),
+    /// Finds what is ahead by the name, or by the whole field that the device measures. Returns
+    /// false if neither is known yet; fails if the convention remains unknown, so that the field is
+    /// not changed.
+    fn find_ahead(&mut self) -> Result<bool, LmsError> {
+        let convention = match (self.angles.certain(), &self.scan) {
+            (Some(convention), _) => convention,
+            (None, Some(scan)) => self.angles.convention(Field::measured(scan))?,
+            (None, None) => return Ok(false),
         };
-        self.on_field(whole)?;
-        self.advance();
-        Ok(())
-    }
-
-    /// Determines what is ahead from the whole field that the device measures.
-    fn on_field(&mut self, whole: Field) -> Result<(), LmsError> {
-        let convention = self.angles.convention(whole)?;
         self.ahead_raw = Some((convention.ahead_deg * 1e4).round() as i32);
-        Ok(())
+        Ok(true)
     }
 
     /// Returns true while the device's identity is unknown.
@@ -279,8 +264,8 @@ impl Setup {
                 2
             }
         };
-        for (index, step) in changes.into_iter().enumerate() {
-            self.steps.insert(at + index, step);
+        for step in changes.into_iter().rev() {
+            self.steps.insert(at, step);
         }
     }
 
@@ -305,10 +290,11 @@ impl Setup {
             Step::ReadScanConfig | Step::CheckResolution | Step::CheckAhead => {
                 Command::Read(Variable::ScanConfig)
             }
-            Step::SetResolution => match self.wanted_scan() {
-                Some(config) => Command::Call(Method::SetScanConfig(config)),
-                None => Command::Read(Variable::ScanConfig),
-            },
+            Step::SetResolution => self
+                .wanted_scan()
+                .map_or(Command::Read(Variable::ScanConfig), |config| {
+                    Command::Call(Method::SetScanConfig(config))
+                }),
             Step::ReadRange | Step::CheckRange => Command::Read(Variable::OutputRange),
             Step::SetRange => match self.wanted_range() {
                 Some(range) => Command::Write(Value::OutputRange(range)),

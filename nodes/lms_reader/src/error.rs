@@ -43,7 +43,6 @@ pub enum LmsError {
     },
     #[error("the device rejects {command} with CoLa error {fault}")]
     Fault {
-        /// Command sent.
         command: String,
         /// Error code in the answer.
         fault: Fault,
@@ -61,10 +60,7 @@ pub enum LmsError {
         tries: u32,
     },
     #[error("no answer at any baud rate ({}); check power, wiring and that no other program uses the port", rates.iter().map(u32::to_string).collect::<Vec<_>>().join(", "))]
-    NoBaud {
-        /// Rates tried.
-        rates: Vec<u32>,
-    },
+    NoBaud { rates: Vec<u32> },
     /// The device restarted and has to be set up again.
     #[error("the device was restarted")]
     Restarted,
@@ -84,10 +80,7 @@ pub enum LmsError {
         if found.is_implausible() { ", implausible values" } else { "" },
         if found.is_polluted() { ", a dirty window" } else { "" }
     )]
-    LmsStatus {
-        /// Status byte.
-        found: sick::lms2xx::Status,
-    },
+    LmsStatus { found: sick::lms2xx::Status },
     #[error("neither a device (--tcp, --serial) nor a capture (--capture) is given")]
     NoSource,
     #[error("{address}: cannot {what}")]
@@ -97,10 +90,7 @@ pub enum LmsError {
         source: std::io::Error,
     },
     #[error("{address}: the device closed the connection")]
-    Closed {
-        /// Address from the configuration.
-        address: String,
-    },
+    Closed { address: String },
     #[error("{address}: no data for {seconds} s; closing the connection")]
     Silent {
         address: String,

@@ -8,7 +8,6 @@
 
 mod angles;
 mod attempts;
-mod backoff;
 mod clock;
 mod cola_setup;
 mod config;

@@ -2,13 +2,13 @@
 //!
 //! Pure: the caller passes the time of reception. It only distinguishes distances from codes.
 
-use messages::{Pose2, ScanHeader, Stamp};
+use messages::ScanHeader;
 use sick::cola::USUAL_REACH_M;
-use sick::lms2xx::{Readings, Scan, Unit};
+use sick::lms2xx::Scan;
 
 use crate::LmsError;
 use crate::lms2xx_setup::Format;
-use crate::scan::{Received, ScanSettings, recordable};
+use crate::scan::{Beams, Received, ScanSettings};
 
 /// Time of one turn of the mirror, seconds: it turns 75 times per second.
 const TURN_S: f64 = 1.0 / 75.0;
@@ -16,28 +16,14 @@ const TURN_S: f64 = 1.0 / 75.0;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WholeScan<'a> {
     pub(crate) format: Format,
-    pub(crate) unit: Unit,
-    /// First and last reading requested, from 1.
-    pub(crate) sub_range: Option<(u16, u16)>,
-    pub(crate) readings: Readings<'a>,
+    pub(crate) scan: Scan<'a>,
     /// Time of the telegram on the serial line, nanoseconds.
     pub(crate) line_ns: i64,
 }
 
-impl<'a> WholeScan<'a> {
-    /// Takes the scan of a telegram that holds a whole scan.
-    pub(crate) fn of(scan: &Scan<'a>, format: Format, line_ns: i64) -> Self {
-        WholeScan {
-            format,
-            unit: scan.unit,
-            sub_range: scan.sub_range,
-            readings: scan.readings,
-            line_ns,
-        }
-    }
-
+impl WholeScan<'_> {
     pub(crate) fn len(&self) -> usize {
-        self.readings.len()
+        self.scan.readings.len()
     }
 
     /// Returns the header of the scan, with counter 0.
@@ -59,28 +45,14 @@ impl<'a> WholeScan<'a> {
         let turns = 100.0 / f64::from(self.format.resolution_raw_1e2_deg);
         let scan_time_s = TURN_S * turns;
         let before_ns = self.line_ns + (scan_time_s * 1e9) as i64;
-        Ok(ScanHeader {
-            stamp: Stamp {
-                measured_ns: received.realtime_ns - before_ns,
-                entered_ns: received.monotonic_ns,
-                counter: 0,
-            },
-            angle_min: recordable(start_deg.to_radians()),
-            angle_increment: recordable(step_deg.to_radians()),
+        let beams = Beams {
+            angle_min: start_deg.to_radians(),
+            angle_increment: step_deg.to_radians(),
             time_increment_s: if turns == 1.0 { TURN_S / 360.0 } else { 0.0 },
             scan_time_s,
-            range_min_m: settings.range_min_m,
-            range_max_m: settings.range_max_m.unwrap_or(USUAL_REACH_M),
-            base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
-                x: 0.0,
-                y: 0.0,
-                yaw: 0.0,
-            }),
-            mount_known: u64::from(settings.base_from_laser.is_some()),
-            upside_down: settings.upside_down.into(),
-            laser: settings.laser,
-            frame: settings.frame,
-        })
+        };
+        let measured_ns = received.realtime_ns - before_ns;
+        Ok(settings.header(&beams, measured_ns, received.monotonic_ns, USUAL_REACH_M))
     }
 
     /// Returns the number of the first reading after checking how many there are.
@@ -91,7 +63,7 @@ impl<'a> WholeScan<'a> {
             ..
         } = self.format;
         let all = usize::from(width_deg) * 100 / usize::from(step.max(1)) + 1;
-        let (first, last) = match self.sub_range {
+        let (first, last) = match self.scan.sub_range {
             Some((first, last)) => (first, usize::from(last)),
             None => (1, all),
         };
@@ -109,8 +81,8 @@ impl<'a> WholeScan<'a> {
     /// Writes the distances in metres, infinity for no return; `ranges` has one element per
     /// reading.
     pub(crate) fn fill_ranges(&self, ranges: &mut [f32]) {
-        let metres = self.unit.metres();
-        for (range, reading) in ranges.iter_mut().zip(self.readings) {
+        let metres = self.scan.unit.metres();
+        for (range, reading) in ranges.iter_mut().zip(self.scan.readings) {
             let distance = self.format.range_mode.distance(reading);
             *range = distance.map_or(f32::INFINITY, |d| (f64::from(d) * metres) as f32);
         }
@@ -119,27 +91,11 @@ impl<'a> WholeScan<'a> {
 
 #[cfg(test)]
 mod tests {
-    use messages::{FrameName, Name};
-    use sick::lms2xx::RangeMode;
+    use sick::lms2xx::{RangeMode, Unit};
 
     use super::*;
-
-    const RECEIVED: Received = Received {
-        realtime_ns: 1_700_000_000_000_000_000,
-        monotonic_ns: 77,
-    };
-
-    fn settings() -> ScanSettings {
-        ScanSettings {
-            range_min_m: 0.05,
-            range_max_m: None,
-            base_from_laser: None,
-            upside_down: false,
-            laser: Name::new(""),
-            frame: FrameName::new("laser"),
-            stamps: crate::scan::Stamps::Host,
-        }
-    }
+    use crate::scan::recordable;
+    use crate::scan::tests::{RECEIVED, settings};
 
     fn scan(readings: &[u16], width_deg: u16, resolution_raw_1e2_deg: u16) -> WholeScan<'_> {
         WholeScan {
@@ -148,9 +104,7 @@ mod tests {
                 width_deg,
                 resolution_raw_1e2_deg,
             },
-            unit: Unit::Centimetre,
-            sub_range: None,
-            readings: readings.into(),
+            scan: Scan::new(Unit::Centimetre, readings),
             line_ns: 1_000_000,
         }
     }
@@ -192,15 +146,15 @@ mod tests {
     #[test]
     fn sub_ranges_begin_where_they_say_and_others_are_refused() {
         let readings = [0; 91];
-        let part = WholeScan {
-            sub_range: Some((46, 136)),
-            ..scan(&readings, 180, 100)
+        let header = |sub_range| {
+            let mut part = scan(&readings, 180, 100);
+            part.scan.sub_range = sub_range;
+            part.header(&settings(), RECEIVED)
         };
-        let header = part.header(&settings(), RECEIVED).unwrap();
-        assert_eq!(header.angle_min, recordable((-45f64).to_radians()));
+        let sound = header(Some((46, 136))).unwrap();
+        assert_eq!(sound.angle_min, recordable((-45f64).to_radians()));
         for sub_range in [None, Some((0, 90)), Some((92, 182)), Some((5, 4))] {
-            let wrong = WholeScan { sub_range, ..part };
-            let error = wrong.header(&settings(), RECEIVED).unwrap_err().to_string();
+            let error = header(sub_range).unwrap_err().to_string();
             assert!(error.contains("the device sent 91 readings"), "{error}");
         }
     }

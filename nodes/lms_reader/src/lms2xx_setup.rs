@@ -163,7 +163,21 @@ impl Setup {
                 tracing::info!(device = %text.escape_ascii(), "device identified");
             }
             (Step::AskStatus, Answer::Status(status)) => self.on_status(status),
-            (Step::SetVariant, Answer::VariantSet { .. }) => self.on_variant(answer)?,
+            (
+                Step::SetVariant,
+                &Answer::VariantSet {
+                    done: is_done,
+                    width_deg,
+                    resolution_raw_1e2_deg,
+                },
+            ) => {
+                let found = (width_deg, resolution_raw_1e2_deg);
+                let kept = Some(found) == self.wanted_variant();
+                done("change field and resolution", is_done && kept, &found)?;
+                if let Some(status) = &mut self.status {
+                    (status.width_deg, status.resolution_raw_1e2_deg) = found;
+                }
+            }
             (Step::AskConfiguration, Answer::Configuration(configuration)) => {
                 self.on_configuration(*configuration);
             }
@@ -207,10 +221,8 @@ impl Setup {
     }
 
     fn on_status(&mut self, status: &DeviceStatus) {
-        let width = self.wanted.width_deg.unwrap_or(status.width_deg);
-        let resolution = self.wanted.resolution_raw_1e2_deg;
-        let resolution = resolution.unwrap_or(status.resolution_raw_1e2_deg);
-        if (width, resolution) != (status.width_deg, status.resolution_raw_1e2_deg) {
+        self.status = Some(*status);
+        if self.wanted_variant() != Some((status.width_deg, status.resolution_raw_1e2_deg)) {
             self.steps.insert(1, Step::SetVariant);
         }
         tracing::info!(
@@ -220,29 +232,6 @@ impl Setup {
             error = status.has_error,
             "device configuration"
         );
-        self.status = Some(*status);
-    }
-
-    fn on_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
-        let wanted = self.wanted_variant();
-        if let (
-            Answer::VariantSet {
-                done: is_done,
-                width_deg,
-                resolution_raw_1e2_deg,
-            },
-            Some(status),
-        ) = (answer, &mut self.status)
-        {
-            let found = (*width_deg, *resolution_raw_1e2_deg);
-            done(
-                "change field and resolution",
-                *is_done && Some(found) == wanted,
-                &found,
-            )?;
-            (status.width_deg, status.resolution_raw_1e2_deg) = found;
-        }
-        Ok(())
     }
 
     fn on_configuration(&mut self, configuration: Configuration) {

@@ -5,11 +5,11 @@ mod outlet;
 mod serial;
 mod tcp;
 
-use std::time::Instant;
+use std::fmt::Display;
+use std::time::{Duration, Instant};
 
 use transport::Graph;
 
-use crate::backoff::Backoff;
 use crate::scan::Received;
 use crate::{Config, LmsError};
 use outlet::Outlet;
@@ -38,7 +38,7 @@ fn keep(
     outlet: &mut Outlet,
     mut listen: impl FnMut(&mut Outlet) -> Result<(), LmsError>,
 ) -> Result<(), LmsError> {
-    let mut backoff = Backoff::default();
+    let mut failures = 0;
     while !outlet.stopped() {
         let before = outlet.sent;
         match listen(outlet) {
@@ -47,16 +47,40 @@ fn keep(
             Err(error) => outlet.lost(&error)?,
         }
         if outlet.sent > before {
-            backoff.reset();
+            failures = 0;
         }
-        outlet.wait_until(Instant::now() + backoff.next_wait())?;
+        outlet.wait_until(Instant::now() + wait_after(failures))?;
+        failures += 1;
     }
     Ok(())
+}
+
+/// Returns the wait after a failure that follows so many others: 0.25 s, doubled up to 5 s.
+fn wait_after(failures: u32) -> Duration {
+    let wait = Duration::from_millis(250 << failures.min(16));
+    wait.min(Duration::from_secs(5))
 }
 
 fn now() -> Received {
     Received {
         realtime_ns: transport::wall_ns(),
         monotonic_ns: transport::monotonic_ns(),
+    }
+}
+
+fn failed(address: impl Display, what: &'static str, error: impl Into<std::io::Error>) -> LmsError {
+    LmsError::Device {
+        address: address.to_string(),
+        what,
+        source: error.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn waits_double_up_to_their_limit() {
+        let waits = [0, 1, 2, 3, 4, 5, 1000].map(|n| super::wait_after(n).as_millis());
+        assert_eq!(waits, [250, 500, 1000, 2000, 4000, 5000, 5000]);
     }
 }

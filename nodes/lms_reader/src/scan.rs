@@ -4,6 +4,7 @@
 //! distinguishes readings from codes.
 
 use clap::ValueEnum;
+use geometry::Pose;
 use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
 use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};
 
@@ -45,6 +46,44 @@ pub struct ScanSettings {
     pub frame: FrameName,
     /// Clock that stamps the scan.
     pub stamps: Stamps,
+}
+
+/// Angles, radians, and times of a scan's beams.
+pub(crate) struct Beams {
+    pub(crate) angle_min: f64,
+    pub(crate) angle_increment: f64,
+    pub(crate) time_increment_s: f64,
+    pub(crate) scan_time_s: f64,
+}
+
+impl ScanSettings {
+    /// Returns the header of a scan, with counter 0; `reach_m` is the longest range of the device.
+    pub(crate) fn header(
+        &self,
+        beams: &Beams,
+        measured_ns: i64,
+        entered_ns: i64,
+        reach_m: f32,
+    ) -> ScanHeader {
+        ScanHeader {
+            stamp: Stamp {
+                measured_ns,
+                entered_ns,
+                counter: 0,
+            },
+            angle_min: recordable(beams.angle_min),
+            angle_increment: recordable(beams.angle_increment),
+            time_increment_s: beams.time_increment_s,
+            scan_time_s: beams.scan_time_s,
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m.unwrap_or(reach_m),
+            base_from_laser: self.base_from_laser.unwrap_or(Pose::IDENTITY.into()),
+            mount_known: u64::from(self.base_from_laser.is_some()),
+            upside_down: self.upside_down.into(),
+            laser: self.laser,
+            frame: self.frame,
+        }
+    }
 }
 
 /// Time at which the last byte of a telegram was received.
@@ -127,30 +166,16 @@ pub fn header(
         true => (-1.0, sweep_us(distances, data.scan_frequency_raw_1e2_hz)),
         false => (1.0, 0),
     };
-    ScanHeader {
-        stamp: Stamp {
-            measured_ns: measured_ns.saturating_add(sweep_us * 1000),
-            entered_ns: received.monotonic_ns,
-            counter: 0,
-        },
-        angle_min: recordable(angle_deg.to_radians()),
-        angle_increment: recordable(step_deg.to_radians()),
+    let beams = Beams {
+        angle_min: angle_deg.to_radians(),
+        angle_increment: step_deg.to_radians(),
         // Derived from the mirror frequency: firmware versions disagree about the unit of the
         // measurement frequency.
         time_increment_s: sign * scan_time_s * step_deg / 360.0,
         scan_time_s,
-        range_min_m: settings.range_min_m,
-        range_max_m: settings.range_max_m.unwrap_or(reach_m),
-        base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
-            x: 0.0,
-            y: 0.0,
-            yaw: 0.0,
-        }),
-        mount_known: u64::from(settings.base_from_laser.is_some()),
-        upside_down: settings.upside_down.into(),
-        laser: settings.laser,
-        frame: settings.frame,
-    }
+    };
+    let measured_ns = measured_ns.saturating_add(sweep_us * 1000);
+    settings.header(&beams, measured_ns, received.monotonic_ns, reach_m)
 }
 
 /// Rounds an angle to single precision, as in recordings (`sensor_msgs/LaserScan`), so that
@@ -218,4 +243,4 @@ fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

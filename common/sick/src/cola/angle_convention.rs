@@ -1,6 +1,6 @@
 //! Conversion of a device's own angles to bearings from straight ahead.
 
-use super::Channel;
+use super::{Channel, ScanConfig};
 
 /// Zero point and direction of a device's angle scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,12 +75,12 @@ impl Field {
         }
     }
 
-    /// Converts two angles in 1/10000°, the unit of the settings.
+    /// Returns the field of a scan configuration.
     #[must_use]
-    pub fn between(start_raw_1e4_deg: i32, stop_raw_1e4_deg: i32) -> Self {
+    pub fn measured(config: &ScanConfig) -> Self {
         Field {
-            first_deg: f64::from(start_raw_1e4_deg) * 1e-4,
-            last_deg: f64::from(stop_raw_1e4_deg) * 1e-4,
+            first_deg: f64::from(config.start_angle_raw_1e4_deg) * 1e-4,
+            last_deg: f64::from(config.stop_angle_raw_1e4_deg) * 1e-4,
         }
     }
 

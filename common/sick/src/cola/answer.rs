@@ -1,9 +1,9 @@
 //! Answers of a device to commands.
 
-use super::cursor::Cursor;
 use super::writer::Writer;
 use super::{Encoding, Fault, ScanConfig, Value, Variable, lmd_scan_data};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer<'a> {
@@ -35,33 +35,22 @@ impl<'a> Answer<'a> {
         name: &[u8],
         cursor: &mut Cursor<'a>,
     ) -> Result<Option<Self>, SickError> {
-        let variable = Variable::named(name);
-        let answer = match (letters, variable) {
-            (b"sRA", Some(variable)) => Answer::Value(Value::read(variable, cursor)?),
-            (b"sWA", Some(variable)) => Answer::Written(variable),
-            (b"sAN", _) => match Self::read_result(name, cursor)? {
-                Some(result) => result,
-                None => return Ok(None),
+        let answer = match (letters, name, Variable::named(name)) {
+            (b"sRA", _, Some(variable)) => Answer::Value(Value::read(variable, cursor)?),
+            (b"sWA", _, Some(variable)) => Answer::Written(variable),
+            (b"sAN", b"SetAccessMode", _) => Answer::AccessMode(cursor.bool("success")?),
+            (b"sAN", b"mLMPsetscancfg", _) => Answer::ScanConfigSet {
+                status: cursor.u8_upto("status", 5, "0 to 5")?,
+                config: ScanConfig::read(cursor)?,
             },
-            (b"sEA", _) if name == lmd_scan_data::NAME => {
+            (b"sAN", b"Run", _) => Answer::Running(cursor.bool("success")?),
+            (b"sEA", lmd_scan_data::NAME, _) => {
                 Answer::ScansSubscribed(cursor.bool("start or stop")?)
             }
             _ => return Ok(None),
         };
         cursor.end()?;
         Ok(Some(answer))
-    }
-
-    fn read_result(name: &[u8], cursor: &mut Cursor<'a>) -> Result<Option<Self>, SickError> {
-        Ok(Some(match name {
-            b"SetAccessMode" => Answer::AccessMode(cursor.bool("success")?),
-            b"mLMPsetscancfg" => Answer::ScanConfigSet {
-                status: cursor.u8_upto("status", 5, "0 to 5")?,
-                config: ScanConfig::read(cursor)?,
-            },
-            b"Run" => Answer::Running(cursor.bool("success")?),
-            _ => return Ok(None),
-        }))
     }
 
     /// Parses the error code after `sFA`: in CoLa B two bytes, with or without a leading space.

@@ -1,9 +1,9 @@
 //! The channels of a scan telegram: one value for each angle.
 
 use super::Values;
-use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
+use crate::cursor::{Cursor, field_error};
 
 /// Values over equally spaced angles.
 ///
@@ -16,7 +16,7 @@ use crate::SickError;
 /// | 2 | angular step | u16, 1/10000° |
 /// | 2 | count | u16 |
 /// | count · width | values | u16 or u8 |
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel<'a> {
     /// Kind of the values.
     pub name: [u8; 5],
@@ -79,22 +79,6 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// Compares fields and decoded values, regardless of the encoding.
-impl PartialEq for Channel<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        let fields = |c: &Self| {
-            (
-                c.name,
-                c.scale_factor,
-                c.scale_offset,
-                c.start_angle_raw_1e4_deg,
-                c.step_raw_1e4_deg,
-            )
-        };
-        fields(self) == fields(other) && self.values.eq(other.values)
-    }
-}
-
 /// A block of channels of one width; iterating reads them in place.
 ///
 /// | bytes | field | |
@@ -127,7 +111,7 @@ impl<'a> Channels<'a> {
         let block = Place::Read {
             left,
             width,
-            cursor: cursor.clone().checked(),
+            cursor: *cursor,
         };
         for _ in 0..left {
             Channel::read(cursor, width)?;
@@ -186,68 +170,5 @@ impl<'a> Iterator for Channels<'a> {
                 Some(*first)
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cola::Encoding;
-
-    fn over(bytes: &[u8]) -> Cursor<'_> {
-        Cursor::new(Encoding::Binary, bytes, 0)
-    }
-
-    fn channel(name: &[u8; 5], values: &[u8], count: u16) -> Vec<u8> {
-        let mut bytes = name.to_vec();
-        bytes.extend(2f32.to_be_bytes());
-        bytes.extend(0f32.to_be_bytes());
-        bytes.extend((-50_000i32).to_be_bytes());
-        bytes.extend(1667u16.to_be_bytes());
-        bytes.extend(count.to_be_bytes());
-        bytes.extend(values);
-        bytes
-    }
-
-    fn block(channels: &[Vec<u8>]) -> Vec<u8> {
-        [vec![0, channels.len() as u8], channels.concat()].concat()
-    }
-
-    #[test]
-    fn wide_and_narrow_values() {
-        let bytes = block(&[
-            channel(b"DIST1", &[1, 2, 3, 4], 2),
-            channel(b"DIST2", &[5, 6], 1),
-        ]);
-        let mut cursor = over(&bytes);
-        let channels = Channels::read(&mut cursor, "channels", 2).unwrap();
-        cursor.end().unwrap();
-        let first = channels.named(b"DIST1").unwrap();
-        assert_eq!(first.values.collect::<Vec<_>>(), [0x0102, 0x0304]);
-        assert_eq!((first.len(), first.step_raw_1e4_deg), (2, 1667));
-        assert_eq!(first.start_angle_raw_1e4_deg, -50_000);
-        assert_eq!(channels.clone().count(), 2);
-        assert!(channels.named(b"RSSI1").is_none());
-
-        let bytes = block(&[channel(b"RSSI1", &[7, 8], 2)]);
-        let mut channels = Channels::read(&mut over(&bytes), "channels", 1).unwrap();
-        assert_eq!(channels.next().unwrap().values.collect::<Vec<_>>(), [7, 8]);
-    }
-
-    #[test]
-    fn a_count_beyond_the_content_and_a_foreign_name_are_refused() {
-        let bytes = block(&[channel(b"DIST1", &[1, 2, 3, 4], 3)]);
-        let text = Channels::read(&mut over(&bytes), "channels", 2)
-            .unwrap_err()
-            .to_string();
-        assert_eq!(
-            text,
-            "byte 23 of the telegram: `values` takes 6 bytes, 4 are left of the content"
-        );
-        let bytes = block(&[channel(b"DI\0T1", &[], 0)]);
-        let text = Channels::read(&mut over(&bytes), "channels", 2)
-            .unwrap_err()
-            .to_string();
-        assert!(text.contains(r"`channel name` is DI\x00T1"), "{text}");
     }
 }

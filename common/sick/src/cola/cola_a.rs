@@ -13,13 +13,13 @@ use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
 /// Longest content accepted: each byte of the longest CoLa B telegram may take three characters.
-pub const MAX_CONTENT: usize = 3 * super::cola_b::MAX_CONTENT;
+pub(crate) const MAX_CONTENT: usize = 3 * super::cola_b::MAX_CONTENT;
 
 const START: u8 = 2;
 const END: u8 = 3;
 
 /// Appends a telegram; `write` appends its content.
-pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
+pub(super) fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
     out.push(START);
     write(out);
     out.push(END);

@@ -1,9 +1,9 @@
 //! Commands that a host sends.
 
-use super::cursor::Cursor;
 use super::writer::Writer;
 use super::{Encoding, ScanConfig, Value, Variable, lmd_scan_data};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// User level that may change settings.
 pub const AUTHORIZED_CLIENT: u8 = 3;

@@ -19,7 +19,6 @@ pub enum DeviceAngles {
     Unknown(String),
     /// The reported name is in the table.
     Known(&'static KnownDevice),
-    /// The user states the convention.
     Stated(AngleConvention),
 }
 
@@ -86,10 +85,7 @@ pub enum ConventionError {
          is not centred on 90°, which is ahead on most SICK lasers; {}",
         remedy()
     )]
-    Unnamed {
-        /// Field of its scans.
-        field: Field,
-    },
+    Unnamed { field: Field },
     /// The name is not in the table, and the field is not centred as usual.
     #[error(
         "which way the laser looks is not known: {name} is not in the table, and its field, \

@@ -38,21 +38,13 @@ const MEANINGS: [&str; 27] = [
 ];
 
 impl Fault {
-    /// The user level does not allow this method.
     pub const METHOD_DENIED: Fault = Fault(1);
-    /// The method does not exist.
     pub const UNKNOWN_METHOD: Fault = Fault(2);
-    /// The variable does not exist.
     pub const UNKNOWN_VARIABLE: Fault = Fault(3);
-    /// A value is outside its range.
     pub const OUT_OF_RANGE: Fault = Fault(4);
-    /// The parameters cannot be parsed.
     pub const INVALID_DATA: Fault = Fault(5);
-    /// The user level does not allow writing this variable.
     pub const WRITE_DENIED: Fault = Fault(0xa);
-    /// The command does not exist.
     pub const UNKNOWN_COMMAND: Fault = Fault(0xc);
-    /// The event does not exist.
     pub const UNKNOWN_EVENT: Fault = Fault(0xf);
 
     /// Returns the meaning according to SICK's listing.
@@ -66,20 +58,5 @@ impl Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:#x}: {}", self.0, self.meaning())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_come_with_their_meaning() {
-        assert_eq!(
-            Fault::UNKNOWN_COMMAND.to_string(),
-            "0xc: unknown CoLa command"
-        );
-        assert_eq!(Fault(0x1a).meaning(), "complex arrays are not supported");
-        assert_eq!(Fault(999).to_string(), "0x3e7: not in SICK's listing");
     }
 }

@@ -10,15 +10,13 @@ use super::AngleConvention;
 pub struct KnownDevice {
     /// Common name, such as `TiM5xx`.
     pub name: &'static str,
-    /// Letters before the number, in upper case.
-    family: &'static str,
-    /// Digits of the number; `#` stands for any digit and for the X of a name such as `TIM2xx`.
-    number: &'static str,
+    /// Letters in upper case and digits; `#` stands for any digit and for the X of a name such as
+    /// `TIM2xx`.
+    model: &'static str,
     /// Angle convention; `None` if the sources contradict each other.
     pub convention: Option<AngleConvention>,
     /// Longest range in metres, if it exceeds [`USUAL_REACH_M`].
     reach_m: Option<f32>,
-    /// Source of the convention.
     pub source: &'static str,
 }
 
@@ -34,76 +32,61 @@ const LAYOUT: &str =
 impl KnownDevice {
     /// All rows of the table.
     pub const ALL: [KnownDevice; 17] = [
-        usual("LMS1xx", "LMS", "1##", DRIVER),
-        usual("LMS5xx", "LMS", "5##", DRIVER),
-        usual("LMS1000", "LMS", "1###", DRIVER),
+        usual("LMS1xx", "LMS1##", DRIVER),
+        usual("LMS5xx", "LMS5##", DRIVER),
+        usual("LMS1000", "LMS1###", DRIVER),
         usual(
             "LMS4000",
-            "LMS",
-            "4###",
+            "LMS4###",
             "SICK, operating instructions LMS4000 (8023198): 55° to 125°",
         ),
         usual(
             "TiM5xx",
-            "TIM",
-            "5##",
+            "TIM5##",
             "SICK, technical information TiM55x/56x/57x (8015883): -45° to 225°",
         ),
         usual(
             "TiM7xx",
-            "TIM",
-            "7##",
+            "TIM7##",
             "SICK, operating instructions TiM781 (8024231): -45° to 225°",
         ),
-        usual("TiM4xx", "TIM", "4##", DRIVER),
-        usual("MRS1000", "MRS", "1###", DRIVER),
-        usual("MRS1000", "MRS", "1####", DRIVER),
-        usual("MRS6000", "MRS", "6###", DRIVER),
+        usual("TiM4xx", "TIM4##", DRIVER),
+        usual("MRS1000", "MRS1###", DRIVER),
+        usual("MRS1000", "MRS1####", DRIVER),
+        usual("MRS6000", "MRS6###", DRIVER),
         row(
             "TiM2xx",
-            ("TIM", "2##"),
+            "TIM2##",
             counter_clockwise(0.0),
             None,
             "sick_scan_xd, issue 478: on the TiM240 the x axis points ahead",
         ),
         row(
             "LRS4000",
-            ("LRS", "4###"),
+            "LRS4###",
             counter_clockwise(0.0),
             Some(130.0),
             "sick_scan_xd, driver/src/sick_generic_parser.cpp, issue 28, REQUIREMENTS.md",
         ),
         row(
             "NAV310",
-            ("NAV", "31#"),
+            "NAV31#",
             clockwise(180.0),
             Some(250.0),
             "sick_scan_xd, launch/sick_nav_31x.launch and issue 59: it turns clockwise, 0° is behind",
         ),
-        row(
-            "LD-OEM15xx",
-            ("OEM", "15##"),
-            clockwise(180.0),
-            None,
-            LAYOUT,
-        ),
-        row(
-            "LD-LRS36x0",
-            ("LRS", "36#0"),
-            clockwise(180.0),
-            None,
-            LAYOUT,
-        ),
+        row("LD-OEM15xx", "OEM15##", clockwise(180.0), None, LAYOUT),
+        row("LD-LRS36x0", "LRS36#0", clockwise(180.0), None, LAYOUT),
         row(
             "LD-LRS36x1",
-            ("LRS", "36#1"),
+            "LRS36#1",
             counter_clockwise(180.0),
             None,
             "sick_scan_xd, driver/src/sick_generic_parser.cpp and launch/sick_lrs_36x1.launch",
         ),
         row(
             "NAV2xx",
-            ("NAV", "2##"),
+            "NAV2##",
             None,
             Some(100.0),
             "sick_scan_xd: 90° is ahead in angle_compensator.cpp, 0° in sick_generic_parser.cpp",
@@ -114,15 +97,10 @@ impl KnownDevice {
     /// `LMS10x_FieldEval`, `TIM2xx V1.0`, `NAV310-3211`, `tim-240`.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static KnownDevice> {
-        let (family, number) = model(name)?;
+        let found = model(name)?;
         Self::ALL.iter().find(|row| {
-            row.family == family
-                && row.number.len() == number.len()
-                && row
-                    .number
-                    .chars()
-                    .zip(number.chars())
-                    .all(|(a, b)| a == b || a == '#')
+            let mut pairs = row.model.chars().zip(found.chars());
+            row.model.len() == found.len() && pairs.all(|(a, b)| a == b || a == '#')
         })
     }
 
@@ -142,8 +120,8 @@ impl KnownDevice {
     }
 }
 
-/// Returns letters and number of a name in upper case: `("TIM", "2XX")`.
-fn model(name: &str) -> Option<(String, String)> {
+/// Returns letters and number of a name in upper case: `TIM2XX`.
+fn model(name: &str) -> Option<String> {
     let name = name.trim_start().to_ascii_uppercase();
     let is_gap = |c: char| matches!(c, ' ' | '-' | '_');
     let mut rest = name.as_str();
@@ -161,35 +139,23 @@ fn model(name: &str) -> Option<(String, String)> {
     let number = rest.get(..end.unwrap_or(rest.len()))?;
     number
         .starts_with(|c: char| c.is_ascii_digit())
-        .then(|| (family.to_owned(), number.to_owned()))
+        .then(|| [family, number].concat())
 }
 
-const fn usual(
-    name: &'static str,
-    family: &'static str,
-    number: &'static str,
-    source: &'static str,
-) -> KnownDevice {
-    row(
-        name,
-        (family, number),
-        Some(AngleConvention::USUAL),
-        None,
-        source,
-    )
+const fn usual(name: &'static str, model: &'static str, source: &'static str) -> KnownDevice {
+    row(name, model, Some(AngleConvention::USUAL), None, source)
 }
 
 const fn row(
     name: &'static str,
-    (family, number): (&'static str, &'static str),
+    model: &'static str,
     convention: Option<AngleConvention>,
     reach_m: Option<f32>,
     source: &'static str,
 ) -> KnownDevice {
     KnownDevice {
         name,
-        family,
-        number,
+        model,
         convention,
         reach_m,
         source,

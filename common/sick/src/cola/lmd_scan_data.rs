@@ -6,10 +6,10 @@
 
 use super::Encoding;
 use super::channel::Channels;
-use super::cursor::{Cursor, field_error};
 use super::tail::{self, DeviceTime};
 use super::writer::Writer;
 use crate::SickError;
+use crate::cursor::{Cursor, field_error};
 
 /// Number of bytes before the first field.
 const COMMAND: usize = 16;
@@ -47,11 +47,8 @@ pub(super) const NAME: &[u8] = b"LMDscandata";
 /// | … | 2 (+ 16) | event | u16 flag, `FDIN`, u32, u32, i32 |
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LmdScanData<'a> {
-    /// Version of the layout.
     pub version: u16,
-    /// Number assigned by the user.
     pub device_number: u16,
-    /// Number assigned by the manufacturer.
     pub serial_number: u32,
     /// Device status: 0, 0 is ok; 0, 1 is an error; 0, 2 and 0, 4 are contamination.
     pub status: [u8; 2],
@@ -65,23 +62,17 @@ pub struct LmdScanData<'a> {
     pub time_of_transmission_us: u32,
     /// Digital inputs, one bit each, in the low byte.
     pub digital_inputs: [u8; 2],
-    /// Digital outputs, one bit each.
     pub digital_outputs: [u8; 2],
     /// Angle of the layer, on devices with several layers.
     pub layer_angle_raw: i16,
-    /// Mirror frequency, 1/100 Hz.
     pub scan_frequency_raw_1e2_hz: u32,
     /// Measurement frequency, in 100 Hz on most devices; depends on the firmware.
     pub measurement_frequency_raw: u32,
     /// Distances, and remissions if they have 16 bits.
     pub channels_16_bit: Channels<'a>,
-    /// Remissions of 8 bits.
     pub channels_8_bit: Channels<'a>,
-    /// Name of the device, if sent.
     pub name: Option<&'a [u8]>,
-    /// Comment, if sent.
     pub comment: Option<&'a [u8]>,
-    /// Clock of the device, if sent.
     pub time: Option<DeviceTime>,
 }
 
@@ -104,12 +95,6 @@ impl<'a> LmdScanData<'a> {
             ));
         }
         LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND))
-    }
-
-    /// Parses a content that has already been validated.
-    pub(super) fn read_checked(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
-        let fields = content.get(COMMAND..).unwrap_or_default();
-        LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND).checked())
     }
 
     /// Returns true if the content begins like a scan.
@@ -300,25 +285,11 @@ mod tests {
             4,
             "byte 52 of the telegram: `number of encoders` is 4, allowed is 0 to 3",
         );
-    }
-
-    proptest::proptest! {
-        #[test]
-        fn no_bytes_panic(
-            mut bytes in proptest::collection::vec(proptest::num::u8::ANY, 0..300),
-            edits in proptest::collection::vec((0usize..200, proptest::num::u8::ANY), 1..6),
-        ) {
-            let _ = LmdScanData::read(Encoding::Binary, &bytes);
-            bytes.splice(0..0, *b"sSN LMDscandata \0\x01");
-            let _ = LmdScanData::read(Encoding::Binary, &bytes);
-            let mut edited = full();
-            for (at, value) in edits {
-                if let Some(byte) = edited.get_mut(at) { *byte = value; }
-            }
-            if let Ok(data) = LmdScanData::read(Encoding::Binary, &edited) {
-                // Accepted contents can be iterated to the end.
-                let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values.count()).sum::<usize>();
-            }
-        }
+        // The name of the channel follows one encoder and two counts.
+        refuse(
+            66,
+            0,
+            r"byte 64 of the telegram: `channel name` is RS\x00I1",
+        );
     }
 }

@@ -19,10 +19,9 @@
 mod angle_convention;
 mod answer;
 mod channel;
-pub mod cola_a;
-pub mod cola_b;
+pub(crate) mod cola_a;
+mod cola_b;
 mod command;
-mod cursor;
 mod device_angles;
 mod encoding;
 mod fault;
@@ -34,7 +33,6 @@ mod tail;
 mod telegram;
 mod values;
 mod variable;
-mod words;
 mod writer;
 
 pub use angle_convention::{AngleConvention, Field, sweep_us};

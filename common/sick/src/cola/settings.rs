@@ -1,21 +1,17 @@
 //! Settings of a device: its scan configuration and the content of its telegrams.
 
-use super::cursor::Cursor;
 use super::writer::Writer;
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Scan configuration: `LMPscancfg`, `mLMPsetscancfg`. One sector.
 ///
 /// | bytes | field | |
 /// |---|---|---|
 /// | 4 | scan frequency | u32, 1/100 Hz |
-/// | 2 | sectors | u16, 1 |
-/// | 4 | angular resolution | u32, 1/10000° |
-/// | 4 | start angle | i32, 1/10000° |
-/// | 4 | stop angle | i32, 1/10000° |
+/// | 14 | range | see [`OutputRange`] |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScanConfig {
-    /// Mirror frequency, 1/100 Hz.
     pub frequency_raw_1e2_hz: u32,
     /// Angle between consecutive beams.
     pub resolution_raw_1e4_deg: u32,
@@ -58,19 +54,13 @@ pub struct OutputRange {
 pub struct ScanDataConfig {
     /// One bit per echo; the first echo is the low bit of the first byte.
     pub channels: [u8; 2],
-    /// True if remissions are sent.
     pub remission: bool,
-    /// True if remissions have 16 bits.
     pub remission_16_bit: bool,
-    /// Unit of the remissions; 0: digits.
     pub remission_unit: u8,
     /// One bit per encoder.
     pub encoders: [u8; 2],
-    /// True if the position is sent.
     pub position: bool,
-    /// True if the device's name is sent.
     pub name: bool,
-    /// True if the comment is sent.
     pub comment: bool,
     /// True if the device's clock is sent.
     pub time: bool,
@@ -79,29 +69,41 @@ pub struct ScanDataConfig {
 }
 
 impl ScanConfig {
+    /// Joins a mirror frequency with a range of angles.
+    #[must_use]
+    pub fn new(frequency_raw_1e2_hz: u32, range: OutputRange) -> Self {
+        ScanConfig {
+            frequency_raw_1e2_hz,
+            resolution_raw_1e4_deg: range.resolution_raw_1e4_deg,
+            start_angle_raw_1e4_deg: range.start_angle_raw_1e4_deg,
+            stop_angle_raw_1e4_deg: range.stop_angle_raw_1e4_deg,
+        }
+    }
+
+    /// Returns the range of angles that is measured.
+    #[must_use]
+    pub fn range(&self) -> OutputRange {
+        OutputRange {
+            resolution_raw_1e4_deg: self.resolution_raw_1e4_deg,
+            start_angle_raw_1e4_deg: self.start_angle_raw_1e4_deg,
+            stop_angle_raw_1e4_deg: self.stop_angle_raw_1e4_deg,
+        }
+    }
+
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
         let frequency_raw_1e2_hz = cursor.u32("scan frequency")?;
-        one_sector(cursor)?;
-        Ok(ScanConfig {
-            frequency_raw_1e2_hz,
-            resolution_raw_1e4_deg: cursor.u32("angular resolution")?,
-            start_angle_raw_1e4_deg: cursor.i32("start angle")?,
-            stop_angle_raw_1e4_deg: cursor.i32("stop angle")?,
-        })
+        Ok(Self::new(frequency_raw_1e2_hz, OutputRange::read(cursor)?))
     }
 
     pub(super) fn write(&self, writer: &mut Writer<'_>) {
         writer.u32(self.frequency_raw_1e2_hz);
-        writer.u16(1);
-        writer.u32(self.resolution_raw_1e4_deg);
-        writer.i32(self.start_angle_raw_1e4_deg);
-        writer.i32(self.stop_angle_raw_1e4_deg);
+        self.range().write(writer);
     }
 }
 
 impl OutputRange {
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        one_sector(cursor)?;
+        cursor.checked("sectors", Cursor::u16, |&count| count == 1, "1")?;
         Ok(OutputRange {
             resolution_raw_1e4_deg: cursor.u32("angular resolution")?,
             start_angle_raw_1e4_deg: cursor.i32("start angle")?,
@@ -157,13 +159,5 @@ impl ScanDataConfig {
             writer.bool(sent);
         }
         writer.u16(self.interval);
-    }
-}
-
-fn one_sector(cursor: &mut Cursor<'_>) -> Result<(), SickError> {
-    let offset = cursor.offset();
-    match cursor.u16("sectors")? {
-        1 => Ok(()),
-        found => Err(super::cursor::field_error("sectors", offset, &found, "1")),
     }
 }

@@ -6,8 +6,7 @@ use crate::SickError;
 use crate::framer::{self, Judgement, Pending, Protocol};
 
 impl Encoding {
-    /// Appends a complete telegram. A content longer than [`cola_b::MAX_CONTENT`] would be rejected
-    /// by the reader.
+    /// Appends a complete telegram. The reader would reject a content of more than 131072 bytes.
     pub fn frame(self, telegram: &Telegram<'_>, out: &mut Vec<u8>) {
         match self {
             Encoding::Text => cola_a::frame(out, |out| telegram.write(self, out)),
@@ -65,13 +64,6 @@ impl Protocol for Cola {
 
     fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
         Telegram::read(self.encoding, content)
-    }
-
-    fn read_again<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
-        match LmdScanData::is_in(content) {
-            true => LmdScanData::read_checked(self.encoding, content).map(Telegram::ScanData),
-            false => self.read(content),
-        }
     }
 }
 

@@ -2,32 +2,25 @@
 
 use chrono::{DateTime, Datelike, NaiveDate, Timelike};
 
-use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Clock of the device; starts in 1970 if it was never set.
 ///
 /// | bytes | field | |
 /// |---|---|---|
 /// | 2 | year | u16 |
-/// | 1 each | month, day, hour, minute, second | u8 |
+/// | 1 each | month, day, hour, minute, second | u8; a second may be 60 |
 /// | 4 | microsecond | u32 |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DeviceTime {
-    /// Year of the Common Era.
     pub year: u16,
-    /// Month, 1 to 12.
     pub month: u8,
-    /// Day, 1 to 31.
     pub day: u8,
-    /// Hour, 0 to 23.
     pub hour: u8,
-    /// Minute, 0 to 59.
     pub minute: u8,
-    /// Second, 0 to 60.
     pub second: u8,
-    /// Microsecond, 0 to 999999.
     pub microsecond: u32,
 }
 
@@ -59,8 +52,7 @@ impl DeviceTime {
     }
 
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        let offset;
-        let time = DeviceTime {
+        Ok(DeviceTime {
             year: cursor.u16("year")?,
             month: cursor.u8_upto("month", 12, "0 to 12")?,
             day: cursor.u8_upto("day", 31, "0 to 31")?,
@@ -68,19 +60,10 @@ impl DeviceTime {
             minute: cursor.u8_upto("minute", 59, "0 to 59")?,
             second: cursor.u8_upto("second", 60, "0 to 60")?,
             microsecond: {
-                offset = cursor.offset();
-                cursor.u32("microsecond")?
+                let is_below_second = |us: &u32| *us < 1_000_000;
+                cursor.checked("microsecond", Cursor::u32, is_below_second, "0 to 999999")?
             },
-        };
-        if time.microsecond < 1_000_000 {
-            return Ok(time);
-        }
-        Err(field_error(
-            "microsecond",
-            offset,
-            &time.microsecond,
-            "0 to 999999",
-        ))
+        })
     }
 
     pub(super) fn write(&self, writer: &mut Writer<'_>) {

@@ -1,8 +1,8 @@
 //! Dispatch of a telegram by its letters and name.
 
-use super::cursor::Cursor;
 use super::{Answer, Command, Encoding, LmdScanData, lmd_scan_data};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Parsed content of a telegram, of either direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,76 +92,58 @@ mod tests {
         out
     }
 
-    fn command(command: Command<'static>) -> Telegram<'static> {
-        Telegram::Command(command)
-    }
-
-    fn answer(answer: Answer<'static>) -> Telegram<'static> {
-        Telegram::Answer(answer)
-    }
-
     /// Returns each kind of telegram with its text in CoLa A.
     fn all() -> Vec<(Telegram<'static>, &'static str)> {
         let login = Method::SetAccessMode {
             level: AUTHORIZED_CLIENT,
             password: PASSWORD_AUTHORIZED_CLIENT,
         };
+        let commands = [
+            (Command::Read(Variable::DeviceIdent), "sRN DeviceIdent"),
+            (Command::Call(login), "sMN SetAccessMode 3 F4724744"),
+            (
+                Command::Call(Method::SetScanConfig(SCAN)),
+                "sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510",
+            ),
+            (Command::Call(Method::Run), "sMN Run"),
+            (
+                Command::Write(Value::ScanDataConfig(DATA)),
+                "sWN LMDscandatacfg 1 0 0 1 0 0 0 0 0 0 1 1",
+            ),
+            (
+                Command::Write(Value::OutputRange(RANGE)),
+                "sWN LMPoutputRange 1 1388 FFF92230 225510",
+            ),
+            (Command::Write(Value::HostEncoding(true)), "sWN EIHstCola 1"),
+            (Command::SubscribeScans(true), "sEN LMDscandata 1"),
+        ];
         let set = Answer::ScanConfigSet {
             status: 0,
             config: SCAN,
         };
-        vec![
+        let answers = [
             (
-                command(Command::Read(Variable::DeviceIdent)),
-                "sRN DeviceIdent",
-            ),
-            (
-                command(Command::Call(login)),
-                "sMN SetAccessMode 3 F4724744",
-            ),
-            (
-                command(Command::Call(Method::SetScanConfig(SCAN))),
-                "sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510",
-            ),
-            (command(Command::Call(Method::Run)), "sMN Run"),
-            (
-                command(Command::Write(Value::ScanDataConfig(DATA))),
-                "sWN LMDscandatacfg 1 0 0 1 0 0 0 0 0 0 1 1",
-            ),
-            (
-                command(Command::Write(Value::OutputRange(RANGE))),
-                "sWN LMPoutputRange 1 1388 FFF92230 225510",
-            ),
-            (
-                command(Command::Write(Value::HostEncoding(true))),
-                "sWN EIHstCola 1",
-            ),
-            (command(Command::SubscribeScans(true)), "sEN LMDscandata 1"),
-            (
-                answer(Answer::Value(IDENT)),
+                Answer::Value(IDENT),
                 "sRA DeviceIdent 10 LMS10x_FieldEval 10 V1.36-21.10.2010",
             ),
+            (Answer::Value(Value::DeviceState(1)), "sRA SCdevicestate 1"),
             (
-                answer(Answer::Value(Value::DeviceState(1))),
-                "sRA SCdevicestate 1",
-            ),
-            (
-                answer(Answer::Value(Value::ScanConfig(SCAN))),
+                Answer::Value(Value::ScanConfig(SCAN)),
                 "sRA LMPscancfg 1388 1 1388 FFF92230 225510",
             ),
             (
-                answer(Answer::Written(Variable::ScanDataConfig)),
+                Answer::Written(Variable::ScanDataConfig),
                 "sWA LMDscandatacfg",
             ),
-            (answer(Answer::AccessMode(true)), "sAN SetAccessMode 1"),
-            (
-                answer(set),
-                "sAN mLMPsetscancfg 0 1388 1 1388 FFF92230 225510",
-            ),
-            (answer(Answer::Running(true)), "sAN Run 1"),
-            (answer(Answer::ScansSubscribed(true)), "sEA LMDscandata 1"),
-            (answer(Answer::Fault(Fault::UNKNOWN_VARIABLE)), "sFA 3"),
-        ]
+            (Answer::AccessMode(true), "sAN SetAccessMode 1"),
+            (set, "sAN mLMPsetscancfg 0 1388 1 1388 FFF92230 225510"),
+            (Answer::Running(true), "sAN Run 1"),
+            (Answer::ScansSubscribed(true), "sEA LMDscandata 1"),
+            (Answer::Fault(Fault::UNKNOWN_VARIABLE), "sFA 3"),
+        ];
+        let commands = commands.map(|(command, text)| (Telegram::Command(command), text));
+        let answers = answers.map(|(answer, text)| (Telegram::Answer(answer), text));
+        commands.into_iter().chain(answers).collect()
     }
 
     #[test]
@@ -189,9 +171,9 @@ mod tests {
         ];
         // The listing prints 0x33 for both request and answer, but the XOR of the request is 0x33
         // and that of the answer is 0x3c.
-        let subscribe = command(Command::SubscribeScans(true));
+        let subscribe = Telegram::Command(Command::SubscribeScans(true));
         assert_eq!(framed(Encoding::Binary, &subscribe), request);
-        let subscribed = answer(Answer::ScansSubscribed(true));
+        let subscribed = Telegram::Answer(Answer::ScansSubscribed(true));
         assert_eq!(framed(Encoding::Binary, &subscribed).last(), Some(&0x3c));
     }
 

@@ -1,10 +1,8 @@
 //! Values of a channel, encoded or in memory.
 
-use super::Encoding;
-use super::cursor::Cursor;
-use super::words::leading_hex;
 use super::writer::Writer;
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Values of 16 bits, or of 8 bits widened to 16; iterating decodes them in place.
 #[derive(Debug, Clone, Copy)]
@@ -15,12 +13,12 @@ pub struct Values<'a> {
 
 #[derive(Debug, Clone, Copy)]
 enum Place<'a> {
-    /// Two bytes each, big-endian.
-    Wide(&'a [u8]),
+    BigEndian(&'a [u8]),
+    LittleEndian(&'a [u8]),
     /// One byte each.
     Narrow(&'a [u8]),
-    /// Words separated by spaces, each a number of this many bits.
-    Words(&'a [u8], u32),
+    /// Words that have been validated, each a number of this many bits.
+    Words(Cursor<'a>, u32),
     /// A slice in memory.
     Listed(&'a [u16]),
 }
@@ -32,15 +30,27 @@ impl<'a> Values<'a> {
         count: usize,
         width: usize,
     ) -> Result<Self, SickError> {
-        let place = match (cursor.encoding(), width) {
-            (Encoding::Text, _) => {
-                let bits = 8 * width as u32;
-                Place::Words(cursor.numbers("values", count, bits)?, bits)
+        let place = if cursor.is_text() {
+            let (words, bits) = (*cursor, 8 * width as u32);
+            for _ in 0..count {
+                cursor.number("values", bits)?;
             }
-            (Encoding::Binary, 1) => Place::Narrow(cursor.take("values", count)?),
-            (Encoding::Binary, _) => Place::Wide(cursor.take("values", count * 2)?),
+            Place::Words(words, bits)
+        } else {
+            let bytes = cursor.take("values", count * width)?;
+            match width {
+                1 => Place::Narrow(bytes),
+                _ => Place::BigEndian(bytes),
+            }
         };
         Ok(Values { place, count })
+    }
+
+    pub(crate) fn little_endian(bytes: &'a [u8]) -> Self {
+        Values {
+            place: Place::LittleEndian(bytes),
+            count: bytes.len() / 2,
+        }
     }
 
     pub(super) fn write(self, writer: &mut Writer<'_>, width: usize) {
@@ -62,28 +72,24 @@ impl<'a> From<&'a [u16]> for Values<'a> {
     }
 }
 
+/// Compares the decoded values, regardless of the encoding.
+impl PartialEq for Values<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        (*self).eq(*other)
+    }
+}
+
 impl Iterator for Values<'_> {
     type Item = u16;
 
     fn next(&mut self) -> Option<u16> {
         self.count = self.count.checked_sub(1)?;
         match &mut self.place {
-            Place::Wide(bytes) => {
-                let (value, rest) = bytes.split_first_chunk::<2>()?;
-                *bytes = rest;
-                Some(u16::from_be_bytes(*value))
-            }
-            Place::Narrow(bytes) => {
-                let (value, rest) = bytes.split_first()?;
-                *bytes = rest;
-                Some((*value).into())
-            }
-            Place::Words(text, bits) => next_word(text, *bits),
-            Place::Listed(values) => {
-                let (value, rest) = values.split_first()?;
-                *values = rest;
-                Some(*value)
-            }
+            Place::BigEndian(bytes) => first(bytes).map(u16::from_be_bytes),
+            Place::LittleEndian(bytes) => first(bytes).map(u16::from_le_bytes),
+            Place::Narrow(bytes) => first(bytes).map(|[byte]| byte.into()),
+            Place::Words(words, bits) => Some(words.number("values", *bits).ok()? as u16),
+            Place::Listed(values) => first(values).map(|[value]| value),
         }
     }
 
@@ -94,21 +100,17 @@ impl Iterator for Values<'_> {
 
 impl ExactSizeIterator for Values<'_> {}
 
-/// Takes one word off text that has been validated.
-fn next_word(text: &mut &[u8], bits: u32) -> Option<u16> {
-    if let Some((value, length)) = leading_hex(text) {
-        *text = text.get(length + 1..).unwrap_or_default();
-        return Some(value as u16);
-    }
-    let mut cursor = Cursor::new(Encoding::Text, text, 0);
-    let value = cursor.number("values", bits).ok()?;
-    *text = cursor.rest();
-    Some(value as u16)
+/// Takes the first items off a slice.
+fn first<T: Copy, const N: usize>(rest: &mut &[T]) -> Option<[T; N]> {
+    let (first, after) = rest.split_first_chunk()?;
+    *rest = after;
+    Some(*first)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cola::Encoding;
 
     #[test]
     fn words_with_a_sign_have_as_many_bits_as_the_channel() {

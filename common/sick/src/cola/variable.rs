@@ -1,9 +1,9 @@
 //! Variables of a device that are supported.
 
-use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use super::{OutputRange, ScanConfig, ScanDataConfig};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
@@ -31,7 +31,6 @@ impl Variable {
         Variable::HostEncoding,
     ];
 
-    /// Returns the name used in telegrams.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -123,15 +122,7 @@ impl<'a> Value<'a> {
     }
 }
 
-/// Longest text accepted, characters.
-const LONGEST_TEXT: u16 = 256;
-
 fn text<'a>(cursor: &mut Cursor<'a>, field: &'static str) -> Result<&'a [u8], SickError> {
-    let offset = cursor.offset();
-    let length = cursor.u16(field)?;
-    if length > LONGEST_TEXT {
-        let allowed = "at most 256 characters";
-        return Err(field_error(field, offset, &length, allowed));
-    }
+    let length = cursor.u16_upto(field, 256, "at most 256 characters")?;
     cursor.characters(field, usize::from(length))
 }

@@ -1,11 +1,11 @@
 //! Telegrams that a device sends.
 
 use super::configuration::Configuration;
-use super::fields::Fields;
 use super::framing::{ACK, NACK, frame};
 use super::scan::Scan;
 use super::status::{DeviceStatus, Status};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Anything that a device sends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl<'a> Reply<'a> {
 
 impl<'a> Answer<'a> {
     fn read(body: &'a [u8]) -> Result<Self, SickError> {
-        let mut fields = Fields::new(body);
+        let mut fields = Cursor::little_endian(body);
         let code = fields.u8("code")?;
         let answer = match code {
             0x90 => return Ok(Answer::Started(fields.rest())),
@@ -156,7 +156,7 @@ impl<'a> Answer<'a> {
     }
 }
 
-fn done(fields: &mut Fields<'_>) -> Result<bool, SickError> {
+fn done(fields: &mut Cursor<'_>) -> Result<bool, SickError> {
     fields.known("result", |code| (code < 2).then_some(code == 1), "0 or 1")
 }
 
@@ -172,13 +172,7 @@ mod tests {
     }
 
     fn scan(readings: &[u16]) -> Scan<'_> {
-        Scan {
-            unit: Unit::Millimetre,
-            part: None,
-            sub_range: None,
-            readings: readings.into(),
-            counters: None,
-        }
+        Scan::new(Unit::Millimetre, readings)
     }
 
     #[test]

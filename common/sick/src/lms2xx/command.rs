@@ -3,9 +3,9 @@
 use std::str::FromStr;
 
 use super::configuration::Configuration;
-use super::fields::Fields;
 use super::framing::frame;
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Factory password of every device.
 pub const DEFAULT_PASSWORD: [u8; 8] = *b"SICK_LMS";
@@ -119,7 +119,7 @@ impl Mode {
         }
     }
 
-    fn read(fields: &mut Fields<'_>) -> Result<Self, SickError> {
+    fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
         let code = fields.u8("mode")?;
         let baud = Baud::ALL.into_iter().find(|baud| baud.code() == code);
         Ok(match (code, baud) {
@@ -145,7 +145,7 @@ impl<'a> Command<'a> {
     /// # Errors
     /// If the data do not fit the code. Unsupported codes are accepted as they are.
     pub fn read(payload: &'a [u8]) -> Result<Self, SickError> {
-        let mut fields = Fields::new(payload);
+        let mut fields = Cursor::little_endian(payload);
         let command = match fields.u8("code")? {
             0x20 => Command::SetMode(Mode::read(&mut fields)?),
             0x30 => {

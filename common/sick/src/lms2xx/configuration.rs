@@ -1,8 +1,8 @@
 //! Configuration that can be read, changed in installation mode and written back.
 
-use super::fields::Fields;
 use super::range_mode::{RangeMode, Unit};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Largest size in bytes; devices differ in how much they send.
 const LONGEST: usize = 64;
@@ -41,7 +41,7 @@ impl Configuration {
         }
     }
 
-    pub(super) fn read(fields: &mut Fields<'_>) -> Result<Self, SickError> {
+    pub(super) fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
         let all = fields.rest();
         let length = all.len().min(LONGEST);
         let mut bytes = [0; LONGEST];

@@ -1,11 +1,10 @@
 //! Framing of a payload: start, address, length and checksum.
 
-use super::crc;
 use crate::SickError;
 use crate::framer::{Judgement, Pending};
 
 /// Longest payload, bytes.
-pub const MAX_PAYLOAD: usize = 812;
+const MAX_PAYLOAD: usize = 812;
 
 const START: u8 = 2;
 /// Number of bytes before the payload: start, address and length.
@@ -32,10 +31,13 @@ pub(super) fn judge(pending: Pending<'_>, is_address: impl Fn(u8) -> bool) -> Ju
         },
         [found, ..] => return refuse(found),
     };
-    if !(1..=MAX_PAYLOAD).contains(&usize::from(length)) {
-        return Judgement::Rejected(SickError::PayloadLength {
+    let allowed = 1..=MAX_PAYLOAD;
+    if !allowed.contains(&usize::from(length)) {
+        return Judgement::Rejected(SickError::Length {
             offset,
-            found: length,
+            found: length.into(),
+            part: "payload",
+            allowed,
         });
     }
     let length = usize::from(length);
@@ -70,4 +72,18 @@ pub(super) fn frame(address: u8, out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<
     }
     let checksum = crc(out.get(start..).unwrap_or_default());
     out.extend_from_slice(&checksum.to_le_bytes());
+}
+
+/// Returns the CRC with polynomial x¹⁶ + x¹⁵ + x² + 1 and initial value 0; each step combines the
+/// current byte and, in the high half, the previous one.
+fn crc(bytes: &[u8]) -> u16 {
+    let mut crc = 0u16;
+    let mut before = 0u16;
+    for &byte in bytes {
+        let overflow = (crc >> 15) * 0x8005;
+        let byte = u16::from(byte);
+        crc = crc << 1 ^ overflow ^ before << 8 ^ byte;
+        before = byte;
+    }
+    crc
 }

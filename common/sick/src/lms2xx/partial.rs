@@ -6,7 +6,6 @@
 
 use super::scan::Scan;
 
-/// Assembler of the parts of one scan.
 #[derive(Debug, Clone)]
 pub struct PartialScans {
     width_deg: usize,
@@ -82,11 +81,8 @@ mod tests {
         let count = if quarter == 0 { 101 } else { 100 };
         let readings: Vec<u16> = (0..count).map(|degree| degree * parts + first).collect();
         let scan = Scan {
-            unit: Unit::Centimetre,
             part: Part::at_quarter(quarter),
-            sub_range: None,
-            readings: readings[..].into(),
-            counters: None,
+            ..Scan::new(Unit::Centimetre, &readings)
         };
         scans.add(&scan).map(<[u16]>::to_vec)
     }

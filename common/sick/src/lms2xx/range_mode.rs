@@ -13,13 +13,11 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Returns the code used in telegrams.
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// Returns the unit with this code.
     #[must_use]
     pub const fn from_code(code: u8) -> Option<Self> {
         match code {
@@ -76,13 +74,11 @@ impl RangeMode {
         RangeMode::Amplitude,
     ];
 
-    /// Returns the code used in telegrams.
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// Returns the mode with this code.
     #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.code() == code)

@@ -1,8 +1,9 @@
 //! Measured values: whole scans, partial ones and sub-ranges.
 
-use super::fields::Fields;
 use super::range_mode::Unit;
 use crate::SickError;
+use crate::cola::Values;
+use crate::cursor::Cursor;
 
 /// Mask of the count: bits 0 to 9 of the head.
 const COUNT: u16 = 0x03ff;
@@ -26,7 +27,7 @@ pub struct Scan<'a> {
     /// First and last value requested, from 1.
     pub sub_range: Option<(u16, u16)>,
     /// Readings, right to left; at most 401 fit into a telegram.
-    pub readings: Readings<'a>,
+    pub readings: Values<'a>,
     /// Counters of scans and of telegrams, if the device sends them.
     pub counters: Option<(u8, u8)>,
 }
@@ -53,18 +54,20 @@ impl Part {
     }
 }
 
-/// Readings of 16 bits; iterating decodes them in place.
-#[derive(Debug, Clone, Copy)]
-pub struct Readings<'a>(Place<'a>);
-
-#[derive(Debug, Clone, Copy)]
-enum Place<'a> {
-    Bytes(&'a [u8]),
-    Listed(&'a [u16]),
-}
-
 impl<'a> Scan<'a> {
-    pub(super) fn read(fields: &mut Fields<'a>, has_sub_range: bool) -> Result<Self, SickError> {
+    /// Returns a whole scan of these readings.
+    #[must_use]
+    pub fn new(unit: Unit, readings: &'a [u16]) -> Self {
+        Scan {
+            unit,
+            part: None,
+            sub_range: None,
+            readings: readings.into(),
+            counters: None,
+        }
+    }
+
+    pub(super) fn read(fields: &mut Cursor<'a>, has_sub_range: bool) -> Result<Self, SickError> {
         let sub_range = match has_sub_range {
             true => Some((fields.u16("first value")?, fields.u16("last value")?)),
             false => None,
@@ -89,7 +92,7 @@ impl<'a> Scan<'a> {
             unit,
             part: (head & IS_PARTIAL != 0).then_some(Part((head >> 11 & 3) as u8)),
             sub_range,
-            readings: Readings(Place::Bytes(readings)),
+            readings: Values::little_endian(readings),
             counters,
         })
     }
@@ -111,44 +114,3 @@ impl<'a> Scan<'a> {
         }
     }
 }
-
-impl<'a> From<&'a [u16]> for Readings<'a> {
-    fn from(readings: &'a [u16]) -> Self {
-        Readings(Place::Listed(readings))
-    }
-}
-
-impl PartialEq for Readings<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        (*self).eq(*other)
-    }
-}
-
-impl Iterator for Readings<'_> {
-    type Item = u16;
-
-    fn next(&mut self) -> Option<u16> {
-        match &mut self.0 {
-            Place::Bytes(bytes) => {
-                let (reading, rest) = bytes.split_first_chunk::<2>()?;
-                *bytes = rest;
-                Some(u16::from_le_bytes(*reading))
-            }
-            Place::Listed(readings) => {
-                let (reading, rest) = readings.split_first()?;
-                *readings = rest;
-                Some(*reading)
-            }
-        }
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let count = match self.0 {
-            Place::Bytes(bytes) => bytes.len() / 2,
-            Place::Listed(readings) => readings.len(),
-        };
-        (count, Some(count))
-    }
-}
-
-impl ExactSizeIterator for Readings<'_> {}

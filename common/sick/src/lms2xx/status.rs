@@ -1,8 +1,8 @@
 //! Device state: the status byte after every answer, and the long status.
 
-use super::fields::Fields;
 use super::range_mode::{RangeMode, Unit};
 use crate::SickError;
+use crate::cursor::Cursor;
 
 /// Status byte after every answer.
 ///
@@ -54,19 +54,12 @@ impl Status {
 /// | 122 | 1 | unit | see [`Unit`] |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DeviceStatus {
-    /// Software version of the device.
     pub version: [u8; 7],
-    /// Code of the operating mode.
     pub mode: u8,
-    /// True if the device has an error.
     pub has_error: bool,
-    /// Mirror frequency, turns per minute.
     pub turns: u16,
-    /// Measuring mode, which sets the longest range.
     pub range_mode: RangeMode,
-    /// Width of the field: 100 or 180.
     pub width_deg: u16,
-    /// Resolution: 25, 50 or 100.
     pub resolution_raw_1e2_deg: u16,
     pub unit: Unit,
 }
@@ -75,7 +68,7 @@ pub struct DeviceStatus {
 const LENGTH: usize = 150;
 
 impl DeviceStatus {
-    pub(super) fn read(fields: &mut Fields<'_>) -> Result<Self, SickError> {
+    pub(super) fn read(fields: &mut Cursor<'_>) -> Result<Self, SickError> {
         let version = fields.array("version")?;
         let mode = fields.u8("operating mode")?;
         let has_error = fields.u8("error")? != 0;

@@ -16,10 +16,8 @@ pub struct FromDevice;
 #[derive(Debug, Default)]
 pub struct FromHost;
 
-/// Framer for telegrams of a device.
 pub type ReplyFramer = Framer<FromDevice>;
 
-/// Framer for telegrams of a host.
 pub type CommandFramer = Framer<FromHost>;
 
 impl Protocol for FromDevice {

@@ -11,119 +11,97 @@ fn model(name: &str) -> Model {
     Model::of(Some(KnownDevice::named(name).unwrap()))
 }
 
-fn ask(device: &mut ColaDevice, session: &mut Session, command: Command<'_>) -> Answer<'static> {
-    device
-        .receive(session, &Telegram::Command(command))
-        .unwrap()
-}
-
-const LOGIN: Command<'_> = Command::Call(Method::SetAccessMode {
+const LOGIN: Method = Method::SetAccessMode {
     level: AUTHORIZED_CLIENT,
     password: PASSWORD_AUTHORIZED_CLIENT,
-});
+};
 
 #[test]
 fn nothing_changes_without_a_login() {
     let (mut device, mut session) = (device(), Session::default());
     let range = Command::Write(Value::OutputRange(device.range));
-    assert_eq!(
-        ask(&mut device, &mut session, range),
-        Answer::Fault(Fault::WRITE_DENIED)
-    );
     let set = Command::Call(Method::SetScanConfig(device.scan));
-    let answer = ask(&mut device, &mut session, set);
-    assert_eq!(answer, Answer::Fault(Fault::METHOD_DENIED));
-    let wrong = Command::Call(Method::SetAccessMode {
+    let wrong = Method::SetAccessMode {
         level: 3,
         password: 1,
-    });
-    assert_eq!(
-        ask(&mut device, &mut session, wrong),
-        Answer::AccessMode(false)
-    );
-    assert_eq!(
-        ask(&mut device, &mut session, LOGIN),
-        Answer::AccessMode(true)
-    );
-    let written = Answer::Written(Variable::OutputRange);
-    assert_eq!(ask(&mut device, &mut session, range), written);
-    // Another client has not logged in, and this client logs out.
-    let fault = Answer::Fault(Fault::WRITE_DENIED);
-    assert_eq!(ask(&mut device, &mut Session::default(), range), fault);
-    ask(&mut device, &mut session, Command::Call(Method::Run));
-    assert_eq!(ask(&mut device, &mut session, range), fault);
+    };
+    // The client logs out at the end.
+    for (command, answer) in [
+        (range, Err(Fault::WRITE_DENIED)),
+        (set, Err(Fault::METHOD_DENIED)),
+        (Command::Call(wrong), Ok(Answer::AccessMode(false))),
+        (Command::Call(LOGIN), Ok(Answer::AccessMode(true))),
+        (range, Ok(Answer::Written(Variable::OutputRange))),
+        (Command::Call(Method::Run), Ok(Answer::Running(true))),
+        (range, Err(Fault::WRITE_DENIED)),
+    ] {
+        assert_eq!(device.obey(&mut session, &command), answer, "{command:?}");
+        // Another client has not logged in.
+        let other = device.obey(&mut Session::default(), &range);
+        assert_eq!(other, Err(Fault::WRITE_DENIED));
+    }
 }
 
 #[test]
 fn what_the_recording_does_not_have_is_refused() {
     let (mut device, mut session) = (device(), Session::default());
-    ask(&mut device, &mut session, LOGIN);
+    let login = device.obey(&mut session, &Command::Call(LOGIN));
+    assert_eq!(login, Ok(Answer::AccessMode(true)));
     let range = OutputRange {
         stop_angle_raw_1e4_deg: 930_000,
         ..device.range
     };
     let write = Command::Write(Value::OutputRange(range));
-    assert_eq!(
-        ask(&mut device, &mut session, write),
-        Answer::Fault(Fault::OUT_OF_RANGE)
-    );
-    let mut status = |config| match ask(
-        &mut device,
-        &mut session,
-        Command::Call(Method::SetScanConfig(config)),
-    ) {
-        Answer::ScanConfigSet { status, .. } => status,
-        other => panic!("{other:?}"),
-    };
-    let full = self::device().full;
-    assert_eq!(
-        status(ScanConfig {
-            frequency_raw_1e2_hz: 1,
+    let refused = device.obey(&mut session, &write);
+    assert_eq!(refused, Err(Fault::OUT_OF_RANGE));
+    let full = device.full;
+    for (expected, frequency, resolution, start) in [
+        (
+            1,
+            1,
+            full.resolution_raw_1e4_deg,
+            full.start_angle_raw_1e4_deg,
+        ),
+        (
+            2,
+            full.frequency_raw_1e2_hz,
+            5000,
+            full.start_angle_raw_1e4_deg,
+        ),
+        (4, full.frequency_raw_1e2_hz, full.resolution_raw_1e4_deg, 0),
+        (
+            0,
+            full.frequency_raw_1e2_hz,
+            20_000,
+            full.start_angle_raw_1e4_deg,
+        ),
+    ] {
+        let config = ScanConfig {
+            frequency_raw_1e2_hz: frequency,
+            resolution_raw_1e4_deg: resolution,
+            start_angle_raw_1e4_deg: start,
             ..full
-        }),
-        1
-    );
-    assert_eq!(
-        status(ScanConfig {
-            resolution_raw_1e4_deg: 5000,
-            ..full
-        }),
-        2
-    );
-    assert_eq!(
-        status(ScanConfig {
-            start_angle_raw_1e4_deg: 0,
-            ..full
-        }),
-        4
-    );
-    assert_eq!(
-        status(ScanConfig {
-            resolution_raw_1e4_deg: 20_000,
-            ..full
-        }),
-        0
-    );
+        };
+        let set = Command::Call(Method::SetScanConfig(config));
+        match device.obey(&mut session, &set) {
+            Ok(Answer::ScanConfigSet { status, .. }) => assert_eq!(status, expected),
+            other => panic!("{other:?}"),
+        }
+    }
 }
 
 #[test]
 fn unknown_names_are_refused_by_kind() {
     let (mut device, mut session) = (device(), Session::default());
-    let mut fault = |content: &[u8]| {
-        device
-            .receive(&mut session, &Telegram::Other(content))
-            .unwrap()
-    };
-    assert_eq!(fault(b"sRN STlms"), Answer::Fault(Fault::UNKNOWN_VARIABLE));
-    assert_eq!(
-        fault(b"sMN mSCreboot"),
-        Answer::Fault(Fault::UNKNOWN_METHOD)
-    );
-    assert_eq!(
-        fault(b"sEN LIDinputstate"),
-        Answer::Fault(Fault::UNKNOWN_EVENT)
-    );
-    assert_eq!(fault(b"sXX"), Answer::Fault(Fault::UNKNOWN_COMMAND));
+    for (content, fault) in [
+        (&b"sRN STlms"[..], Fault::UNKNOWN_VARIABLE),
+        (b"sMN mSCreboot", Fault::UNKNOWN_METHOD),
+        (b"sEN LIDinputstate", Fault::UNKNOWN_EVENT),
+        (b"sXX", Fault::UNKNOWN_COMMAND),
+    ] {
+        let answer = device.receive(&mut session, &Telegram::Other(content));
+        assert_eq!(answer, Some(Answer::Fault(fault)));
+    }
 }
 
 #[test]

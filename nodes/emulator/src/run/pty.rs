@@ -30,14 +30,16 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, Em
         let now_ns = monotonic_ns();
         if terminal.common.faults.resets(now_ns) {
             tracing::info!("restarted");
-            let reply = terminal.device.restart();
-            terminal.say(now_ns, |_, out| reply.frame(out))?;
+            let start = terminal.unsent.len();
+            terminal.device.restart().frame(&mut terminal.unsent);
+            let faults = &mut terminal.common.faults;
+            faults.damage(&mut terminal.unsent, start, now_ns);
         }
         if terminal.device.is_wanted() {
             terminal.common.start()?;
         }
         while let Some((scan, _)) = terminal.common.next_scan(now_ns)? {
-            terminal.say_scan(now_ns, scan)?;
+            terminal.say_scan(now_ns, scan);
         }
         let is_over = terminal.common.player.is_over();
         if is_over || !terminal.common.faults.holds_back() {
@@ -132,7 +134,7 @@ impl Terminal {
         Ok(())
     }
 
-    fn say_scan(&mut self, now_ns: i64, scan: usize) -> Result<(), EmulatorError> {
+    fn say_scan(&mut self, now_ns: i64, scan: usize) {
         let start = self.unsent.len();
         self.device
             .write_scan(&self.common.sweep, scan, &mut self.unsent);
@@ -142,18 +144,6 @@ impl Terminal {
             }
             self.common.health.count_sent(1);
         }
-        Ok(())
-    }
-
-    fn say(
-        &mut self,
-        now_ns: i64,
-        write: impl FnOnce(&Lms2xxDevice, &mut Vec<u8>),
-    ) -> Result<(), EmulatorError> {
-        let start = self.unsent.len();
-        write(&self.device, &mut self.unsent);
-        self.common.faults.damage(&mut self.unsent, start, now_ns);
-        Ok(())
     }
 
     /// Sends all pending data; unread data beyond the limit is dropped.

@@ -47,7 +47,7 @@ pub(super) fn run(
             clients.clear();
         }
         for client in &mut clients {
-            client.receive(&mut device, &mut common, now_ns)?;
+            client.receive(&mut device, &mut common, now_ns);
         }
         if clients.iter().any(|client| client.session.subscribed) {
             common.start()?;
@@ -160,12 +160,7 @@ impl Client {
     }
 
     /// Receives commands and answers them.
-    fn receive(
-        &mut self,
-        device: &mut ColaDevice,
-        common: &mut Common,
-        now_ns: i64,
-    ) -> Result<(), EmulatorError> {
+    fn receive(&mut self, device: &mut ColaDevice, common: &mut Common, now_ns: i64) {
         let mut piece = [0; 1 << 12];
         loop {
             match self.stream.read(&mut piece) {
@@ -196,7 +191,6 @@ impl Client {
             common.faults.damage(&mut self.unsent, start, now_ns);
             common.health.count_received(1);
         }
-        Ok(())
     }
 
     /// Sends as much as the client takes.

@@ -13,6 +13,7 @@ const RANGE: OutputRange = OutputRange {
     start_angle_raw_1e4_deg: -450_000,
     stop_angle_raw_1e4_deg: 2_250_000,
 };
+const UNKNOWN: Answer<'static> = Answer::Fault(Fault::UNKNOWN_VARIABLE);
 
 const CONTENTS: ScanDataConfig = ScanDataConfig::DISTANCES;
 
@@ -22,9 +23,7 @@ fn without_requests_nothing_is_changed() {
     let ident = Command::Read(Variable::DeviceIdent);
     assert_eq!(setup.next(0).unwrap(), Some(ident));
     assert_eq!(setup.next(1).unwrap(), None);
-    setup
-        .receive(&Answer::Fault(Fault::UNKNOWN_VARIABLE))
-        .unwrap();
+    setup.receive(&UNKNOWN).unwrap();
     let state = Command::Read(Variable::DeviceState);
     assert_eq!(setup.next(2).unwrap(), Some(state));
     setup
@@ -40,12 +39,9 @@ fn without_requests_nothing_is_changed() {
     assert_eq!(setup.next(i64::MAX).unwrap(), None);
 }
 
-/// Simulates an LMS111 that applies all requested settings, but reports `range` if given.
-fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
-    play_as(b"LMS111", setup, range)
-}
-
-fn play_as(
+/// Simulates a device of this name that applies all requested settings, but reports `range` if
+/// given.
+fn play(
     name: &[u8],
     setup: &mut Setup,
     range: Option<OutputRange>,
@@ -89,7 +85,7 @@ fn play_as(
 #[test]
 fn requested_settings_are_set_and_read_back() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false), None);
-    let said = play(&mut setup, None).unwrap();
+    let said = play(b"LMS111", &mut setup, None).unwrap();
     assert_eq!(said.len(), 11, "{said:#?}");
     assert!(
         said[4].contains("resolution_raw_1e4_deg: 5000"),
@@ -103,31 +99,33 @@ fn requested_settings_are_set_and_read_back() {
 #[test]
 fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
     let mut setup = Setup::new(Wanted::of(None, None, true), None);
-    let said = play(&mut setup, None).unwrap();
+    let said = play(b"LMS111", &mut setup, None).unwrap();
     // Identity, state, contents, login, change, check, run, scans.
     assert_eq!(said.len(), 8, "{said:#?}");
     assert!(said[3].contains("SetAccessMode"), "{said:#?}");
     assert!(said[4].contains("Write") && said[4].contains("time: true"));
     assert!(setup.is_done());
     let mut setup = Setup::new(Wanted::of(Some(180.0), None, true), None);
-    let said = play(&mut setup, None).unwrap();
+    let said = play(b"LMS111", &mut setup, None).unwrap();
     let logins = said.iter().filter(|said| said.contains("SetAccessMode"));
     assert_eq!((logins.count(), said.len()), (1, 11), "{said:#?}");
+}
+
+/// Gives an answer to the next command.
+fn answer(setup: &mut Setup, answer: &Answer<'_>) -> Result<(), LmsError> {
+    setup.next(0)?;
+    setup.receive(answer)
 }
 
 #[test]
 fn a_device_that_sends_the_time_already_is_not_changed() {
     let mut setup = Setup::new(Wanted::of(None, None, true), None);
-    for answer in [
-        Answer::Fault(Fault::UNKNOWN_VARIABLE),
-        Answer::Fault(Fault::UNKNOWN_VARIABLE),
-        Answer::Value(Value::ScanDataConfig(ScanDataConfig {
-            time: true,
-            ..CONTENTS
-        })),
-    ] {
-        setup.next(0).unwrap();
-        setup.receive(&answer).unwrap();
+    let contents = Value::ScanDataConfig(ScanDataConfig {
+        time: true,
+        ..CONTENTS
+    });
+    for said in [UNKNOWN, UNKNOWN, Answer::Value(contents)] {
+        answer(&mut setup, &said).unwrap();
     }
     let subscribe = Command::SubscribeScans(true);
     assert_eq!(setup.next(0).unwrap(), Some(subscribe));
@@ -136,19 +134,18 @@ fn a_device_that_sends_the_time_already_is_not_changed() {
 #[test]
 fn a_device_that_keeps_its_own_settings_is_an_error() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), None, false), None);
-    let error = play(&mut setup, Some(RANGE)).unwrap_err().to_string();
+    let error = play(b"LMS111", &mut setup, Some(RANGE))
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("did not keep the field"), "{error}");
 }
 
 #[test]
 fn refusals_and_silence_name_the_command() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), None, false), None);
-    let mut receive = |answer| {
-        setup.next(0).unwrap();
-        setup.receive(&answer)
-    };
-    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    let mut receive = |said| answer(&mut setup, &said);
+    receive(UNKNOWN).unwrap();
+    receive(UNKNOWN).unwrap();
     let error = receive(Answer::AccessMode(false)).unwrap_err().to_string();
     assert!(
         error.contains("did not log in: it answers false"),
@@ -175,7 +172,7 @@ fn refusals_and_silence_name_the_command() {
 fn a_field_is_laid_around_what_is_ahead_on_that_device() {
     let wanted = Wanted::of(Some(90.0), None, false);
     let written = |name, stated| {
-        let said = play_as(name, &mut Setup::new(wanted, stated), None).unwrap();
+        let said = play(name, &mut Setup::new(wanted, stated), None).unwrap();
         said.into_iter()
             .find(|said| said.contains("Write"))
             .unwrap()
@@ -199,12 +196,9 @@ fn a_field_is_laid_around_what_is_ahead_on_that_device() {
 fn an_unknown_device_that_looks_elsewhere_is_not_changed() {
     let wanted = Wanted::of(Some(90.0), None, false);
     let mut setup = Setup::new(wanted, None);
-    let mut receive = |answer| {
-        let said = setup.next(0)?;
-        setup.receive(&answer).map(|()| said)
-    };
-    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    let mut receive = |said| answer(&mut setup, &said);
+    receive(UNKNOWN).unwrap();
+    receive(UNKNOWN).unwrap();
     receive(Answer::AccessMode(true)).unwrap();
     let around_zero = ScanConfig {
         start_angle_raw_1e4_deg: -1_200_000,

@@ -50,15 +50,8 @@ fn what_is_refused_says_what_is_allowed() {
         assert!(text.contains(expected), "{arguments}: {text}");
     };
     refuse("", "--tcp");
-    refuse("--tcp a:1 --capture b", "cannot be used with");
-    refuse("--tcp a:1 --loop", "cannot be used with");
-    refuse("--tcp a:1 --rate max", "cannot be used with");
     refuse("--tcp 192.168.0.1", "HOST:PORT with a port from 1 to 65535");
     refuse("--tcp a:0", "1 to 65535");
-    refuse("--tcp a:1 --serial b", "cannot be used with");
-    refuse("--serial a --loop", "cannot be used with");
-    refuse("--serial a --protocol cola-a", "cannot be used with");
-    refuse("--tcp a:1 --baud 9600", "cannot be used with");
     refuse("--serial a --baud 57600", "38400 and 500000");
     refuse("--serial a --field 90", "100 or 180 at 0.5 or 1");
     refuse("--serial a --field 180 --resolution 0.25", "100 at 0.25");
@@ -67,18 +60,11 @@ fn what_is_refused_says_what_is_allowed() {
     refuse("--tcp a:1 --field 0", "1 to 360 degrees");
     refuse("--tcp a:1 --resolution 9", "0.01 to 5 degrees");
     refuse("--tcp a:1 --mount 1,2", "X,Y,YAW_DEG");
-    refuse("--serial a --stamps device", "cannot be used with");
-    refuse("--serial a --until-closed", "cannot be used with");
     refuse("--tcp a:1 --silence 0", "0.2 to 3600");
     refuse("--tcp a:1 --device XY7", "known are LMS1xx, LMS5xx");
     refuse("--tcp a:1 --device NAV245", "the sources differ");
-    refuse(
-        "--tcp a:1 --device TiM240 --zero-deg 0",
-        "cannot be used with",
-    );
     refuse("--tcp a:1 --zero-deg 361", "-360 to 360 degrees");
     refuse("--tcp a:1 --clockwise", "--zero-deg");
-    refuse("--serial a --device LMS111", "cannot be used with");
     refuse("--tcp a:1 --range-min-m 90", "the maximum must be larger");
     refuse("--tcp a:1 --range-min-m nan", "finite");
     refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");

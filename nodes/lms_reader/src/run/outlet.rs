@@ -39,7 +39,6 @@ pub(super) struct Outlet {
     settings: ScanSettings,
     pub(super) angles: Angles,
     error_limit: ErrorLimit,
-    /// Clock of the connected device.
     clock: DeviceClock,
     link: Link,
     /// Status code of the device; 0 is ok.
@@ -91,26 +90,17 @@ impl Outlet {
     /// Waits at the end until subscribers have taken the last scans, because unread messages are
     /// lost when the publisher is dropped.
     pub(super) fn finish(&mut self) -> Result<(), LmsError> {
-        if !self.wait_until_taken(Instant::now() + TIMEOUT)? && !self.stopped() {
-            let seconds = TIMEOUT.as_secs();
-            tracing::warn!("not all subscribers read the last scans within {seconds} s");
-        }
-        Ok(())
-    }
-
-    /// Waits until every subscriber has processed all messages, up to `deadline` or the stop flag.
-    /// Returns true if they have.
-    fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
-        loop {
-            if self.publisher.is_settled()? {
-                return Ok(true);
-            }
+        let deadline = Instant::now() + TIMEOUT;
+        while !self.publisher.is_settled()? && !self.stopped() {
             let now = Instant::now();
-            if self.stopped() || now >= deadline {
-                return Ok(false);
+            if now >= deadline {
+                let seconds = TIMEOUT.as_secs();
+                tracing::warn!("not all subscribers read the last scans within {seconds} s");
+                break;
             }
             self.wait_until(deadline.min(now + SLICE))?;
         }
+        Ok(())
     }
 
     pub(super) fn tick(&mut self) -> Result<(), TransportError> {

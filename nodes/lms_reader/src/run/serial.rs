@@ -5,8 +5,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serialport::{ClearBuffer, SerialPort, TTYPort};
-use sick::lms2xx::{Answer, Baud, Command, PartialScans, Reply, ReplyFramer, Scan, Status};
+use sick::lms2xx::{Answer, Baud, Command, PartialScans, Reply, ReplyFramer, Scan};
 
+use super::failed;
 use super::outlet::{Outlet, SLICE};
 use crate::lms2xx_scan::WholeScan;
 use crate::lms2xx_setup::{Action, Format, Setup, Wanted};
@@ -55,7 +56,7 @@ impl<'a> Line<'a> {
         let builder = serialport::new(path, Baud::B9600.rate()).timeout(SLICE);
         let port = builder
             .open_native()
-            .map_err(|error| failed(name, "open it", error))?;
+            .map_err(|error| failed(name.display(), "open it", error))?;
         Ok(Line {
             name,
             silence_s: config.silence,
@@ -85,7 +86,7 @@ impl<'a> Line<'a> {
                 }
                 Err(error)
                     if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
-                Err(error) => return Err(failed(self.name, "read", error)),
+                Err(error) => return Err(failed(self.name.display(), "read", error)),
             }
             if self.setup.format().is_some()
                 && self.last_data.elapsed().as_secs_f64() > self.silence_s
@@ -123,13 +124,19 @@ impl<'a> Line<'a> {
             match (answer, self.setup.format()) {
                 (Answer::Started(_), _) => return Err(LmsError::Restarted),
                 (Answer::Scan(scan), Some(format)) => {
-                    publish(
-                        &scan,
-                        status,
-                        (format, baud, received),
-                        &mut self.parts,
-                        outlet,
-                    )?;
+                    // A byte has ten bits with start and stop; a scan has ten bytes and two per
+                    // reading.
+                    let bytes = 10 + 2 * scan.readings.len() as i64;
+                    let line_ns = bytes * 10 * 1_000_000_000 / i64::from(baud.rate());
+                    let Some(scan) = whole(scan, format, &mut self.parts) else {
+                        continue;
+                    };
+                    let whole = WholeScan {
+                        format,
+                        scan,
+                        line_ns,
+                    };
+                    outlet.publish_lms2xx(&whole, status, received)?;
                 }
                 _ => self.setup.receive(&answer)?,
             }
@@ -143,7 +150,7 @@ impl<'a> Line<'a> {
         for byte in &self.command {
             self.port
                 .write_all(std::slice::from_ref(byte))
-                .map_err(|error| failed(self.name, "write", error))?;
+                .map_err(|error| failed(self.name.display(), "write", error))?;
             std::thread::sleep(BYTE_GAP);
         }
         Ok(())
@@ -154,41 +161,28 @@ impl<'a> Line<'a> {
         self.port
             .set_baud_rate(baud.rate())
             .and_then(|()| self.port.clear(ClearBuffer::Input))
-            .map_err(|error| failed(self.name, "set the baud rate", error))?;
+            .map_err(|error| failed(self.name.display(), "set the baud rate", error))?;
         self.framer = ReplyFramer::default();
         Ok(())
     }
 }
 
-/// Publishes a scan, or stores a partial scan until it is complete.
-fn publish(
-    scan: &Scan<'_>,
-    status: Status,
-    (format, baud, received): (Format, Baud, crate::scan::Received),
-    parts: &mut Option<PartialScans>,
-    outlet: &mut Outlet,
-) -> Result<(), LmsError> {
-    // A byte has ten bits with start and stop; a scan has ten bytes and two per reading.
-    let bytes = 10 + 2 * scan.readings.len() as i64;
-    let line_ns = bytes * 10 * 1_000_000_000 / i64::from(baud.rate());
-    let whole = WholeScan::of(scan, format, line_ns);
+/// Returns the whole scan of a telegram; a partial scan is stored until it is complete.
+fn whole<'a>(
+    scan: Scan<'a>,
+    Format {
+        width_deg,
+        resolution_raw_1e2_deg,
+        ..
+    }: Format,
+    parts: &'a mut Option<PartialScans>,
+) -> Option<Scan<'a>> {
     if scan.part.is_none() {
-        return outlet.publish_lms2xx(&whole, status, received);
+        return Some(scan);
     }
     if parts.is_none() {
-        *parts = PartialScans::new(format.width_deg, format.resolution_raw_1e2_deg);
+        *parts = PartialScans::new(width_deg, resolution_raw_1e2_deg);
     }
-    if let Some(readings) = parts.as_mut().and_then(|parts| parts.add(scan)) {
-        let readings = readings.into();
-        return outlet.publish_lms2xx(&WholeScan { readings, ..whole }, status, received);
-    }
-    Ok(())
-}
-
-fn failed(name: &Path, what: &'static str, error: impl Into<std::io::Error>) -> LmsError {
-    LmsError::Device {
-        address: name.display().to_string(),
-        what,
-        source: error.into(),
-    }
+    let readings = parts.as_mut()?.add(&scan)?.into();
+    Some(Scan { readings, ..scan })
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use sick::cola::{Answer, Encoding, Framer, Telegram, Value};
 
+use super::failed;
 use super::outlet::{Outlet, SLICE};
 use crate::cola_setup::{Setup, Wanted};
 use crate::scan::Stamps;
@@ -60,7 +61,7 @@ struct Connection<'a> {
 
 impl<'a> Connection<'a> {
     fn open(address: &'a str, config: &Config) -> Result<Self, LmsError> {
-        let failed = |what| move |source| failed(address, what, source);
+        let failed = |what| move |error: std::io::Error| failed(address, what, error);
         let stream = try_each(address).map_err(failed("connect"))?;
         stream
             .set_read_timeout(Some(SLICE))
@@ -155,14 +156,6 @@ impl<'a> Connection<'a> {
             }
         }
         Ok(())
-    }
-}
-
-fn failed(address: &str, what: &'static str, source: std::io::Error) -> LmsError {
-    LmsError::Device {
-        address: address.into(),
-        what,
-        source,
     }
 }
 

@@ -1,12 +1,12 @@
 use super::*;
-use sick::cola::{DeviceTime, Encoding};
+use sick::cola::{Channels, DeviceTime};
 
-const RECEIVED: Received = Received {
+pub(crate) const RECEIVED: Received = Received {
     realtime_ns: 1_700_000_000_000_000_000,
     monotonic_ns: 77,
 };
 
-fn settings() -> ScanSettings {
+pub(crate) fn settings() -> ScanSettings {
     ScanSettings {
         range_min_m: 0.05,
         range_max_m: Some(25.0),
@@ -48,41 +48,46 @@ impl Default for World {
 }
 
 impl World {
-    fn telegram(&self) -> Vec<u8> {
-        let mut bytes = b"sSN LMDscandata \0\x01\0\x01\0\0\0\0\0\0\0\0\0\0".to_vec();
-        bytes.extend(self.times_us.map(u32::to_be_bytes).concat());
-        bytes.extend([0; 4]);
-        bytes.extend(self.layer.to_be_bytes());
-        bytes.extend([0, 0, 5, 220, 0, 0, 0, 162, 0, 0, 0, 1]);
-        bytes.extend(self.name);
-        bytes.extend([self.scale, self.offset].map(f32::to_be_bytes).concat());
-        bytes.extend(self.start.to_be_bytes());
-        bytes.extend(self.step.to_be_bytes());
-        bytes.extend((self.raw.len() as u16).to_be_bytes());
-        bytes.extend(self.raw.iter().flat_map(|raw| raw.to_be_bytes()));
-        bytes.extend([0; 12]);
-        bytes
+    /// Passes the telegram and the distances in it to `take`.
+    fn with<R>(&self, take: impl FnOnce(&mut LmdScanData<'_>) -> R) -> R {
+        let channels = [Channel {
+            name: self.name,
+            scale_factor: self.scale,
+            scale_offset: self.offset,
+            start_angle_raw_1e4_deg: self.start,
+            step_raw_1e4_deg: self.step,
+            values: self.raw[..].into(),
+        }];
+        take(&mut LmdScanData {
+            time_since_start_up_us: self.times_us[0],
+            time_of_transmission_us: self.times_us[1],
+            layer_angle_raw: self.layer,
+            scan_frequency_raw_1e2_hz: 1500,
+            channels_16_bit: Channels::from(&channels[..]),
+            ..LmdScanData::default()
+        })
+    }
+
+    fn scan_with(
+        &self,
+        settings: &ScanSettings,
+        reach_m: f32,
+    ) -> Result<(ScanHeader, Vec<f32>), LmsError> {
+        self.with(|data| {
+            let distances = distances(data)?;
+            let mut clock = DeviceClock::default();
+            let measured_ns = measured_ns(data, settings, RECEIVED, &mut clock)?;
+            check(data, &distances)?;
+            let angles = (self.convention, reach_m);
+            let header = header(data, &distances, angles, settings, measured_ns, RECEIVED);
+            let mut ranges = vec![0.0; distances.len()];
+            fill_ranges(&distances, self.convention.clockwise, &mut ranges);
+            Ok((header, ranges))
+        })
     }
 
     fn scan(&self) -> Result<(ScanHeader, Vec<f32>), LmsError> {
-        let bytes = self.telegram();
-        let data = LmdScanData::read(Encoding::Binary, &bytes)?;
-        let distances = distances(&data)?;
-        let mut clock = DeviceClock::default();
-        let measured_ns = measured_ns(&data, &settings(), RECEIVED, &mut clock)?;
-        check(&data, &distances)?;
-        let angles = (self.convention, 80.0);
-        let header = header(
-            &data,
-            &distances,
-            angles,
-            &settings(),
-            measured_ns,
-            RECEIVED,
-        );
-        let mut ranges = vec![0.0; distances.len()];
-        fill_ranges(&distances, self.convention.clockwise, &mut ranges);
-        Ok((header, ranges))
+        self.scan_with(&settings(), 80.0)
     }
 }
 
@@ -117,22 +122,25 @@ fn the_stamp_is_back_at_the_scan_also_across_the_wrap_of_the_clock() {
 
 #[test]
 fn the_devices_date_and_time_are_taken_as_they_are() {
-    let bytes = World::default().telegram();
-    let mut data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
     let settings = ScanSettings {
         stamps: Stamps::Device,
         ..settings()
     };
-    let measured = |data: &_| measured_ns(data, &settings, RECEIVED, &mut DeviceClock::default());
-    let error = measured(&data).unwrap_err().to_string();
+    let measured = |time| {
+        World::default().with(|data| {
+            data.time = time;
+            measured_ns(data, &settings, RECEIVED, &mut DeviceClock::default())
+        })
+    };
+    let error = measured(None).unwrap_err().to_string();
     assert!(
         error.contains("--stamps device): it has no time"),
         "{error}"
     );
-    data.time = DeviceTime::from_unix_us(1_137_772_793_094_057);
-    assert_eq!(measured(&data).unwrap(), 1_137_772_793_094_057_000);
-    data.time = data.time.map(|time| DeviceTime { month: 0, ..time });
-    let error = measured(&data).unwrap_err().to_string();
+    let time = DeviceTime::from_unix_us(1_137_772_793_094_057);
+    assert_eq!(measured(time).unwrap(), 1_137_772_793_094_057_000);
+    let never_set = time.map(|time| DeviceTime { month: 0, ..time });
+    let error = measured(never_set).unwrap_err().to_string();
     assert!(error.contains("month: 0"), "{error}");
 }
 
@@ -189,32 +197,24 @@ fn a_clockwise_device_is_read_from_its_last_beam() {
 
 #[test]
 fn the_settings_are_passed_on() {
-    let bytes = World::default().telegram();
-    let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
-    let channel = distances(&data).unwrap();
     let mount = Pose2 {
         x: 0.78,
         y: 0.0,
         yaw: 0.1,
     };
-    let settings = ScanSettings {
+    let mut settings = ScanSettings {
         base_from_laser: Some(mount),
         ..settings()
     };
-    let angles = (AngleConvention::USUAL, 250.0);
-    let with = header(&data, &channel, angles, &settings, 5, RECEIVED);
-    assert_eq!(with.stamp.measured_ns, 5);
+    let header = |settings: &_| World::default().scan_with(settings, 250.0).unwrap().0;
+    let with = header(&settings);
     assert_eq!((with.base_from_laser, with.mount_known), (mount, 1));
     assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
     assert_eq!(with.frame.as_str(), "laser");
-    assert_eq!(World::default().scan().unwrap().0.mount_known, 0);
     // If no option sets it, it is the device's longest range.
-    let settings = ScanSettings {
-        range_max_m: None,
-        ..settings
-    };
-    let far = header(&data, &channel, angles, &settings, 5, RECEIVED);
-    assert_eq!(far.range_max_m, 250.0);
+    (settings.range_max_m, settings.base_from_laser) = (None, None);
+    let far = header(&settings);
+    assert_eq!((far.range_max_m, far.mount_known), (250.0, 0));
 }
 
 #[test]

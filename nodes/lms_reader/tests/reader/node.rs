@@ -1,18 +1,10 @@
 //! Tests of the node as a process: with a capture, and with a simulated device on the network.
-#![allow(
-    clippy::unwrap_used,
-    reason = "the lint spares test functions but not what they share"
-)]
-
-use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::io::Write;
 
 use messages::{NodeState, topic};
-use sick::cola::{Answer, Command, Encoding, Fault, Framer, Telegram};
-use transport::Graph;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
+use transport::testing::{Isolated, wait_for_health, wait_until};
 
-use crate::listen;
+use crate::{accept, listen, start};
 
 const CAPTURE: &[u8] =
     include_bytes!("../../../../common/sick/tests/data/tim781_colab_telegrams.bin");
@@ -21,10 +13,6 @@ const CAPTURE_PATH: &str = concat!(
     "/../../common/sick/tests/data/tim781_colab_telegrams.bin"
 );
 const TELEGRAM: usize = 3374;
-
-fn start(graph: &Graph, arguments: &[&str]) -> NodeProcess {
-    NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), graph, arguments)
-}
 
 #[test]
 fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
@@ -72,25 +60,6 @@ fn the_last_scans_of_a_capture_wait_for_a_subscriber_that_is_late() {
 }
 
 #[test]
-fn damage_in_a_capture_is_counted_and_the_rest_played() {
-    let isolated = Isolated::new("damage");
-    let graph = isolated.join("test");
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("damaged.bin");
-    let mut bytes = CAPTURE[..4 * TELEGRAM].to_vec();
-    bytes[TELEGRAM + 100] ^= 1;
-    std::fs::write(&path, bytes).unwrap();
-    let path = path.to_str().unwrap();
-    let (status, log) = start(&graph, &["--capture", path, "--rate", "max"]).finish();
-    assert!(status.success(), "{log}");
-    assert!(
-        log.contains("byte 3374 of the stream: the checksum"),
-        "{log}"
-    );
-    assert!(log.contains("end of the capture sent=3 refused=1"), "{log}");
-}
-
-#[test]
 fn a_file_without_scans_is_an_error_that_names_it() {
     let isolated = Isolated::new("empty");
     let graph = isolated.join("test");
@@ -104,32 +73,6 @@ fn a_file_without_scans_is_an_error_that_names_it() {
     );
 }
 
-/// Accepts the node's connection; rejects each command until the node subscribes to scans.
-fn accept(listener: &TcpListener) -> TcpStream {
-    let (mut stream, _) = listener.accept().unwrap();
-    let mut framer = Framer::new(Encoding::Binary);
-    let mut piece = [0; 1000];
-    loop {
-        let count = stream.read(&mut piece).unwrap();
-        assert!(count > 0, "the node has gone");
-        framer.push(&piece[..count]);
-        while let Some(next) = framer.next_frame() {
-            let command = next.unwrap().telegram;
-            let subscribe = Telegram::Command(Command::SubscribeScans(true));
-            let answer = match command == subscribe {
-                true => Answer::ScansSubscribed(true),
-                false => Answer::Fault(Fault::UNKNOWN_VARIABLE),
-            };
-            let mut bytes = Vec::new();
-            Encoding::Binary.frame(&Telegram::Answer(answer), &mut bytes);
-            stream.write_all(&bytes).unwrap();
-            if command == subscribe {
-                return stream;
-            }
-        }
-    }
-}
-
 #[test]
 fn a_device_that_goes_and_comes_back() {
     let isolated = Isolated::new("device");
@@ -139,7 +82,7 @@ fn a_device_that_goes_and_comes_back() {
     let (listener, address) = listen();
     let node = start(&graph, &["--tcp", &address]);
 
-    let mut stream = accept(&listener);
+    let mut stream = accept(&listener, None, &[]);
     // Pieces that split telegrams at arbitrary places.
     for piece in CAPTURE[..2 * TELEGRAM].chunks(1000) {
         stream.write_all(piece).unwrap();
@@ -152,7 +95,7 @@ fn a_device_that_goes_and_comes_back() {
     assert!(reason.contains(&address), "{reason}");
     assert!(reason.contains("closed the connection"), "{reason}");
 
-    let mut stream = accept(&listener);
+    let mut stream = accept(&listener, None, &[]);
     stream.write_all(&CAPTURE[..TELEGRAM]).unwrap();
     wait_until(&graph, &scans, |header, _| header.stamp.counter == 2);
     wait_for_health(&graph, &health, |header| {
@@ -184,8 +127,8 @@ fn a_silent_device_is_given_up_and_tried_again() {
     let graph = isolated.join("test");
     let (listener, address) = listen();
     let node = start(&graph, &["--tcp", &address, "--silence", "0.2"]);
-    let _silent = accept(&listener);
-    let _again = accept(&listener);
+    let _silent = accept(&listener, None, &[]);
+    let _again = accept(&listener, None, &[]);
     let log = node.stop_with_log();
     assert!(log.contains("no data for 0.2 s"), "{log}");
 }

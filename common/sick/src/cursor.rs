@@ -1,58 +1,43 @@
-//! Reads the fields of a telegram's content in order, in either encoding.
+//! Reads the fields of a telegram's content in order, in the encoding of its device.
 //!
 //! Each read names its field, so that errors say where and what. It never reads past the end and
 //! never skips.
 
-use super::Encoding;
-use super::words::{leading_hex, length_of_words};
 use crate::SickError;
+use crate::cola::Encoding;
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Text,
+    BigEndian,
+    LittleEndian,
+}
+
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Cursor<'a> {
     rest: &'a [u8],
     at: usize,
-    encoding: Encoding,
-    /// True if these bytes have already been parsed to their end.
-    is_checked: bool,
+    form: Form,
 }
 
 impl<'a> Cursor<'a> {
-    /// Creates a cursor over `rest`, which begins `at` bytes into the content.
+    /// Creates a cursor over the CoLa fields in `rest`, which begins `at` bytes into the content.
     pub(crate) fn new(encoding: Encoding, rest: &'a [u8], at: usize) -> Self {
-        Cursor {
-            rest,
-            at,
-            encoding,
-            is_checked: false,
-        }
+        let form = match encoding {
+            Encoding::Text => Form::Text,
+            Encoding::Binary => Form::BigEndian,
+        };
+        Cursor { rest, at, form }
     }
 
-    /// Marks the bytes as already validated.
-    pub(crate) fn checked(mut self) -> Self {
-        self.is_checked = true;
-        self
+    /// Creates a cursor over the payload of an LMS2xx.
+    pub(crate) fn little_endian(rest: &'a [u8]) -> Self {
+        let form = Form::LittleEndian;
+        Cursor { rest, at: 0, form }
     }
 
-    /// Takes `count` numbers in text form; validates each of them the first time.
-    pub(crate) fn numbers(
-        &mut self,
-        field: &'static str,
-        count: usize,
-        bits: u32,
-    ) -> Result<&'a [u8], SickError> {
-        let text = self.rest;
-        if self.is_checked {
-            self.take(field, length_of_words(text, count))?;
-            return Ok(text);
-        }
-        for _ in 0..count {
-            self.number(field, bits)?;
-        }
-        Ok(text)
-    }
-
-    pub(crate) fn encoding(&self) -> Encoding {
-        self.encoding
+    pub(crate) fn is_text(&self) -> bool {
+        self.form == Form::Text
     }
 
     pub(crate) fn rest(&self) -> &'a [u8] {
@@ -64,76 +49,60 @@ impl<'a> Cursor<'a> {
         field: &'static str,
         count: usize,
     ) -> Result<&'a [u8], SickError> {
-        let (head, rest) = self
-            .rest
-            .split_at_checked(count)
-            .ok_or_else(|| self.short(field, count))?;
+        let parts = self.rest.split_at_checked(count);
+        let (head, rest) = parts.ok_or_else(|| self.short(field, count))?;
         self.rest = rest;
         self.at += count;
         Ok(head)
     }
 
-    fn array<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], SickError> {
-        let (&head, rest) = self
-            .rest
-            .split_first_chunk::<N>()
-            .ok_or_else(|| self.short(field, N))?;
-        self.rest = rest;
-        self.at += N;
-        Ok(head)
+    /// Skips to byte `at` of the content, which must not be before the current one.
+    pub(crate) fn skip_to(&mut self, at: usize) -> Result<(), SickError> {
+        self.take("what is skipped", at.saturating_sub(self.at))
+            .map(drop)
+    }
+
+    /// Takes bytes, which are not numbers.
+    pub(crate) fn array<const N: usize>(
+        &mut self,
+        field: &'static str,
+    ) -> Result<[u8; N], SickError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(field, N)?);
+        Ok(array)
     }
 
     /// Takes the next word of text and the space after it.
     fn word(&mut self, field: &'static str) -> Result<&'a [u8], SickError> {
         let end = self.rest.iter().position(|&byte| byte == b' ');
-        let end = end.unwrap_or(self.rest.len());
-        let (word, rest) = self.rest.split_at(end);
+        let word = self.take(field, end.unwrap_or(self.rest.len()))?;
         if word.is_empty() {
             return Err(self.short(field, 1));
         }
-        self.advance_past_space(rest, end);
+        self.skip_space();
         Ok(word)
     }
 
-    fn advance_past_space(&mut self, rest: &'a [u8], taken: usize) {
-        match rest.split_first() {
-            Some((b' ', rest)) => {
-                self.rest = rest;
-                self.at += taken + 1;
-            }
-            _ => {
-                self.rest = rest;
-                self.at += taken;
-            }
+    fn skip_space(&mut self) {
+        if let Some((b' ', rest)) = self.rest.split_first() {
+            self.rest = rest;
+            self.at += 1;
         }
     }
 
-    /// Takes a word of text as a number of this many bits.
+    /// Takes a word of text as a number of this many bits: hexadecimal, or decimal after a sign.
     pub(crate) fn number(&mut self, field: &'static str, bits: u32) -> Result<u32, SickError> {
-        if let Some((value, length)) = leading_hex(self.rest)
-            && (bits == 32 || value >> bits == 0)
-        {
-            let rest = self.rest.get(length..).unwrap_or_default();
-            self.advance_past_space(rest, length);
-            return Ok(value);
-        }
-        self.unusual_number(field, bits)
-    }
-
-    /// Takes a signed decimal number, or reports the word as invalid.
-    #[cold]
-    fn unusual_number(&mut self, field: &'static str, bits: u32) -> Result<u32, SickError> {
         let offset = self.at;
         let word = self.word(field)?;
-        let decimal = match word {
-            [b'+' | b'-', _, ..] => str::from_utf8(word)
-                .ok()
-                .and_then(|word| word.parse::<i64>().ok()),
-            _ => None,
+        let least = -(1i64 << (bits - 1));
+        let value = match word {
+            [b'+' | b'-', _, ..] => str::from_utf8(word).ok().and_then(|word| word.parse().ok()),
+            _ => hexadecimal(word),
         };
-        let allowed = (-(1i64 << (bits - 1)))..(1i64 << bits);
-        match decimal {
-            Some(value) if allowed.contains(&value) => Ok((value & ((1 << bits) - 1)) as u32),
+        match value {
+            Some(value) if (least..1 << bits).contains(&value) => {
+                Ok((value & ((1 << bits) - 1)) as u32)
+            }
             _ => Err(field_error(
                 field,
                 offset,
@@ -148,16 +117,17 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn u8(&mut self, field: &'static str) -> Result<u8, SickError> {
-        match self.encoding {
-            Encoding::Binary => self.array(field).map(u8::from_be_bytes),
-            Encoding::Text => self.number(field, 8).map(|value| value as u8),
+        match self.form {
+            Form::Text => self.number(field, 8).map(|value| value as u8),
+            Form::BigEndian | Form::LittleEndian => self.array(field).map(|[byte]| byte),
         }
     }
 
     pub(crate) fn u16(&mut self, field: &'static str) -> Result<u16, SickError> {
-        match self.encoding {
-            Encoding::Binary => self.array(field).map(u16::from_be_bytes),
-            Encoding::Text => self.number(field, 16).map(|value| value as u16),
+        match self.form {
+            Form::Text => self.number(field, 16).map(|value| value as u16),
+            Form::BigEndian => self.array(field).map(u16::from_be_bytes),
+            Form::LittleEndian => self.array(field).map(u16::from_le_bytes),
         }
     }
 
@@ -166,9 +136,10 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn u32(&mut self, field: &'static str) -> Result<u32, SickError> {
-        match self.encoding {
-            Encoding::Binary => self.array(field).map(u32::from_be_bytes),
-            Encoding::Text => self.number(field, 32),
+        match self.form {
+            Form::Text => self.number(field, 32),
+            Form::BigEndian => self.array(field).map(u32::from_be_bytes),
+            Form::LittleEndian => self.array(field).map(u32::from_le_bytes),
         }
     }
 
@@ -177,12 +148,8 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn f32(&mut self, field: &'static str) -> Result<f32, SickError> {
-        let offset = self.at;
-        let value = self.u32(field).map(f32::from_bits)?;
-        if value.is_finite() {
-            return Ok(value);
-        }
-        Err(field_error(field, offset, &value, "a finite number"))
+        let read = |cursor: &mut Self, field| cursor.u32(field).map(f32::from_bits);
+        self.checked(field, read, |value| value.is_finite(), "a finite number")
     }
 
     pub(crate) fn pair(&mut self, field: &'static str) -> Result<[u8; 2], SickError> {
@@ -194,16 +161,13 @@ impl<'a> Cursor<'a> {
         &mut self,
         field: &'static str,
     ) -> Result<[u8; N], SickError> {
-        let offset = self.at;
-        match self.encoding {
-            Encoding::Binary => self.array(field),
-            Encoding::Text => {
-                let word = self.word(field)?;
-                word.try_into().map_err(|_| {
-                    field_error(field, offset, &word.escape_ascii(), "a word of its length")
-                })
-            }
+        if !self.is_text() {
+            return self.array(field);
         }
+        let offset = self.at;
+        let word = self.word(field)?;
+        word.try_into()
+            .map_err(|_| field_error(field, offset, &word.escape_ascii(), "a word of its length"))
     }
 
     /// Takes `count` characters, which may include spaces.
@@ -213,18 +177,34 @@ impl<'a> Cursor<'a> {
         count: usize,
     ) -> Result<&'a [u8], SickError> {
         let characters = self.take(field, count)?;
-        if self.encoding == Encoding::Text {
-            let offset = self.at;
-            match self.rest.first() {
-                None => {}
-                Some(b' ') => self.advance_past_space(self.rest, 0),
-                Some(other) => {
-                    let found = other.escape_ascii();
-                    return Err(field_error(field, offset, &found, "a space behind it"));
+        match self.rest.first() {
+            Some(other) if self.is_text() && *other != b' ' => {
+                let found = other.escape_ascii();
+                Err(field_error(field, self.at, &found, "a space behind it"))
+            }
+            _ => {
+                if self.is_text() {
+                    self.skip_space();
                 }
+                Ok(characters)
             }
         }
-        Ok(characters)
+    }
+
+    /// Takes a value that `is_allowed` accepts; `allowed` describes those in words.
+    pub(crate) fn checked<T: ToString>(
+        &mut self,
+        field: &'static str,
+        read: impl FnOnce(&mut Self, &'static str) -> Result<T, SickError>,
+        is_allowed: impl FnOnce(&T) -> bool,
+        allowed: &'static str,
+    ) -> Result<T, SickError> {
+        let offset = self.at;
+        let value = read(self, field)?;
+        match is_allowed(&value) {
+            true => Ok(value),
+            false => Err(field_error(field, offset, &value, allowed)),
+        }
     }
 
     /// Takes a u8 of at most `max`; `allowed` is the same range in words.
@@ -234,12 +214,7 @@ impl<'a> Cursor<'a> {
         max: u8,
         allowed: &'static str,
     ) -> Result<u8, SickError> {
-        let offset = self.at;
-        let value = self.u8(field)?;
-        if value <= max {
-            return Ok(value);
-        }
-        Err(field_error(field, offset, &value, allowed))
+        self.checked(field, Self::u8, |&value| value <= max, allowed)
     }
 
     /// Takes a u16 of at most `max`; `allowed` is the same range in words.
@@ -249,12 +224,19 @@ impl<'a> Cursor<'a> {
         max: u16,
         allowed: &'static str,
     ) -> Result<u16, SickError> {
+        self.checked(field, Self::u16, |&value| value <= max, allowed)
+    }
+
+    /// Takes a u8 that `known` accepts; `allowed` lists the accepted codes.
+    pub(crate) fn known<T>(
+        &mut self,
+        field: &'static str,
+        known: impl FnOnce(u8) -> Option<T>,
+        allowed: &'static str,
+    ) -> Result<T, SickError> {
         let offset = self.at;
-        let value = self.u16(field)?;
-        if value <= max {
-            return Ok(value);
-        }
-        Err(field_error(field, offset, &value, allowed))
+        let code = self.u8(field)?;
+        known(code).ok_or_else(|| field_error(field, offset, &format!("{code:#04x}"), allowed))
     }
 
     /// Takes a u8 that is 0 or 1.
@@ -274,13 +256,10 @@ impl<'a> Cursor<'a> {
 
     /// Checks that no bytes are left.
     pub(crate) fn end(&self) -> Result<(), SickError> {
-        if self.rest.is_empty() {
-            return Ok(());
+        match (self.at, self.rest.len()) {
+            (_, 0) => Ok(()),
+            (offset, left) => Err(SickError::Trailing { offset, left }),
         }
-        Err(SickError::Trailing {
-            offset: self.at,
-            left: self.rest.len(),
-        })
     }
 
     fn short(&self, field: &'static str, needed: usize) -> SickError {
@@ -291,6 +270,15 @@ impl<'a> Cursor<'a> {
             left: self.rest.len(),
         }
     }
+}
+
+/// Returns the value of 1 to 8 hexadecimal digits.
+fn hexadecimal(word: &[u8]) -> Option<i64> {
+    let digits = word.iter().map(|&byte| char::from(byte).to_digit(16));
+    let value = digits
+        .take(9)
+        .try_fold(0, |value, digit| Some(value << 4 | i64::from(digit?)))?;
+    (word.len() <= 8).then_some(value)
 }
 
 pub(crate) fn field_error(
