@@ -6,20 +6,18 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use image::ImageDecoder;
 use image::codecs::bmp::BmpDecoder;
-use image::{ColorType, ImageDecoder};
 
 use crate::MapError;
-use crate::claim::{Claim, HEAD_BYTES, check_size};
-use crate::raster::{Channels, Raster, Samples};
+use crate::claim::{Claim, HEAD_BYTES, check_size, truncated};
+use crate::raster::{Raster, Samples};
 
-/// First bytes of every such file.
 pub(crate) const SIGNATURE: &[u8] = b"BM";
 
 /// Largest number of pixels encoded by two bytes of a packed bitmap.
 const MAX_RUN: u64 = 255;
 
-/// Reads the header of a file that begins with `head`.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let Some(claims) = Claims::read(head) else {
         return Ok(Claim::NONE);
@@ -34,23 +32,17 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
 
 /// Decodes a file that starts with [`SIGNATURE`]; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
-    let damaged = |source| MapError::ImageDecode {
-        path: path.to_owned(),
-        source,
-    };
+    let damaged = MapError::damaged(path);
     if let Some(claims) = Claims::read(bytes) {
         claims.check(bytes, path)?;
     }
     let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     check_size(path, width, height)?;
-    let channels = match decoder.color_type() {
-        ColorType::Rgba8 => Channels::RgbAlpha,
-        // The decoder returns all others, including palettes, as RGB.
-        _ => Channels::Rgb,
-    };
+    // RGB, also of palettes, or with alpha.
+    let channels = usize::from(decoder.color_type().channel_count());
     // The sides are within the limits, so the product fits.
-    let mut pixels = vec![0; width as usize * height as usize * channels.count()];
+    let mut pixels = vec![0; width as usize * height as usize * channels];
     decoder.read_image(&mut pixels).map_err(damaged)?;
     Ok(Raster {
         width,
@@ -112,17 +104,11 @@ impl Claims {
             // Rows are padded to 32 bits.
             false => (u64::from(width) * self.bits).div_ceil(32) * 4 * u64::from(height),
         };
-        let found = (bytes.len() as u64).saturating_sub(self.first_pixel);
-        if found < needed {
-            return Err(MapError::ImageTruncated {
-                path: path.to_owned(),
-                width,
-                height,
-                needed,
-                found,
-            });
+        let found = bytes.len().saturating_sub(self.first_pixel as usize);
+        match (found as u64) < needed {
+            true => Err(truncated(path, (width, height), needed, found)),
+            false => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -164,7 +150,6 @@ mod tests {
         Ok((0..raster.height).flat_map(|y| raster.row(y)).collect())
     }
 
-    /// Returns the first channel of each pixel, of 255.
     fn reds(bytes: &[u8]) -> Vec<u16> {
         let pixels = pixels(bytes).unwrap();
         pixels.iter().map(|pixel| pixel.colour[0] / 257).collect()

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::MapError;
-use crate::limits::size_is_allowed;
+use crate::limits::{size_is_allowed, sizes_allowed};
 
 /// Number of bytes read to check the header; no header is longer.
 pub(crate) const HEAD_BYTES: u64 = 64 << 10;
@@ -20,7 +20,6 @@ const OTHERS: &[(&[u8], &str)] = &[
     (b"%PDF", "a PDF"),
 ];
 
-/// Size of an image according to its header.
 pub(crate) struct Claim {
     /// Width and height in pixels; 0 if the header is cut off.
     pub(crate) sides: (u32, u32),
@@ -28,17 +27,28 @@ pub(crate) struct Claim {
     pub(crate) most_bytes: u64,
 }
 
-/// Checks the sides of an image against the limits.
 pub(crate) fn check_size(path: &Path, width: u32, height: u32) -> Result<(), MapError> {
     if size_is_allowed(width, height) {
         return Ok(());
     }
-    let path = path.to_owned();
-    Err(MapError::ImageSize {
+    Err(MapError::invalid(
         path,
-        width,
-        height,
-    })
+        format!("claims {width} x {height} cells; {}", sizes_allowed()),
+    ))
+}
+
+pub(crate) fn truncated(
+    path: &Path,
+    (width, height): (u32, u32),
+    needed: u64,
+    found: usize,
+) -> MapError {
+    MapError::invalid(
+        path,
+        format!(
+            "is cut short: {width} x {height} cells need at least {needed} bytes, {found} are there"
+        ),
+    )
 }
 
 impl Claim {
@@ -49,12 +59,12 @@ impl Claim {
     };
 }
 
-/// Returns the error for an unsupported format.
 pub(crate) fn wrong_kind(bytes: &[u8], path: &Path) -> MapError {
-    MapError::ImageKind {
-        path: path.to_owned(),
-        found: name(bytes),
-    }
+    let found = name(bytes);
+    MapError::invalid(
+        path,
+        format!("holds {found}; allowed: PGM (P2 or P5), PNG and BMP"),
+    )
 }
 
 fn name(bytes: &[u8]) -> String {

@@ -18,7 +18,6 @@ use crate::limits::{origin_is_allowed, resolution_is_allowed};
 use crate::rules::{Mode, Rules, Thresholds};
 use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError, UnknownKey};
 
-/// Content of a description.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Description {
     /// Path of the image file, with a relative name resolved against the description's folder.
@@ -28,12 +27,10 @@ pub(crate) struct Description {
     pub(crate) resolution_m: f64,
     pub(crate) map_from_grid: Pose,
     pub(crate) rules: Rules,
-    /// Unknown keys in the order of the file.
     pub(crate) unknown: Vec<UnknownKey>,
 }
 
 impl Description {
-    /// Parses the text of the file at `path`.
     pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, MapError> {
         let keys: Keys =
             serde_saphyr::from_str(without_mark(text)).map_err(|error| syntax(path, &error))?;
@@ -176,16 +173,14 @@ fn refuse<T>(
     value: &Spanned<T>,
     key: &'static str,
     found: impl Display,
-    allowed: impl Into<String>,
+    allowed: impl Display,
 ) -> MapError {
     let (line, column) = place(value);
-    MapError::Value {
+    MapError::Yaml {
         path: path.to_owned(),
         line,
         column,
-        key,
-        found: found.to_string(),
-        allowed: allowed.into(),
+        reason: format!("{key} is {found}; allowed: {allowed}"),
     }
 }
 

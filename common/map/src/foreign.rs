@@ -13,7 +13,6 @@ const HEAD_BYTES: u64 = 64 << 10;
 
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
-/// Table of a bag of ROS 2 in SQLite.
 const BAG_TABLE: &[u8] = b"CREATE TABLE topics";
 
 /// Names, first bytes (or a table, in SQLite), endings, and advice, in which SAVER stands for [`SAVER`].
@@ -86,11 +85,8 @@ pub fn check_kind(path: &Path) -> Result<(), MapError> {
     let advice = advice
         .replace("SAVER", SAVER)
         .replace("FILE", &file.to_string());
-    Err(MapError::Foreign {
-        path: path.to_owned(),
-        name,
-        advice: advice.replace("BARE", &bare.display().to_string()),
-    })
+    let advice = advice.replace("BARE", &bare.display().to_string());
+    Err(MapError::invalid(path, format!("is {name}: {advice}")))
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use geometry::Pose;
 
-use crate::MapError;
-use crate::limits::{origin_is_allowed, resolution_is_allowed, size_is_allowed};
+use crate::limits::{origin_is_allowed, resolution_is_allowed, size_is_allowed, sizes_allowed};
+use crate::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
 
 pub use messages::UNKNOWN;
 
@@ -25,9 +25,6 @@ pub struct OccupancyGrid {
 
 impl OccupancyGrid {
     /// Creates a grid and checks each part against the crate's limits.
-    ///
-    /// # Errors
-    /// A part is invalid.
     pub fn from_parts(
         width: u32,
         height: u32,
@@ -35,39 +32,38 @@ impl OccupancyGrid {
         map_from_grid: Pose,
         cells: Vec<u8>,
     ) -> Result<Self, MapError> {
-        if !size_is_allowed(width, height) {
-            return Err(MapError::GridSize { width, height });
-        }
-        if !resolution_is_allowed(resolution_m) {
-            return Err(MapError::Resolution {
-                found: resolution_m,
-            });
-        }
-        if !origin_is_allowed(map_from_grid) {
-            return Err(MapError::Origin {
-                found: map_from_grid,
-            });
-        }
-        if cells.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(MapError::CellCount {
+        let Pose { x, y, yaw } = map_from_grid;
+        let found = cells.len();
+        let problem = if !size_is_allowed(width, height) {
+            format!("a grid of {width} x {height} cells; {}", sizes_allowed())
+        } else if !resolution_is_allowed(resolution_m) {
+            format!(
+                "a resolution of {resolution_m} m; allowed: {MIN_RESOLUTION_M}..={MAX_RESOLUTION_M} m"
+            )
+        } else if !origin_is_allowed(map_from_grid) {
+            format!(
+                "an origin at x {x} m, y {y} m, yaw {yaw} rad; allowed: within {MAX_ORIGIN_M} m, \
+                 and a yaw of at most a turn"
+            )
+        } else if found as u64 != u64::from(width) * u64::from(height) {
+            format!("{found} cells for a grid of {width} x {height}; allowed: width times height")
+        } else if let Some(at) = cells.iter().position(|&c| c > 100 && c != UNKNOWN) {
+            // Below MAX_CELLS, so both parts fit.
+            let (x, y, cell) = (at as u32 % width, at as u32 / width, cells[at]);
+            format!("cell {x}, {y} is {cell}; allowed: 0..=100, and 255 for unknown")
+        } else {
+            return Ok(OccupancyGrid {
                 width,
                 height,
-                found: cells.len(),
+                resolution_m,
+                map_from_grid,
+                cells,
             });
-        }
-        let grid = OccupancyGrid {
-            width,
-            height,
-            resolution_m,
-            map_from_grid,
-            cells,
         };
-        grid.check_values()?;
-        Ok(grid)
+        Err(MapError::Invalid(problem))
     }
 
     /// Returns the id of the map from its geometry and cells: see [`messages::map_id`].
-    #[must_use]
     pub fn id(&self) -> u64 {
         let (sides, origin) = ((self.width, self.height), self.map_from_grid.into());
         messages::map_id(sides, self.resolution_m, origin, &self.cells)
@@ -75,7 +71,6 @@ impl OccupancyGrid {
 
     /// Returns the centre of a cell in the map frame, in metres; cells off the grid are
     /// extrapolated.
-    #[must_use]
     pub fn cell_center(&self, x: u32, y: u32) -> (f64, f64) {
         self.map_from_grid.transform(
             (f64::from(x) + 0.5) * self.resolution_m,
@@ -85,7 +80,6 @@ impl OccupancyGrid {
 
     /// Returns the column and row of the cell with a point of the map frame, if the point is on the
     /// grid.
-    #[must_use]
     pub fn cell_at(&self, x_m: f64, y_m: f64) -> Option<(u32, u32)> {
         let (x, y) = self.map_from_grid.inverse().transform(x_m, y_m);
         let column = (x / self.resolution_m).floor();
@@ -93,19 +87,6 @@ impl OccupancyGrid {
         let inside = (0.0..f64::from(self.width)).contains(&column)
             && (0.0..f64::from(self.height)).contains(&row);
         inside.then_some((column as u32, row as u32))
-    }
-
-    fn check_values(&self) -> Result<(), MapError> {
-        let is_allowed = |&cell: &u8| cell <= 100 || cell == UNKNOWN;
-        let Some(index) = self.cells.iter().position(|cell| !is_allowed(cell)) else {
-            return Ok(());
-        };
-        // The index is below MAX_CELLS, so both parts fit.
-        Err(MapError::CellValue {
-            x: index as u32 % self.width,
-            y: index as u32 / self.width,
-            found: self.cells[index],
-        })
     }
 }
 
@@ -123,53 +104,28 @@ mod tests {
 
     #[test]
     fn parts_out_of_range_are_refused() {
-        let build = |width, height, resolution, pose, cells: usize| {
-            OccupancyGrid::from_parts(width, height, resolution, pose, vec![0; cells])
-        };
         let at = Pose::IDENTITY;
-        assert!(build(2, 3, 0.05, at, 6).is_ok());
-        assert!(matches!(
-            build(0, 3, 0.05, at, 0),
-            Err(MapError::GridSize { width: 0, .. })
-        ));
-        assert!(matches!(
-            build(32_768, 1, 0.05, at, 32_768),
-            Err(MapError::GridSize { .. })
-        ));
-        assert!(matches!(
-            build(32_767, 32_767, 0.05, at, 0),
-            Err(MapError::GridSize { .. })
-        ));
-        assert!(matches!(
-            build(2, 3, 0.05, at, 5),
-            Err(MapError::CellCount { found: 5, .. })
-        ));
+        let check = |sides: (u32, u32), resolution, pose, cells: Vec<u8>, expected: &str| {
+            let grid = OccupancyGrid::from_parts(sides.0, sides.1, resolution, pose, cells);
+            let found = grid.map_or_else(|error| error.to_string(), |_| String::new());
+            assert!(found.starts_with(expected), "{found}");
+            assert_eq!(found.is_empty(), expected.is_empty(), "{found}");
+        };
+        check((2, 3), 0.05, at, vec![0; 6], "");
+        for sides in [(0, 3), (32_768, 1), (32_767, 32_767)] {
+            check(sides, 0.05, at, vec![], "a grid of");
+        }
+        check((2, 3), 0.05, at, vec![0; 5], "5 cells for a grid of 2 x 3");
         for resolution in [0.0, -0.05, f64::NAN, f64::INFINITY, 0.000_999, 10.001] {
-            assert!(matches!(
-                build(2, 3, resolution, at, 6),
-                Err(MapError::Resolution { .. })
-            ));
+            check((2, 3), resolution, at, vec![0; 6], "a resolution of");
         }
-        for pose in [
-            Pose::new(f64::NAN, 0.0, 0.0),
-            Pose::new(0.0, 1.1e8, 0.0),
-            Pose::new(0.0, 0.0, 90.0),
-        ] {
-            assert!(matches!(
-                build(2, 3, 0.05, pose, 6),
-                Err(MapError::Origin { .. })
-            ));
+        for (x, y, yaw) in [(f64::NAN, 0.0, 0.0), (0.0, 1.1e8, 0.0), (0.0, 0.0, 90.0)] {
+            let pose = Pose::new(x, y, yaw);
+            check((2, 3), 0.05, pose, vec![0; 6], "an origin at");
         }
-    }
-
-    #[test]
-    fn a_cell_out_of_range_is_named() {
         let cells = vec![0, 50, 100, UNKNOWN, 101, 0];
-        let error = OccupancyGrid::from_parts(3, 2, 0.05, Pose::IDENTITY, cells).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "cell 1, 1 is 101; allowed: 0..=100, and 255 for unknown"
-        );
+        let expected = "cell 1, 1 is 101; allowed: 0..=100, and 255 for unknown";
+        check((3, 2), 0.05, at, cells, expected);
     }
 
     #[test]

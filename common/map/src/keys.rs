@@ -9,7 +9,6 @@ use std::fmt::{self, Display, Formatter};
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, Visitor};
 use serde_saphyr::Spanned;
 
-/// Known keys.
 const KNOWN: &[&str] = &[
     "image",
     "resolution",
@@ -20,7 +19,6 @@ const KNOWN: &[&str] = &[
     "mode",
 ];
 
-/// Values of a description.
 pub(crate) struct Keys {
     pub(crate) image: Spanned<Scalar>,
     pub(crate) resolution: Spanned<Scalar>,
@@ -29,7 +27,6 @@ pub(crate) struct Keys {
     pub(crate) occupied_thresh: Spanned<Scalar>,
     pub(crate) free_thresh: Spanned<Scalar>,
     pub(crate) mode: Option<Spanned<Scalar>>,
-    /// Unknown keys in the order of the file.
     pub(crate) unknown: Vec<Spanned<String>>,
 }
 
@@ -118,13 +115,9 @@ impl<'de> Visitor<'de> for Mapping {
 /// An unknown key of a description: a key of another program, or a misspelt one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
-    /// Path of the description.
     pub path: std::path::PathBuf,
-    /// Line, from 1.
     pub line: u64,
-    /// Column, from 1.
     pub column: u64,
-    /// Name of the key.
     pub key: String,
 }
 

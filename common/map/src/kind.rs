@@ -22,12 +22,10 @@ fn readers(head: &[u8], path: &Path) -> Result<(Read<Claim>, Read<Raster>), MapE
     }
 }
 
-/// Decodes an image of any supported format; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     readers(bytes, path)?.1(bytes, path)
 }
 
-/// Reads the header of an image that begins with `head`; `path` is for errors.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     readers(head, path)?.0(head, path)
 }

@@ -23,7 +23,6 @@ pub const MAX_RESOLUTION_M: f64 = 10.0;
 /// Earth, and an `f64` still has a resolution of 15 nanometres there.
 pub const MAX_ORIGIN_M: f64 = 1e8;
 
-/// True if a grid may have these sides.
 pub(crate) fn size_is_allowed(width: u32, height: u32) -> bool {
     let sides = 1..=MAX_SIDE;
     sides.contains(&width)
@@ -39,4 +38,9 @@ pub(crate) fn resolution_is_allowed(metres: f64) -> bool {
 /// True if a grid may have this origin; false for NaN and infinities.
 pub(crate) fn origin_is_allowed(origin: Pose) -> bool {
     origin.x.abs() <= MAX_ORIGIN_M && origin.y.abs() <= MAX_ORIGIN_M && origin.yaw.abs() <= TAU
+}
+
+/// Says which sides [`size_is_allowed`] accepts.
+pub(crate) fn sizes_allowed() -> String {
+    format!("allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells")
 }

@@ -15,10 +15,9 @@ use std::path::Path;
 use image::codecs::pnm::{GraymapHeader, PnmDecoder, PnmHeader, SampleEncoding};
 
 use crate::MapError;
-use crate::claim::{Claim, HEAD_BYTES, check_size, wrong_kind};
-use crate::raster::{Channels, FULL, Raster, Samples};
+use crate::claim::{Claim, HEAD_BYTES, check_size, truncated, wrong_kind};
+use crate::raster::{FULL, Raster, Samples};
 
-/// Reads the header of a file that begins with `head`, P2 or P5.
 pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let (_, header) = read_header(head, path)?;
     let pixel = match header.as_graymap() {
@@ -37,19 +36,14 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
 
 /// Reads the header, checks its sides, and returns it with the offset of the pixels.
 fn read_header(bytes: &[u8], path: &Path) -> Result<(usize, PnmHeader), MapError> {
-    let damaged = |source| MapError::ImageDecode {
-        path: path.to_owned(),
-        source,
-    };
     let (cursor, header) = PnmDecoder::new(Cursor::new(bytes))
-        .map_err(damaged)?
+        .map_err(MapError::damaged(path))?
         .into_inner();
     check_size(path, header.width(), header.height())?;
     let start = usize::try_from(cursor.position()).unwrap_or(usize::MAX);
     Ok((start, header))
 }
 
-/// Decodes a file that starts with P2 or P5; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     let (start, header) = read_header(bytes, path)?;
     let Some(header) = header.as_graymap() else {
@@ -63,7 +57,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     Ok(Raster {
         width: header.width,
         height: header.height,
-        channels: Channels::Grey,
+        channels: 1,
         samples: match header.encoding {
             SampleEncoding::Binary => pixels.binary()?,
             SampleEncoding::Ascii => pixels.plain()?,
@@ -71,7 +65,6 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     })
 }
 
-/// Pixels of a file, after its header.
 struct Pixels<'a> {
     header: &'a GraymapHeader,
     bytes: &'a [u8],
@@ -90,7 +83,9 @@ impl Pixels<'_> {
             .bytes
             .split_at_checked(self.count() * width)
             .ok_or_else(|| self.truncated(self.count() * width))?;
-        self.check_rest(rest)?;
+        if !rest.iter().all(u8::is_ascii_whitespace) {
+            return Err(self.surplus(rest.len()));
+        }
         if self.header.maxwhite == 255 {
             return Ok(Samples::Eight(pixels.to_vec()));
         }
@@ -131,7 +126,7 @@ impl Pixels<'_> {
         let text = std::str::from_utf8(word).unwrap_or_default();
         text.parse().map_err(|_| {
             let shown = String::from_utf8_lossy(&word[..word.len().min(16)]);
-            self.bad_pixel(index, shown.into_owned())
+            self.bad_pixel(index, &shown)
         })
     }
 
@@ -139,7 +134,7 @@ impl Pixels<'_> {
     fn scaled(&self, index: usize, value: u32) -> Result<u16, MapError> {
         let highest = self.header.maxwhite;
         if value > highest {
-            return Err(self.bad_pixel(index, value.to_string()));
+            return Err(self.bad_pixel(index, &value.to_string()));
         }
         let full = u64::from(FULL);
         let scaled = (u64::from(value) * full + u64::from(highest) / 2) / u64::from(highest);
@@ -147,41 +142,29 @@ impl Pixels<'_> {
         Ok(scaled as u16)
     }
 
-    fn check_rest(&self, rest: &[u8]) -> Result<(), MapError> {
-        if rest.iter().all(u8::is_ascii_whitespace) {
-            return Ok(());
-        }
-        Err(self.surplus(rest.len()))
-    }
-
-    fn bad_pixel(&self, index: usize, found: String) -> MapError {
+    fn bad_pixel(&self, index: usize, found: &str) -> MapError {
         let width = self.header.width as usize;
-        MapError::ImagePixel {
-            path: self.path.to_owned(),
-            x: (index % width) as u64,
-            y: (index / width) as u64,
-            found,
-            allowed: self.header.maxwhite,
-        }
+        let (x, y, allowed) = (index % width, index / width, self.header.maxwhite);
+        MapError::Invalid(format!(
+            "{}: pixel {x}, {y} from the top left is {found}; allowed: 0..={allowed}",
+            self.path.display()
+        ))
     }
 
     fn truncated(&self, needed: usize) -> MapError {
-        MapError::ImageTruncated {
-            path: self.path.to_owned(),
-            width: self.header.width,
-            height: self.header.height,
-            needed: needed as u64,
-            found: self.bytes.len() as u64,
-        }
+        let sides = (self.header.width, self.header.height);
+        truncated(self.path, sides, needed as u64, self.bytes.len())
     }
 
     fn surplus(&self, bytes: usize) -> MapError {
-        MapError::ImageSurplus {
-            path: self.path.to_owned(),
-            width: self.header.width,
-            height: self.header.height,
-            surplus: bytes as u64,
-        }
+        let (width, height) = (self.header.width, self.header.height);
+        MapError::invalid(
+            self.path,
+            format!(
+                "goes on for {bytes} bytes after the last of {width} x {height} cells; allowed: \
+                 white space"
+            ),
+        )
     }
 }
 

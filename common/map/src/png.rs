@@ -7,13 +7,12 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::codecs::png::PngDecoder;
-use image::{ColorType, ImageDecoder, Limits};
+use image::{ImageDecoder, Limits};
 
-use crate::claim::{Claim, check_size};
-use crate::raster::{Channels, Raster, Samples};
+use crate::claim::{Claim, check_size, truncated};
+use crate::raster::{Raster, Samples};
 use crate::{MAX_SIDE, MapError};
 
-/// First bytes of every such file.
 pub(crate) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Last chunk of every such file: its length, name and checksum.
@@ -42,12 +41,8 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     })
 }
 
-/// Decodes a file that starts with [`SIGNATURE`]; `path` is for errors.
 pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
-    let damaged = |source| MapError::ImageDecode {
-        path: path.to_owned(),
-        source,
-    };
+    let damaged = MapError::damaged(path);
     check_claims(bytes, path)?;
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(MAX_SIDE);
@@ -55,10 +50,12 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     limits.max_alloc = Some(DECODER_BYTES);
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
-    let (channels, wide) = layout(decoder.color_type(), path)?;
+    // The decoder expands palettes, and samples of fewer than eight bits.
+    let colour = decoder.color_type();
+    let channels = usize::from(colour.channel_count());
     // The sides are within the limits, so the product fits.
-    let count = width as usize * height as usize * channels.count();
-    let samples = if wide {
+    let count = width as usize * height as usize * channels;
+    let samples = if colour.bytes_per_pixel() > colour.channel_count() {
         let mut samples = vec![0; count];
         let mut pixels = vec![0; 2 * count];
         decoder.read_image(&mut pixels).map_err(damaged)?;
@@ -71,7 +68,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
         decoder.read_image(&mut pixels).map_err(damaged)?;
         Samples::Eight(pixels)
     };
-    check_end(bytes, path, width, height)?;
+    check_end(bytes, path, (width, height))?;
     Ok(Raster {
         width,
         height,
@@ -112,49 +109,19 @@ fn check_claims(bytes: &[u8], path: &Path) -> Result<(), MapError> {
     let row = (u64::from(width) * samples * u64::from(bits)).div_ceil(8);
     let needed = (row * u64::from(height)).div_ceil(MAX_RATIO);
     if needed > bytes.len() as u64 {
-        return Err(truncated(bytes, path, width, height, needed));
+        return Err(truncated(path, (width, height), needed, bytes.len()));
     }
     Ok(())
 }
 
 /// Checks that the file has its last chunk. The decoder stops at the last pixel; a cut file may
 /// lack the checksum of the pixels.
-fn check_end(bytes: &[u8], path: &Path, width: u32, height: u32) -> Result<(), MapError> {
+fn check_end(bytes: &[u8], path: &Path, sides: (u32, u32)) -> Result<(), MapError> {
     if bytes.windows(END.len()).rev().any(|window| window == END) {
         return Ok(());
     }
     let needed = bytes.len() as u64 + 1;
-    Err(truncated(bytes, path, width, height, needed))
-}
-
-fn truncated(bytes: &[u8], path: &Path, width: u32, height: u32, needed: u64) -> MapError {
-    MapError::ImageTruncated {
-        path: path.to_owned(),
-        width,
-        height,
-        needed,
-        found: bytes.len() as u64,
-    }
-}
-
-/// Returns the layout after the decoder has expanded palettes and samples of fewer than eight bits.
-fn layout(colour: ColorType, path: &Path) -> Result<(Channels, bool), MapError> {
-    Ok(match colour {
-        ColorType::L8 => (Channels::Grey, false),
-        ColorType::La8 => (Channels::GreyAlpha, false),
-        ColorType::Rgb8 => (Channels::Rgb, false),
-        ColorType::Rgba8 => (Channels::RgbAlpha, false),
-        ColorType::L16 => (Channels::Grey, true),
-        ColorType::La16 => (Channels::GreyAlpha, true),
-        ColorType::Rgb16 => (Channels::Rgb, true),
-        ColorType::Rgba16 => (Channels::RgbAlpha, true),
-        other => {
-            return Err(MapError::ImageKind {
-                path: path.to_owned(),
-                found: format!("a PNG with samples of type {other:?}"),
-            });
-        }
-    })
+    Err(truncated(path, sides, needed, bytes.len()))
 }
 
 #[cfg(test)]

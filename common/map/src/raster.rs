@@ -6,24 +6,14 @@
 /// Full brightness or opacity of a channel.
 pub(crate) const FULL: u16 = u16::MAX;
 
-/// Image with rows from the top, pixels from the left, and interleaved channels.
 pub(crate) struct Raster {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    pub(crate) channels: Channels,
+    /// Number of channels: 1 for grey, 3 for red, green and blue, and one more for alpha.
+    pub(crate) channels: usize,
     pub(crate) samples: Samples,
 }
 
-/// Channels of a pixel in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Channels {
-    Grey,
-    GreyAlpha,
-    Rgb,
-    RgbAlpha,
-}
-
-/// Samples with the width of the file.
 pub(crate) enum Samples {
     /// Maximum 255.
     Eight(Vec<u8>),
@@ -40,17 +30,6 @@ pub(crate) struct Pixel {
     pub(crate) alpha: Option<u16>,
 }
 
-impl Channels {
-    pub(crate) fn count(self) -> usize {
-        match self {
-            Channels::Grey => 1,
-            Channels::GreyAlpha => 2,
-            Channels::Rgb => 3,
-            Channels::RgbAlpha => 4,
-        }
-    }
-}
-
 impl Raster {
     /// Returns the pixels of a row from the left; `y` counts from the top.
     pub(crate) fn row(&self, y: u32) -> impl Iterator<Item = Pixel> {
@@ -59,25 +38,14 @@ impl Raster {
     }
 
     fn pixel(&self, index: usize) -> Pixel {
-        let first = index * self.channels.count();
+        let first = index * self.channels;
         let sample = |channel: usize| self.samples.get(first + channel);
-        match self.channels {
-            Channels::Grey => Pixel {
-                colour: [sample(0); 3],
-                alpha: None,
+        Pixel {
+            colour: match self.channels {
+                1 | 2 => [sample(0); 3],
+                _ => [sample(0), sample(1), sample(2)],
             },
-            Channels::GreyAlpha => Pixel {
-                colour: [sample(0); 3],
-                alpha: Some(sample(1)),
-            },
-            Channels::Rgb => Pixel {
-                colour: [sample(0), sample(1), sample(2)],
-                alpha: None,
-            },
-            Channels::RgbAlpha => Pixel {
-                colour: [sample(0), sample(1), sample(2)],
-                alpha: Some(sample(3)),
-            },
+            alpha: matches!(self.channels, 2 | 4).then(|| sample(self.channels - 1)),
         }
     }
 }

@@ -12,7 +12,6 @@ use crate::raster::{FULL, Pixel};
 const FREE: u8 = 0;
 const OCCUPIED: u8 = 100;
 
-/// Conversion of the shades of an image to occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Mode {
     /// Occupied, free or unknown by the thresholds.
@@ -33,7 +32,6 @@ pub(crate) struct Thresholds {
     pub(crate) free: f64,
 }
 
-/// Rules for the pixels of an image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rules {
     pub(crate) mode: Mode,
@@ -43,7 +41,6 @@ pub(crate) struct Rules {
 }
 
 impl Rules {
-    /// Returns the occupancy of a pixel.
     pub(crate) fn occupancy(self, pixel: Pixel) -> u8 {
         match self.mode {
             Mode::Trinary => {

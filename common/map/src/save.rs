@@ -32,9 +32,6 @@ struct Keys<'a> {
 ///
 /// Each file is replaced atomically, the image first: a concurrent reader never reads a partial
 /// file, but may read the new image with the old description.
-///
-/// # Errors
-/// A file could not be written.
 pub fn save(grid: &OccupancyGrid, yaml: impl AsRef<Path>) -> Result<(), MapError> {
     let yaml = yaml.as_ref();
     let image = yaml.with_extension("png");

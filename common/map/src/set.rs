@@ -34,36 +34,28 @@ use crate::{MapError, check_kind};
 pub use transition::Transition;
 use transition::TransitionEntry;
 
-/// File in a folder that lists its maps.
 const LIST: &str = "maps.yaml";
 
-/// Error of a set without maps.
 const NO_MAPS: &str = "there are no maps: allowed are a folder with maps (*.yaml, or */map.yaml) \
                        and a file like maps.yaml";
 
-/// Largest number of maps in a set.
 pub const MAX_MAPS: usize = 1000;
 
-/// Largest size of a file that lists maps, in bytes.
 const MAX_LIST_BYTES: u64 = 1 << 20;
 
 /// Maps of a building or a campus.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapSet {
-    /// Maps in the order that decides ties.
     pub maps: Vec<MapFile>,
-    /// Connections between the maps.
     pub transitions: Vec<Transition>,
 }
 
-/// A map of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapFile {
     /// Name, unique in its set.
     pub name: String,
     /// Path of its description, a YAML file of map_server.
     pub yaml: PathBuf,
-    /// Floor, if the set gives one.
     pub floor: Option<String>,
 }
 
@@ -96,9 +88,6 @@ pub fn set_of(path: impl AsRef<Path>) -> Result<MapSet, MapError> {
 
 /// Like [`set_of`], and calls `note` with a line for each YAML file that is left out because it is
 /// not a map, to be shown to the user.
-///
-/// # Errors
-/// See [`set_of`].
 pub fn set_of_noting(path: impl AsRef<Path>, note: impl FnMut(&str)) -> Result<MapSet, MapError> {
     let path = path.as_ref();
     let list = list_of(path);
@@ -111,7 +100,6 @@ pub fn set_of_noting(path: impl AsRef<Path>, note: impl FnMut(&str)) -> Result<M
 }
 
 /// Returns the file that lists the maps of a set; it may be missing in a folder.
-#[must_use]
 pub fn list_of(path: &Path) -> PathBuf {
     match path.is_dir() {
         true => path.join(LIST),
@@ -180,7 +168,6 @@ fn selected(maps: &[MapFile], on: &[String]) -> Result<Vec<bool>, MapError> {
     Ok(maps.iter().map(is_asked).collect())
 }
 
-/// Formats the names of maps, with their floors.
 fn all_names(maps: &[MapFile]) -> String {
     let names = maps.iter().map(|MapFile { name, floor, .. }| match floor {
         Some(floor) => format!("{name} (floor {floor})"),
@@ -311,10 +298,7 @@ fn check(path: &Path, maps: &[MapFile]) -> Result<(), MapError> {
 }
 
 fn refused(path: &Path, reason: String) -> MapError {
-    MapError::Set {
-        path: path.to_owned(),
-        reason,
-    }
+    MapError::Invalid(format!("{}: {reason}", path.display()))
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ fn parse(text: &str) -> Result<Description, MapError> {
     Description::parse(text, Path::new("maps/floor.yaml"))
 }
 
-/// Returns the error for `GOOD` with one piece replaced.
 fn refusal(piece: &str, by: &str) -> String {
     assert!(GOOD.contains(piece));
     parse(&GOOD.replace(piece, by)).unwrap_err().to_string()
@@ -103,76 +102,45 @@ fn unknown_keys_are_returned_with_their_place() {
 
 #[test]
 fn refused_values_name_file_place_and_what_is_allowed() {
-    assert_eq!(
-        refusal("resolution: 0.05", "resolution: 0"),
-        "maps/floor.yaml:2:13: resolution is 0; allowed: 0.001..=10 m a cell"
-    );
-    for resolution in [
-        ".nan", "nan", "-0.05", ".inf", "0.0005", "50", "fine", "'5 cm'",
-    ] {
-        let message = refusal("resolution: 0.05", &format!("resolution: {resolution}"));
-        assert!(
-            message.starts_with("maps/floor.yaml:2:13: resolution is "),
-            "{message}"
-        );
-    }
-    assert_eq!(
-        refusal("resolution: 0.05", "resolution:"),
-        "maps/floor.yaml:2:11: resolution is nothing; allowed: 0.001..=10 m a cell"
-    );
-    for (found, shown) in [
-        ("[-1.5, 2]", "[-1.5, 2]"),
-        ("[-1.5, 2, 0, 0]", "[-1.5, 2, 0, 0]"),
-        ("[-1.5, two, 0]", "[-1.5, two, 0]"),
-        ("[~, 2, 0]", "[nothing, 2, 0]"),
-    ] {
+    // Key, values in the file, line and column, value in the error if it differs, what is allowed.
+    let check = |key: &str, value: &str, at: &str, found: &str, allowed: &str| {
+        let line = GOOD.lines().find(|line| line.starts_with(key)).unwrap();
+        let expected = format!("maps/floor.yaml:{at}: {key} is {found}; allowed: {allowed}");
         assert_eq!(
-            refusal("[-1.5, 2, 0.1]", found),
-            format!(
-                "maps/floor.yaml:3:9: origin is {shown}; allowed: [x, y, yaw], three numbers in \
-                 metres and radians"
-            )
+            refusal(line, format!("{key}: {value}").trim_end()),
+            expected
         );
+    };
+    let allowed = "0.001..=10 m a cell";
+    for value in [".nan", "-0.05", ".inf", "0.0005", "50", "fine", "0"] {
+        check("resolution", value, "2:13", value, allowed);
     }
-    let degrees = refusal("[-1.5, 2, 0.1]", "[-1.5, 2, 90]");
-    assert!(degrees.contains("radians, not degrees"), "{degrees}");
+    check("resolution", "'5 cm'", "2:13", "5 cm", allowed);
+    check("resolution", "", "2:11", "nothing", allowed);
+    let allowed = "[x, y, yaw], three numbers in metres and radians";
+    for value in ["[-1.5, 2]", "[-1.5, 2, 0, 0]", "[-1.5, two, 0]"] {
+        check("origin", value, "3:9", value, allowed);
+    }
+    check("origin", "[~, 2, 0]", "3:9", "[nothing, 2, 0]", allowed);
+    let allowed = "x and y within 100000000 m, and a yaw within 6.283 rad (radians, not degrees)";
+    check("origin", "[1, 2, 90]", "3:9", "[1, 2, 90]", allowed);
     for word in [
         ".nan", "nan", "-nan", "NaN", "'.NAN'", ".inf", "-.inf", "inf", "1e999",
     ] {
-        let message = refusal("[-1.5, 2, 0.1]", &format!("[0, {word}, 0]"));
-        assert_eq!(
-            message,
-            format!(
-                "maps/floor.yaml:3:9: origin is [0, {}, 0]; allowed: x and y within 100000000 m, and \
-                 a yaw within 6.283 rad (radians, not degrees)",
-                word.trim_matches('\'')
-            )
-        );
+        let found = format!("[0, {}, 0]", word.trim_matches('\''));
+        check("origin", &format!("[0, {word}, 0]"), "3:9", &found, allowed);
     }
-    assert_eq!(
-        refusal("free_thresh: 0.196", "free_thresh: 0.65"),
-        "maps/floor.yaml:6:14: free_thresh is 0.65; allowed: below occupied_thresh, which is 0.65"
-    );
-    assert_eq!(
-        refusal("occupied_thresh: 0.65", "occupied_thresh: 65"),
-        "maps/floor.yaml:5:18: occupied_thresh is 65; allowed: 0..=1"
-    );
-    for threshold in [".nan", "inf", "-0.1", "most"] {
-        assert_eq!(
-            refusal("free_thresh: 0.196", &format!("free_thresh: {threshold}")),
-            format!("maps/floor.yaml:6:14: free_thresh is {threshold}; allowed: 0..=1")
-        );
+    for value in ["2", "0.5", "-1", "nan", "perhaps"] {
+        check("negate", value, "4:9", value, "0, 1, false or true");
     }
-    for negate in ["2", "0.5", "-1", "nan", "perhaps"] {
-        assert_eq!(
-            refusal("negate: 0", &format!("negate: {negate}")),
-            format!("maps/floor.yaml:4:9: negate is {negate}; allowed: 0, 1, false or true")
-        );
+    check("occupied_thresh", "65", "5:18", "65", "0..=1");
+    for value in [".nan", "inf", "-0.1", "most"] {
+        check("free_thresh", value, "6:14", value, "0..=1");
     }
-    assert_eq!(
-        refusal("image: floor.pgm", "image: ''"),
-        "maps/floor.yaml:1:8: image is empty; allowed: the name of a PGM, PNG or BMP file"
-    );
+    let allowed = "below occupied_thresh, which is 0.65";
+    check("free_thresh", "0.65", "6:14", "0.65", allowed);
+    let allowed = "the name of a PGM, PNG or BMP file";
+    check("image", "''", "1:8", "empty", allowed);
 }
 
 #[test]

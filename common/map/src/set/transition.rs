@@ -8,14 +8,12 @@ use serde::Deserialize;
 use super::{MapFile, all_names};
 use crate::keys::Scalar;
 
-/// Largest side of a transition in metres.
 const MAX_TRANSITION_M: f64 = 100.0;
 
 /// A rectangle that is on two maps, such as a lift, stairs, or a door between two buildings. A
 /// robot in it has the same pose relative to the rectangle on both maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transition {
-    /// Name of the transition.
     pub name: String,
     /// Indices of the two maps in their set, from 0.
     pub maps: [usize; 2],
