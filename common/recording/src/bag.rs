@@ -98,7 +98,6 @@ impl Bag<'_> {
         Ok(messages)
     }
 
-    /// Schema texts that the bag defines, by schema name.
     fn definitions(&self) -> Result<HashMap<String, String>, RecordingError> {
         let has_any = self
             .database
@@ -144,7 +143,6 @@ impl Bag<'_> {
     }
 }
 
-/// A row of the query `MESSAGES`.
 struct Message<'r> {
     topic: String,
     schema: String,
@@ -201,7 +199,6 @@ mod tests {
         recording.records().map(Result::unwrap).collect()
     }
 
-    /// Error of a sound bag after a change.
     fn refusal(change: &str) -> String {
         let folder = TempDir::new().unwrap();
         let path = bag(&folder, "r.db3", &sample::records());
@@ -228,34 +225,6 @@ mod tests {
         assert_eq!(recording.path(), path);
         assert_eq!(recording.map().unwrap().unwrap(), sample::grid());
         assert_eq!(recording.ground_truths().unwrap().len(), sample::SCANS);
-    }
-
-    #[test]
-    fn messages_that_were_packed_one_by_one_are_unpacked() {
-        let folder = TempDir::new().unwrap();
-        let path = bag(&folder, "r.db3", &sample::records());
-        let database = Connection::open(&path).unwrap();
-        let all = "SELECT id, data FROM messages";
-        let mut all = database.prepare(all).unwrap();
-        let rows = all.query_map((), |row| Ok((row.get(0)?, row.get(1)?)));
-        for row in rows.unwrap() {
-            let (id, data): (i64, Vec<u8>) = row.unwrap();
-            let packed = zstd::encode_all(&*data, 3).unwrap();
-            let change = "UPDATE messages SET data = ?2 WHERE id = ?1";
-            database.execute(change, (id, packed)).unwrap();
-        }
-        let found = read(&path);
-        assert_eq!(found.len(), sample::records().len());
-        assert!(sample::records().iter().all(|r| found.contains(r)));
-        database
-            .execute("UPDATE messages SET data = x'28b52ffd00'", ())
-            .unwrap();
-        let recording = Recording::open(&path).unwrap();
-        let broken = recording.records().next().unwrap().unwrap_err().to_string();
-        assert!(
-            broken.contains("packed with zstd, and does not unpack"),
-            "{broken}"
-        );
     }
 
     #[test]

@@ -13,20 +13,6 @@ use crate::parse::reason;
 use crate::registry::Registry;
 
 /// A part of the file that holds messages: a chunk, or a run of messages outside of chunks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
-    /// True if it is a chunk.
-    pub is_chunk: bool,
-    /// Size in the file, in bytes.
-    pub bytes: usize,
-    pub messages: u64,
-    /// Earliest and latest log time of its messages, in nanoseconds since 1970.
-    pub log_times_ns: (i64, i64),
-    /// Number of messages with an earlier time than the one before them.
-    pub unsorted: u64,
-}
-
-/// Location and statistics of a part.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
     /// File offset of its first record.
@@ -39,9 +25,8 @@ pub(crate) struct Block {
     pub(crate) last_ns: i64,
     /// Number of messages with an earlier time than the one before them, and the log time of the
     /// last message that was added.
-    unsorted: u64,
+    pub(crate) unsorted: u64,
     newest_ns: i64,
-    /// Number of messages by channel.
     pub(crate) counts: BTreeMap<u16, u64>,
 }
 
@@ -65,16 +50,6 @@ impl Block {
             unsorted: 0,
             newest_ns: i64::MIN,
             counts: BTreeMap::new(),
-        }
-    }
-
-    pub(crate) fn part(&self) -> Part {
-        Part {
-            is_chunk: self.is_chunk,
-            bytes: self.bytes.len(),
-            messages: self.messages(),
-            log_times_ns: (self.first_ns, self.last_ns),
-            unsorted: self.unsorted,
         }
     }
 
@@ -113,7 +88,6 @@ impl Block {
         Ok(())
     }
 
-    /// Passes each of its records in `file` to `take`, by opcode and body.
     pub(crate) fn each_record(
         &self,
         file: &[u8],

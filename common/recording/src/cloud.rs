@@ -4,19 +4,16 @@ use ros::{Cloud, CloudMount, Heights, LaserScan};
 
 use crate::Mount;
 
-/// Frame, mount and band of heights of the point clouds.
 #[derive(Debug)]
 pub(crate) struct CloudLaser {
     pub(crate) frame: String,
     pub(crate) base_frame: String,
     pub(crate) mount: CloudMount,
     pub(crate) heights: Heights,
-    /// Notes about the transforms on which the mount depends.
     pub(crate) notes: Vec<String>,
 }
 
 impl CloudLaser {
-    /// Converts the bytes of a point cloud to a scan.
     pub(crate) fn scan(&self, schema: &str, body: &[u8]) -> Result<LaserScan, String> {
         let cloud = Cloud::decode(schema, body)?;
         let frame = &cloud.header().frame_id;

@@ -8,10 +8,8 @@ use mcap::MAGIC;
 
 use crate::RecordingError;
 
-/// Magic of an SQLite 3 database.
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
-/// Magic of a zstd frame.
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
 /// Magic of a skippable zstd frame, without the first byte, which is 0x50 to 0x5f.
@@ -20,49 +18,24 @@ const ZSTD_SKIPPED: &[u8] = &[0x2a, 0x4d, 0x18];
 /// First line of a bag's `metadata.yaml`.
 const METADATA: &[u8] = b"rosbag2_bagfile_information:";
 
-/// Number of bytes that are read to identify the format.
 const START: u64 = 64;
 
-/// Known formats that are not supported: magic, name, and the command that converts the file.
+/// Known formats that are not supported: magic, name, and the command that unpacks the file, or
+/// advice with a command in it.
 const FOREIGN: [(&[u8], &str, &str); 7] = [
     (
         b"#ROSBAG V",
         "a bag of ROS 1",
         "convert it with `rosbags-convert --src FILE --dst BARE` (of `pip install rosbags`)",
     ),
-    (
-        b"\x1f\x8b",
-        "packed with gzip",
-        "unpack it with `gunzip --keep FILE`",
-    ),
-    (
-        b"\xfd7zXZ\0",
-        "packed with xz",
-        "unpack it with `unxz --keep FILE`",
-    ),
-    (
-        b"\x04\x22\x4d\x18",
-        "packed with lz4",
-        "unpack it with `lz4 -d FILE BARE`",
-    ),
-    (
-        b"BZh",
-        "packed with bzip2",
-        "unpack it with `bunzip2 --keep FILE`",
-    ),
-    (
-        b"PK\x03\x04",
-        "a zip archive",
-        "unpack it with `unzip FILE`",
-    ),
-    (
-        b"7z\xbc\xaf\x27\x1c",
-        "a 7-Zip archive",
-        "unpack it with `7z x FILE`",
-    ),
+    (b"\x1f\x8b", "packed with gzip", "gunzip --keep FILE"),
+    (b"\xfd7zXZ\0", "packed with xz", "unxz --keep FILE"),
+    (b"\x04\x22\x4d\x18", "packed with lz4", "lz4 -d FILE BARE"),
+    (b"BZh", "packed with bzip2", "bunzip2 --keep FILE"),
+    (b"PK\x03\x04", "a zip archive", "unzip FILE"),
+    (b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", "7z x FILE"),
 ];
 
-/// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
     Mcap,
@@ -77,9 +50,6 @@ pub(crate) enum Content {
 
 impl Content {
     /// Detects the format of the file; a pipe is not read and unknown.
-    ///
-    /// # Errors
-    /// If it cannot be read.
     pub(crate) fn of(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = RecordingError::open(path);
         let mut start = Vec::new();
@@ -93,7 +63,6 @@ impl Content {
         Ok(Content::of_bytes(&start))
     }
 
-    /// Detects the format from the first bytes.
     pub(crate) fn of_bytes(start: &[u8]) -> Self {
         let foreign = FOREIGN.iter().find(|(magic, ..)| start.starts_with(magic));
         match foreign {
@@ -108,7 +77,6 @@ impl Content {
 }
 
 /// True for a pipe or a device, which can be read only once; `-` is standard input.
-#[must_use]
 pub fn is_stream(path: &Path) -> bool {
     match path.metadata() {
         Ok(found) => !found.is_file() && !found.is_dir(),
@@ -116,7 +84,6 @@ pub fn is_stream(path: &Path) -> bool {
     }
 }
 
-/// True if the bytes start with a zstd frame.
 pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     let is_skipped = |bytes: &[u8]| match bytes.split_first() {
         Some((first, rest)) => first & 0xf0 == 0x50 && rest.starts_with(ZSTD_SKIPPED),
@@ -125,10 +92,13 @@ pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(ZSTD) || is_skipped(bytes)
 }
 
-/// Error for a foreign file, with the command to convert it.
 pub(crate) fn foreign(path: &Path, what: &'static str, advice: &str) -> RecordingError {
     let file = path.display().to_string();
     let bare = path.with_extension("").display().to_string();
+    let advice = match advice.contains('`') {
+        true => advice.to_owned(),
+        false => format!("unpack it with `{advice}`"),
+    };
     RecordingError::Foreign {
         path: path.to_owned(),
         what,

@@ -13,10 +13,8 @@ use crate::{
     RecordingError, Records, TF_STATIC, TransformTree, unpack,
 };
 
-/// Mount of a laser by a recording.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mounted {
-    /// The mount; `None` if the recording does not have it.
     pub mount: Option<Mount>,
     /// Notes on its source, and on invalid transforms.
     pub notes: Vec<String>,
@@ -67,10 +65,6 @@ impl Recording {
         }))
     }
 
-    /// Returns the mount of a laser, if the readable part has it.
-    ///
-    /// # Errors
-    /// Same as [`Recording::mounted`].
     pub fn base_from_laser(&self, laser: &str) -> Result<Option<Mount>, RecordingError> {
         Ok(self.mounted(laser)?.mount)
     }

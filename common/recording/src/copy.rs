@@ -8,7 +8,6 @@ use crate::write::{RecordingWriter, definition_in};
 use crate::{Recording, RecordingError, unpack};
 
 /// True if [`Recording::open`] may be able to read it: a file with suitable content, or a folder.
-#[must_use]
 pub fn is_recording(path: impl AsRef<Path>) -> bool {
     let path = path.as_ref();
     is_bag(path) || Content::of(path).is_ok_and(|content| content == Content::Mcap)
@@ -16,7 +15,6 @@ pub fn is_recording(path: impl AsRef<Path>) -> bool {
 
 /// True if it is a bag of ROS 2 and not a plain MCAP file: a folder, its `metadata.yaml`, an SQLite
 /// file, or a compressed file.
-#[must_use]
 pub fn is_bag(path: impl AsRef<Path>) -> bool {
     let path = path.as_ref();
     let content = || Content::of(path).unwrap_or(Content::Unknown);
@@ -29,9 +27,6 @@ pub fn is_bag(path: impl AsRef<Path>) -> bool {
 
 /// Writes the messages of all parts of a bag by log time, with every message decompressed; returns
 /// the number of messages.
-///
-/// # Errors
-/// If the bag cannot be read or is damaged, or the recording cannot be written.
 pub fn write_bag<W: Write + Seek>(
     path: impl AsRef<Path>,
     writer: &mut RecordingWriter<W>,

@@ -10,23 +10,12 @@ pub const MAX_CHUNK_BYTES: u64 = 2 * map::MAX_CELLS;
 /// Damage of a file: its kind and position. Offsets are bytes from the start of the file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// The file does not start with the magic of a recording.
     #[error("the file starts with {found}; a recording starts with \"\\x89MCAP0\\r\\n\"")]
-    NotMcap {
-        /// First bytes of the file, quoted.
-        found: String,
-    },
-    /// The file ends before the recording does.
+    NotMcap { found: String },
     #[error(
         "the file is cut short: it ends at byte {length}, within the record that starts at byte {at}"
     )]
-    Truncated {
-        /// Size of the file in bytes.
-        length: u64,
-        /// Start of the incomplete record.
-        at: u64,
-    },
-    /// The content of a record is invalid for its type.
+    Truncated { length: u64, at: u64 },
     #[error("the {kind} record at byte {at} is damaged: {reason}")]
     Record {
         /// Start of the record, or of the chunk that it is in.
@@ -34,48 +23,18 @@ pub enum Damage {
         kind: &'static str,
         reason: String,
     },
-    /// The checksum of a chunk's messages is wrong.
     #[error(
         "the chunk at byte {at} is damaged: its checksum is {found:08x}, written was {saved:08x}"
     )]
-    ChunkChecksum {
-        at: u64,
-        /// Checksum that was written.
-        saved: u32,
-        /// Checksum of the content.
-        found: u32,
-    },
-    /// A chunk claims more bytes than the limit.
+    ChunkChecksum { at: u64, saved: u32, found: u32 },
     #[error("the chunk at byte {at} claims {claimed} bytes; at most {MAX_CHUNK_BYTES} are allowed")]
-    ChunkSize {
-        at: u64,
-        /// Claimed decompressed size, in bytes.
-        claimed: u64,
-    },
-    /// A chunk has another size than it claims.
+    ChunkSize { at: u64, claimed: u64 },
     #[error("the chunk at byte {at} claims {claimed} bytes but holds {found}")]
-    ChunkContent {
-        at: u64,
-        /// Claimed decompressed size, in bytes.
-        claimed: u64,
-        /// Bytes of its content.
-        found: u64,
-    },
-    /// A chunk cannot be decompressed.
+    ChunkContent { at: u64, claimed: u64, found: u64 },
     #[error("the chunk at byte {at} does not unpack: {reason}")]
-    Unpack {
-        at: u64,
-        /// Message of the decompressor.
-        reason: String,
-    },
-    /// A chunk has an unknown compression.
+    Unpack { at: u64, reason: String },
     #[error("the chunk at byte {at} is packed as {found:?}; allowed: zstd, lz4, or not at all")]
-    Compression {
-        at: u64,
-        /// Name of the compression.
-        found: String,
-    },
-    /// A channel or schema is defined twice with different content.
+    Compression { at: u64, found: String },
     #[error("the {kind} record at byte {at} defines number {id} again, differently")]
     Conflict {
         /// Start of the second record, or of the chunk that it is in.
@@ -83,7 +42,6 @@ pub enum Damage {
         kind: &'static str,
         id: u16,
     },
-    /// A message or channel refers to a definition that does not come before it.
     #[error(
         "the {kind} record at byte {at} refers to {missing} {id}, which is not defined before it"
     )]
@@ -91,66 +49,32 @@ pub enum Damage {
         /// Start of the record, or of the chunk that it is in.
         at: u64,
         kind: &'static str,
-        /// Type of the missing definition.
         missing: &'static str,
-        /// Id of the missing definition.
         id: u16,
     },
-    /// The checksum of the data section is wrong.
     #[error(
         "the data, bytes 0 to {end}, is damaged: its checksum is {found:08x}, written was {saved:08x}"
     )]
-    DataChecksum {
-        /// End of the data section.
-        end: u64,
-        /// Checksum that was written.
-        saved: u32,
-        /// Checksum of the content.
-        found: u32,
-    },
-    /// The checksum of the summary is wrong.
+    DataChecksum { end: u64, saved: u32, found: u32 },
     #[error(
         "the summary at byte {at} is damaged: its checksum is {found:08x}, written was {saved:08x}"
     )]
-    SummaryChecksum {
-        /// Start of the summary.
-        at: u64,
-        /// Checksum that was written.
-        saved: u32,
-        /// Checksum of the content.
-        found: u32,
-    },
-    /// The message count of the summary is wrong.
+    SummaryChecksum { at: u64, saved: u32, found: u32 },
     #[error("the summary counts {claimed} messages, {found} are there")]
-    MessageCount {
-        /// Message count of the summary.
-        claimed: u64,
-        /// Messages in the data.
-        found: u64,
-    },
-    /// An SQLite bag without the log that holds its last messages.
+    MessageCount { claimed: u64, found: u64 },
     #[error(
         "metadata.yaml counts {claimed} messages, {found} are there: the others are in {log}, which \
          is missing; copy it along"
     )]
     MissingLog {
         log: String,
-        /// Message count of the bag's description.
         claimed: u64,
-        /// Messages found.
         found: u64,
     },
-    /// The file does not end with the magic of a recording.
     #[error("the recording's last 8 bytes should begin at byte {at}, but found is {found}")]
-    End {
-        /// Expected position of the magic.
-        at: u64,
-        /// Bytes that were found instead.
-        found: String,
-    },
+    End { at: u64, found: String },
 }
 
-/// Shows the first bytes for an error.
 pub(crate) fn shown(bytes: &[u8]) -> String {
     match &bytes[..bytes.len().min(8)] {
         [] => "nothing, as it is empty".to_owned(),

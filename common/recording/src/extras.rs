@@ -23,20 +23,15 @@ pub struct AttachedFile {
     pub media_type: String,
     /// Time at which it was added, in nanoseconds since 1970.
     pub log_time_ns: u64,
-    /// Index of the recording's file that contains it.
     pub(crate) file: usize,
-    /// Byte range in that file.
     pub(crate) bytes: Range<usize>,
 }
 
 impl AttachedFile {
-    /// Size in bytes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -50,7 +45,6 @@ pub struct MetadataRecord {
     pub entries: BTreeMap<String, String>,
 }
 
-/// Attachments and metadata, in the order of the file.
 #[derive(Debug, Default)]
 pub(crate) struct Extras {
     pub(crate) attachments: Vec<AttachedFile>,

@@ -30,10 +30,6 @@ pub(crate) fn feed(reader: &mut LinearReader, wanted: usize, rest: &mut &[u8]) {
     *rest = left;
 }
 
-/// Passes each record of some bytes to `take`, by its opcode and body.
-///
-/// # Errors
-/// The first error of `take`, or the error of the reader converted by `damage`.
 pub(crate) fn each_record(
     mut reader: LinearReader,
     mut bytes: &[u8],

@@ -20,16 +20,12 @@ pub(crate) struct RecordedFile {
 
 #[derive(Debug)]
 enum Bytes {
-    /// The file, and its bytes.
     Mapped(File, Mmap),
     Owned(Vec<u8>),
 }
 
 impl RecordedFile {
     /// Opens an MCAP file or an SQLite bag, also if it is compressed with zstd, and also from a pipe.
-    ///
-    /// # Errors
-    /// It cannot be read, or does not even start as a recording.
     pub(crate) fn open(listed: &Listed) -> Result<Self, RecordingError> {
         let path = &listed.path;
         if is_stream(path) {
@@ -77,7 +73,6 @@ impl RecordedFile {
         }
     }
 
-    /// Maps a file; errors call it `path`.
     fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
         let file = file.try_clone().map_err(RecordingError::open(path))?;
         // SAFETY: the map is only read. If another process writes to the file, bytes change under
@@ -88,9 +83,6 @@ impl RecordedFile {
     }
 
     /// Opens a file in memory; errors call it `path`.
-    ///
-    /// # Errors
-    /// It does not even start as a recording.
     pub(crate) fn from_bytes(path: PathBuf, bytes: Vec<u8>) -> Result<Self, RecordingError> {
         RecordedFile::new(path, Bytes::Owned(bytes))
     }

@@ -13,26 +13,19 @@ use serde::Deserialize;
 use crate::RecordingError;
 use crate::content::{Content, foreign, is_stream};
 
-/// Name of a bag's description.
 const METADATA: &str = "metadata.yaml";
 
-/// Extensions of compressed parts.
 const PACKED: [&str; 2] = ["zstd", "zst"];
 
 /// Extensions of unsupported compression, found only to report them.
 const PACKED_OTHERWISE: [&str; 4] = ["gz", "xz", "lz4", "bz2"];
 
-/// A file with its number of messages by the bag's description.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Listed {
     pub(crate) path: PathBuf,
     pub(crate) messages: Option<u64>,
 }
 
-/// Returns the files behind a path, in their order.
-///
-/// # Errors
-/// If there is no such file, or a folder does not clearly define its files.
 pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
     let unreadable = RecordingError::open(path);
     if is_stream(path) {
@@ -92,7 +85,6 @@ impl Information {
         Ok(description.rosbag2_bagfile_information)
     }
 
-    /// Number of messages in one of its files, if given.
     fn messages(&self, name: &str) -> Option<u64> {
         let mut files = self.files.iter().flatten();
         let counted = files.find(|file| file.path == name);
@@ -104,7 +96,6 @@ impl Information {
     }
 }
 
-/// Returns the parts that a description lists.
 fn named(metadata: &Path, folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let information = Information::read(metadata)?;
     let names = &information.relative_file_paths;
@@ -139,7 +130,6 @@ fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     paths.find(|path| path.is_file())
 }
 
-/// Appends to the name of a file.
 pub(crate) fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
@@ -162,7 +152,6 @@ fn described(path: &Path, folder: &Path) -> Option<u64> {
     is_listed.then(|| information.messages(name)).flatten()
 }
 
-/// Returns the parts of a folder without a description.
 fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     let unreadable = RecordingError::open(folder);
     let mut paths = Vec::new();
@@ -249,7 +238,6 @@ fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Error of an unusable bag.
 pub(crate) fn refused(path: &Path, reason: String) -> RecordingError {
     RecordingError::Bag {
         path: path.to_owned(),
@@ -263,7 +251,6 @@ mod tests {
 
     use super::*;
 
-    /// Creates a folder with files of these names, empty except for the description.
     fn folder(names: &[&str], metadata: Option<&str>) -> TempDir {
         let folder = TempDir::new().unwrap();
         for name in names {

@@ -4,19 +4,17 @@ use std::fmt;
 
 use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
+use crate::topics;
+
 /// Topic of the transforms that never change.
 pub const TF_STATIC: &str = "/tf_static";
 
 /// A kind of message, by its schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
-    /// `sensor_msgs/msg/LaserScan`.
     Scan,
-    /// `nav_msgs/msg/OccupancyGrid`.
     Map,
-    /// `nav_msgs/msg/Odometry`.
     Odometry,
-    /// `geometry_msgs/msg/PoseStamped`.
     PoseStamped,
     /// `tf2_msgs/msg/TFMessage` on a topic that ends in `/tf_static`; messages on `/tf` have the
     /// same schema, but hold only for a moment.
@@ -32,15 +30,34 @@ impl Kind {
         Kind::StaticTransforms,
     ];
 
-    /// Name of the schema in ROS 2.
-    #[must_use]
     pub fn schema(self) -> &'static str {
+        self.facts()[0]
+    }
+
+    pub(crate) fn definition(self) -> &'static str {
+        self.facts()[1]
+    }
+
+    pub(crate) fn topic(self) -> &'static str {
+        self.facts()[2]
+    }
+
+    /// Command-line option that selects a channel.
+    pub(crate) fn option(self) -> &'static str {
+        self.facts()[3]
+    }
+
+    /// Name and text of the schema, conventional topic, and the option that selects a channel.
+    fn facts(self) -> [&'static str; 4] {
+        fn of<M: RosMessage>(topic: &'static str, option: &'static str) -> [&'static str; 4] {
+            [M::SCHEMA, M::DEFINITION, topic, option]
+        }
         match self {
-            Kind::Scan => LaserScan::SCHEMA,
-            Kind::Map => OccupancyGridMsg::SCHEMA,
-            Kind::Odometry => Odometry::SCHEMA,
-            Kind::PoseStamped => PoseStamped::SCHEMA,
-            Kind::StaticTransforms => TfMessage::SCHEMA,
+            Kind::Scan => of::<LaserScan>(topics::SCAN, "--scan-topic"),
+            Kind::Map => of::<OccupancyGridMsg>(topics::MAP, "--map-topic"),
+            Kind::Odometry => of::<Odometry>(topics::ODOM, "--odom-topic"),
+            Kind::PoseStamped => of::<PoseStamped>(topics::GROUND_TRUTH, "--remap"),
+            Kind::StaticTransforms => of::<TfMessage>(TF_STATIC, "--remap"),
         }
     }
 

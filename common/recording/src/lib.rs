@@ -39,7 +39,6 @@ mod truth;
 mod unpack;
 pub mod write;
 
-pub use block::Part;
 pub use content::is_stream;
 pub use contents::Mounted;
 pub use copy::{is_bag, is_recording, write_bag};

@@ -6,7 +6,6 @@ use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, cdr};
 
 use crate::Kind;
 
-/// A message with its topic and log time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     pub topic: Arc<str>,
@@ -15,7 +14,6 @@ pub struct Record {
     pub message: Message,
 }
 
-/// A message of one of the decoded kinds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Message {
     Scan(LaserScan),
@@ -27,7 +25,6 @@ pub enum Message {
 }
 
 impl Message {
-    #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
             Message::Scan(_) => Kind::Scan,

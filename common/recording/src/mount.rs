@@ -9,17 +9,14 @@ use ros::{CloudMount, ConversionError, Mend, Transform, TransformStamped};
 /// Usual names of a robot's base frame, in order of preference.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 
-/// Usual name of the frame of the floor under the base.
 const FLOOR: &str = BASES[1];
 
 /// Largest tilt of a laser from level, or from upside down, in degrees: at 10 degrees a wall seems
 /// 1.5 percent farther than it is.
 pub const MAX_TILT_DEGREES: f64 = 10.0;
 
-/// Pose of a laser on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mount {
-    /// Name of the base frame.
     pub base_frame: String,
     /// Pose of the laser in that frame, seen from above: its heading is that of the laser's x axis.
     pub base_from_laser: Pose,
@@ -33,7 +30,6 @@ pub struct Mount {
 }
 
 impl From<&Mount> for geometry::Mount {
-    /// Keeps the planar part.
     fn from(mount: &Mount) -> Self {
         geometry::Mount {
             base_from_laser: mount.base_from_laser,
@@ -42,7 +38,6 @@ impl From<&Mount> for geometry::Mount {
     }
 }
 
-/// Tree of frames and the transforms between them.
 #[derive(Debug, Default)]
 pub struct TransformTree {
     /// Parent and `parent_from_child`, by child.
@@ -51,15 +46,11 @@ pub struct TransformTree {
     broken: BTreeMap<String, (String, ConversionError)>,
     /// Corrections that were applied to valid transforms, by child.
     mended: BTreeMap<String, Mend>,
-    /// Child frame of the odometry.
     moved: Option<String>,
 }
 
 impl TransformTree {
     /// Adds a transform, or replaces the previous one of its child.
-    ///
-    /// # Errors
-    /// If the transform is invalid.
     pub fn add(&mut self, stamped: &TransformStamped) -> Result<(), ConversionError> {
         let parent = plain(&stamped.header.frame_id).to_owned();
         let child = plain(&stamped.child_frame_id).to_owned();
@@ -97,7 +88,6 @@ impl TransformTree {
 
     /// Returns an invalid transform if it alone separates the laser from a base: parent, child and
     /// error.
-    #[must_use]
     pub fn broken_below(&self, laser: &str) -> Option<(&str, &str, &ConversionError)> {
         let mut bridged = self.sound();
         if bridged.base_from(laser).is_some() {
@@ -132,13 +122,10 @@ impl TransformTree {
         }
     }
 
-    /// True if the frame has a parent.
     pub(crate) fn knows(&self, child: &str) -> bool {
         self.parents.contains_key(plain(child))
     }
 
-    /// Number of frames that have a parent.
-    #[must_use]
     pub fn children(&self) -> usize {
         self.parents.len()
     }
@@ -146,7 +133,6 @@ impl TransformTree {
     /// Mount of the laser in the child frame of odometry, if the laser is below it in the tree;
     /// otherwise in a frame with a usual name of a base, otherwise in the child frame of odometry
     /// if it is connected at all.
-    #[must_use]
     pub fn base_from(&self, laser: &str) -> Option<Mount> {
         let connected = self.connected_to(plain(laser));
         let base = self.base_of(laser, &connected)?;
@@ -155,7 +141,6 @@ impl TransformTree {
 
     /// Mount of a lidar in the frame `base`, or in that of [`TransformTree::base_from`], with its
     /// height over `base_footprint` if that is connected. Also returns the name of the base frame.
-    #[must_use]
     pub fn cloud_mount(&self, base: Option<&str>, lidar: &str) -> Option<(String, CloudMount)> {
         let connected = self.connected_to(plain(lidar));
         let base = match base.map(plain).filter(|base| connected.contains_key(*base)) {
@@ -198,14 +183,12 @@ impl TransformTree {
     }
 
     /// Same as [`TransformTree::base_from`], for the base frame with this name.
-    #[must_use]
     pub fn base_named(&self, base: &str, laser: &str) -> Option<Mount> {
         let base = plain(base);
         Some(mount(base, self.connected_to(plain(laser)).get(base)?))
     }
 
     /// Pose of another frame in the laser's frame, seen from above, if they are connected.
-    #[must_use]
     pub fn laser_from(&self, laser: &str, frame: &str) -> Option<Pose> {
         let connected = self.connected_to(plain(laser));
         // Seen from above `frame`, because a laser upside down would see it from below.
@@ -240,7 +223,6 @@ impl TransformTree {
     }
 }
 
-/// Mount of a laser in a base frame.
 fn mount(base: &str, laser_from_base: &Isometry3<f64>) -> Mount {
     let base_from_laser = laser_from_base.inverse();
     let forward = base_from_laser.rotation * Vector3::x();
@@ -266,9 +248,6 @@ pub(crate) fn plain(frame: &str) -> &str {
 }
 
 /// Converts a transform; also returns the correction that was applied, if any.
-///
-/// # Errors
-/// If the transform is invalid.
 pub(crate) fn isometry(
     transform: &Transform,
 ) -> Result<(Isometry3<f64>, Option<Mend>), ConversionError> {

@@ -17,14 +17,12 @@ use crate::mount::{TransformTree, isometry, plain};
 const STILL_M: f64 = 1e-3;
 const STILL_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
-/// Observations of one frame.
 #[derive(Debug)]
 struct Seen {
     first: TransformStamped,
     isometry: Isometry3<f64>,
     /// Largest difference from the first transform, in metres and radians.
     moved: (f64, f64),
-    /// True if its parent frame has changed.
     changed_parent: bool,
 }
 
@@ -40,7 +38,6 @@ pub(crate) struct MovingFrames {
 }
 
 impl MovingFrames {
-    /// Records a transform; an invalid one is ignored.
     pub(crate) fn see(&mut self, stamped: &TransformStamped) {
         let Ok((isometry, _)) = isometry(&stamped.transform) else {
             return;
@@ -65,7 +62,6 @@ impl MovingFrames {
         }
     }
 
-    /// Adds still frames that the tree does not have yet.
     pub(crate) fn add_still(&self, tree: &mut TransformTree) {
         for (child, seen) in self.seen.iter().filter(|(_, seen)| seen.is_still()) {
             if !tree.knows(child) {

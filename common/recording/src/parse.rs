@@ -91,7 +91,6 @@ pub(crate) fn reason(error: &McapError) -> String {
     }
 }
 
-/// Name of a record type.
 pub(crate) fn name(opcode: u8) -> &'static str {
     match opcode {
         op::HEADER => "header",
@@ -121,7 +120,6 @@ mod tests {
         }
     }
 
-    /// A channel with a topic of one letter, up to its metadata.
     fn channel(metadata: &[u8]) -> Vec<u8> {
         let start = b"\x01\0\x02\0\x01\0\0\0t\x03\0\0\0cdr";
         let length = (metadata.len() as u32).to_le_bytes();
@@ -178,9 +176,6 @@ mod tests {
     fn an_attachment_shorter_than_its_fields_is_refused_before_the_library_panics() {
         let claims = "it ends within a field, or a field claims more bytes than are left";
         let empty = [0; 32];
-        let library =
-            std::panic::catch_unwind(|| mcap::parse_record(op::ATTACHMENT, &empty).is_ok());
-        assert!(library.is_err(), "the library has learnt it");
         assert_eq!(refused(op::ATTACHMENT, &empty), claims);
         // No texts, no data, and no checksum.
         assert!(parse(op::ATTACHMENT, &[0; 36], 7).is_ok());

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::block::{Block, Part};
+use crate::block::Block;
 use crate::cloud::CloudLaser;
 use crate::file::RecordedFile;
 use crate::folder::{self, Listed};
@@ -26,9 +26,7 @@ pub struct Recording {
     channels: Vec<Channel>,
     attachments: Vec<AttachedFile>,
     metadata: Vec<MetadataRecord>,
-    /// Channels that the user has selected.
     preferred: BTreeMap<Kind, Arc<str>>,
-    /// Point cloud that is taken as the laser.
     cloud: Option<CloudLaser>,
 }
 
@@ -50,9 +48,6 @@ impl Recording {
     }
 
     /// Opens several files or folders as one recording.
-    ///
-    /// # Errors
-    /// Same as [`Recording::open`], and if `paths` is empty.
     pub fn open_all(paths: &[impl AsRef<Path>]) -> Result<Self, RecordingError> {
         let paths = || paths.iter().map(AsRef::as_ref);
         let (mut listed, mut seen) = (Vec::new(), Vec::new());
@@ -73,9 +68,6 @@ impl Recording {
     }
 
     /// Opens a recording in memory; errors call it `name`.
-    ///
-    /// # Errors
-    /// If it does not even start as a recording.
     pub fn from_bytes(name: impl Into<PathBuf>, bytes: Vec<u8>) -> Result<Self, RecordingError> {
         let name = name.into();
         let file = RecordedFile::from_bytes(name.clone(), bytes)?;
@@ -122,19 +114,16 @@ impl Recording {
     }
 
     /// Path of the file or folder; for several, their names joined.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// Size of its files in bytes, after decompression.
-    #[must_use]
     pub fn size(&self) -> u64 {
         let sizes = self.files.iter().map(|file| file.bytes().len() as u64);
         sizes.sum()
     }
 
-    #[must_use]
     pub fn file_count(&self) -> usize {
         self.files.len()
     }
@@ -144,14 +133,12 @@ impl Recording {
         self.channels.iter()
     }
 
-    #[must_use]
     pub fn attachments(&self) -> &[AttachedFile] {
         &self.attachments
     }
 
     /// Content of an attachment from [`Recording::attachments`]; empty for one of another recording,
     /// or if the file was cut since it was opened.
-    #[must_use]
     pub fn content_of(&self, attached: &AttachedFile) -> &[u8] {
         let end = attached.bytes.end;
         let file = self.files.get(attached.file);
@@ -160,26 +147,31 @@ impl Recording {
         bytes.unwrap_or_default()
     }
 
-    #[must_use]
     pub fn metadata(&self) -> &[MetadataRecord] {
         &self.metadata
     }
 
-    /// Parts (chunks, or messages outside of chunks) in which the files store their messages.
-    pub fn parts(&self) -> impl Iterator<Item = Part> {
-        let blocks = self.files.iter().flat_map(|file| &file.survey.blocks);
-        blocks.map(Block::part)
+    /// Number of chunks with messages.
+    pub fn chunks(&self) -> usize {
+        self.blocks().filter(|block| block.is_chunk).count()
+    }
+
+    /// Number of messages with an earlier log time than the one before them in their chunk.
+    pub fn unsorted(&self) -> u64 {
+        self.blocks().map(|block| block.unsorted).sum()
+    }
+
+    fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.files.iter().flat_map(|file| &file.survey.blocks)
     }
 
     /// Number of readable messages on all channels.
-    #[must_use]
     pub fn messages(&self) -> u64 {
         self.files.iter().map(|file| file.survey.messages).sum()
     }
 
     /// Log times of the first and the last readable message, nanoseconds since
     /// 1970.
-    #[must_use]
     pub fn time_range_ns(&self) -> Option<(i64, i64)> {
         let ranges = || self.files.iter().filter_map(|f| f.survey.time_range_ns());
         let first = ranges().map(|(first, _)| first).min()?;
@@ -188,14 +180,12 @@ impl Recording {
     }
 
     /// Damage of the first damaged file; `None` if all are sound.
-    #[must_use]
     pub fn damage(&self) -> Option<&Damage> {
         let mut files = self.files.iter();
         files.find_map(|file| file.survey.damage.as_ref())
     }
 
     /// Same as [`Recording::damage`], as an error that names the file.
-    #[must_use]
     pub fn damage_error(&self) -> Option<RecordingError> {
         let mut files = self.files.iter();
         let file = files.find(|file| file.survey.damage.is_some())?;
@@ -208,28 +198,22 @@ impl Recording {
     }
 
     /// Iterates over all decodable messages by log time, then returns the damage if there is any.
-    #[must_use]
     pub fn records(&self) -> Records<'_> {
         self.records_of(&Kind::ALL)
     }
 
     /// Same as [`Recording::records`], for messages of the given kinds only.
-    #[must_use]
     pub fn records_of(&self, kinds: &[Kind]) -> Records<'_> {
         Records::new(self, kinds, self.damage_error())
     }
 
     /// Iterates over the undecoded messages of all channels by log time, then returns the damage if
     /// there is any.
-    #[must_use]
     pub fn raw_records(&self) -> RawRecords<'_> {
         RawRecords::new(self, |_| true, self.damage_error())
     }
 
     /// Makes `topic` the channel to use for messages of this kind from now on.
-    ///
-    /// # Errors
-    /// If no channel of that name has messages of the kind.
     pub fn prefer(&mut self, kind: Kind, topic: &str) -> Result<(), RecordingError> {
         let of_kind = |c: &&Channel| c.kind == Some(kind) && c.messages > 0;
         let mut channels = self.channels.iter().filter(of_kind);
@@ -249,18 +233,12 @@ impl Recording {
     /// Selects the channel with messages of a kind: the preferred one, the only one, or the one
     /// with the conventional name; `None` if there is none. Poses are only accepted under the
     /// conventional name.
-    ///
-    /// # Errors
-    /// If several channels qualify.
     pub fn topic(&self, kind: Kind) -> Result<Option<Arc<str>>, RecordingError> {
         self.topic_renamed(kind, |topic| Some(topic.to_owned()))
     }
 
     /// Same as [`Recording::topic`] with renamed channels: `name_of` returns the new name of a
     /// channel, or `None` to exclude it. The result is the channel's own name.
-    ///
-    /// # Errors
-    /// If several channels qualify.
     pub fn topic_renamed(
         &self,
         kind: Kind,
@@ -269,36 +247,14 @@ impl Recording {
         if let Some(topic) = self.preferred.get(&kind) {
             return Ok(Some(topic.clone()));
         }
-        let renamed = |channel: &Channel| {
-            let topic = name_of(&channel.topic)?.into();
-            let own = channel.topic.clone();
-            let channel = Channel {
-                topic,
-                ..channel.clone()
-            };
-            Some((channel, own))
-        };
-        let renamed: Vec<(Channel, Arc<str>)> = self.channels().filter_map(renamed).collect();
-        let channels: Vec<&Channel> = renamed.iter().map(|(channel, _)| channel).collect();
-        let Some(chosen) = topics::choose(&channels, kind, &self.path)? else {
-            return Ok(None);
-        };
-        let own = renamed
-            .iter()
-            .find(|(channel, _)| std::ptr::eq(channel, chosen));
-        Ok(own.map(|(_, own)| own.clone()))
+        topics::choose(self.channels(), name_of, kind, &self.path)
     }
 
     /// Same as [`Recording::topic`], but a missing channel is an error.
-    ///
-    /// # Errors
-    /// If there is none, or several qualify.
     pub fn required_topic(&self, kind: Kind) -> Result<Arc<str>, RecordingError> {
         self.topic(kind)?.ok_or_else(|| self.no_topic(kind))
     }
 
-    /// Error of a recording without a channel of a kind.
-    #[must_use]
     pub fn no_topic(&self, kind: Kind) -> RecordingError {
         let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
         RecordingError::NoTopic {
@@ -308,7 +264,6 @@ impl Recording {
         }
     }
 
-    /// Schema texts that the files contain, by schema name.
     pub(crate) fn definitions(&self) -> BTreeMap<String, String> {
         let files = self.files.iter();
         files

@@ -12,7 +12,6 @@ use ros::Cloud;
 use crate::parse::{parse, reason};
 use crate::{Damage, Kind};
 
-/// A channel of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Channel {
     pub topic: Arc<str>,
@@ -27,7 +26,6 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// True if it has point clouds on this topic.
     pub(crate) fn is_cloud(&self, topic: &str) -> bool {
         *self.topic == *topic && Cloud::is_schema(&self.schema)
     }
@@ -65,14 +63,12 @@ impl Registry {
         })
     }
 
-    /// Adds to the message count of a known channel.
     pub(crate) fn count(&mut self, id: u16, messages: u64) {
         if let Some(channel) = self.channels.get_mut(&id) {
             channel.messages += messages;
         }
     }
 
-    /// Has the point clouds of a topic decoded as scans.
     pub(crate) fn take_cloud(&mut self, topic: &str) {
         for channel in self.channels.values_mut() {
             channel.take_cloud(topic);
@@ -162,18 +158,14 @@ mod tests {
     fn channels_take_their_kind_from_their_schema() {
         let mut registry = Registry::default();
         let scan = schema(1, "sensor_msgs/msg/LaserScan");
-        registry.add(op::SCHEMA, &scan, 0).unwrap();
-        registry
-            .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
-            .unwrap();
-        registry
-            .add(op::CHANNEL, &channel(5, 0, "/raw"), 0)
-            .unwrap();
         // The summary repeats both.
-        registry.add(op::SCHEMA, &scan, 0).unwrap();
-        registry
-            .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
-            .unwrap();
+        for _ in 0..2 {
+            registry.add(op::SCHEMA, &scan, 0).unwrap();
+            let on_scan = channel(4, 1, "/scan");
+            registry.add(op::CHANNEL, &on_scan, 0).unwrap();
+        }
+        let raw = channel(5, 0, "/raw");
+        registry.add(op::CHANNEL, &raw, 0).unwrap();
         registry.count(4, 3);
 
         let found = registry.channel(4).unwrap();
@@ -189,37 +181,30 @@ mod tests {
         registry
             .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
             .unwrap();
-        assert!(matches!(
-            registry.add(op::SCHEMA, &schema(1, "b"), 9),
-            Err(Damage::Conflict {
-                at: 9,
-                kind: "schema",
-                id: 1
-            })
-        ));
-        assert!(matches!(
-            registry.add(op::CHANNEL, &channel(4, 1, "/scam"), 9),
-            Err(Damage::Conflict {
-                at: 9,
-                kind: "channel",
-                id: 4
-            })
-        ));
-        assert!(matches!(
-            registry.add(op::CHANNEL, &channel(6, 2, "/b"), 9),
-            Err(Damage::Undefined {
-                missing: "schema",
-                id: 2,
-                ..
-            })
-        ));
-        assert!(matches!(
-            registry.add(op::CHANNEL, b"\x01", 9),
-            Err(Damage::Record {
-                at: 9,
-                kind: "channel",
-                ..
-            })
-        ));
+        for (opcode, body, expected) in [
+            (
+                op::SCHEMA,
+                schema(1, "b"),
+                "the schema record at byte 9 defines number 1 again, differently",
+            ),
+            (
+                op::CHANNEL,
+                channel(4, 1, "/scam"),
+                "the channel record at byte 9 defines number 4 again, differently",
+            ),
+            (
+                op::CHANNEL,
+                channel(6, 2, "/b"),
+                "refers to schema 2, which is not defined before it",
+            ),
+            (
+                op::CHANNEL,
+                b"\x01".to_vec(),
+                "the channel record at byte 9 is damaged",
+            ),
+        ] {
+            let damage = registry.add(opcode, &body, 9).unwrap_err().to_string();
+            assert!(damage.contains(expected), "{damage}");
+        }
     }
 }

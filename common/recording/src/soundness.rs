@@ -9,7 +9,6 @@ use crate::{Damage, Record, Recording, RecordingError, sample};
 
 const CHUNKED: [Packing; 3] = [Packing::Plain, Packing::Zstd, Packing::Lz4];
 
-/// Returns the messages, then the damage.
 fn read(bytes: Vec<u8>) -> (Vec<Record>, Option<Damage>) {
     let mut records = Vec::new();
     match Recording::from_bytes("r.mcap", bytes) {

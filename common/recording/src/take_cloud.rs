@@ -51,7 +51,6 @@ impl Recording {
         Ok(())
     }
 
-    /// Frame of the first point cloud on a topic; `None` if there is none.
     fn cloud_frame(&self, topic: &str) -> Result<Option<String>, RecordingError> {
         let is_meant = |channel: &Channel| channel.is_cloud(topic) && channel.encoding == "cdr";
         let Some(first) = RawRecords::new(self, is_meant, None).next().transpose()? else {

@@ -2,62 +2,44 @@
 //! several channels have the type.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use crate::{Channel, Kind, RecordingError, TF_STATIC};
+use crate::{Channel, Kind, RecordingError};
 
-/// Conventional topic of scans.
 pub const SCAN: &str = "/scan";
-/// Conventional topic of the map.
 pub const MAP: &str = "/map";
-/// Conventional topic of odometry.
 pub const ODOM: &str = "/odom";
 /// Topic of the true poses of the scans: always this name, because any other pose has the same
 /// type.
 pub const GROUND_TRUTH: &str = "/ground_truth";
 
-fn conventional_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Scan => SCAN,
-        Kind::Map => MAP,
-        Kind::Odometry => ODOM,
-        Kind::PoseStamped => GROUND_TRUTH,
-        Kind::StaticTransforms => TF_STATIC,
-    }
-}
-
-/// Command-line option that selects a channel of a kind.
-pub(crate) fn option(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Scan => "--scan-topic",
-        Kind::Map => "--map-topic",
-        Kind::Odometry => "--odom-topic",
-        Kind::PoseStamped | Kind::StaticTransforms => "--remap",
-    }
-}
-
-/// Selects the channel with messages of a kind; `None` if there is none.
+/// Selects the channel with messages of a kind by the new names from `name_of`, which returns `None`
+/// to exclude a channel; returns its own name, or `None` if there is none.
 pub(crate) fn choose<'a>(
-    channels: &[&'a Channel],
+    channels: impl Iterator<Item = &'a Channel>,
+    name_of: impl Fn(&str) -> Option<String>,
     kind: Kind,
     path: &Path,
-) -> Result<Option<&'a Channel>, RecordingError> {
-    let has_messages = |channel: &&&Channel| channel.kind == Some(kind) && channel.messages > 0;
-    let mut of_kind: Vec<&Channel> = channels.iter().filter(has_messages).copied().collect();
+) -> Result<Option<Arc<str>>, RecordingError> {
+    let has_messages = |channel: &&Channel| channel.kind == Some(kind) && channel.messages > 0;
+    let renamed = |channel: &Channel| Some((name_of(&channel.topic)?, channel.topic.clone()));
+    let mut of_kind: Vec<(String, Arc<str>)> =
+        channels.filter(has_messages).filter_map(renamed).collect();
     // A merged recording may define a topic twice.
-    of_kind.sort_by(|a, b| a.topic.cmp(&b.topic));
-    of_kind.dedup_by(|a, b| a.topic == b.topic);
-    let name = conventional_name(kind);
-    let named = of_kind.iter().find(|channel| &*channel.topic == name);
+    of_kind.sort_by(|a, b| a.0.cmp(&b.0));
+    of_kind.dedup_by(|a, b| a.0 == b.0);
+    let name = kind.topic();
+    let named = of_kind.iter().find(|(topic, _)| topic == name);
     match (&of_kind[..], named) {
-        (_, Some(named)) => Ok(Some(named)),
+        (_, Some((_, own))) => Ok(Some(own.clone())),
         (_, None) if kind == Kind::PoseStamped => Ok(None),
         ([], _) => Ok(None),
-        ([only], _) => Ok(Some(only)),
+        ([(_, own)], _) => Ok(Some(own.clone())),
         (several, None) => Err(RecordingError::SeveralTopics {
             path: path.to_owned(),
             kind,
             name,
-            found: several.iter().map(|c| c.topic.to_string()).collect(),
+            found: several.iter().map(|(topic, _)| topic.clone()).collect(),
         }),
     }
 }
@@ -81,9 +63,9 @@ mod tests {
             .iter()
             .map(|&(topic, messages)| channel(topic, kind, messages))
             .collect();
-        let channels: Vec<&Channel> = channels.iter().collect();
-        choose(&channels, kind, Path::new("r.mcap"))
-            .map(|channel| channel.map(|channel| channel.topic.to_string()))
+        let own = |topic: &str| Some(topic.to_owned());
+        choose(channels.iter(), own, kind, Path::new("r.mcap"))
+            .map(|topic| topic.map(|topic| topic.to_string()))
             .map_err(|error| error.to_string())
     }
 

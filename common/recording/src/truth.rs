@@ -6,9 +6,7 @@ use ros::{ConversionError, PoseStamped};
 /// True pose of the laser.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroundTruth {
-    /// Frame of `pose`.
     pub frame: String,
-    /// Pose of the laser in `frame`.
     pub pose: Pose,
 }
 

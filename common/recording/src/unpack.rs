@@ -17,14 +17,10 @@ use crate::{MAX_CHUNK_BYTES, RecordingError};
 const MAX_FACTOR: u64 = 1000;
 const MAX_BESIDE: u64 = 1 << 30;
 
-/// Number of bytes that are decompressed at a time.
 const STEP_BYTES: usize = 1 << 20;
 
 /// Returns a message in CDR, decompressed if necessary. Compressed messages are recognized by their
 /// first bytes, because CDR in either byte order never starts with the magic of zstd.
-///
-/// # Errors
-/// The reason if it cannot be decompressed.
 pub(crate) fn message(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     match is_packed(bytes) {
         true => within(bytes, MAX_CHUNK_BYTES).map(Cow::Owned),
@@ -46,9 +42,6 @@ fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
 }
 
 /// Saves what comes through a pipe to a temporary file that is deleted when it is dropped.
-///
-/// # Errors
-/// If it cannot be read, or the disk is full.
 pub(crate) fn saved(path: &Path) -> Result<NamedTempFile, RecordingError> {
     let source = match path == Path::new("-") {
         true => Path::new("/dev/stdin"),
@@ -62,9 +55,6 @@ pub(crate) fn saved(path: &Path) -> Result<NamedTempFile, RecordingError> {
 
 /// Decompresses a file to a temporary one that is deleted when it is dropped. `allows` checks the
 /// first bytes before the rest is decompressed.
-///
-/// # Errors
-/// If the file cannot be decompressed, exceeds the limit, or the disk is full.
 pub(crate) fn file(
     path: &Path,
     allows: impl FnOnce(&[u8]) -> Result<(), RecordingError>,
@@ -146,6 +136,8 @@ mod tests {
     fn a_message_that_unpacks_to_too_much_is_refused() {
         let packed = packed(&[0; 1000]);
         assert_eq!(within(&packed, 1000).unwrap(), [0; 1000]);
+        let reason = message(&packed[..packed.len() - 1]).unwrap_err();
+        assert!(reason.contains("does not unpack"), "{reason}");
         let reason = within(&packed, 999).unwrap_err();
         assert!(
             reason.starts_with("it unpacks to more than 999"),

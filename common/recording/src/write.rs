@@ -20,20 +20,17 @@ pub use encoded::Encoded;
 
 use crate::parse::reason;
 use crate::{Kind, Message, RecordingError};
-use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
 /// Compression of chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packing {
     /// No chunks: messages are written to the file one by one.
     Loose,
-    /// Uncompressed chunks.
     Plain,
     Zstd,
     Lz4,
 }
 
-/// Writes messages to a file or to memory.
 pub struct RecordingWriter<W: Write + Seek> {
     writer: mcap::Writer<W>,
     /// Channel number and schema by topic.
@@ -41,7 +38,6 @@ pub struct RecordingWriter<W: Write + Seek> {
     sequence: u32,
 }
 
-/// Properties of a channel.
 struct Definition<'a> {
     topic: &'a str,
     schema: &'a str,
@@ -51,10 +47,6 @@ struct Definition<'a> {
 }
 
 impl RecordingWriter<BufWriter<File>> {
-    /// Creates a file, replacing an existing one.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn create(path: impl AsRef<Path>, packing: Packing) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         let file =
@@ -64,20 +56,12 @@ impl RecordingWriter<BufWriter<File>> {
 }
 
 impl RecordingWriter<Cursor<Vec<u8>>> {
-    /// Starts a recording in memory.
-    ///
-    /// # Errors
-    /// Only if the library fails.
     pub fn in_memory(packing: Packing) -> Result<Self, RecordingError> {
         RecordingWriter::new(Cursor::new(Vec::new()), packing)
     }
 }
 
 impl<W: Write + Seek> RecordingWriter<W> {
-    /// Starts a recording.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn new(sink: W, packing: Packing) -> Result<Self, RecordingError> {
         let compression = match packing {
             Packing::Loose | Packing::Plain => None,
@@ -100,10 +84,6 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 
     /// Writes a message; all messages of a topic must have the same kind.
-    ///
-    /// # Errors
-    /// If the topic has another kind, the time is before 1970, or it cannot be
-    /// written.
     pub fn write(
         &mut self,
         topic: &str,
@@ -117,17 +97,13 @@ impl<W: Write + Seek> RecordingWriter<W> {
         let definition = Definition {
             topic,
             schema: kind.schema(),
-            text: definition(kind),
+            text: kind.definition(),
             encoding: "cdr",
             latched: is_latched(kind),
         };
         self.write_body(&definition, log_time_ns, &body)
     }
 
-    /// Writes a message that was encoded before.
-    ///
-    /// # Errors
-    /// Same as [`RecordingWriter::write`].
     pub fn write_encoded(&mut self, message: &Encoded) -> Result<(), RecordingError> {
         let definition = Definition {
             topic: &message.topic,
@@ -164,10 +140,6 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.write_body(&definition, log_time_ns, body)
     }
 
-    /// Writes a metadata record for the recording as a whole.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn write_metadata(
         &mut self,
         name: &str,
@@ -180,10 +152,6 @@ impl<W: Write + Seek> RecordingWriter<W> {
         self.writer.write_metadata(&record).map_err(failed)
     }
 
-    /// Adds an attachment to the recording.
-    ///
-    /// # Errors
-    /// If the time is before 1970, or it cannot be written.
     pub fn attach(
         &mut self,
         name: &str,
@@ -203,17 +171,10 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 
     /// Ends the chunk: everything written so far survives a later failure.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn flush(&mut self) -> Result<(), RecordingError> {
         self.writer.flush().map_err(failed)
     }
 
-    /// Ends the recording and returns the sink.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn finish(mut self) -> Result<W, RecordingError> {
         self.writer.finish().map_err(failed)?;
         Ok(self.writer.into_inner())
@@ -247,18 +208,12 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 
     fn add_channel(&mut self, definition: &Definition) -> Result<u16, RecordingError> {
-        let &Definition {
-            topic,
-            schema,
-            encoding,
-            latched,
-            ..
-        } = definition;
-        let schema_id = self
-            .writer
-            .add_schema(schema, "ros2msg", definition.text.as_bytes())
-            .map_err(failed)?;
-        let metadata = [(qos::KEY.to_owned(), qos::offered(latched))].into();
+        let (topic, schema) = (definition.topic, definition.schema);
+        let text = definition.text.as_bytes();
+        let schema_id = self.writer.add_schema(schema, "ros2msg", text);
+        let schema_id = schema_id.map_err(failed)?;
+        let metadata = [(qos::KEY.to_owned(), qos::offered(definition.latched))].into();
+        let encoding = definition.encoding;
         let id = self
             .writer
             .add_channel(schema_id, topic, encoding, &metadata)
@@ -287,22 +242,11 @@ fn is_latched(kind: Kind) -> bool {
     matches!(kind, Kind::Map | Kind::StaticTransforms)
 }
 
-/// Schema text of a kind.
 /// Returns the text of a schema: that of a file, or ours for a known kind; else nothing.
 pub(crate) fn definition_in<'a>(of_file: Option<&'a String>, schema: &str) -> &'a str {
     let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
     let text = of_file.map(String::as_str);
-    text.or(own.map(definition)).unwrap_or_default()
-}
-
-pub(crate) fn definition(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Scan => LaserScan::DEFINITION,
-        Kind::Map => OccupancyGridMsg::DEFINITION,
-        Kind::Odometry => Odometry::DEFINITION,
-        Kind::PoseStamped => PoseStamped::DEFINITION,
-        Kind::StaticTransforms => TfMessage::DEFINITION,
-    }
+    text.or(own.map(Kind::definition)).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -5,10 +5,10 @@ pub mod convert;
 pub mod doctor;
 mod each;
 pub mod info;
+mod messages;
 pub mod simulate;
 
 /// Schemas of what the commands print.
-#[must_use]
 pub fn schemas() -> Vec<json::schema::Named> {
     vec![
         json::schema::of_object::<info::Contents>("info"),

@@ -30,7 +30,6 @@ pub(super) struct Database {
     _copy: Option<TempDir>,
 }
 
-/// Path of the log of a database in WAL mode.
 pub(super) fn log_of(path: &Path) -> PathBuf {
     with_ending(path, "-wal")
 }
@@ -114,10 +113,8 @@ impl Database {
     }
 }
 
-/// File name of the copy.
 const COPY: &str = "bag.db3";
 
-/// Copies the database and its logs to a temporary folder.
 fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, RecordingError> {
     let no_room = |error: std::io::Error| {
         let folder = std::env::temp_dir();

@@ -23,25 +23,6 @@ fn pose(sec: i32, x: f64) -> Message {
     Message::PoseStamped(stamped)
 }
 
-#[test]
-fn what_is_missing_is_named_with_what_is_there() {
-    let recording = recording(&[(GOAL, pose(1, 1.0))]);
-    let error = recording.required_topic(Kind::Scan).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "r.mcap has no sensor_msgs/msg/LaserScan; it has \
-         /goal_pose (geometry_msgs/msg/PoseStamped)"
-    );
-    assert!(recording.map().unwrap().is_none());
-    assert!(
-        recording.ground_truths().unwrap().is_empty(),
-        "a goal is no truth"
-    );
-    assert_eq!(recording.base_from_laser("laser").unwrap(), None);
-    let missing = Recording::open("no/such.mcap").unwrap_err().to_string();
-    assert_eq!(missing, "cannot read the recording no/such.mcap");
-}
-
 const GOAL: &str = "/goal_pose";
 const TRUTH: &str = crate::GROUND_TRUTH;
 
@@ -161,7 +142,7 @@ fn odometry_names_the_base_on_its_topic_and_on_tf() {
         ("/odom", Message::Odometry(Box::new(odometry))),
     ]);
     let without = recording(&[fixed]);
-    let on_tf = on_tf_of("chassis", &[laser.clone(), laser]);
+    let on_tf = on_tf("chassis", &[laser.clone(), laser]);
     let base = |of: &Recording| of.mounted("laser").unwrap().mount.map(|m| m.base_frame);
     let chassis = Some("chassis".to_owned());
     assert_eq!(
@@ -171,11 +152,7 @@ fn odometry_names_the_base_on_its_topic_and_on_tf() {
 }
 
 /// A recording with these transforms on `/tf`, each next to that of odometry.
-fn on_tf(lasers: &[TransformStamped]) -> Recording {
-    on_tf_of("base_link", lasers)
-}
-
-fn on_tf_of(base: &str, lasers: &[TransformStamped]) -> Recording {
+fn on_tf(base: &str, lasers: &[TransformStamped]) -> Recording {
     let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
     for (time, laser) in (0..).zip(lasers) {
         let odometry = transform("odom", base, time as f64, LEVEL);
@@ -194,14 +171,16 @@ fn on_tf_of(base: &str, lasers: &[TransformStamped]) -> Recording {
 #[test]
 fn a_mount_on_tf_is_taken_where_it_does_not_move() {
     let laser = |x: f64| transform("base_link", "laser", x, LEVEL);
-    let still = on_tf(&[laser(0.5), laser(0.5004), laser(0.5)]);
+    let still = on_tf("base_link", &[laser(0.5), laser(0.5004), laser(0.5)]);
     let mounted = still.mounted("laser").unwrap();
     assert_eq!(mounted.mount.unwrap().base_from_laser.x, 0.5);
     assert_eq!(
         mounted.notes,
         ["the mount of laser is taken from /tf, where it does not move"]
     );
-    let moving = on_tf(&[laser(0.5), laser(0.52)]).mounted("laser").unwrap();
+    let moving = on_tf("base_link", &[laser(0.5), laser(0.52)])
+        .mounted("laser")
+        .unwrap();
     assert_eq!(moving.mount, None);
     assert_eq!(
         moving.notes,

@@ -14,7 +14,6 @@ use crate::file::RecordedFile;
 use crate::parse::parse;
 use crate::{Channel, Damage, RecordingError};
 
-/// A message that is not decoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawRecord<'a> {
     /// Its channel, with the number of messages that its file has on it.
@@ -38,7 +37,6 @@ pub struct RawRecords<'a> {
     damage: Option<RecordingError>,
 }
 
-/// A message that waits for its turn.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Pending {
     /// Sort key: log time, file, block, index within the block; never equal.
@@ -81,7 +79,6 @@ impl<'a> RawRecords<'a> {
         self.recording
     }
 
-    /// Unpacks all blocks that may hold the next message.
     fn fill(&mut self) -> Result<(), RecordingError> {
         while let Some(&(index, block)) = self.blocks.last() {
             if let Some(Reverse(next)) = self.next.peek()
@@ -135,7 +132,6 @@ impl<'a> RawRecords<'a> {
         })
     }
 
-    /// Ends the iteration after this error.
     fn end(&mut self, error: RecordingError) -> RecordingError {
         self.blocks.clear();
         self.next.clear();

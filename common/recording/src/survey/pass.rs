@@ -28,15 +28,11 @@ pub(crate) struct Pass<'a> {
     unchecked_from: Option<usize>,
 }
 
-/// Section of the file that the pass is in.
 #[derive(Debug, Clone, Copy)]
 enum Part {
     Start,
     Data,
-    Summary {
-        /// Offset of its first byte.
-        from: usize,
-    },
+    Summary { from: usize },
 }
 
 impl<'a> Pass<'a> {

@@ -10,9 +10,7 @@ use crate::RecordingError;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoded {
     pub topic: Cow<'static, str>,
-    /// Name of the schema.
     pub schema: &'static str,
-    /// Text of the schema.
     pub definition: &'static str,
     /// True if late joiners get the newest message, as on `/map`: it is repeated at the start of
     /// each part of a split recording.
@@ -47,9 +45,6 @@ impl Encoded {
     }
 
     /// Same as [`Encoded::new`], for a latched topic.
-    ///
-    /// # Errors
-    /// Same as [`Encoded::new`].
     pub fn latched<M: RosMessage>(
         topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,

@@ -3,7 +3,6 @@
 /// The longest duration, which means "no limit" in ROS 2.
 const NO_LIMIT: &str = "sec: 9223372036\n    nsec: 854775807";
 
-/// Metadata key of a channel.
 pub(crate) const KEY: &str = "offered_qos_profiles";
 
 /// Value of that key: one profile, reliable, with history "keep last"; transient local if the topic

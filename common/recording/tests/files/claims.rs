@@ -16,7 +16,6 @@ thread_local! {
     static LARGEST: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Records a request.
 fn note(size: usize) {
     LARGEST.set(LARGEST.get().max(size));
 }

@@ -30,7 +30,7 @@ fn every_file_of_the_suite_is_read_as_the_suite_says() {
 
     let files = recordings(folder.path());
     assert_eq!(files.len(), FILES);
-    let mut compared = Compared::default();
+    let mut compared = [0; 3];
     for file in files {
         let expected = std::fs::read(file.with_extension("json")).unwrap();
         let expected: Value = serde_json::from_slice(&expected).unwrap();
@@ -39,22 +39,10 @@ fn every_file_of_the_suite_is_read_as_the_suite_says() {
     assert_eq!(compared, ALL);
 }
 
-/// Numbers of items compared in all files.
-#[derive(Debug, Default, PartialEq, Eq)]
-struct Compared {
-    messages: usize,
-    attachments: usize,
-    metadata: usize,
-}
+/// Numbers of messages, attachments and metadata in all files.
+const ALL: [usize; 3] = [1768, 14, 14];
 
-/// Expected numbers for the suite.
-const ALL: Compared = Compared {
-    messages: 1768,
-    attachments: 14,
-    metadata: 14,
-};
-
-fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
+fn compare(file: &Path, expected: &Value, compared: &mut [usize; 3]) {
     let name = file.display();
     let recording = Recording::open(file).unwrap();
     assert_eq!(recording.damage(), None, "{name}");
@@ -65,24 +53,17 @@ fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
     assert_eq!(recording.messages(), messages.len() as u64, "{name}");
     let found: Vec<_> = recording.raw_records().map(Result::unwrap).collect();
     assert_eq!(found.len(), messages.len(), "{name}");
+    let channels = of_type(expected, "Channel");
     for (found, message) in found.iter().zip(&messages) {
-        assert_eq!(found.log_time_ns, number(&message["log_time"]), "{name}");
-        assert_eq!(
-            found.publish_time_ns as i64,
-            number(&message["publish_time"]),
-            "{name}"
-        );
+        let is_own = |channel: &&Map<String, Value>| channel["id"] == message["channel_id"];
+        let channel = channels.iter().find(is_own).expect("the suite names it");
+        let times = [found.log_time_ns, found.publish_time_ns as i64];
+        let expected = ["log_time", "publish_time"].map(|key| number(&message[key]));
+        assert_eq!(times, expected, "{name}");
         assert_eq!(found.body, bytes(&message["data"]), "{name}");
-        let channels = of_type(expected, "Channel");
-        let channel = channels
-            .iter()
-            .find(|channel| channel["id"] == message["channel_id"]);
-        let channel = channel.expect("the suite names its channels");
-        assert_eq!(*found.channel.topic, channel["topic"], "{name}");
-        assert_eq!(
-            found.channel.encoding, channel["message_encoding"],
-            "{name}"
-        );
+        let (topic, encoding) = (&found.channel.topic, &found.channel.encoding);
+        assert_eq!(**topic, channel["topic"], "{name}");
+        assert_eq!(*encoding, channel["message_encoding"], "{name}");
     }
 
     let attachments = of_type(expected, "Attachment");
@@ -90,16 +71,10 @@ fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
     for (found, attachment) in recording.attachments().iter().zip(&attachments) {
         assert_eq!(found.name, attachment["name"], "{name}");
         assert_eq!(found.media_type, attachment["media_type"], "{name}");
-        assert_eq!(
-            found.log_time_ns as i64,
-            number(&attachment["log_time"]),
-            "{name}"
-        );
-        assert_eq!(
-            recording.content_of(found),
-            bytes(&attachment["data"]),
-            "{name}"
-        );
+        let log_time = number(&attachment["log_time"]);
+        assert_eq!(found.log_time_ns as i64, log_time, "{name}");
+        let content = recording.content_of(found);
+        assert_eq!(content, bytes(&attachment["data"]), "{name}");
     }
 
     let metadata = of_type(expected, "Metadata");
@@ -109,9 +84,9 @@ fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
         let entries = serde_json::to_value(&found.entries).unwrap();
         assert_eq!(entries, metadata["metadata"], "{name}");
     }
-    compared.messages += messages.len();
-    compared.attachments += attachments.len();
-    compared.metadata += metadata.len();
+    for (count, more) in compared.iter_mut().zip([messages, attachments, metadata]) {
+        *count += more.len();
+    }
 }
 
 fn recordings(folder: &Path) -> Vec<PathBuf> {
@@ -127,14 +102,12 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Fields of all records of a type, in the order of the file.
 fn of_type(expected: &Value, kind: &str) -> Vec<Map<String, Value>> {
     let records = expected["records"].as_array().expect("a list of records");
     let of_kind = records.iter().filter(|record| record["type"] == kind);
     of_kind.map(fields).collect()
 }
 
-/// Converts name-value pairs to a map.
 fn fields(record: &Value) -> Map<String, Value> {
     let fields = record["fields"].as_array().expect("a list of fields");
     let pair = |field: &Value| {
@@ -144,7 +117,6 @@ fn fields(record: &Value) -> Map<String, Value> {
     fields.iter().map(pair).collect()
 }
 
-/// Parses a number, which the suite writes as a string.
 fn number(value: &Value) -> i64 {
     let text = value.as_str().expect("a number as text");
     text.parse().expect("a number")

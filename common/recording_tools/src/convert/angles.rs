@@ -17,9 +17,6 @@ const SAME_STEP: f64 = 0.02;
 
 /// Returns the bearing of the first beam and the step between beams, in radians. The step is
 /// negative if the line says so.
-///
-/// # Errors
-/// If the line's angles span more than a full turn.
 pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), String> {
     let beams = laser.ranges.len();
     if let Some(angles) = laser.angles {
@@ -67,7 +64,6 @@ fn gaps(beams: usize) -> usize {
     beams.saturating_sub(1).max(1)
 }
 
-/// Field of view of old lines if the log does not have it.
 fn usual_view(beams: usize, step_known: f64) -> f64 {
     let narrow = 100f64.to_radians();
     let is_narrow = match beams {

@@ -15,7 +15,6 @@
 
 use geometry::Pose;
 
-/// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Line {
     Laser(Laser),
@@ -27,7 +26,6 @@ pub(super) enum Line {
     Other(String),
 }
 
-/// A scan as given in its line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Laser {
     pub(super) kind: Kind,
@@ -85,13 +83,10 @@ pub(super) struct Parameter {
     pub(super) value: String,
 }
 
-/// A line of a known kind that cannot be read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Broken {
     pub(super) name: String,
-    /// Kind of fault, for counting.
     pub(super) fault: Fault,
-    /// Value found, and values allowed.
     pub(super) reason: String,
 }
 
@@ -105,13 +100,11 @@ pub(super) enum Fault {
 }
 
 impl Laser {
-    /// Name of its line, by [`name_of`].
     pub(super) fn name(&self) -> String {
         name_of(self.kind, self.number)
     }
 }
 
-/// Name of the lines of a kind and laser.
 pub(super) fn name_of(kind: Kind, number: u8) -> String {
     match (kind, number) {
         (Kind::Robot, number) => format!("ROBOTLASER{number}"),
@@ -127,7 +120,6 @@ pub(super) fn is_known(name: &str) -> bool {
     matches!(name, "ODOM" | "PARAM" | "SYNC" | "TRUEPOS") || laser_named(name).is_some()
 }
 
-/// Kind and laser number of a line with this name.
 pub(super) fn laser_named(name: &str) -> Option<(Kind, u8)> {
     match name {
         "FLASER" => return Some((Kind::Old, 1)),

@@ -11,7 +11,6 @@ use flate2::bufread::MultiGzDecoder;
 
 use super::carmen;
 
-/// Magic of gzip.
 const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Magic of recordings and bags; whether they can be read is checked elsewhere.
@@ -22,27 +21,19 @@ const RECORDINGS: [&[u8]; 4] = [
     b"\x28\xb5\x2f\xfd",
 ];
 
-/// Number of bytes that are read to detect the format.
 const HEAD_BYTES: u64 = 64 << 10;
 
 /// Longest line: 36000 ranges and as many remissions of twelve digits need less.
 const MAX_LINE_BYTES: u64 = 1 << 20;
 
-/// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A laser log of CARMEN.
     Log,
     /// A recording or bag, or a folder of such.
     Recording,
-    /// Unknown by name and content.
     Unknown,
 }
 
-/// Detects the format of a file.
-///
-/// # Errors
-/// If it does not exist or cannot be read.
 pub(super) fn kind(path: &Path) -> io::Result<Kind> {
     if path.is_dir() {
         return Ok(Kind::Recording);
@@ -76,10 +67,6 @@ pub(super) fn ending(path: &Path) -> String {
     }
 }
 
-/// Opens a log, decompressed if necessary.
-///
-/// # Errors
-/// If it does not exist or cannot be read.
 pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     let mut file = BufReader::new(File::open(path)?);
     if file.fill_buf()?.starts_with(GZIP) {
@@ -91,9 +78,6 @@ pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
 
 /// Passes each line to `on_line` with its number, from 1; a line that is too long is cut. The inner
 /// result is the error if the log cannot be read to its end.
-///
-/// # Errors
-/// The first error of `on_line`.
 pub(super) fn for_each_line<E>(
     mut log: impl BufRead,
     mut on_line: impl FnMut(u64, &str) -> Result<(), E>,

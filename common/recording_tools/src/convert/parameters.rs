@@ -97,7 +97,6 @@ impl Mounting {
     }
 }
 
-/// Number of the laser in the name of a parameter.
 fn laser_of(name: &str) -> Option<u8> {
     if !(name.starts_with("laser_") || name.starts_with("robot_")) {
         return None;

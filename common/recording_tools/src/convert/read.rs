@@ -11,10 +11,6 @@ use super::carmen::{
 /// Largest number of ranges in a line: a full turn in steps of a hundredth of a degree.
 const MAX_READINGS: usize = 36_000;
 
-/// Reads a line.
-///
-/// # Errors
-/// If a line of a known kind is invalid.
 pub(super) fn parse(line: &str) -> Result<Line, Broken> {
     let mut words = Words {
         words: line.split_ascii_whitespace(),
@@ -75,7 +71,6 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Reads the fields after ranges and remissions.
     fn rest(&mut self, kind: Kind, has_poses: bool) -> Result<(Option<Poses>, i64), Refusal> {
         let poses = match has_poses {
             true => Some(Poses {
@@ -306,37 +301,32 @@ mod tests {
             let line = parse(&format!("{other} 1 2"));
             assert_eq!(line, Ok(Line::Other(other.to_owned())));
         }
-        let refused = |line: &str| {
-            let broken = parse(line).unwrap_err();
-            (broken.fault, broken.reason)
-        };
-        let is = |fault, reason: &str| (fault, reason.to_owned());
-        assert_eq!(
-            refused("FLASER 99999999999 1"),
-            is(
+        for (line, fault, reason) in [
+            (
+                "FLASER 99999999999 1",
                 Fault::Count,
-                "\"99999999999\" is not a count of readings; allowed: 0 to 36000"
-            )
-        );
-        assert_eq!(
-            refused("FLASER 2 1.0"),
-            is(Fault::CutShort, "of 2 readings 1 are there")
-        );
-        assert_eq!(
-            refused("FLASER 1 1.0 0 0 nan"),
-            is(Fault::Number, "\"nan\" is no laser pose")
-        );
-        assert_eq!(
-            refused("ODOM 1 2 3 4 5 6"),
-            is(Fault::CutShort, "it ends before the time")
-        );
-        assert_eq!(
-            refused("ODOM 1 2 3 4 5 6 -7"),
-            is(
+                "\"99999999999\" is not a count of readings; allowed: 0 to 36000",
+            ),
+            ("FLASER 2 1.0", Fault::CutShort, "of 2 readings 1 are there"),
+            (
+                "FLASER 1 1.0 0 0 nan",
+                Fault::Number,
+                "\"nan\" is no laser pose",
+            ),
+            (
+                "ODOM 1 2 3 4 5 6",
+                Fault::CutShort,
+                "it ends before the time",
+            ),
+            (
+                "ODOM 1 2 3 4 5 6 -7",
                 Fault::Time,
-                "\"-7\" is no time; allowed: seconds from 0 to 9e9, as 976052857.3375"
-            )
-        );
+                "\"-7\" is no time; allowed: seconds from 0 to 9e9, as 976052857.3375",
+            ),
+        ] {
+            let broken = parse(line).unwrap_err();
+            assert_eq!((broken.fault, &*broken.reason), (fault, reason));
+        }
     }
 
     proptest! {

@@ -1,6 +1,5 @@
 use super::tally::Tally;
 
-/// Result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Report {
     pub(super) scans: u64,
@@ -9,16 +8,13 @@ pub(super) struct Report {
     pub(super) messages: u64,
     /// Descriptions of the lasers, one line each.
     pub(super) remarks: Vec<String>,
-    /// Lines of a log that were left out.
     pub(super) tally: Tally,
-    /// Reason why the file could not be read to its end.
     pub(super) damage: Option<String>,
     /// Number of scans with another mount than the first one of their laser.
     pub(super) moved_mounts: u64,
 }
 
 impl Report {
-    /// Describes data that could not be read, one line each.
     pub(super) fn losses(&self) -> Vec<String> {
         let mut losses = Vec::new();
         if let Some(first) = &self.tally.first_broken {
@@ -35,7 +31,6 @@ impl Report {
         losses
     }
 
-    /// Describes why nothing was converted.
     pub(super) fn why_nothing(&self) -> String {
         let mut reasons = Vec::new();
         if self.odometry > 0 {

@@ -6,7 +6,6 @@ use ros::{Header, LaserScan, Time};
 use super::carmen::{Kind, Laser, name_of};
 use super::survey::Survey;
 
-/// Source and destination of the scans of one laser.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Source {
     number: u8,
@@ -53,7 +52,6 @@ impl Source {
         sources
     }
 
-    /// True if the scans of this laser are taken from such lines.
     pub(super) fn is_of(&self, laser: &Laser) -> bool {
         (self.number, self.kind) == (laser.number, laser.kind)
     }
@@ -97,7 +95,6 @@ impl Source {
         self.flipped.is_some() && self.is_mirrored.unwrap_or(true)
     }
 
-    /// Describes the result in words.
     pub(super) fn text(&self) -> String {
         let name = name_of(self.kind, self.number);
         let (topic, scans) = (&self.topic, self.scans);

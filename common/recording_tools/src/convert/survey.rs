@@ -10,7 +10,6 @@ use super::parameters::Parameters;
 use super::read;
 use super::turning::Turning;
 
-/// Data about the lasers of a log.
 #[derive(Debug, Default)]
 pub(super) struct Survey {
     pub(super) parameters: Parameters,

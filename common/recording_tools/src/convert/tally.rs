@@ -10,17 +10,13 @@ const MAX_NAMES: usize = 100;
 /// Number of other kinds that are listed, those with most lines first.
 const SHOWN: usize = 6;
 
-/// Longest name of a kind.
 const MAX_NAME: usize = 32;
 
-/// Lines and ranges that are left out.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Tally {
     /// Broken lines of known kinds, by name and fault.
     broken: BTreeMap<(String, Fault), u64>,
-    /// Description of the first broken line.
     pub(super) first_broken: Option<String>,
-    /// Lines of other kinds, by name.
     others: BTreeMap<String, u64>,
     /// Lines that do not start like any line of a log.
     not_lines: u64,
@@ -56,7 +52,6 @@ impl Tally {
         *self.repeated.entry(name).or_default() += 1;
     }
 
-    /// Number of lines of known kinds that could not be read.
     pub(super) fn broken_lines(&self) -> u64 {
         self.broken.values().sum()
     }

@@ -5,10 +5,7 @@ use std::io::{BufRead, Seek, Write};
 
 use recording::write::RecordingWriter;
 use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
-use ros::{
-    self, Header, PoseStamped, TfMessage, Time, Transform, TransformStamped, Twist,
-    TwistWithCovariance,
-};
+use ros::{Time, Transform};
 use transport::with_causes;
 
 use super::angles;
@@ -18,23 +15,19 @@ use super::read;
 use super::report::Report;
 use super::source::Source;
 use super::survey::Survey;
+use crate::messages;
 
 /// Largest difference of two equal mounts, in metres and radians: logs have six digits.
 const SAME_MOUNT: f64 = 1e-3;
 
-/// Settings of the conversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rules {
-    /// True if laser poses are true poses.
     pub(super) truth: bool,
     pub(super) range_max_m: f32,
 }
 
 /// Converts a log, which `open` opens for each of two passes. Lines that cannot be read are
 /// counted.
-///
-/// # Errors
-/// If the log cannot be opened, or the recording cannot be written.
 pub(super) fn convert<W: Write + Seek, L: BufRead>(
     open: impl Fn() -> anyhow::Result<L>,
     rules: &Rules,
@@ -61,9 +54,7 @@ struct Conversion<'a, W: Write + Seek> {
     writer: &'a mut RecordingWriter<W>,
     survey: &'a Survey,
     sources: Vec<Source>,
-    /// Mount of each laser, by its frame.
     mounts: Vec<(String, geometry::Pose)>,
-    /// Stamps of odometry that has been written.
     odometry_ns: BTreeSet<i64>,
     report: Report,
 }
@@ -126,7 +117,8 @@ impl<W: Write + Seek> Conversion<'_, W> {
     ) -> anyhow::Result<()> {
         let mount = match laser.poses {
             Some(poses) if self.rules.truth && topic == SCAN => {
-                return self.truth(ns, stamp, poses.laser);
+                let truth = messages::truth(stamp, poses.laser);
+                return Ok(self.writer.write(GROUND_TRUTH, ns, &truth)?);
             }
             Some(_) if self.rules.truth => None,
             Some(poses) => Some(poses.robot.inverse().then(poses.laser)),
@@ -139,16 +131,6 @@ impl<W: Write + Seek> Conversion<'_, W> {
             Some(mount) => self.mount(ns, frame, mount, stamp),
             None => Ok(()),
         }
-    }
-
-    fn truth(&mut self, ns: i64, stamp: Time, laser: geometry::Pose) -> anyhow::Result<()> {
-        let truth = PoseStamped {
-            header: Header::new(stamp, "map"),
-            pose: ros::Pose::from_planar(laser),
-        };
-        Ok(self
-            .writer
-            .write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))?)
     }
 
     fn odometry(&mut self, odometry: &Odometry, number: u64) -> anyhow::Result<()> {
@@ -173,19 +155,9 @@ impl<W: Write + Seek> Conversion<'_, W> {
             return Ok(());
         }
         let motion = geometry::Pose::new(forward, 0.0, turn);
-        let message = ros::Odometry {
-            header: Header::new(stamp, "odom"),
-            child_frame_id: "base_link".to_owned(),
-            pose: ros::PoseWithCovariance::from_planar(robot, [0.0; 9]),
-            twist: TwistWithCovariance {
-                twist: Twist::from_planar(motion),
-                ..TwistWithCovariance::default()
-            },
-        };
         self.report.odometry += 1;
-        Ok(self
-            .writer
-            .write(ODOM, ns, &Message::Odometry(Box::new(message)))?)
+        let message = messages::odometry(stamp, robot, motion);
+        Ok(self.writer.write(ODOM, ns, &message)?)
     }
 
     /// Writes the mount of a laser from the first line that has it.
@@ -204,17 +176,10 @@ impl<W: Write + Seek> Conversion<'_, W> {
             return Ok(());
         }
         self.mounts.push((frame.to_owned(), base_from_laser));
-        let transform = |(frame, pose): &(String, geometry::Pose)| TransformStamped {
-            header: Header::new(stamp, "base_link"),
-            child_frame_id: frame.clone(),
-            transform: Transform::from_planar(*pose),
-        };
-        let transforms = self.mounts.iter().map(transform).collect();
-        Ok(self.writer.write(
-            TF_STATIC,
-            ns,
-            &Message::StaticTransforms(TfMessage { transforms }),
-        )?)
+        let mounts = self.mounts.iter();
+        let mounts = mounts.map(|(frame, pose)| (frame.clone(), Transform::from_planar(*pose)));
+        let message = messages::mounts(stamp, mounts);
+        Ok(self.writer.write(TF_STATIC, ns, &message)?)
     }
 }
 

@@ -20,7 +20,6 @@ const MAX_DIFFERENCE_M: f32 = 0.5;
 /// A direction fits if its mean difference is at most this share of the other's.
 const CLEAR: f32 = 0.8;
 
-/// Votes of successive scans of one laser.
 #[derive(Debug, Default)]
 pub(super) struct Turning {
     last: Option<(f64, Vec<f32>)>,

@@ -136,7 +136,6 @@ fn map(recording: &Recording) -> Vec<Finding> {
     found
 }
 
-/// Converts the map of a message, if the engine accepts it.
 fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
     let grid = map.to_grid().map_err(|error| with_causes(&error))?;
     check_map(&grid, CellRules::default()).map_err(|error| with_causes(&error))?;
@@ -378,7 +377,7 @@ fn truths(recording: &Recording, survey: &Survey) -> Vec<Finding> {
 }
 
 fn order(recording: &Recording) -> Vec<Finding> {
-    match recording.parts().map(|part| part.unsorted).sum() {
+    match recording.unsorted() {
         0 => Vec::new(),
         unsorted => vec![Finding::note(format!(
             "{unsorted} messages stand in the file behind later ones; readers sort them"

@@ -3,12 +3,10 @@
 use engine::motion::Motion;
 use geometry::Pose;
 
-/// A pose found for a scan, with its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sighting {
     /// Stamp of the scan, with which its pose is published, in nanoseconds.
     pub(super) at_ns: i64,
-    /// Pose of the laser in the map.
     pub(super) map_from_laser: Pose,
 }
 
@@ -86,7 +84,6 @@ pub(super) fn delay_s(
     Some((best as f64 + off - f64::from(steps)) * STEP_S)
 }
 
-/// True if odometry covers the pair at all delays.
 fn covers(motion: &Motion, pair: &[Sighting; 2], child_from_laser: Pose) -> bool {
     let most_ns = (MAX_DELAY_S * 1e9) as i64;
     [-most_ns, most_ns]

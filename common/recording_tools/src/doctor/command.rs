@@ -67,26 +67,18 @@ pub(crate) struct Report {
 
 impl Config {
     /// Router of a live robot to record, if given, and the duration of the recording.
-    #[must_use]
     pub fn live(&self) -> Option<(Option<&str>, Duration)> {
         let seconds = u64::from(self.ros2?);
         Some((self.connect.as_deref(), Duration::from_secs(seconds)))
     }
 }
 
-/// Checks the given recordings one after another.
-///
-/// # Errors
-/// If the only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     examine(config, &config.recordings, &[])
 }
 
 /// Checks the recording of a live robot; `warnings` are known faults that the recording does not
 /// show.
-///
-/// # Errors
-/// Same as [`run`].
 pub fn run_on<'a>(
     config: &Config,
     recording: &Path,

@@ -15,7 +15,6 @@ use super::survey::{Seen, Survey};
 /// then off by a degree.
 const WORTH_A_NOTE_S: f64 = 0.02;
 
-/// Checks that the odometry's stamps fit those of the scans.
 pub(super) fn odometry_delay(
     recording: &Recording,
     survey: &Survey,

@@ -40,7 +40,6 @@ pub(super) fn is_far(base_from_laser: Pose) -> bool {
     base_from_laser.distance_to(Pose::IDENTITY) > FAR_MOUNT_M
 }
 
-/// Observations of one scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
     pub(super) stamp_ns: i64,
@@ -63,7 +62,6 @@ pub(super) struct Drive {
     child_from_laser: Pose,
     matcher: ScanMatcher,
     space: Space,
-    /// Ranges of the last scan.
     readings: Vec<Option<u64>>,
 }
 

@@ -42,7 +42,6 @@ pub(super) struct Located {
     pub(super) map: OccupancyGrid,
 }
 
-/// A scan with its best pose.
 pub(super) struct LocatedScan {
     pub(super) scan: TakenScan,
     pub(super) map_from_laser: Pose,
@@ -94,7 +93,6 @@ fn locate(session: &mut Session<'_>, scan: TakenScan) -> anyhow::Result<Option<L
     }))
 }
 
-/// Score of a scan at each scale.
 fn scores(session: &mut Session<'_>, found: &LocatedScan) -> anyhow::Result<[f64; SCALES.len()]> {
     let mut scores = [found.score; SCALES.len()];
     let changed = scores.iter_mut().zip(SCALES);

@@ -6,7 +6,6 @@ use engine::scan::Scan;
 use recording::{Kind, Message, Record, Recording, RecordingError};
 use ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 
-/// Observations on one channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Seen {
     pub(super) kind: Option<Kind>,
@@ -60,7 +59,6 @@ const REACHABLE_M: f32 = 200.0;
 /// value that nothing returned.
 const MIN_READINGS: usize = 30;
 
-/// Observations on all channels, by topic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Survey {
     pub(super) channels: BTreeMap<String, Seen>,

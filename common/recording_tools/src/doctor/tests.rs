@@ -5,6 +5,7 @@ use std::path::Path;
 use ::map::OccupancyGrid;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
+use ros::{LaserScan, Transform};
 
 use super::checks;
 use super::finding::{Finding, Severity};
@@ -27,11 +28,6 @@ fn findings(map: Option<&OccupancyGrid>, change: impl Fn(&mut Message)) -> Vec<F
 }
 
 #[track_caller]
-fn check(words: &str, change: impl Fn(&mut Message)) {
-    check_on(None, words, change);
-}
-
-#[track_caller]
 fn check_on(map: Option<&OccupancyGrid>, words: &str, change: impl Fn(&mut Message)) {
     let found = findings(map, change);
     let is_problem = |finding: &Finding| {
@@ -43,13 +39,29 @@ fn check_on(map: Option<&OccupancyGrid>, words: &str, change: impl Fn(&mut Messa
     );
 }
 
+#[track_caller]
+fn check_scans(words: &str, change: impl Fn(&mut LaserScan)) {
+    check_on(None, words, |message| {
+        if let Message::Scan(scan) = message {
+            change(scan);
+        }
+    });
+}
+
+#[track_caller]
+fn check_mount(words: &str, change: impl Fn(&mut Transform)) {
+    check_on(None, words, |message| {
+        if let Message::StaticTransforms(message) = message {
+            change(&mut message.transforms[0].transform);
+        }
+    });
+}
+
 #[test]
 fn readings_in_millimetres_are_named() {
-    check("they are in millimetres", |message| {
-        if let Message::Scan(scan) = message {
-            scan.range_max *= 1000.0;
-            scan.ranges.iter_mut().for_each(|range| *range *= 1000.0);
-        }
+    check_scans("they are in millimetres", |scan| {
+        scan.range_max *= 1000.0;
+        scan.ranges.iter_mut().for_each(|range| *range *= 1000.0);
     });
 }
 
@@ -60,31 +72,21 @@ fn a_time_increment_that_cannot_be_is_named() {
         (1e30, "with a time_increment of 1e30 s"),
         (f32::NAN, "time_increment is NaN"),
     ] {
-        check(words, |message| {
-            if let Message::Scan(scan) = message {
-                scan.time_increment = seconds;
-            }
-        });
+        check_scans(words, |scan| scan.time_increment = seconds);
     }
 }
 
 #[test]
-fn a_mount_that_is_turned_or_far_away_is_named() {
-    check(
-        "/tf_static puts \"laser\" 780 m from \"base_link\"",
-        |message| {
-            if let Message::StaticTransforms(message) = message {
-                message.transforms[0].transform.translation.x *= 1000.0;
-            }
-        },
-    );
-    check("degrees to the right of where its mount says", |message| {
-        if let Message::StaticTransforms(message) = message {
-            let half = std::f64::consts::FRAC_1_SQRT_2;
-            let rotation = &mut message.transforms[0].transform.rotation;
-            (rotation.z, rotation.w) = (half, half);
-        }
+fn a_mount_that_is_turned_or_far_away_or_in_walls_is_named() {
+    let far = "/tf_static puts \"laser\" 780 m from \"base_link\"";
+    check_mount(far, |mount| mount.translation.x *= 1000.0);
+    check_mount("degrees to the right of where its mount says", |mount| {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        (mount.rotation.z, mount.rotation.w) = (half, half);
     });
+    // The corridor is 3 m wide, and the laser 0.78 m ahead of the base.
+    let in_walls = "stands in a wall or off the map at";
+    check_mount(in_walls, |mount| mount.translation.y += 9.0);
 }
 
 #[test]
@@ -103,14 +105,4 @@ fn a_map_of_another_scale_or_place_is_named() {
     }
     let courtyard = ::map::load(root.join("malaga_courtyard/map.yaml")).unwrap();
     check_on(Some(&courtyard), "none of 37 scans has a place", |_| ());
-}
-
-#[test]
-fn a_base_in_walls_is_named() {
-    // The corridor is 3 m wide, and the laser 0.78 m ahead of the base.
-    check("stands in a wall or off the map at", |message| {
-        if let Message::StaticTransforms(message) = message {
-            message.transforms[0].transform.translation.y += 9.0;
-        }
-    });
 }

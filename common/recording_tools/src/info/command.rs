@@ -27,9 +27,6 @@ pub struct Config {
 }
 
 /// Describes the given recordings one after another; a damaged one up to its damage.
-///
-/// # Errors
-/// If the only file cannot be read, or is no recording.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     let any_failed = each(&config.recordings, |path| {

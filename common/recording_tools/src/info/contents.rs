@@ -65,7 +65,7 @@ impl Contents {
             messages: recording.messages(),
             first_ns: range.map(|(first, _)| first),
             last_ns: range.map(|(_, last)| last),
-            chunks: recording.parts().filter(|part| part.is_chunk).count(),
+            chunks: recording.chunks(),
             channels: channels(recording, seconds),
             taken: taken(recording),
             unclear: unclear(recording),
@@ -75,7 +75,6 @@ impl Contents {
         }
     }
 
-    /// Formats them as a JSON object on one line.
     pub(crate) fn json(&self) -> String {
         json::object(self) + "\n"
     }

@@ -8,10 +8,11 @@ use progress::{Progress, say};
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
 use ros::{PointCloud2, RosMessage, Time};
-use simulation::{Drive, DriveConfig, Path, Wheels};
+use simulation::{Drive, DriveConfig, Path};
 
 use super::lidar;
 use super::messages::Messages;
+use crate::messages;
 
 const SECOND_NS: i64 = 1_000_000_000;
 
@@ -53,36 +54,37 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         say(&key.to_string());
     })?;
     let drive = Drive::new(&map, &config.path, &config.drive)?;
-    let messages = Messages::new(&config.drive, drive.bearings());
+    let made = Messages::new(&config.drive, drive.bearings());
     let start_ns = config.start_time * SECOND_NS;
     let scans = drive.scans();
     let progress = Progress::new("simulating", scans);
     let mut writer = RecordingWriter::create(&config.out, Packing::Zstd)?;
     let start = time(start_ns);
-    writer.write(MAP, start_ns, &messages.map(&map, start))?;
-    writer.write(TF_STATIC, start_ns, &messages.mounts(start))?;
+    writer.write(MAP, start_ns, &made.map(&map, start))?;
+    writer.write(TF_STATIC, start_ns, &made.mounts(start))?;
     for snapshot in drive {
         let stamp_ns = start_ns + snapshot.time_ns;
         let stamp = time(stamp_ns);
-        let wheels = Wheels {
-            time_ns: snapshot.time_ns,
-            odom_from_base: snapshot.odom_from_base,
-            twist: snapshot.twist,
-        };
-        writer.write(ODOM, stamp_ns, &messages.odometry(&wheels, stamp))?;
-        writer.write(GROUND_TRUTH, stamp_ns, &messages.truth(&snapshot, stamp))?;
+        let odometry = messages::odometry(stamp, snapshot.odom_from_base, snapshot.twist);
+        writer.write(ODOM, stamp_ns, &odometry)?;
+        writer.write(
+            GROUND_TRUTH,
+            stamp_ns,
+            &messages::truth(stamp, snapshot.map_from_laser),
+        )?;
         // A scan is recorded when its last beam is.
         let mut end_ns = stamp_ns;
         if let Some(wheels) = &snapshot.after {
             end_ns = start_ns + wheels.time_ns;
-            writer.write(ODOM, end_ns, &messages.odometry(wheels, time(end_ns)))?;
+            let odometry = messages::odometry(time(end_ns), wheels.odom_from_base, wheels.twist);
+            writer.write(ODOM, end_ns, &odometry)?;
         }
-        if let Some(cloud) = messages.cloud(&snapshot, stamp) {
+        if let Some(cloud) = made.cloud(&snapshot, stamp) {
             let (schema, text) = (PointCloud2::SCHEMA, PointCloud2::DEFINITION);
             let body = ros::cdr::encode(&cloud)?;
             writer.write_bytes(lidar::TOPIC, schema, text, "cdr", end_ns, &body)?;
         }
-        for (topic, scan) in messages.scans(snapshot, stamp) {
+        for (topic, scan) in made.scans(snapshot, stamp) {
             writer.write(&topic, end_ns, &scan)?;
         }
         progress.step();

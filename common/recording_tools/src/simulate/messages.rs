@@ -3,15 +3,12 @@
 
 use map::OccupancyGrid;
 use recording::Message;
-use ros::{
-    Header, LaserScan, OccupancyGridMsg, Odometry, PointCloud2, PoseStamped, TfMessage, Time,
-    Transform, TransformStamped, Twist, lasers, planar,
-};
-use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
+use ros::{Header, LaserScan, OccupancyGridMsg, PointCloud2, Time, Transform, lasers, planar};
+use simulation::{Bearings, DriveConfig, NamedMount, Snapshot};
 
 use super::lidar;
+use crate::messages;
 
-/// Data that all messages of a recording share.
 pub(super) struct Messages {
     bearings: Bearings,
     lasers: Vec<NamedMount>,
@@ -46,38 +43,15 @@ impl Messages {
             if self.has_rings {
                 level.translation.z = lidar::HEIGHT_M;
             }
-            TransformStamped {
-                header: Header::new(stamp, "base_link"),
-                child_frame_id: frame(&laser.name),
-                transform: match laser.mount.is_upside_down {
-                    false => level,
-                    true => planar::upside_down(level),
-                },
-            }
+            let transform = match laser.mount.is_upside_down {
+                false => level,
+                true => planar::upside_down(level),
+            };
+            (frame(&laser.name), transform)
         };
-        let transforms = self.lasers.iter().map(transform).collect();
-        Message::StaticTransforms(TfMessage { transforms })
+        messages::mounts(stamp, self.lasers.iter().map(transform))
     }
 
-    pub(super) fn odometry(&self, wheels: &Wheels, stamp: Time) -> Message {
-        let mut message = Odometry {
-            header: Header::new(stamp, "odom"),
-            child_frame_id: "base_link".into(),
-            ..Odometry::default()
-        };
-        message.pose.pose = ros::Pose::from_planar(wheels.odom_from_base);
-        message.twist.twist = Twist::from_planar(wheels.twist);
-        Message::Odometry(Box::new(message))
-    }
-
-    pub(super) fn truth(&self, snapshot: &Snapshot, stamp: Time) -> Message {
-        Message::PoseStamped(PoseStamped {
-            header: Header::new(stamp, "map"),
-            pose: ros::Pose::from_planar(snapshot.map_from_laser),
-        })
-    }
-
-    /// Points of the lidar, if there is one.
     pub(super) fn cloud(&self, snapshot: &Snapshot, stamp: Time) -> Option<PointCloud2> {
         let rings = || std::iter::once(&snapshot.ranges).chain(&snapshot.others);
         let header = Header::new(stamp, &frame(""));
