@@ -108,26 +108,6 @@ mod tests {
     }
 
     #[test]
-    fn options() {
-        let config = parse("--output r.mcap").unwrap();
-        assert_eq!((config.keep, config.split_size), (None, None));
-        assert_eq!(config.sync, SyncPeriod(Some(Duration::from_secs(5))));
-        let config = parse("--output r.mcap --sync never").unwrap();
-        assert_eq!(config.sync, SyncPeriod(None));
-        assert_eq!(config.transcript.base_frame, "base_link");
-        let config = parse("--output r --keep 10m --save-on lost-pose,degraded").unwrap();
-        assert_eq!(config.keep, Some(Duration::from_secs(600)));
-        assert_eq!(config.save_on, [Event::LostPose, Event::Degraded]);
-        assert_eq!(
-            parse("--output r --attach a --attach b,c")
-                .unwrap()
-                .attach
-                .len(),
-            2
-        );
-    }
-
-    #[test]
     fn what_is_refused_says_what_is_allowed() {
         let refuse = |arguments: &str, expected: &str| {
             let text = parse(arguments).unwrap_err();

@@ -6,9 +6,6 @@ use std::time::Duration;
 const LONGEST_S: f64 = 365.0 * 86_400.0;
 
 /// Parses `90`, `90s`, `10m` or `1.5h`; a bare number is in seconds.
-///
-/// # Errors
-/// A message with the values allowed.
 pub(crate) fn parse(text: &str) -> Result<Duration, String> {
     let unit = |suffix, seconds| text.strip_suffix(suffix).map(|number| (number, seconds));
     let (number, seconds) = unit('s', 1.0)

@@ -29,9 +29,7 @@ pub(crate) struct EventDetector {
     /// Number of scans since the last known place; `None` before a place is known and after its
     /// loss was reported.
     unknown_for: Option<u32>,
-    /// Last state of the tracker, if there is one.
     tracked: Option<TrackState>,
-    /// Names of the degraded nodes.
     degraded: Vec<String>,
 }
 

@@ -20,7 +20,6 @@ use crate::{Config, Event, RecorderError};
 /// Longest delay of a save signal or a health report.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
     /// Number of messages recorded, or kept by a black box for some time.
@@ -36,8 +35,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Returns true if data is missing in the recording.
-    #[must_use]
     pub fn lost_data(&self) -> bool {
         self.failed || self.dropped + self.refused > 0
     }
@@ -68,12 +65,10 @@ struct Recorder {
     transcript: Transcript,
     detector: EventDetector,
     save_on: Vec<Event>,
-    /// Set by the signal SIGUSR1.
     save: Arc<AtomicBool>,
     /// Requests to save from the graph, with `--keep`.
     saves: Option<Rc<Subscriber<topic::Save>>>,
     writer: Writer,
-    /// Last status of the writer.
     status: Status,
 }
 
@@ -151,7 +146,6 @@ impl Recorder {
         }
     }
 
-    /// Passes all converted messages to the writer.
     fn hand_over(&mut self) -> Result<(), RecorderError> {
         for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;

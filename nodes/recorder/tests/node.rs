@@ -22,7 +22,6 @@ use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 const SECOND: i64 = 1_000_000_000;
 const START: i64 = 1_137_772_793 * SECOND;
 
-/// Node in a graph of its own, fed by the test.
 struct World {
     node: Option<NodeProcess>,
     health: Subscriber<topic::Health>,
@@ -120,7 +119,6 @@ impl World {
         }
     }
 
-    /// Waits until the node reports this many messages as written.
     fn wait_for_written(&self, messages: u64) {
         let awaited = |report: &messages::HealthHeader| {
             report.node.as_str() == "recorder" && report.sent >= messages
@@ -210,21 +208,6 @@ fn a_black_box_is_saved_when_asked_and_when_the_pose_is_lost() {
     assert_eq!(counts(&world.path("r_1.mcap"))["/hypotheses"], 6);
 }
 
-#[test]
-fn a_black_box_is_saved_when_the_graph_asks() {
-    let mut world = World::start("save", &["--keep", "1s"]);
-    let saves = world.graph.publisher::<topic::Save>().unwrap();
-    world.send_map();
-    world.send_scan();
-    saves.loan(0).unwrap().send().unwrap();
-    wait_for_file(&world, "r.mcap");
-    let saved = Recording::open(world.path("r.mcap")).unwrap();
-    assert_eq!(saved.metadata()[0].entries["reason"], "asked by the graph");
-    drop(saves);
-    world.take_node().stop();
-}
-
-/// Waits until a file is complete.
 fn wait_for_file(world: &World, name: &str) {
     let is_whole = || Recording::open(world.path(name)).is_ok_and(|r| r.damage().is_none());
     while !is_whole() {

@@ -43,26 +43,18 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Creates the file and starts the thread.
-    ///
-    /// # Errors
-    /// If the file cannot be created or the thread not started.
     pub(super) fn start(graph: &str, config: &Config) -> Result<Self, RecorderError> {
         let preamble = Preamble::new(config, graph)?;
         let output = config.output.clone();
-        let store = match config.keep {
-            None => {
-                let parts = Parts::new(output, limits(config), preamble)?;
-                Store::Parts(Box::new(parts))
-            }
+        let store: Box<dyn Store> = match config.keep {
+            None => Box::new(Parts::new(output, limits(config), preamble)?),
             Some(keep) => {
                 let capacity = bytes(config.keep_size);
                 let room = Room {
                     files: config.keep_files,
                     bytes: config.keep_disk.saturating_mul(MEGABYTE),
                 };
-                let black_box = BlackBox::new(output, keep, capacity, room, preamble);
-                Store::BlackBox(Box::new(black_box))
+                Box::new(BlackBox::new(output, keep, capacity, room, preamble))
             }
         };
         let (commands, waiting) = channel();
@@ -102,12 +94,10 @@ impl Writer {
         self.send(Command::Put(entry))
     }
 
-    /// Requests to save a black box.
     pub(super) fn save(&self, why: &str) -> Result<(), RecorderError> {
         self.send(Command::Save(why.to_owned()))
     }
 
-    /// Reports an event on which a black box is saved.
     pub(super) fn happened(&self, event: Event) -> Result<(), RecorderError> {
         self.send(Command::Happened(event))
     }
@@ -123,9 +113,6 @@ impl Writer {
     }
 
     /// Waits until everything is written.
-    ///
-    /// # Errors
-    /// If the thread panicked.
     pub(super) fn finish(self) -> Result<Status, RecorderError> {
         drop(self.commands);
         let mut status = self.thread.join().map_err(|_| RecorderError::ThreadEnded)?;
@@ -140,9 +127,8 @@ impl Writer {
     }
 }
 
-/// State of the writer thread.
 struct WriterThread {
-    store: Store,
+    store: Box<dyn Store>,
     waiting: Receiver<Command>,
     queued_bytes: Arc<AtomicUsize>,
     status: Arc<Mutex<Status>>,
@@ -152,7 +138,6 @@ struct WriterThread {
 }
 
 impl WriterThread {
-    /// Writes until the handle is dropped.
     fn work(&mut self) -> Status {
         let mut flush_at = Instant::now() + FLUSH_PERIOD;
         let mut synced = Instant::now();

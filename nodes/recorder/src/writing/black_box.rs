@@ -12,7 +12,7 @@ use command_line::output;
 use recording::write::{Packing, RecordingWriter};
 use ros_export::Entry;
 
-use super::{Preamble, Tally, name};
+use super::{Preamble, Store, Tally, name};
 use crate::RecorderError;
 
 /// Memory of a message in addition to its bytes.
@@ -30,7 +30,6 @@ pub(crate) struct BlackBox {
     keep: Duration,
     capacity_bytes: usize,
     room: Room,
-    /// Time of the newest message in the last file.
     saved_ns: Option<i64>,
     /// Events for the next file, with their counts.
     events: Vec<(String, u32)>,
@@ -65,26 +64,6 @@ impl BlackBox {
         }
     }
 
-    /// Adds an entry, drops entries beyond the limits, and saves a file if one is due.
-    ///
-    /// # Errors
-    /// If a file for earlier events is due and cannot be written.
-    pub(super) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
-        if let Entry::Message(message) = &entry {
-            self.newest_ns = self.newest_ns.max(message.log_time_ns);
-            self.tally.recorded += 1;
-        }
-        self.bytes += size(&entry);
-        self.kept.push_back(entry);
-        while self.is_too_much()
-            && let Some(oldest) = self.kept.pop_front()
-        {
-            self.bytes -= size(&oldest);
-            self.preamble.note(&oldest);
-        }
-        self.save_due_events()
-    }
-
     /// Returns true if a file saved now would overlap the last one.
     fn is_in_last_file(&self) -> bool {
         self.saved_ns.is_some_and(|saved_ns| {
@@ -93,72 +72,11 @@ impl BlackBox {
         })
     }
 
-    /// Saves because of an event: at once, or once the file no longer overlaps the last one.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub(super) fn happened(&mut self, event: &str) -> Result<(), RecorderError> {
-        match self.events.iter_mut().find(|(other, _)| other == event) {
-            Some((_, times)) => *times += 1,
-            None => self.events.push((event.to_owned(), 1)),
-        }
-        self.save_due_events()
-    }
-
-    /// Saves if there are unsaved events and the file would not overlap the last one.
     fn save_due_events(&mut self) -> Result<(), RecorderError> {
         match self.is_in_last_file() {
             true => Ok(()),
-            false => self.save_events(),
+            false => self.finish(),
         }
-    }
-
-    /// Saves if there are unsaved events.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub(super) fn save_events(&mut self) -> Result<(), RecorderError> {
-        let events = std::mem::take(&mut self.events);
-        let words = events.into_iter().map(|(event, times)| match times {
-            1 => event,
-            _ => format!("{event} ({times} times)"),
-        });
-        let words: Vec<String> = words.collect();
-        match words.is_empty() {
-            true => Ok(()),
-            false => self.save(&words.join(", ")),
-        }
-    }
-
-    /// Writes the entries to a file, and also keeps them.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub(super) fn save(&mut self, why: &str) -> Result<(), RecorderError> {
-        let (path, file) = name::create(&self.path, false)?;
-        let mut writer = RecordingWriter::new(BufWriter::new(file), Packing::Zstd)?;
-        let reason = [("reason".to_owned(), why.to_owned())].into();
-        writer.write_metadata("backcast/saved", &reason)?;
-        self.preamble.write(&mut writer, self.first_ns())?;
-        for entry in &self.kept {
-            match entry {
-                Entry::Message(message) => writer.write_encoded(message)?,
-                Entry::Metadata(name, entries) => writer.write_metadata(name, entries)?,
-            }
-        }
-        let mut file = writer.finish()?;
-        // Synced, so that the file survives a power failure.
-        file.flush()
-            .and_then(|()| file.get_ref().sync_data())
-            .map_err(|source| RecorderError::Save {
-                path: path.clone(),
-                source,
-            })?;
-        self.tally.files += 1;
-        self.saved_ns = Some(self.newest_ns);
-        tracing::info!("{why}: saved to {}", path.display());
-        self.remove_oldest(&path);
-        Ok(())
     }
 
     /// Removes the oldest files beyond the limits; the newest one always stays.
@@ -185,10 +103,6 @@ impl BlackBox {
         }
     }
 
-    pub(super) fn tally(&self) -> Tally {
-        self.tally
-    }
-
     fn is_too_much(&self) -> bool {
         let is_old = self.first_ns().is_some_and(|first_ns| {
             let covered_ns = i128::from(self.newest_ns) - i128::from(first_ns);
@@ -205,6 +119,79 @@ impl BlackBox {
     }
 }
 
+impl Store for BlackBox {
+    /// Adds an entry, drops entries beyond the limits, and saves a file if one is due.
+    fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
+        if let Entry::Message(message) = &entry {
+            self.newest_ns = self.newest_ns.max(message.log_time_ns);
+            self.tally.recorded += 1;
+        }
+        self.bytes += size(&entry);
+        self.kept.push_back(entry);
+        while self.is_too_much()
+            && let Some(oldest) = self.kept.pop_front()
+        {
+            self.bytes -= size(&oldest);
+            self.preamble.note(&oldest);
+        }
+        self.save_due_events()
+    }
+
+    /// Writes the entries to a file, and also keeps them.
+    fn save(&mut self, why: &str) -> Result<(), RecorderError> {
+        let (path, file) = name::create(&self.path, false)?;
+        let mut writer = RecordingWriter::new(BufWriter::new(file), Packing::Zstd)?;
+        let reason = [("reason".to_owned(), why.to_owned())].into();
+        writer.write_metadata("backcast/saved", &reason)?;
+        self.preamble.write(&mut writer, self.first_ns())?;
+        for entry in &self.kept {
+            match entry {
+                Entry::Message(message) => writer.write_encoded(message)?,
+                Entry::Metadata(name, entries) => writer.write_metadata(name, entries)?,
+            }
+        }
+        let mut file = writer.finish()?;
+        // Synced, so that the file survives a power failure.
+        file.flush()
+            .and_then(|()| file.get_ref().sync_data())
+            .map_err(RecorderError::file(format!(
+                "cannot write {}",
+                path.display()
+            )))?;
+        self.tally.files += 1;
+        self.saved_ns = Some(self.newest_ns);
+        tracing::info!("{why}: saved to {}", path.display());
+        self.remove_oldest(&path);
+        Ok(())
+    }
+
+    fn happened(&mut self, event: &str) -> Result<(), RecorderError> {
+        match self.events.iter_mut().find(|(other, _)| other == event) {
+            Some((_, times)) => *times += 1,
+            None => self.events.push((event.to_owned(), 1)),
+        }
+        self.save_due_events()
+    }
+
+    /// Saves if there are unsaved events.
+    fn finish(&mut self) -> Result<(), RecorderError> {
+        let events = std::mem::take(&mut self.events);
+        let words = events.into_iter().map(|(event, times)| match times {
+            1 => event,
+            _ => format!("{event} ({times} times)"),
+        });
+        let words: Vec<String> = words.collect();
+        match words.is_empty() {
+            true => Ok(()),
+            false => self.save(&words.join(", ")),
+        }
+    }
+
+    fn tally(&self) -> Tally {
+        self.tally
+    }
+}
+
 fn size(entry: &Entry) -> usize {
     match entry {
         Entry::Message(message) => message.body.len() + OVERHEAD_BYTES,
@@ -214,33 +201,17 @@ fn size(entry: &Entry) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use recording::write::Encoded;
     use recording::{MAP, Recording};
     use tempfile::TempDir;
 
+    use super::super::testing::{SECOND, message, topics};
     use super::*;
-
-    const SECOND: i64 = 1_000_000_000;
-
-    fn message(topic: &'static str, second: i64, latched: bool) -> Entry {
-        Entry::Message(Encoded {
-            topic: topic.into(),
-            schema: "n",
-            definition: "int64 n",
-            latched,
-            log_time_ns: second * SECOND,
-            body: vec![7; 1000],
-        })
-    }
 
     fn saved(folder: &TempDir, name: &str) -> Vec<(String, i64)> {
         let recording = Recording::open(folder.path().join(name)).unwrap();
         assert_eq!(recording.damage(), None);
         assert_eq!(recording.metadata()[0].entries["reason"], "asked");
-        let records = recording.raw_records().map(Result::unwrap);
-        records
-            .map(|r| (r.channel.topic.to_string(), r.log_time_ns / SECOND))
-            .collect()
+        topics(&recording)
     }
 
     fn black_box(folder: &TempDir, keep_s: u64, capacity_bytes: usize) -> BlackBox {
@@ -263,15 +234,15 @@ mod tests {
         }
         assert!(!folder.path().join("r.mcap").exists());
         black_box.save("asked").unwrap();
-        let topics = |times: &[i64]| -> Vec<(String, i64)> {
+        let expected = |times: &[i64]| -> Vec<(String, i64)> {
             let map = (MAP.to_owned(), times[0]);
             let rest = times.iter().map(|time| ("/n".to_owned(), *time));
             [map].into_iter().chain(rest).collect()
         };
-        assert_eq!(saved(&folder, "r.mcap"), topics(&[6, 7, 8, 9]));
+        assert_eq!(saved(&folder, "r.mcap"), expected(&[6, 7, 8, 9]));
         black_box.put(message("/n", 10, false)).unwrap();
         black_box.save("asked").unwrap();
-        assert_eq!(saved(&folder, "r_1.mcap"), topics(&[7, 8, 9, 10]));
+        assert_eq!(saved(&folder, "r_1.mcap"), expected(&[7, 8, 9, 10]));
         assert_eq!(black_box.tally().files, 2);
     }
 
@@ -298,7 +269,7 @@ mod tests {
         let all = ("asked (3 times)".into(), vec![3, 4, 5, 6, 7]);
         assert_eq!(reason("r_1.mcap"), all);
         assert_eq!(black_box.tally().files, 3);
-        black_box.save_events().unwrap();
+        black_box.finish().unwrap();
         assert_eq!(black_box.tally().files, 3, "nothing waits");
     }
 
@@ -329,10 +300,10 @@ mod tests {
     #[test]
     fn memory_is_bounded() {
         let folder = TempDir::new().unwrap();
-        let mut black_box = black_box(&folder, 1000, 3 * 1128);
+        let mut black_box = black_box(&folder, 1000, 3 * 2128);
         for second in 0..10 {
             black_box.put(message("/n", second, false)).unwrap();
         }
-        assert_eq!((black_box.kept.len(), black_box.bytes), (3, 3 * 1128));
+        assert_eq!((black_box.kept.len(), black_box.bytes), (3, 3 * 2128));
     }
 }

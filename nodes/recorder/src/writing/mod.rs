@@ -10,6 +10,8 @@ mod preamble;
 mod staged;
 mod store;
 mod tally;
+#[cfg(test)]
+mod testing;
 
 pub(crate) use black_box::{BlackBox, Room};
 pub(crate) use parts::{Limits, Parts};

@@ -19,10 +19,7 @@ const MAX: u32 = 100_000;
 /// If the file cannot be created, or all names are taken.
 pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), RecorderError> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|source| RecorderError::Create {
-            path: path.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(folder).map_err(failed(path))?;
     }
     let plain = (!numbered).then(|| path.to_owned());
     let first = u32::from(!numbered);
@@ -33,18 +30,17 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
         match File::create_new(&candidate) {
             Ok(file) => return Ok((candidate, file)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(source) => {
-                return Err(RecorderError::Create {
-                    path: candidate,
-                    source,
-                });
-            }
+            Err(error) => return Err(failed(&candidate)(error)),
         }
     }
     Err(RecorderError::NoFreeName {
         path: path.to_owned(),
         tried: MAX,
     })
+}
+
+fn failed(path: &Path) -> impl FnOnce(std::io::Error) -> RecorderError {
+    RecorderError::file(format!("cannot create the recording {}", path.display()))
 }
 
 #[cfg(test)]

@@ -2,20 +2,18 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use recording::write::{Encoded, Packing, RecordingWriter};
 use ros_export::Entry;
 
 use super::staged::{Progress, Staged};
-use super::{Preamble, Tally, name};
+use super::{Preamble, Store, Tally, name};
 use crate::RecorderError;
 
-/// Limits of a part, and of the data waiting for the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Limits {
-    /// Size of a part in bytes.
     pub(crate) split_bytes: Option<u64>,
     /// Duration of a part, by the times of its messages.
     pub(crate) split_time: Option<Duration>,
@@ -23,7 +21,6 @@ pub(crate) struct Limits {
     pub(crate) waiting_bytes: usize,
 }
 
-/// Parts of a recording; the last one is open.
 pub(crate) struct Parts {
     path: PathBuf,
     limits: Limits,
@@ -38,17 +35,11 @@ struct Part {
     path: PathBuf,
     writer: RecordingWriter<Staged>,
     progress: Progress,
-    /// Time of its first message.
     first_ns: Option<i64>,
-    /// True if the last flush succeeded.
     flushed: bool,
 }
 
 impl Parts {
-    /// Creates the first file.
-    ///
-    /// # Errors
-    /// If it cannot be created or written.
     pub(crate) fn new(
         path: PathBuf,
         limits: Limits,
@@ -65,15 +56,6 @@ impl Parts {
         parts.begin(None)?;
         parts.flush()?;
         Ok(parts)
-    }
-
-    /// Writes an entry; a message that cannot be written is counted as dropped.
-    pub(super) fn put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
-        let outcome = self.try_put(entry);
-        if outcome.is_err() && matches!(entry, Entry::Message(_)) {
-            self.tally.dropped += 1;
-        }
-        outcome
     }
 
     fn try_put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
@@ -96,46 +78,6 @@ impl Parts {
             }
         }
         Ok(())
-    }
-
-    pub(super) fn flush(&mut self) -> Result<(), RecorderError> {
-        let Some(part) = &mut self.part else {
-            return Ok(());
-        };
-        part.flushed = false;
-        part.writer.flush()?;
-        part.flushed = true;
-        Ok(())
-    }
-
-    pub(super) fn finish(&mut self) -> Result<(), RecorderError> {
-        let Some(part) = self.part.take() else {
-            return Ok(());
-        };
-        let path = part.path;
-        let mut file = part.writer.finish()?;
-        file.flush()
-            .map_err(|source| RecorderError::Finish { path, source })
-    }
-
-    pub(super) fn sync(&mut self) -> Result<(), RecorderError> {
-        for (path, file) in &self.unsynced {
-            file.sync_data().map_err(|source| RecorderError::Sync {
-                path: path.clone(),
-                source,
-            })?;
-        }
-        // Finished files do not change any more.
-        let ended = match self.part {
-            Some(_) => self.unsynced.len().saturating_sub(1),
-            None => self.unsynced.len(),
-        };
-        self.unsynced.drain(..ended);
-        Ok(())
-    }
-
-    pub(super) fn tally(&self) -> Tally {
-        self.tally
     }
 
     /// Finishes the part if it is full. While the disk is full, the part stays open, since
@@ -163,10 +105,7 @@ impl Parts {
         let numbered = self.limits.split_bytes.is_some() || self.limits.split_time.is_some();
         let (path, file) = name::create(&self.path, numbered)?;
         tracing::info!("recording to {}", path.display());
-        let again = file.try_clone().map_err(|source| RecorderError::Sync {
-            path: path.clone(),
-            source,
-        })?;
+        let again = file.try_clone().map_err(unsynced(&path))?;
         self.unsynced.push((path.clone(), again));
         let progress = Progress::default();
         let sink = Staged::new(file, progress.clone());
@@ -182,6 +121,62 @@ impl Parts {
         self.tally.files += 1;
         Ok(())
     }
+}
+
+impl Store for Parts {
+    /// Writes an entry; a message that cannot be written is counted as dropped.
+    fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
+        let outcome = self.try_put(&entry);
+        if outcome.is_err() && matches!(entry, Entry::Message(_)) {
+            self.tally.dropped += 1;
+        }
+        outcome
+    }
+
+    fn flush(&mut self) -> Result<(), RecorderError> {
+        let Some(part) = &mut self.part else {
+            return Ok(());
+        };
+        part.flushed = false;
+        part.writer.flush()?;
+        part.flushed = true;
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), RecorderError> {
+        let Some(part) = self.part.take() else {
+            return Ok(());
+        };
+        let mut file = part.writer.finish()?;
+        file.flush().map_err(RecorderError::file(format!(
+            "cannot end the recording {}: what was flushed before that is readable",
+            part.path.display()
+        )))
+    }
+
+    fn sync(&mut self) -> Result<(), RecorderError> {
+        for (path, file) in &self.unsynced {
+            file.sync_data().map_err(unsynced(path))?;
+        }
+        // Finished files do not change any more.
+        let ended = match self.part {
+            Some(_) => self.unsynced.len().saturating_sub(1),
+            None => self.unsynced.len(),
+        };
+        self.unsynced.drain(..ended);
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.tally
+    }
+}
+
+fn unsynced(path: &Path) -> impl FnOnce(std::io::Error) -> RecorderError {
+    RecorderError::file(format!(
+        "cannot sync the recording {} to the disk",
+        path.display()
+    ))
 }
 
 impl Limits {
@@ -205,23 +200,8 @@ mod tests {
     use recording::{MAP, Recording};
     use tempfile::TempDir;
 
+    use super::super::testing::{message, topics};
     use super::*;
-
-    const SECOND: i64 = 1_000_000_000;
-
-    fn message(topic: &'static str, second: i64, latched: bool) -> Entry {
-        Entry::Message(Encoded {
-            topic: topic.into(),
-            schema: "n",
-            definition: "int64 n",
-            latched,
-            log_time_ns: second * SECOND,
-            // Incompressible bytes, so that the file grows by about as much.
-            body: (0..2000)
-                .map(|i: u32| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
-                .collect(),
-        })
-    }
 
     fn parts(folder: &TempDir, split_bytes: Option<u64>, split_time: Option<u64>) -> Parts {
         let limits = Limits {
@@ -239,20 +219,13 @@ mod tests {
         recording
     }
 
-    fn topics(recording: &Recording) -> Vec<(String, i64)> {
-        let records = recording.raw_records().map(Result::unwrap);
-        records
-            .map(|r| (r.channel.topic.to_string(), r.log_time_ns / SECOND))
-            .collect()
-    }
-
     #[test]
     fn parts_by_time_each_begin_with_what_is_latched() {
         let folder = TempDir::new().unwrap();
         let mut parts = parts(&folder, None, Some(10));
-        parts.put(&message(MAP, 0, true)).unwrap();
+        parts.put(message(MAP, 0, true)).unwrap();
         for second in [0, 9, 10, 11, 35] {
-            parts.put(&message("/n", second, false)).unwrap();
+            parts.put(message("/n", second, false)).unwrap();
         }
         parts.finish().unwrap();
         assert_eq!((parts.tally().files, parts.tally().recorded), (3, 6));
@@ -275,7 +248,7 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let mut parts = parts(&folder, Some(5000), None);
         for second in 0..9 {
-            parts.put(&message("/n", second, false)).unwrap();
+            parts.put(message("/n", second, false)).unwrap();
             parts.flush().unwrap();
         }
         parts.finish().unwrap();
@@ -288,24 +261,11 @@ mod tests {
     }
 
     #[test]
-    fn what_was_flushed_is_readable_whatever_follows() {
-        let folder = TempDir::new().unwrap();
-        let mut parts = parts(&folder, None, None);
-        parts.put(&message("/n", 1, false)).unwrap();
-        parts.flush().unwrap();
-        parts.put(&message("/n", 2, false)).unwrap();
-        let recording = Recording::open(folder.path().join("r.mcap")).unwrap();
-        assert_eq!(recording.messages(), 1);
-        parts.finish().unwrap();
-        assert_eq!(opened(&folder, "r.mcap").messages(), 2);
-    }
-
-    #[test]
     fn all_parts_are_synced_and_only_the_last_one_again() {
         let folder = TempDir::new().unwrap();
         let mut parts = parts(&folder, None, Some(10));
         for second in [0, 11, 22] {
-            parts.put(&message("/n", second, false)).unwrap();
+            parts.put(message("/n", second, false)).unwrap();
         }
         assert_eq!(parts.unsynced.len(), 3);
         parts.sync().unwrap();
@@ -320,9 +280,9 @@ mod tests {
     fn a_part_that_could_not_be_ended_is_followed_by_another() {
         let folder = TempDir::new().unwrap();
         let mut parts = parts(&folder, None, Some(10));
-        parts.put(&message(MAP, 0, true)).unwrap();
+        parts.put(message(MAP, 0, true)).unwrap();
         parts.part = None;
-        parts.put(&message("/n", 1, false)).unwrap();
+        parts.put(message("/n", 1, false)).unwrap();
         parts.finish().unwrap();
         assert_eq!(parts.tally().files, 2);
         assert_eq!(opened(&folder, "r_1.mcap").messages(), 2, "with the map");
@@ -333,11 +293,11 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let mut parts = parts(&folder, None, None);
         parts.limits.waiting_bytes = 0;
-        parts.put(&message("/n", 1, false)).unwrap();
+        parts.put(message("/n", 1, false)).unwrap();
         // The beginning of the chunk is already waiting.
-        parts.put(&message("/n", 2, false)).unwrap();
+        parts.put(message("/n", 2, false)).unwrap();
         parts.flush().unwrap();
-        parts.put(&message("/n", 3, false)).unwrap();
+        parts.put(message("/n", 3, false)).unwrap();
         parts.finish().unwrap();
         assert_eq!((parts.tally().recorded, parts.tally().dropped), (2, 1));
         assert_eq!(opened(&folder, "r.mcap").messages(), 2);

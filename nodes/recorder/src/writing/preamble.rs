@@ -17,7 +17,6 @@ use crate::{Config, RecorderError};
 pub(crate) struct Preamble {
     metadata: BTreeMap<String, String>,
     files: Vec<File>,
-    /// Last metadata of each name.
     said: BTreeMap<&'static str, BTreeMap<String, String>>,
     latched: BTreeMap<Cow<'static, str>, Encoded>,
 }
@@ -32,10 +31,6 @@ struct File {
 }
 
 impl Preamble {
-    /// Reads the files to attach.
-    ///
-    /// # Errors
-    /// If a file cannot be read.
     pub(crate) fn new(config: &Config, graph: &str) -> Result<Self, RecorderError> {
         let entry = |key: &str, value: String| (key.to_owned(), value);
         let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -94,10 +89,10 @@ impl Preamble {
 }
 
 fn read(path: &Path) -> Result<File, RecorderError> {
-    let content = std::fs::read(path).map_err(|source| RecorderError::Attach {
-        path: path.to_owned(),
-        source,
-    })?;
+    let content = std::fs::read(path).map_err(RecorderError::file(format!(
+        "cannot read {}, which is to be put into the recording",
+        path.display()
+    )))?;
     let suffix = path.extension().unwrap_or_default().to_string_lossy();
     let media_type = match &*suffix {
         "yaml" | "yml" => "application/yaml",
@@ -118,7 +113,6 @@ fn read(path: &Path) -> Result<File, RecorderError> {
 
 #[cfg(test)]
 impl Preamble {
-    /// Returns an empty head for tests.
     pub(super) fn empty() -> Self {
         Preamble {
             metadata: BTreeMap::new(),

@@ -40,9 +40,7 @@ impl Progress {
 #[derive(Debug)]
 pub(super) struct Staged<F = File> {
     file: F,
-    /// Number of bytes in the file.
     written: u64,
-    /// Data that follows them.
     step: Vec<u8>,
     /// Position of the next byte, from the start of the file.
     position: u64,
@@ -66,7 +64,6 @@ impl Storage for File {
 }
 
 impl<F: Storage> Staged<F> {
-    /// Starts with an empty file.
     pub(super) fn new(file: F, progress: Progress) -> Self {
         Staged {
             file,

@@ -6,6 +6,5 @@ pub(crate) struct Tally {
     pub(crate) recorded: u64,
     /// Number of messages lost because they arrived faster than they could be written.
     pub(crate) dropped: u64,
-    /// Number of files created.
     pub(crate) files: u64,
 }
