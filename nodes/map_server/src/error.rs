@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-/// Reason why the node could not start or continue.
 #[derive(Debug, thiserror::Error)]
 pub enum MapServerError {
     #[error("the map in the recording {}", path.display())]

@@ -31,7 +31,6 @@ pub(crate) struct Seen {
     pub(crate) image: Option<Fingerprint>,
 }
 
-/// Map description and the image named in it.
 #[derive(Debug)]
 pub(crate) struct Files {
     yaml: PathBuf,
@@ -39,7 +38,6 @@ pub(crate) struct Files {
     image: Option<PathBuf>,
 }
 
-/// The only key needed here.
 #[derive(Deserialize)]
 struct Named {
     image: String,
@@ -69,7 +67,6 @@ impl Files {
     }
 }
 
-/// Returns the state of a file or folder, if it exists.
 pub(crate) fn fingerprint(path: &Path) -> Option<Fingerprint> {
     let metadata = fs::metadata(path).ok()?;
     Some(Fingerprint {

@@ -29,10 +29,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     }
 }
 
-/// Checks that the map or the maps can be served now.
-///
-/// # Errors
-/// If they are missing, broken or too large.
 pub fn check(config: &Config) -> Result<(), MapServerError> {
     match &config.maps {
         Some(set) => several::load(config, set).map(drop)?,
@@ -49,6 +45,25 @@ fn wait_for(health: &mut Health, problem: &str, path: &Path) -> Result<(), Trans
     tracing::warn!("{problem}");
     health.error(&problem)?;
     health.state(NodeState::Waiting)
+}
+
+/// Reports that the changed files of `what` are rejected and what was served before stays, or waits
+/// for the map if nothing was served.
+fn reject(
+    health: &mut Health,
+    is_served: bool,
+    (what, previous): (&str, &str),
+    problem: &str,
+    path: &Path,
+) -> Result<(), TransportError> {
+    if !is_served {
+        return wait_for(health, problem, path);
+    }
+    let path = path.display();
+    tracing::warn!("the changed {what} {path} {previous}: {problem}");
+    health.count_refused(1);
+    health.error(&format!("{what} {path} refused: {problem}"))?;
+    health.state(NodeState::Degraded)
 }
 
 /// Returns the header of a map; `name` is empty unless the map is part of a set.

@@ -8,7 +8,6 @@ use transport::with_causes;
 
 use crate::files::{Files, Fingerprint, Seen, fingerprint};
 
-/// State of all files of a set at one moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct SetSeen {
     list: Option<Fingerprint>,
@@ -17,7 +16,6 @@ pub(crate) struct SetSeen {
     problem: Option<String>,
 }
 
-/// File or folder of a set, and the files of its maps.
 #[derive(Debug)]
 pub(crate) struct SetFiles {
     path: PathBuf,

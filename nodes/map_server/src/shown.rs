@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 /// leading place may then change between maps from scan to scan.
 const LEADS_FOR: Duration = Duration::from_secs(2);
 
-/// Displayed map, by its number.
 #[derive(Debug)]
 pub(crate) struct Shown {
     map: usize,
@@ -15,7 +14,6 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    /// Starts with this map displayed.
     pub(crate) fn at(map: usize) -> Self {
         Shown {
             map,
@@ -37,7 +35,6 @@ impl Shown {
         map != self.map && is_due
     }
 
-    /// Records that this map is now displayed.
     pub(crate) fn change_to(&mut self, map: usize) {
         self.map = map;
     }

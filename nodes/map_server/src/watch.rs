@@ -4,7 +4,6 @@
 //! checks, so only a state that is stable for one interval is loaded; after it was judged it is
 //! ignored until it changes.
 
-/// Result of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
     /// Nothing has changed since the last judgement.
@@ -57,64 +56,31 @@ impl<S: PartialEq + Clone> Watch<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::{Fingerprint, Seen};
-
-    /// Returns two files with these sizes; 0 means missing.
-    fn seen(yaml: u64, image: u64) -> Seen {
-        let file = |size| {
-            (size > 0).then_some(Fingerprint {
-                size,
-                ..Fingerprint::default()
-            })
-        };
-        Seen {
-            yaml: file(yaml),
-            image: file(image),
-        }
+    /// Checks the results for states of the files, given as numbers; the first one was loaded.
+    fn check(states: &[u8], expected: &[Look]) {
+        let mut watch = Watch::new(states[0]);
+        let found: Vec<Look> = states[1..].iter().map(|&seen| watch.look(seen)).collect();
+        assert_eq!(found, expected, "{states:?}");
     }
 
     #[test]
-    fn a_file_being_written_is_left_alone_until_it_rests() {
-        let mut watch = Watch::new(seen(1, 1));
-        assert_eq!(watch.look(seen(1, 1)), Look::Same);
-        assert_eq!(watch.look(seen(1, 5)), Look::Changing);
-        assert_eq!(watch.look(seen(1, 9)), Look::Changing);
-        assert_eq!(watch.look(seen(1, 9)), Look::Settled);
-        assert!(watch.judged(seen(1, 9)));
-        assert_eq!(watch.look(seen(1, 9)), Look::Same);
+    fn only_a_change_that_rests_is_settled() {
+        use Look::{Changing, Same, Settled};
+        check(&[1, 1, 5, 9, 9], &[Same, Changing, Changing, Settled]);
+        // Taken back.
+        check(&[1, 2, 1], &[Changing, Same]);
+        // Missing for a moment.
+        check(&[1, 0, 2, 2], &[Changing, Changing, Settled]);
     }
 
     #[test]
-    fn a_file_that_is_gone_for_a_moment_is_not_judged() {
-        let mut watch = Watch::new(seen(1, 1));
-        assert_eq!(watch.look(seen(0, 1)), Look::Changing);
-        assert_eq!(watch.look(seen(2, 1)), Look::Changing);
-        assert_eq!(watch.look(seen(2, 1)), Look::Settled);
-    }
-
-    #[test]
-    fn a_file_that_stays_away_is_judged_once() {
-        let mut watch = Watch::new(seen(1, 1));
-        assert_eq!(watch.look(seen(1, 0)), Look::Changing);
-        assert_eq!(watch.look(seen(1, 0)), Look::Settled);
-        assert!(watch.judged(seen(1, 0)));
-        assert_eq!(watch.look(seen(1, 0)), Look::Same);
-    }
-
-    #[test]
-    fn a_change_that_is_taken_back_is_none() {
-        let mut watch = Watch::new(seen(1, 1));
-        assert_eq!(watch.look(seen(1, 2)), Look::Changing);
-        assert_eq!(watch.look(seen(1, 1)), Look::Same);
-    }
-
-    #[test]
-    fn what_changed_while_it_was_loaded_is_loaded_again() {
-        let mut watch = Watch::new(seen(1, 1));
-        watch.look(seen(1, 2));
-        assert_eq!(watch.look(seen(1, 2)), Look::Settled);
-        assert!(!watch.judged(seen(1, 3)));
-        assert_eq!(watch.look(seen(1, 3)), Look::Settled);
-        assert!(watch.judged(seen(1, 3)));
+    fn what_is_judged_is_left_alone_unless_it_changed_meanwhile() {
+        let mut watch = Watch::new(1);
+        watch.look(2);
+        assert_eq!(watch.look(2), Look::Settled);
+        assert!(!watch.judged(3));
+        assert_eq!(watch.look(3), Look::Settled);
+        assert!(watch.judged(3));
+        assert_eq!(watch.look(3), Look::Same);
     }
 }

@@ -8,12 +8,11 @@ use messages::{CellRules, MapHeader, NodeState, topic};
 use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
-use super::{TICK, header, now, wait_for};
+use super::{TICK, header, now, reject};
 use crate::files::Files;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
 
-/// Serves the map until the stop flag is set.
 pub(super) fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     // Without a map file, the recording is the only source, and is not watched.
     let path = config.map.as_deref().unwrap_or(Path::new(""));
@@ -162,15 +161,15 @@ impl Server {
 
     /// Keeps the served map, or waits for one if there is none.
     fn refuse(&mut self, error: &dyn Error, path: &Path) -> Result<(), TransportError> {
-        let error = with_causes(error);
-        if self.served == 0 {
-            return wait_for(&mut self.health, &error, path);
-        }
-        let path = path.display();
-        tracing::warn!("the changed map {path} is rejected, the previous one stays: {error}");
-        self.health.count_refused(1);
-        self.health.error(&format!("map {path} refused: {error}"))?;
-        self.health.state(NodeState::Degraded)
+        let words = ("map", "is rejected, the previous one stays");
+        let is_served = self.served > 0;
+        reject(
+            &mut self.health,
+            is_served,
+            words,
+            &with_causes(error),
+            path,
+        )
     }
 
     fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {

@@ -7,13 +7,12 @@ use map::{MapError, MapFile};
 use messages::{MapHeader, MapSet, NodeState, PoseHeader, Stamp, Transition, topic};
 use transport::{Flow, Graph, Health, Loan, Publisher, TransportError, with_causes};
 
-use super::{TICK, header, now, wait_for};
+use super::{TICK, header, now, reject, wait_for};
 use crate::set_files::SetFiles;
 use crate::shown::Shown;
 use crate::watch::{Look, Watch};
 use crate::{Config, MapServerError};
 
-/// Serves the maps of a set until the stop flag is set.
 pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), MapServerError> {
     let mut health = graph.health()?;
     health.state(NodeState::Busy)?;
@@ -55,7 +54,6 @@ pub(super) fn run(graph: &Graph, config: &Config, path: &Path) -> Result<(), Map
     })
 }
 
-/// Maps of a set, in order.
 #[derive(Default)]
 pub(super) struct Loaded {
     maps: Vec<LoadedMap>,
@@ -164,7 +162,6 @@ impl Server {
         self.report_state()
     }
 
-    /// Publishes the map with this number for display.
     fn show(&mut self, number: usize) -> Result<(), TransportError> {
         let map = &self.set.maps[number];
         filled(&self.maps, map, now(self.served))?.send()?;
@@ -246,20 +243,12 @@ impl Server {
             }
             Err(error) => with_causes(&error),
         };
-        if self.served == 0 {
-            return wait_for(&mut self.health, &problem, path);
-        }
-        let path = path.display();
-        tracing::warn!("the changed maps {path} are rejected, the previous ones stay: {problem}");
-        self.health.count_refused(1);
-        self.health
-            .error(&format!("maps {path} refused: {problem}"))?;
-        self.is_refused = true;
-        self.report_state()
+        self.is_refused = self.served > 0;
+        let words = ("maps", "are rejected, the previous ones stay");
+        reject(&mut self.health, self.is_refused, words, &problem, path)
     }
 }
 
-/// Fills a message with a map for display.
 fn filled<'p>(
     publisher: &'p Publisher<topic::Map>,
     map: &LoadedMap,

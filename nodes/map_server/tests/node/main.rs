@@ -18,7 +18,6 @@ use tempfile::TempDir;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use transport::{Graph, Subscriber};
 
-/// Folder with map files, graph, and node.
 struct World {
     node: Option<NodeProcess>,
     folder: TempDir,
@@ -27,7 +26,6 @@ struct World {
 }
 
 impl World {
-    /// Creates a map whose only row has these pixels.
     fn new(test: &str, row: &[u8]) -> World {
         let isolated = Isolated::new(test);
         let world = World {
@@ -73,7 +71,6 @@ impl World {
         ));
     }
 
-    /// Waits for a message that `wanted` accepts.
     fn wait<T: messages::Topic>(
         &self,
         subscriber: &Subscriber<T>,
@@ -184,34 +181,27 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
 }
 
 #[test]
-fn a_key_that_is_not_known_is_logged_and_the_map_is_served() {
-    let mut world = World::new("unknown_key", &[0, 255]);
-    let yaml = fs::read_to_string(world.at("map.yaml")).unwrap();
-    world.replace("map.yaml", format!("{yaml}frame_id: map\n").as_bytes());
-    let maps = world.graph.subscriber::<topic::Map>().unwrap();
-    world.start();
-    world.wait_for_cells(&maps, 0, &[100, 0]);
-    let log = world.stop();
-    assert!(log.contains("the key frame_id is not known"), "{log}");
-}
-
-#[test]
-fn a_map_that_is_missing_at_the_start_is_waited_for() {
-    let mut world = World::new("missing", &[0, 255]);
-    let image_bytes = fs::read(world.at("map.pgm")).unwrap();
-    fs::remove_file(world.at("map.pgm")).unwrap();
-    let maps = world.graph.subscriber::<topic::Map>().unwrap();
-    let health = world.graph.subscriber::<topic::Health>().unwrap();
-    world.start();
-    wait_until(&world.graph, &health, |report, error| {
-        let error = String::from_utf8_lossy(error);
-        report.state == NodeState::Waiting as u32 && error.contains("map.pgm")
-    });
-    fs::write(world.at("map.pgm"), image_bytes).unwrap();
-    world.wait_for_cells(&maps, 0, &[100, 0]);
-    world.wait_for_state(&health, NodeState::Ready);
-    let log = world.stop();
-    assert!(log.contains("waiting for the map"), "{log}");
+fn a_map_that_is_missing_or_broken_at_the_start_is_named_and_waited_for() {
+    for is_missing in [true, false] {
+        let mut world = World::new(if is_missing { "missing" } else { "broken" }, &[0, 255]);
+        let maps = world.graph.subscriber::<topic::Map>().unwrap();
+        let health = world.graph.subscriber::<topic::Health>().unwrap();
+        match is_missing {
+            true => fs::remove_file(world.at("map.pgm")).unwrap(),
+            false => fs::write(world.at("map.pgm"), "P5\n3 1\n255\n").unwrap(),
+        }
+        world.start();
+        world.wait(&health, |report, error| {
+            let error = String::from_utf8_lossy(error);
+            let is_named = error.contains("map.yaml") && error.contains("map.pgm");
+            report.state == NodeState::Waiting as u32 && is_named
+        });
+        fs::write(world.at("map.pgm"), image(&[0, 255])).unwrap();
+        world.wait_for_cells(&maps, 0, &[100, 0]);
+        world.wait_for_state(&health, NodeState::Ready);
+        let log = world.stop();
+        assert!(log.contains("waiting for the map"), "{log}");
+    }
 }
 
 #[test]
@@ -243,24 +233,6 @@ fn a_changed_map_is_served_and_a_broken_one_refused() {
     // After the repair.
     fs::write(world.at("map.pgm"), whole).unwrap();
     world.wait_for_cells(&maps, 3, &[0, 0, 100]);
-    world.wait_for_state(&health, NodeState::Ready);
-    world.stop();
-}
-
-#[test]
-fn a_broken_map_at_the_start_is_named_and_waited_for() {
-    let mut world = World::new("broken", &[0]);
-    let maps = world.graph.subscriber::<topic::Map>().unwrap();
-    let health = world.graph.subscriber::<topic::Health>().unwrap();
-    fs::write(world.at("map.pgm"), "P5\n3 1\n255\n").unwrap();
-    world.start();
-    world.wait(&health, |report, error| {
-        let error = String::from_utf8_lossy(error);
-        let is_named = error.contains("map.yaml") && error.contains("map.pgm");
-        report.state == NodeState::Waiting as u32 && is_named
-    });
-    fs::write(world.at("map.pgm"), image(&[0])).unwrap();
-    world.wait_for_cells(&maps, 0, &[100]);
     world.wait_for_state(&health, NodeState::Ready);
     world.stop();
 }

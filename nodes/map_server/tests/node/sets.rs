@@ -4,8 +4,6 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
-use std::thread::sleep;
-use std::time::Duration;
 
 use messages::{MapSet, NodeState, TrackState, topic};
 use transport::testing::{NodeProcess, OwnFileSystem};
@@ -14,7 +12,6 @@ use transport::{Publisher, Subscriber};
 use super::{World, image};
 
 impl World {
-    /// Adds a map whose only row has these pixels.
     fn add(&self, name: &str, row: &[u8]) {
         fs::write(self.at(&format!("{name}.pgm")), image(row)).unwrap();
         let text = format!(
@@ -24,14 +21,12 @@ impl World {
         self.replace(&format!("{name}.yaml"), text.as_bytes());
     }
 
-    /// Starts the node with all maps of the folder.
     fn start_on_set(&mut self) {
         let options = [OsStr::new("--maps"), self.folder.path().as_os_str()];
         let node = env!("CARGO_BIN_EXE_map_server");
         self.node = Some(NodeProcess::start(node, &self.graph, options));
     }
 
-    /// Waits for a set with this many maps; returns their ids.
     fn wait_for_maps(&self, sets: &Subscriber<topic::Maps>, count: usize) -> Vec<u64> {
         let mut ids = Vec::new();
         self.wait(sets, |header, items| {
@@ -43,7 +38,6 @@ impl World {
     }
 }
 
-/// Publishes a pose of the tracker on a map.
 fn send(poses: &Publisher<topic::Tracked>, map_id: u64, state: TrackState, pose_known: u32) {
     let mut loan = poses.loan(0).unwrap();
     let header = loan.header_mut();
@@ -100,70 +94,6 @@ fn of_a_set_all_maps_are_served_and_the_one_that_poses_name_is_shown() {
     let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
     assert!(error.contains("there are no maps"), "{error}");
     assert!(sets.receive().unwrap().is_none() && shown.receive().unwrap().is_none());
-    world.stop();
-}
-
-#[test]
-fn maps_that_come_into_the_folder_are_served_and_other_files_are_not_looked_at() {
-    let mut world = World::new("set-folder", &[0, 255]);
-    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
-    let health = world.graph.subscriber::<topic::Health>().unwrap();
-    world.start_on_set();
-    world.wait_for_maps(&sets, 1);
-
-    // A folder that is being copied: it exists for a while before its files do.
-    fs::create_dir(world.at("first")).unwrap();
-    sleep(Duration::from_millis(600));
-    for file in ["map.pgm", "map.yaml"] {
-        fs::copy(world.at(file), world.at("first").join(file)).unwrap();
-    }
-    world.wait_for_maps(&sets, 2);
-
-    // An image that is copied slowly.
-    world.add("second", &[255, 255, 0]);
-    let whole = fs::read(world.at("second.pgm")).unwrap();
-    fs::write(world.at("second.pgm"), &whole[..whole.len() - 2]).unwrap();
-    let (_, error) = world.wait_for_state(&health, NodeState::Degraded);
-    assert!(error.contains("map second"), "{error}");
-    fs::write(world.at("second.pgm"), whole).unwrap();
-    world.wait_for_maps(&sets, 3);
-    world.wait_for_state(&health, NodeState::Ready);
-
-    fs::write(world.at("notes.txt"), "1").unwrap();
-    fs::write(world.at("dataflow.yaml"), "nodes: []").unwrap();
-    sleep(Duration::from_secs(1));
-    assert!(sets.receive().unwrap().is_none());
-    let log = world.stop();
-    assert!(!log.contains("rewritten"), "{log}");
-}
-
-#[test]
-fn only_a_pose_that_is_believed_changes_the_map_that_is_shown_at_once() {
-    let mut world = World::new("lost-on-set", &[0, 255]);
-    world.add("yard", &[255, 0]);
-    let poses = world.graph.publisher::<topic::Tracked>().unwrap();
-    let sets = world.graph.subscriber::<topic::Maps>().unwrap();
-    let shown = world.graph.subscriber::<topic::Map>().unwrap();
-    world.start_on_set();
-    let maps = world.wait_for_maps(&sets, 2);
-    let mut counter = 0;
-    world.wait(&shown, |map, _| {
-        counter = map.stamp.counter;
-        map.map_id == maps[0]
-    });
-    for _ in 0..5 {
-        for map in [maps[1], maps[0]] {
-            send(&poses, map, TrackState::Lost, 1);
-            sleep(Duration::from_millis(50));
-        }
-    }
-    send(&poses, maps[1], TrackState::Unique, 0);
-    send(&poses, maps[1], TrackState::Doubtful, 1);
-    // The next map that is sent.
-    world.wait(&shown, |map, _| {
-        assert_eq!((map.map_id, map.stamp.counter), (maps[1], counter + 1));
-        true
-    });
     world.stop();
 }
 
