@@ -6,10 +6,8 @@ use ros::ConversionError;
 /// Error of a recording or one of its messages.
 #[derive(Debug, thiserror::Error)]
 pub enum PlaybackError {
-    /// The recording, or a message in it, cannot be read.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
-    /// A message cannot be represented in the graph.
     #[error("the message of {topic} at log time {log_time_ns} ns cannot be used: {reason}")]
     Message {
         topic: String,
@@ -21,7 +19,6 @@ pub enum PlaybackError {
 
 impl PlaybackError {
     /// True if the error concerns one message, so that the next one can be replayed.
-    #[must_use]
     pub fn is_about_one_message(&self) -> bool {
         match self {
             PlaybackError::Message { .. } => true,
@@ -30,7 +27,6 @@ impl PlaybackError {
     }
 
     /// True if the recording is damaged; everything before the damage has been replayed.
-    #[must_use]
     pub fn is_damage(&self) -> bool {
         match self {
             PlaybackError::Recording(error) => matches!(**error, RecordingError::Damaged { .. }),

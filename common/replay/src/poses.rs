@@ -3,7 +3,6 @@
 use messages::{GroundTruth, Odometry, topic};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
-/// Publishers of odometry and true poses.
 pub struct Poses {
     odometry: Publisher<topic::OdometryTopic>,
     truths: Publisher<topic::GroundTruthTopic>,
@@ -12,8 +11,6 @@ pub struct Poses {
 }
 
 impl Poses {
-    /// # Errors
-    /// If the graph fails.
     pub fn open(graph: &Graph) -> Result<Self, TransportError> {
         Ok(Poses {
             odometry: graph.publisher()?,
@@ -24,9 +21,6 @@ impl Poses {
     }
 
     /// Publishes odometry now, with the next counter.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn send_odometry(&mut self, mut odometry: Odometry) -> Result<(), TransportError> {
         odometry.stamp.counter = self.odometry_sent;
         odometry.stamp.entered_ns = monotonic_ns();
@@ -35,9 +29,6 @@ impl Poses {
     }
 
     /// Publishes a true pose now, with the next counter.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn send_truth(&mut self, mut truth: GroundTruth) -> Result<(), TransportError> {
         truth.stamp.counter = self.truths_sent;
         truth.stamp.entered_ns = monotonic_ns();

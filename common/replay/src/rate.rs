@@ -6,7 +6,6 @@ use std::str::FromStr;
 /// Speed of a replay: a multiple of the original speed, or as fast as the graph answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
-    /// Multiple of the original speed.
     Factor(f64),
     /// The next scan follows the answer to the previous one.
     Max,

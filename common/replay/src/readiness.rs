@@ -2,7 +2,6 @@
 
 use messages::{HealthHeader, NodeState};
 
-/// The nodes and their last states.
 #[derive(Debug)]
 pub(crate) struct Readiness {
     nodes: Vec<(String, Option<NodeState>)>,
@@ -16,7 +15,6 @@ impl Readiness {
         }
     }
 
-    /// Stores the state in a node's report.
     pub(crate) fn receive(&mut self, report: &HealthHeader) {
         let name = report.node.as_str();
         for (_, state) in self.nodes.iter_mut().filter(|(node, _)| node == name) {

@@ -29,7 +29,6 @@ struct Anchor {
     clock_ns: i64,
 }
 
-/// State of a replay.
 #[derive(Debug)]
 pub struct Schedule {
     rate: Rate,
@@ -44,7 +43,6 @@ pub struct Schedule {
 
 impl Schedule {
     /// Starts a schedule; an answer times out after `patience_s` seconds.
-    #[must_use]
     pub fn new(rate: Rate, patience_s: f64) -> Self {
         Schedule {
             rate,
@@ -80,18 +78,15 @@ impl Schedule {
         Action::Send
     }
 
-    /// Records that a scan was sent with this stamp.
     pub fn scan_sent(&mut self, stamp: Stamp) {
         self.awaited = Some(stamp);
     }
 
     /// Stamp of the scan whose answer is awaited.
-    #[must_use]
     pub fn awaited(&self) -> Option<Stamp> {
         self.awaited
     }
 
-    /// Records an answer with this stamp.
     pub fn answered(&mut self, stamp: Stamp) {
         if self.awaited.is_some_and(|awaited| awaited.is_of(stamp)) {
             self.awaited = None;

@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use recording::Recording;
 
-/// Renames a channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remap {
     from: String,
@@ -32,7 +31,6 @@ impl fmt::Display for Remap {
     }
 }
 
-/// Part of a recording to replay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Selection {
     topics: Vec<String>,
@@ -43,8 +41,6 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Selects everything.
-    #[must_use]
     pub fn all() -> Self {
         Selection {
             topics: Vec::new(),
@@ -55,7 +51,6 @@ impl Selection {
     }
 
     /// Selects only these topics, or all if there are none, and renames some of them.
-    #[must_use]
     pub fn of(topics: &[String], remap: &[Remap]) -> Self {
         Selection {
             topics: topics.to_owned(),
@@ -79,7 +74,6 @@ impl Selection {
     }
 
     /// Name of a channel after renaming; `None` if it is left out.
-    #[must_use]
     pub fn name_of(&self, topic: &str) -> Option<String> {
         if !self.topics.is_empty() && !self.topics.iter().any(|meant| meant == topic) {
             return None;
@@ -94,14 +88,11 @@ impl Selection {
         }
     }
 
-    /// True if a message with this log time is selected.
-    #[must_use]
     pub fn covers(&self, log_time_ns: i64) -> bool {
         (self.from_ns..=self.to_ns).contains(&log_time_ns)
     }
 
     /// Selected topics that the recording does not have.
-    #[must_use]
     pub fn unknown(&self, recording: &Recording) -> Vec<String> {
         let named = self
             .topics

@@ -13,7 +13,6 @@ use ros::{lasers, measurements};
 use crate::PlaybackError;
 use crate::selection::Selection;
 
-/// A message of the graph with its log time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timed {
     /// Time of recording, in nanoseconds since 1970.
@@ -24,28 +23,22 @@ pub struct Timed {
 /// Content of a message; its stamp has no counter and no time of entering the graph yet.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
-    /// A scan: header and ranges.
     Scan(Box<ScanHeader>, Vec<f32>),
     Odometry(Box<Odometry>),
     GroundTruth(Box<GroundTruth>),
 }
 
 impl Timed {
-    /// True if it is a scan.
-    #[must_use]
     pub fn is_scan(&self) -> bool {
         matches!(self.content, Content::Scan(..))
     }
 
-    /// True if it is odometry.
-    #[must_use]
     pub fn is_odometry(&self) -> bool {
         matches!(self.content, Content::Odometry(_))
     }
 
     /// Time up to which the robot's motion matters for the scan, in nanoseconds: that of its last
     /// beam if the scan takes time, its stamp if it is one of several lasers.
-    #[must_use]
     pub fn motion_until_ns(&self) -> Option<i64> {
         let Content::Scan(header, ranges) = &self.content else {
             return None;
@@ -57,7 +50,6 @@ impl Timed {
     }
 
     /// Time of measurement, in nanoseconds since 1970.
-    #[must_use]
     pub fn stamp_ns(&self) -> i64 {
         match &self.content {
             Content::Scan(header, _) => header.stamp.measured_ns,
@@ -67,7 +59,6 @@ impl Timed {
     }
 }
 
-/// Channels that are replayed.
 #[derive(Debug, Clone)]
 pub struct Channels {
     /// Topic and name of each laser, the first one first; a single laser has an empty name.
@@ -77,10 +68,6 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// Returns the channels of the selection.
-    ///
-    /// # Errors
-    /// If there are no scans, or several channels qualify.
     pub fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
         let topic = |kind| recording.topic_renamed(kind, |topic| selection.name_of(topic));
         let no_scans = || recording.no_topic(Kind::Scan);
@@ -93,9 +80,6 @@ impl Channels {
 
     /// Returns the channels of the selection, with the scans of several lasers: each is named by
     /// its topic, and the scans of the first one are answered.
-    ///
-    /// # Errors
-    /// If there are no scans, or several channels qualify.
     pub fn of_lasers(
         recording: &Recording,
         selection: &Selection,
@@ -116,7 +100,6 @@ impl Channels {
     }
 
     /// Number of readable scans of the first laser.
-    #[must_use]
     pub fn scans(&self, recording: &Recording) -> u64 {
         let channels = recording.channels();
         let scans = channels.filter(|channel| self.is_first(&channel.topic));
@@ -124,7 +107,6 @@ impl Channels {
     }
 
     /// Laser whose scans are answered; a single laser has an empty name.
-    #[must_use]
     pub fn first_laser(&self) -> Name {
         let first = self.scans.first();
         first.map_or(Name::new(""), |(_, laser)| *laser)
@@ -158,7 +140,6 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    #[must_use]
     pub fn new(recording: &'a Recording, channels: Channels, selection: Selection) -> Self {
         Source {
             recording,

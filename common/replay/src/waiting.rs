@@ -13,7 +13,6 @@ const TICK: Duration = Duration::from_millis(50);
 /// Time between log lines about missing nodes, in nanoseconds.
 const REMINDER_NS: i64 = 5_000_000_000;
 
-/// The nodes that must be ready before playing starts.
 pub struct Awaited {
     reports: Subscriber<topic::Health>,
     readiness: Readiness,
@@ -22,10 +21,6 @@ pub struct Awaited {
 }
 
 impl Awaited {
-    /// Waits for nodes with these names.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn new(graph: &Graph, names: &[String]) -> Result<Self, TransportError> {
         Ok(Awaited {
             reports: graph.subscriber()?,
@@ -36,9 +31,6 @@ impl Awaited {
     }
 
     /// True once all nodes have been ready at the same time; logs which are missing.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn are_ready(&mut self) -> Result<bool, TransportError> {
         while let Some(report) = self.reports.receive()? {
             self.readiness.receive(report.header());
@@ -53,10 +45,6 @@ impl Awaited {
     }
 }
 
-/// Waits until all these nodes are ready, or the stop flag is set.
-///
-/// # Errors
-/// If the graph fails.
 pub fn wait_for_nodes(
     graph: &Graph,
     names: &[String],

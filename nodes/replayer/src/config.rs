@@ -98,19 +98,6 @@ mod tests {
     }
 
     #[test]
-    fn options() {
-        let config = parse("--recording a.mcap").unwrap();
-        assert_eq!(config.rate, Rate::Factor(1.0));
-        assert!(config.wait_for.is_empty() && !config.looped);
-        let config = parse("--recording a --rate max --wait-for b,c --patience 2").unwrap();
-        assert_eq!((config.rate, config.patience), (Rate::Max, 2.0));
-        assert_eq!(config.wait_for, ["b", "c"]);
-        let config = parse("--recording a --topics /s,/o --remap /f:=/scan --start 1").unwrap();
-        assert_eq!((config.topics.len(), config.start), (2, Some(1.0)));
-        assert_eq!(config.remap[0].to_string(), "/f:=/scan");
-    }
-
-    #[test]
     fn what_is_refused_says_what_is_allowed() {
         let refuse = |arguments: &str, expected: &str| {
             let text = parse(arguments).unwrap_err();

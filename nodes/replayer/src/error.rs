@@ -10,7 +10,6 @@ use replay::PlaybackError;
 pub enum ReplayerError {
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
-    /// The recording, or a message of it, cannot be read.
     #[error(transparent)]
     Playback(#[from] PlaybackError),
     #[error("{} has no {}; it has {}", path.display(), unknown.join(", "), found.join(", "))]

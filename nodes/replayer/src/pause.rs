@@ -1,11 +1,8 @@
 //! Pausing and single steps, controlled by typed lines. Pure.
 
-/// Command of a typed line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Command {
-    /// Play to the next scan.
     Step,
-    /// Play or pause.
     Toggle,
     Quit,
 }
@@ -24,7 +21,6 @@ impl Command {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Pause {
     paused: bool,
-    /// Number of scans that may be sent while paused.
     steps: u32,
 }
 
@@ -42,7 +38,6 @@ impl Pause {
         self.steps > 0
     }
 
-    /// Counts a scan that was sent while paused.
     pub(crate) fn stepped(&mut self) {
         self.steps = self.steps.saturating_sub(1);
     }

@@ -25,14 +25,11 @@ use crate::{Config, ReplayerError};
 /// Longest time between checks of answers, signals and health.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Result of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
     /// True if the recording was played to its end; false if the node was stopped.
     pub finished: bool,
-    /// Number of scans sent.
     pub scans: u64,
-    /// Number of answers received.
     pub answers: u64,
     /// Number of scans without an answer.
     pub unanswered: u64,
@@ -44,7 +41,6 @@ pub struct Summary {
 
 impl Summary {
     /// Returns true if the recording was played to its end but data was lost.
-    #[must_use]
     pub fn lost_data(&self) -> bool {
         self.finished && (self.damaged || self.unanswered + self.refused > 0)
     }
@@ -114,7 +110,6 @@ fn open(config: &Config) -> Result<Recording, ReplayerError> {
     Ok(recording)
 }
 
-/// Selects the messages to play.
 fn select(config: &Config, recording: &Recording) -> Result<Selection, ReplayerError> {
     let selection =
         Selection::of(&config.topics, &config.remap).within(recording, config.start, config.end);
@@ -174,7 +169,6 @@ struct Player<'r> {
     /// Number of scans sent before this round.
     scans_before: u64,
     pending: Option<Timed>,
-    /// Error that ended the recording early.
     failure: Option<PlaybackError>,
     schedule: Schedule,
     in_step: InStep,
@@ -280,7 +274,6 @@ impl Player<'_> {
         true
     }
 
-    /// Logs and returns the result.
     fn conclude(mut self) -> Result<Summary, ReplayerError> {
         let mut summary = self.outlet.summary;
         let Summary {

@@ -9,15 +9,14 @@ use std::process::ExitStatus;
 
 use geometry::Pose;
 use messages::{NodeState, Stamp, topic};
+use recording::Message;
 use recording::write::{Packing, RecordingWriter};
-use recording::{Message, Recording};
 use ros::{LaserScan, PoseStamped, Time};
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_until};
 use transport::{Graph, Publisher, Subscriber};
 
 const SECOND: i64 = 1_000_000_000;
 
-/// The topic ends of the other nodes.
 struct World {
     node: Option<NodeProcess>,
     folder: tempfile::TempDir,
@@ -196,19 +195,6 @@ fn a_scan_without_an_answer_is_counted_and_the_run_finishes_with_three() {
 }
 
 #[test]
-fn at_a_factor_the_distances_are_kept_and_the_last_answer_is_waited_for() {
-    let mut world = World::new("paced");
-    world.start(&three_scans(), &["--rate", "10"]);
-    let stamps = [0; 3].map(|_| world.next_scan().0);
-    // A tenth of a second each; the first scan may have been late, but by less than that.
-    let span_ns = stamps[2].entered_ns - stamps[0].entered_ns;
-    assert!(span_ns > SECOND / 10, "{span_ns}");
-    world.answer(stamps[2]);
-    let (status, log) = world.finish();
-    assert_eq!(status.code(), Some(0), "{log}");
-}
-
-#[test]
 fn at_a_factor_nobody_is_waited_for_where_nobody_listens() {
     let mut world = World::new("deaf");
     world.scans = None;
@@ -232,25 +218,6 @@ fn the_recording_starts_over() {
         world.answer(stamp);
     }
     world.interrupt();
-    let (status, log) = world.finish();
-    assert_eq!(status.code(), Some(0), "{log}");
-}
-
-#[test]
-fn playing_waits_for_the_nodes_that_are_named() {
-    let mut world = World::new("wait");
-    let mut health = world.graph.health().unwrap();
-    world.start(
-        &three_scans(),
-        &["--rate", "max", "--wait-for", "accumulator"],
-    );
-    world.wait_for_state(NodeState::Waiting);
-    assert!(world.no_scan_has_come());
-    health.state(NodeState::Ready).unwrap();
-    for _ in 0..3 {
-        let (stamp, _) = world.next_scan();
-        world.answer(stamp);
-    }
     let (status, log) = world.finish();
     assert_eq!(status.code(), Some(0), "{log}");
 }
@@ -285,17 +252,10 @@ fn a_part_is_played_of_the_channels_that_are_named() {
         messages.push(("/front/scan", at + 5, scan(at + 5)));
         messages.push(("/odom", at, odometry(at)));
     }
-    let options = [
-        "--start",
-        "1",
-        "--end",
-        "1.5",
-        "--rate",
-        "max",
-        "--topics",
-        "/front/scan",
-    ];
-    world.start(&record(&messages), &options);
+    let bytes = record(&messages);
+    let options = "--start 1 --end 1.5 --rate max --topics /front/scan --remap /front/scan:=/scan";
+    let options: Vec<&str> = options.split(' ').collect();
+    world.start(&bytes, &options);
     let (stamp, _) = world.next_scan();
     assert_eq!(stamp.measured_ns, 2 * SECOND + 5);
     world.answer(stamp);
@@ -306,60 +266,11 @@ fn a_part_is_played_of_the_channels_that_are_named() {
         world.odometry.receive().unwrap().is_none(),
         "it is not named"
     );
-}
-
-#[test]
-fn a_channel_takes_the_name_of_another() {
-    let mut world = World::new("remap");
-    let messages = [
-        ("/scan", 1, scan(1)),
-        ("/front/scan", 2, scan(2)),
-        ("/rear/scan", 3, scan(3)),
-    ];
-    let bytes = record(&messages);
-    world.start(&bytes, &["--rate", "max", "--remap", "/front/scan:=/scan"]);
-    let (stamp, _) = world.next_scan();
-    assert_eq!(stamp.measured_ns, 2);
-    world.answer(stamp);
-    assert_eq!(world.finish().0.code(), Some(0));
     world.start(&bytes, &["--topics", "/scam"]);
     let (status, log) = world.finish();
     assert_eq!(status.code(), Some(1));
-    assert!(
-        log.contains("has no /scam; it has /scan, /front/scan"),
-        "{log}"
-    );
-}
-
-#[test]
-fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
-    let mut world = World::new("cut");
-    let messages = [
-        ("/scan", 1, scan(1)),
-        ("/scan", 2, scan(2)),
-        ("/scan", 3, scan(3)),
-    ];
-    let mut bytes = record(&messages);
-    bytes.truncate(bytes.len() / 2);
-    let readable = Recording::from_bytes("cut", bytes.clone())
-        .unwrap()
-        .messages();
-    // Each message is a chunk of its own, and the summary takes some bytes, too.
-    assert!((1..3).contains(&readable), "{readable}");
-    world.start(&bytes, &["--rate", "max"]);
-    for _ in 0..readable {
-        let (stamp, _) = world.next_scan();
-        world.answer(stamp);
-    }
-    let (status, log) = world.finish();
-    assert_eq!(status.code(), Some(3), "{log}");
-    let played = format!("played scans={readable} answers={readable}");
-    assert!(log.contains(&played), "{log}");
-    assert!(
-        log.contains("the rest of the recording was lost")
-            && log.contains("world.mcap: the file is cut short"),
-        "{log}"
-    );
+    let expected = "has no /scam; it has /scan, /front/scan";
+    assert!(log.contains(expected), "{log}");
 }
 
 #[test]

@@ -50,17 +50,12 @@ fn play(recording: &Recording) -> Vec<Result<Timed, PlaybackError>> {
 
 #[test]
 fn readings_pass_as_they_are_and_the_mount_comes_with_them() {
-    let transform = ros::TransformStamped {
+    let mut transform = ros::TransformStamped {
         header: header(0, "base_link"),
         child_frame_id: "laser".into(),
-        transform: ros::Transform {
-            translation: ros::Vector3 {
-                x: 0.78,
-                ..ros::Vector3::default()
-            },
-            ..ros::Transform::default()
-        },
+        ..ros::TransformStamped::default()
     };
+    transform.transform.translation.x = 0.78;
     let transforms = ros::TfMessage {
         transforms: vec![transform],
     };
@@ -115,19 +110,8 @@ fn only_the_channels_that_are_meant_are_played() {
 
 #[test]
 fn what_cannot_be_said_in_a_message_is_refused_one_by_one() {
-    let turned = ros::Odometry {
-        pose: ros::PoseWithCovariance {
-            pose: ros::Pose {
-                orientation: ros::Quaternion {
-                    w: f64::NAN,
-                    ..ros::Quaternion::default()
-                },
-                ..ros::Pose::default()
-            },
-            ..ros::PoseWithCovariance::default()
-        },
-        ..ros::Odometry::default()
-    };
+    let mut turned = ros::Odometry::default();
+    turned.pose.pose.orientation.w = f64::NAN;
     let recording = recording(&[
         ("/scan", scan(0, &"f".repeat(257))),
         ("/odom", Message::Odometry(Box::new(turned))),

@@ -9,12 +9,10 @@ use transport::{Graph, Subscriber, TransportError};
 pub(super) struct InStep {
     reports: Option<Rc<Subscriber<topic::Health>>>,
     nodes: Vec<(String, u64)>,
-    /// Last scan that was answered.
     answered: Option<Stamp>,
 }
 
 impl InStep {
-    /// Creates the state for the nodes with these names.
     pub(super) fn new(graph: &Graph, names: &[String]) -> Result<Self, TransportError> {
         Ok(InStep {
             reports: match names {
@@ -31,7 +29,6 @@ impl InStep {
         self.reports.clone()
     }
 
-    /// Records the answer to a scan.
     pub(super) fn answer(&mut self, stamp: Stamp) {
         self.answered = Some(stamp);
     }

@@ -5,16 +5,13 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use crate::pause::{Command, Pause};
 
-/// Receiver of the typed lines.
 pub(super) struct Keyboard {
     commands: Receiver<Command>,
 }
 
-/// Effect of the typed lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KeyPress {
     Nothing,
-    /// Playback continues after a pause.
     Resumed,
     Quit,
 }

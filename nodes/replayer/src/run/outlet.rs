@@ -34,7 +34,6 @@ impl Outlet {
         })
     }
 
-    /// Returns true if the scans have a subscriber.
     pub(super) fn has_subscribers(&self) -> bool {
         self.scans.has_subscribers()
     }
@@ -70,7 +69,6 @@ impl Outlet {
         Ok(is_first.then_some(header.stamp))
     }
 
-    /// Counts an answer to any scan.
     pub(super) fn count_answer(&mut self) -> Result<(), TransportError> {
         self.summary.answers += 1;
         self.health.count_received(1);
