@@ -33,15 +33,12 @@ pub struct Prepared {
 /// State of a cached index.
 #[derive(Debug, Default)]
 pub struct Kept {
-    /// True if the index was read from the cache.
     pub is_read: bool,
-    /// Error of reading an existing file.
     pub problem: Option<CacheError>,
     /// Index to be saved for the next time, when there is time.
     pub unsaved: Option<Unsaved>,
 }
 
-/// An index that is not saved yet.
 #[derive(Debug)]
 pub struct Unsaved {
     cache: IndexCache,
@@ -51,9 +48,6 @@ pub struct Unsaved {
 
 impl Prepared {
     /// Prepares a map with the cached index, or computes the index.
-    ///
-    /// # Errors
-    /// The map cannot be searched, see [`Preparation::finish`].
     pub fn new(cache: Option<&IndexCache>, preparation: Preparation) -> Result<Self, EngineError> {
         let mut kept = Kept::default();
         let Some((cache, key)) = cache.zip(preparation.key()) else {
@@ -81,9 +75,6 @@ impl Prepared {
 }
 
 /// Prepares a map for locating scans, with the cached index or by computing it.
-///
-/// # Errors
-/// The map cannot be searched, or a setting is out of range.
 pub fn prepared_map(
     cache: Option<&IndexCache>,
     map: Map<'_>,
@@ -96,9 +87,6 @@ pub fn prepared_map(
 
 impl Unsaved {
     /// Writes the file, and removes the least recently used files if all together are too large.
-    ///
-    /// # Errors
-    /// The folder cannot be used, or the file cannot be written.
     pub fn save(self) -> Result<(), CacheError> {
         let Unsaved { cache, key, index } = self;
         let bytes = file::size(&index);
@@ -123,18 +111,14 @@ impl Unsaved {
 
 impl IndexCache {
     /// Uses a folder, which is created with the first file, with at most `limit` bytes of files.
-    #[must_use]
     pub fn new(folder: PathBuf, limit: u64) -> Self {
         IndexCache { folder, limit }
     }
 
-    /// Returns the path of an index.
-    #[must_use]
     pub fn path(&self, key: IndexKey) -> PathBuf {
         self.folder.join(format!("{key}.{}", folder::ENDING))
     }
 
-    /// Reads an index if it is cached.
     fn read(
         &self,
         key: IndexKey,
@@ -166,8 +150,7 @@ mod tests {
     use std::fs::{set_permissions, write};
     use std::os::unix::fs::{PermissionsExt, chown, symlink};
 
-    use engine::grid::{CellRules, GridFrame};
-    use engine::limits::LimitsConfig;
+    use engine::grid::CellRules;
     use engine::search::{SECTIONS, SectionError};
     use engine::vote_search::{Prior, VoteSearchConfig};
     use nix::sys::stat::Mode;
@@ -182,7 +165,6 @@ mod tests {
         Prepared::new(Some(cache), preparation(seed)).unwrap()
     }
 
-    /// Prepares a map and saves its index if it is new; returns true in that case.
     fn prepare_and_save(cache: &IndexCache, seed: usize) -> bool {
         let unsaved = prepare(cache, seed).kept.unsaved;
         let is_new = unsaved.is_some();
@@ -269,56 +251,30 @@ mod tests {
 
     #[test]
     fn the_key_is_of_all_that_an_index_is_made_of() {
-        let default = VoteSearchConfig::default();
-        let limited = |limits| VoteSearchConfig {
-            limits,
-            ..VoteSearchConfig::default()
+        let other = |change: fn(&mut VoteSearchConfig)| {
+            let mut config = VoteSearchConfig::default();
+            change(&mut config);
+            preparation_with(1, config).key().unwrap()
         };
-        let limits = LimitsConfig::default;
-        let other = |config| preparation_with(1, config).key().unwrap();
         let of = |frame, cells: &[u8], rules| {
             let map = map(frame, cells, rules);
             let preparation = Preparation::of_map(map, VoteSearchConfig::default(), Prior::None);
             preparation.unwrap().key().unwrap()
         };
-        let frame = GridFrame {
-            resolution_m: 0.06,
-            ..FRAME
-        };
-        let rules = CellRules {
-            unknown_blocks: true,
-            ..CellRules::default()
-        };
+        let (mut frame, mut rules) = (FRAME, CellRules::default());
+        (frame.resolution_m, rules.unknown_blocks) = (0.06, true);
         let mut known = occupancy(1);
         let unknown = known.iter().position(|&cell| cell == 255).unwrap();
         known[unknown] = 0;
         let keys = [
-            other(default.clone()),
-            preparation_with(2, default.clone()).key().unwrap(),
-            other(VoteSearchConfig {
-                headings: 48,
-                ..default.clone()
-            }),
-            other(VoteSearchConfig {
-                search_cell: 0.1,
-                ..default.clone()
-            }),
-            other(limited(LimitsConfig {
-                unknown_reach: 0.2,
-                ..limits()
-            })),
-            other(limited(LimitsConfig {
-                robot_radius: 0.1,
-                ..limits()
-            })),
-            other(limited(LimitsConfig {
-                region: Some("0,0 3,3".parse().unwrap()),
-                ..limits()
-            })),
-            other(limited(LimitsConfig {
-                headings_within: Some("0,90".parse().unwrap()),
-                ..limits()
-            })),
+            other(|_| ()),
+            of(FRAME, &occupancy(2), CellRules::default()),
+            other(|config| config.headings = 48),
+            other(|config| config.search_cell = 0.1),
+            other(|config| config.limits.unknown_reach = 0.2),
+            other(|config| config.limits.robot_radius = 0.1),
+            other(|config| config.limits.region = Some("0,0 3,3".parse().unwrap())),
+            other(|config| config.limits.headings_within = Some("0,90".parse().unwrap())),
             of(frame, &occupancy(1), CellRules::default()),
             of(FRAME, &occupancy(1), rules),
             of(FRAME, &known, CellRules::default()),
@@ -327,13 +283,7 @@ mod tests {
             assert!(!keys[..i].contains(key), "setting {i}");
         }
         // Parameters that only affect a search do not matter.
-        assert_eq!(
-            other(VoteSearchConfig {
-                threads: 3,
-                ..default
-            }),
-            keys[0]
-        );
+        assert_eq!(other(|config| config.threads = 3), keys[0]);
         let cells = occupancy(1);
         let map = map(FRAME, &cells, CellRules::default());
         let known = Preparation::of_map(map, VoteSearchConfig::default(), Prior::Heading);

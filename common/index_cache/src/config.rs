@@ -24,19 +24,14 @@ pub struct IndexCacheConfig {
 /// Place of the cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CachePlace {
-    /// No cache.
     Off,
     /// The user's cache folder.
     User,
-    /// Another folder.
     Folder(PathBuf),
 }
 
 impl IndexCacheConfig {
     /// Opens the configured cache, or `default`; `None` without a cache.
-    ///
-    /// # Errors
-    /// The user's cache folder is unknown.
     pub fn open(&self, default: CachePlace) -> Result<Option<IndexCache>, CacheError> {
         let place = self.index_cache.clone().unwrap_or(default);
         let folder = match place {

@@ -101,7 +101,6 @@ impl Header {
     }
 }
 
-/// Returns the size of an index file in bytes.
 pub(crate) fn size(index: &SearchIndex) -> u64 {
     let sections = index.sections().map(<[u8]>::len).into_iter().sum::<usize>();
     (size_of::<Header>() + sections) as u64
@@ -115,7 +114,6 @@ pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> 
         .try_for_each(|section| to.write_all(section))
 }
 
-/// Reads the index of a map from a file of `file_bytes` bytes.
 pub(crate) fn read(
     from: &mut impl Read,
     file_bytes: u64,
@@ -168,7 +166,6 @@ mod tests {
     use super::*;
     use crate::testing::preparation;
 
-    /// Returns a file of the map with seed 1.
     fn file() -> Vec<u8> {
         let vote_search = preparation(1).finish().unwrap();
         let index = vote_search.search_index().unwrap();

@@ -11,16 +11,13 @@ use tempfile::NamedTempFile;
 use crate::CacheError;
 use crate::error::failed;
 
-/// Extension of all files.
 pub(crate) const ENDING: &str = "index";
 
-/// Returns the user's cache folder, which is the default.
 pub(crate) fn of_user() -> Result<PathBuf, CacheError> {
     let folder = dirs::cache_dir().ok_or(CacheError::NoHome)?;
     Ok(folder.join("backcast"))
 }
 
-/// Creates the folder and its parents if they are missing.
 pub(crate) fn make(path: &Path) -> Result<(), CacheError> {
     let made = DirBuilder::new().mode(0o700).recursive(true).create(path);
     match made {

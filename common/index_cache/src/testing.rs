@@ -5,7 +5,6 @@ use engine::grid::{CellRules, GridFrame};
 use engine::vote_search::{Preparation, Prior, VoteSearchConfig};
 use geometry::Pose;
 
-/// Width and height in cells.
 pub(crate) const SIDES: (usize, usize) = (61, 40);
 
 pub(crate) const FRAME: GridFrame = GridFrame {
@@ -31,7 +30,6 @@ pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
     (0..width * height).map(cell).collect()
 }
 
-/// A map of these cells.
 pub(crate) fn map(frame: GridFrame, occupancy: &[u8], rules: CellRules) -> Map<'_> {
     let sides = SIDES;
     Map {
@@ -42,14 +40,12 @@ pub(crate) fn map(frame: GridFrame, occupancy: &[u8], rules: CellRules) -> Map<'
     }
 }
 
-/// Prepares the map of a seed with these settings.
 pub(crate) fn preparation_with(seed: usize, config: VoteSearchConfig) -> Preparation {
     let cells = occupancy(seed);
     let map = map(FRAME, &cells, CellRules::default());
     Preparation::of_map(map, config, Prior::None).unwrap()
 }
 
-/// Prepares the map of a seed with few headings.
 pub(crate) fn preparation(seed: usize) -> Preparation {
     let config = VoteSearchConfig {
         headings: 48,

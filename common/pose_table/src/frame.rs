@@ -9,7 +9,6 @@ pub enum Frame {
 }
 
 impl Frame {
-    #[must_use]
     pub fn of(mount_is_known: bool) -> Self {
         match mount_is_known {
             true => Frame::Base,
@@ -17,7 +16,6 @@ impl Frame {
         }
     }
 
-    /// Returns the names of the columns of its position.
     pub(super) fn columns(self) -> [&'static str; 2] {
         match self {
             Frame::Base => ["base x m", "base y m"],

@@ -45,7 +45,6 @@ pub struct Candidate {
     pub support: u64,
 }
 
-/// Formats the id of a map.
 pub fn map_id(id: u64) -> String {
     format!("{id:016x}")
 }
@@ -53,7 +52,6 @@ pub fn map_id(id: u64) -> String {
 impl Place {
     /// Creates a place from the pose of the laser with its covariance, and from that of the base
     /// if the laser's mount is known.
-    #[must_use]
     pub fn new(id: u64, laser: Pose2, covariance: [f64; 9], base: Option<Pose2>) -> Self {
         let laser_covariance = finite(covariance);
         let of_base = |rows, base: Pose2| {
@@ -71,8 +69,6 @@ impl Place {
         }
     }
 
-    /// Converts the tracker's pose.
-    #[must_use]
     pub fn of_pose(header: &PoseHeader) -> Self {
         let (laser, base) = (header.laser(), header.base());
         Place {
@@ -88,8 +84,6 @@ impl Place {
         }
     }
 
-    /// Returns the pose of its frame, if it is known.
-    #[must_use]
     pub fn pose(&self) -> Option<Pose2> {
         match self.frame {
             Frame::Base => self.base,
@@ -97,7 +91,6 @@ impl Place {
         }
     }
 
-    /// Returns the covariance of [`pose`](Self::pose).
     pub(super) fn covariance(&self) -> Option<Covariance> {
         let rows = match self.frame {
             Frame::Base => self.base_covariance,

@@ -66,7 +66,6 @@ impl Rows {
         released
     }
 
-    /// Returns all waiting rows.
     pub fn finish(&mut self) -> Vec<Row> {
         self.release(self.waiting.len())
     }

@@ -7,7 +7,6 @@ use super::ScanAnswer;
 
 /// Creates an answer to the scan measured at `measured_ns`: at (1, -2), half a turn from the x
 /// axis, after 25 ms, 24 ms of them computing.
-#[must_use]
 pub fn message(
     measured_ns: i64,
     counter: u64,
@@ -38,15 +37,12 @@ pub fn message(
     (header, [hypothesis])
 }
 
-/// Converts an answer whose map has no name.
-#[must_use]
 pub fn answer(header: &HypothesesHeader, found: &[Hypothesis]) -> ScanAnswer {
     ScanAnswer::new(header, found, &|_| None)
 }
 
 /// Creates the pose of the scan measured at `measured_ns`: the laser at (1, -2), half a turn from
 /// the x axis, 26 ms after the scan.
-#[must_use]
 pub fn pose(measured_ns: i64, counter: u64, state: TrackState) -> PoseHeader {
     PoseHeader {
         stamp: Stamp {

@@ -45,7 +45,6 @@ pub struct Row {
 }
 
 impl TrackedPose {
-    /// Converts a message of topic `pose`.
     pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
         let state = TrackState::from_code(header.state);
         let words = words.get(..PoseHeader::WORDS_CAPACITY).unwrap_or(words);
@@ -71,7 +70,6 @@ impl Row {
         place.pose().map(|_| place.frame)
     }
 
-    /// Returns the column names, for poses of this frame.
     pub fn header(frame: Frame) -> String {
         let [x, y] = frame.columns();
         row([
@@ -87,7 +85,6 @@ impl Row {
         ])
     }
 
-    /// Returns the row without a newline.
     pub fn text(&self) -> String {
         let single = self.single.as_ref();
         let single = single.map_or("-".to_owned(), |line| match line.alternatives {

@@ -8,7 +8,6 @@ use transport::{GapCounter, Graph, Input, Subscriber, TransportError, monotonic_
 
 use crate::{Entries, Transcript, TranscriptError};
 
-/// Receiver of a transcript.
 pub trait Listener {
     type Error: From<TransportError>;
 
@@ -16,31 +15,21 @@ pub trait Listener {
     fn transcript(&mut self) -> &mut Transcript;
 
     /// Called for each health report of a node.
-    ///
-    /// # Errors
-    /// Any error ends [`Inputs::take`].
     fn reported(&mut self, _report: &HealthHeader) -> Result<(), Self::Error> {
         Ok(())
     }
 
     /// Called for each verdict on a scan, by its number.
-    ///
-    /// # Errors
-    /// Any error ends [`Inputs::take`].
     fn judged(&mut self, _verdict: u32) -> Result<(), Self::Error> {
         Ok(())
     }
 
     /// Called for each state of the tracker at a scan, by its number.
-    ///
-    /// # Errors
-    /// Any error ends [`Inputs::take`].
     fn tracked(&mut self, _state: u32) -> Result<(), Self::Error> {
         Ok(())
     }
 }
 
-/// Subscribers of all topics of a transcript.
 pub struct Inputs {
     map: Subscriber<topic::Map>,
     odometry: Subscriber<topic::OdometryTopic>,
@@ -65,9 +54,6 @@ pub struct Inputs {
 impl Inputs {
     /// Subscribes to all topics; to the intensity image only if `field` is set, because it is only
     /// computed for subscribers.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
         Ok(Inputs {
             map: graph.subscriber()?,
@@ -89,8 +75,6 @@ impl Inputs {
         })
     }
 
-    /// Inputs for the event loop.
-    #[must_use]
     pub fn all(&self) -> Vec<&dyn Input> {
         let field = self.field.as_ref().map(|field| -> &dyn Input { field });
         let others: [&dyn Input; 11] = [
@@ -110,9 +94,6 @@ impl Inputs {
     }
 
     /// Receives all pending samples, measurements before the answers to them.
-    ///
-    /// # Errors
-    /// If the graph or the listener fails.
     pub fn take<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         take_each(&self.map, to, no_loss, |entries, map, cells| {
             entries.map(map, cells, monotonic_ns())

@@ -2,7 +2,6 @@
 
 pub use recording::{GROUND_TRUTH, MAP, ODOM, SCAN, TF_STATIC};
 
-/// Transforms between moving frames.
 pub const TF: &str = "/tf";
 /// Pose of the robot: of the tracker, or of the best hypothesis if there is no tracker.
 pub const POSE: &str = "/pose";
@@ -10,16 +9,11 @@ pub const POSE: &str = "/pose";
 pub const HYPOTHESES: &str = "/hypotheses";
 /// Initial particles for a particle filter.
 pub const PARTICLES: &str = "/particles";
-/// Health of the nodes.
 pub const DIAGNOSTICS: &str = "/diagnostics";
-/// Log lines of the nodes.
 pub const ROSOUT: &str = "/rosout";
 pub const FIELD: &str = "/field";
-/// Votes, lossless, with every field of the graph's header.
 pub const OWN_VOTES: &str = "/backcast/votes";
-/// Hypotheses, lossless, with every field of the graph's header.
 pub const OWN_HYPOTHESES: &str = "/backcast/hypotheses";
-/// Beams, lossless, with every field of the graph's header.
 pub const OWN_BEAMS: &str = "/backcast/beams";
 /// The tracker's pose at a scan, lossless, with every field of the graph's header.
 pub const OWN_POSE: &str = "/backcast/pose";

@@ -7,9 +7,7 @@ use crate::{Entries, Options, TranscriptError};
 /// Converts received samples to entries, and reports its health to the graph.
 #[derive(Debug)]
 pub struct Transcript {
-    /// Entries made from the samples.
     pub entries: Entries,
-    /// Reporter of its health.
     pub health: Health,
     dropped: u64,
     refused: u64,
@@ -17,10 +15,6 @@ pub struct Transcript {
 }
 
 impl Transcript {
-    /// Starts an empty transcript.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn new(graph: &Graph, options: &Options) -> Result<Self, TransportError> {
         Ok(Transcript {
             entries: Entries::new(options),
@@ -31,12 +25,10 @@ impl Transcript {
         })
     }
 
-    #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    #[must_use]
     pub fn refused(&self) -> u64 {
         self.refused
     }
@@ -48,9 +40,6 @@ impl Transcript {
 
     /// Counts a received sample, and `lost` samples before it; logs an error that differs from the
     /// last one.
-    ///
-    /// # Errors
-    /// If the graph fails.
     pub fn taken(
         &mut self,
         lost: u64,

@@ -25,7 +25,6 @@ pub fn holds(covariance: Covariance, pose: Pose, truth: Pose) -> bool {
 /// Number of hypotheses that count for recall.
 const RECALL_DEPTH: usize = 16;
 
-/// Values of one figure.
 #[derive(Debug, Clone)]
 pub struct Distribution {
     values: VecDeque<f64>,
@@ -52,7 +51,6 @@ impl Distribution {
         self.values.push_back(value);
     }
 
-    /// Adds the values of another one.
     pub fn merge(&mut self, other: &Self) {
         other.values.iter().for_each(|&value| self.add(value));
     }
@@ -68,13 +66,11 @@ impl Distribution {
         })
     }
 
-    /// Median and 99th percentile.
     pub fn tail(&self) -> Tail {
         let [median, p99] = self.percentiles([50.0, 99.0]);
         Tail { median, p99 }
     }
 
-    /// Median and 90th percentile.
     pub fn spread(&self) -> Spread {
         let [median, p90] = self.percentiles([50.0, 90.0]);
         Spread { median, p90 }
@@ -104,11 +100,9 @@ pub struct Spread {
 pub struct Answer {
     /// Poses `map_from_laser`, best first.
     pub poses: Vec<Pose>,
-    /// The verdict, if known.
     pub verdict: Option<Verdict>,
 }
 
-/// Compares results with the truth.
 #[derive(Debug, Clone)]
 pub struct Accuracy {
     truths: u64,
@@ -155,7 +149,6 @@ impl Accuracy {
         self.error_deg.add(truth.angle_to(*best).to_degrees());
     }
 
-    /// Adds the results that another one has judged.
     pub fn merge(&mut self, other: &Self) {
         self.truths += other.truths;
         self.successes += other.successes;
@@ -182,7 +175,6 @@ impl Accuracy {
     }
 }
 
-/// True if the poses differ by at most this many metres and degrees.
 fn within(a: Pose, b: Pose, (metres, degrees): (f64, f64)) -> bool {
     a.is_within(b, metres, f64::to_radians(degrees))
 }

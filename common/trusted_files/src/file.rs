@@ -10,7 +10,6 @@ use nix::libc::{O_NOCTTY, O_NOFOLLOW, O_NONBLOCK};
 
 use crate::{TrustError, check_owner, current_user};
 
-/// Permissions of other users to write a file.
 const WRITE: u32 = 0o022;
 
 /// Opens a regular file of this user or of root that no other user can write; `None` if there is no

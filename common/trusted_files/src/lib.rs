@@ -16,7 +16,6 @@ use std::fs::Metadata;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-/// Returns the effective user id of this process.
 fn current_user() -> u32 {
     nix::unistd::geteuid().as_raw()
 }

@@ -25,13 +25,11 @@ const KEPT: usize = 256;
 pub(super) struct Frames {
     map: String,
     base: String,
-    /// Laser of the last scan.
     laser: Option<Laser>,
     mounts: Vec<TransformStamped>,
     odometry: VecDeque<Odometry>,
 }
 
-/// A laser and its mount.
 #[derive(Debug, Clone, PartialEq)]
 struct Laser {
     frame: String,
@@ -220,7 +218,6 @@ mod tests {
         }
     }
 
-    /// Formats the transforms as `parent->child x`.
     fn shown(message: Option<TfMessage>) -> String {
         let transforms = message
             .map(|message| message.transforms)

@@ -6,12 +6,9 @@ use messages::{FieldHeader, MapHeader, Topic, topic};
 use ros::{Header, OccupancyGridMsg};
 
 use crate::TranscriptError;
+use crate::error::Result;
 
-/// Converts a map; the caller fills in its header and load time.
-pub(super) fn occupancy_grid(
-    map: &MapHeader,
-    cells: &[u8],
-) -> Result<OccupancyGridMsg, TranscriptError> {
+pub(super) fn occupancy_grid(map: &MapHeader, cells: &[u8]) -> Result<OccupancyGridMsg> {
     check_size(topic::Map::NAME, map.width, map.height, cells.len())?;
     map.check_id(cells)?;
     Ok(OccupancyGridMsg::of_map(map, cells))
@@ -24,12 +21,11 @@ pub(super) fn field(
     field: &FieldHeader,
     items: &[u16],
     map: &MapHeader,
-) -> Result<OccupancyGridMsg, TranscriptError> {
+) -> Result<OccupancyGridMsg> {
     check_size(topic::Field::NAME, field.width, field.height, items.len())?;
     Ok(OccupancyGridMsg::of_field(header, field, items, map))
 }
 
-/// Metadata of the recording about its map.
 pub(super) fn metadata(map: &MapHeader) -> BTreeMap<String, String> {
     let entry = |key: &str, value: String| (key.to_owned(), value);
     BTreeMap::from([
@@ -40,12 +36,7 @@ pub(super) fn metadata(map: &MapHeader) -> BTreeMap<String, String> {
     ])
 }
 
-fn check_size(
-    topic: &'static str,
-    width: u32,
-    height: u32,
-    found: usize,
-) -> Result<(), TranscriptError> {
+fn check_size(topic: &'static str, width: u32, height: u32, found: usize) -> Result {
     if u64::from(width) * u64::from(height) == found as u64 {
         return Ok(());
     }

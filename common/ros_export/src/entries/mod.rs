@@ -24,13 +24,13 @@ use ros::{
     diagnostics, lasers, poses,
 };
 
+use crate::error::Result;
 use crate::{Options, TranscriptError, topics};
 
 /// Largest number of health reports, and of log lines, that wait for the first measurement; the
 /// newest are kept.
 const MAX_WAITING: usize = 256;
 
-/// Entry of a transcript.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Entry {
     Message(Encoded),
@@ -38,7 +38,6 @@ pub enum Entry {
     Metadata(&'static str, BTreeMap<String, String>),
 }
 
-/// Converts samples to entries.
 #[derive(Debug)]
 pub struct Entries {
     frames: Frames,
@@ -50,13 +49,11 @@ pub struct Entries {
     waiting_map: Option<OccupancyGridMsg>,
     waiting_health: VecDeque<(HealthHeader, String)>,
     waiting_log: VecDeque<(LogHeader, String)>,
-    /// True if there is a tracker.
     is_tracked: bool,
     made: Vec<Entry>,
 }
 
 impl Entries {
-    #[must_use]
     pub fn new(options: &Options) -> Self {
         Entries {
             frames: Frames::new(&options.map_frame, &options.base_frame),
@@ -71,16 +68,11 @@ impl Entries {
         }
     }
 
-    /// Takes the entries made since the last call.
     pub fn take(&mut self) -> Vec<Entry> {
         std::mem::take(&mut self.made)
     }
 
-    /// Adds a scan.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), TranscriptError> {
+    pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result {
         let at = self.measured(scan.stamp, topic::Scan::NAME)?;
         if let Some(mounts) = self.frames.on_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
@@ -92,11 +84,7 @@ impl Entries {
         }
     }
 
-    /// Adds odometry.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn odometry(&mut self, odometry: &Odometry) -> Result<(), TranscriptError> {
+    pub fn odometry(&mut self, odometry: &Odometry) -> Result {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
         let transform = self.frames.on_odometry(odometry, at.stamp);
         self.message(topics::TF, at.ns, &transform)?;
@@ -104,21 +92,13 @@ impl Entries {
         self.message(topics::ODOM, at.ns, &message)
     }
 
-    /// Adds a true pose.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), TranscriptError> {
+    pub fn ground_truth(&mut self, truth: &GroundTruth) -> Result {
         let at = self.measured(truth.stamp, topic::GroundTruthTopic::NAME)?;
         let message = PoseStamped::of(at.stamp, truth);
         self.message(topics::GROUND_TRUTH, at.ns, &message)
     }
 
-    /// Adds the votes of a scan.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn votes(&mut self, votes: &VotesHeader, items: &[Vote]) -> Result<(), TranscriptError> {
+    pub fn votes(&mut self, votes: &VotesHeader, items: &[Vote]) -> Result {
         let at = self.measured(votes.stamp, topic::Votes::NAME)?;
         let map = self.map.as_ref();
         let map = map.filter(|map| map.map_id == votes.map_id);
@@ -127,14 +107,7 @@ impl Entries {
     }
 
     /// Adds the hypotheses of a scan, and the best pose if there is no tracker.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn hypotheses(
-        &mut self,
-        header: &HypothesesHeader,
-        items: &[Hypothesis],
-    ) -> Result<(), TranscriptError> {
+    pub fn hypotheses(&mut self, header: &HypothesesHeader, items: &[Hypothesis]) -> Result {
         let at = self.measured(header.stamp, topic::Hypotheses::NAME)?;
         let in_map = self.in_map(at.stamp);
         let own = own::Hypotheses::of(in_map.clone(), header, items);
@@ -156,14 +129,7 @@ impl Entries {
     }
 
     /// Adds initial particles for particle filters.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn particles(
-        &mut self,
-        header: &ParticlesHeader,
-        items: &[Particle],
-    ) -> Result<(), TranscriptError> {
+    pub fn particles(&mut self, header: &ParticlesHeader, items: &[Particle]) -> Result {
         let at = self.measured(header.stamp, topic::Particles::NAME)?;
         let array = poses::particles(self.in_map(at.stamp), items);
         self.message(topics::PARTICLES, at.ns, &array)
@@ -177,10 +143,7 @@ impl Entries {
 
     /// Adds the tracker's pose at a scan. Its poses between scans, which come from odometry, are
     /// left out, because the odometry is recorded itself.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn tracked(&mut self, header: &PoseHeader, words: &[u8]) -> Result<(), TranscriptError> {
+    pub fn tracked(&mut self, header: &PoseHeader, words: &[u8]) -> Result {
         self.expect_tracker();
         if header.from_scan != 1 {
             return Ok(());
@@ -198,26 +161,14 @@ impl Entries {
     }
 
     /// Adds the results of the beams of a scan at its best pose.
-    ///
-    /// # Errors
-    /// If its stamp is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn beams(&mut self, beams: &BeamsHeader, items: &[Beam]) -> Result<(), TranscriptError> {
+    pub fn beams(&mut self, beams: &BeamsHeader, items: &[Beam]) -> Result {
         let at = self.measured(beams.stamp, topic::Beams::NAME)?;
         let message = own::Beams::of(self.in_map(at.stamp), beams, items);
         self.message(topics::OWN_BEAMS, at.ns, &message)
     }
 
     /// Adds a map, unless it is the same as the last one: a restarted server sends it again.
-    ///
-    /// # Errors
-    /// If its header and items contradict each other, its stamp is outside the times of ROS, or it
-    /// cannot be encoded in CDR.
-    pub fn map(
-        &mut self,
-        map: &MapHeader,
-        cells: &[u8],
-        now_ns: i64,
-    ) -> Result<(), TranscriptError> {
+    pub fn map(&mut self, map: &MapHeader, cells: &[u8], now_ns: i64) -> Result {
         let message = maps::occupancy_grid(map, cells)?;
         let known = self.map.replace(*map);
         if known.is_some_and(|known| known.map_id == map.map_id) {
@@ -228,11 +179,7 @@ impl Entries {
     }
 
     /// Adds an intensity image; one of an unknown map is left out.
-    ///
-    /// # Errors
-    /// If its header and items contradict each other, its stamp is outside the times of ROS, or it
-    /// cannot be encoded in CDR.
-    pub fn field(&mut self, field: &FieldHeader, items: &[u16]) -> Result<(), TranscriptError> {
+    pub fn field(&mut self, field: &FieldHeader, items: &[u16]) -> Result {
         let at = self.measured(field.stamp, topic::Field::NAME)?;
         let Some(map) = self.map.filter(|map| map.map_id == field.map_id) else {
             return Ok(());
@@ -242,40 +189,26 @@ impl Entries {
     }
 
     /// Adds the health report of a node, at the host's time `now_ns`.
-    ///
-    /// # Errors
-    /// If the time of the measurements is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn health(
-        &mut self,
-        report: &HealthHeader,
-        error: &[u8],
-        now_ns: i64,
-    ) -> Result<(), TranscriptError> {
+    pub fn health(&mut self, report: &HealthHeader, error: &[u8], now_ns: i64) -> Result {
         wait(&mut self.waiting_health, *report, error);
         self.release_by_clock(now_ns)
     }
 
     /// Adds a line of a node's log, at the time when it was written.
-    ///
-    /// # Errors
-    /// If the time of the measurements is outside the times of ROS, or it cannot be encoded in CDR.
-    pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
+    pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result {
         wait(&mut self.waiting_log, *line, text);
         self.release_by_clock(line.written_ns)
     }
 
     /// Converts all waiting samples at `wall_ns`, in nanoseconds since 1970, if there was no
     /// measurement.
-    ///
-    /// # Errors
-    /// If the time is outside the times of ROS, or a sample cannot be encoded in CDR.
-    pub fn finish(&mut self, wall_ns: i64) -> Result<(), TranscriptError> {
+    pub fn finish(&mut self, wall_ns: i64) -> Result {
         self.release(wall_ns)
     }
 
     /// Converts the waiting samples at the host's time, on the clock of the measurements, if there
     /// was any.
-    fn release_by_clock(&mut self, now_ns: i64) -> Result<(), TranscriptError> {
+    fn release_by_clock(&mut self, now_ns: i64) -> Result {
         let Some(newest) = self.newest else {
             return Ok(());
         };
@@ -284,7 +217,7 @@ impl Entries {
     }
 
     /// Checks the stamp of a measurement; the first one releases the waiting samples.
-    fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, TranscriptError> {
+    fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment> {
         let at = Moment::of(stamp.measured_ns, topic)?;
         let first = self.newest.is_none();
         if self
@@ -299,7 +232,7 @@ impl Entries {
         Ok(at)
     }
 
-    fn release(&mut self, ns: i64) -> Result<(), TranscriptError> {
+    fn release(&mut self, ns: i64) -> Result {
         let at = Moment::of(ns, topic::Map::NAME)?;
         if let (Some(mut map), Some(header)) = (self.waiting_map.take(), self.map) {
             map.header = self.in_map(at.stamp);
@@ -328,18 +261,13 @@ impl Entries {
         topic: impl Into<Cow<'static, str>>,
         ns: i64,
         message: &M,
-    ) -> Result<(), TranscriptError> {
+    ) -> Result {
         let encoded = Encoded::new(topic, ns, message)?;
         self.made.push(Entry::Message(encoded));
         Ok(())
     }
 
-    fn latched<M: RosMessage>(
-        &mut self,
-        topic: &'static str,
-        ns: i64,
-        message: &M,
-    ) -> Result<(), TranscriptError> {
+    fn latched<M: RosMessage>(&mut self, topic: &'static str, ns: i64, message: &M) -> Result {
         let encoded = Encoded::latched(topic, ns, message)?;
         self.made.push(Entry::Message(encoded));
         Ok(())
@@ -354,7 +282,6 @@ fn wait<H>(waiting: &mut VecDeque<(H, String)>, header: H, text: &[u8]) {
     waiting.push_back((header, String::from_utf8_lossy(text).into_owned()));
 }
 
-/// A time that is valid in ROS.
 #[derive(Debug, Clone, Copy)]
 struct Moment {
     ns: i64,
@@ -362,7 +289,7 @@ struct Moment {
 }
 
 impl Moment {
-    fn of(ns: i64, topic: &'static str) -> Result<Self, TranscriptError> {
+    fn of(ns: i64, topic: &'static str) -> Result<Self> {
         match Time::from_ns(ns) {
             Some(stamp) if ns >= 0 => Ok(Moment { ns, stamp }),
             _ => Err(TranscriptError::Stamp {
