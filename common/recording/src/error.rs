@@ -60,10 +60,10 @@ pub enum RecordingError {
         kind: Kind,
         found: Vec<String>,
     },
-    #[error("{} has no {kind} on {topic}; it has {}", path.display(), listed(found))]
+    #[error("{} has no {what} on {topic}; it has {}", path.display(), listed(found))]
     NoSuchTopic {
         path: PathBuf,
-        kind: Kind,
+        what: String,
         topic: String,
         found: Vec<String>,
     },
@@ -72,12 +72,6 @@ pub enum RecordingError {
         path: PathBuf,
         kind: Kind,
         name: &'static str,
-        found: Vec<String>,
-    },
-    #[error("{} has no point cloud on {topic}; it has {}", path.display(), listed(found))]
-    NoCloud {
-        path: PathBuf,
-        topic: String,
         found: Vec<String>,
     },
     #[error("{}: no transform says where {frame:?}, the frame of {topic}, sits on the robot: give its pose by --cloud-mount X,Y,Z,YAW_DEG", path.display())]

@@ -221,7 +221,7 @@ impl Recording {
             let found: Vec<String> = channels.by_ref().map(|c| c.topic.to_string()).collect();
             return Err(RecordingError::NoSuchTopic {
                 path: self.path.clone(),
-                kind,
+                what: kind.to_string(),
                 topic: topic.to_owned(),
                 found,
             });
@@ -256,12 +256,17 @@ impl Recording {
     }
 
     pub fn no_topic(&self, kind: Kind) -> RecordingError {
-        let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
         RecordingError::NoTopic {
             path: self.path.clone(),
             kind,
-            found: self.channels().map(describe).collect(),
+            found: self.described_channels(),
         }
+    }
+
+    /// Topics of all channels, with their schemas.
+    pub(crate) fn described_channels(&self) -> Vec<String> {
+        let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
+        self.channels().map(describe).collect()
     }
 
     pub(crate) fn definitions(&self) -> BTreeMap<String, String> {

@@ -19,11 +19,11 @@ impl Recording {
             return Ok(());
         };
         let Some(frame) = self.cloud_frame(topic)? else {
-            let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
-            return Err(RecordingError::NoCloud {
+            return Err(RecordingError::NoSuchTopic {
                 path: self.path().to_owned(),
+                what: "point cloud".to_owned(),
                 topic: topic.clone(),
-                found: self.channels().map(describe).collect(),
+                found: self.described_channels(),
             });
         };
         let (base_frame, mount, notes) = match options.cloud_mount {
