@@ -23,17 +23,3 @@ fn frame(text: &str) -> Result<String, String> {
         )),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_as_long_as_names_in_the_graph() {
-        assert_eq!(frame("base_link").unwrap(), "base_link");
-        for refused in [String::new(), "x".repeat(FrameName::CAPACITY + 1)] {
-            let problem = frame(&refused).unwrap_err();
-            assert!(problem.contains("allowed are 1 to 256"), "{problem}");
-        }
-    }
-}

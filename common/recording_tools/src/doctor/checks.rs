@@ -86,7 +86,6 @@ fn undecodable((topic, seen): (&String, &Seen)) -> Option<Finding> {
     )))
 }
 
-/// Checks that topics are unambiguous, and that there are scans and a map.
 fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding> {
     let kinds = [Kind::Scan, Kind::Map, Kind::Odometry];
     let unclear = kinds
@@ -106,7 +105,6 @@ fn topics(recording: &Recording, survey: &Survey, has_map: bool) -> Vec<Finding>
     found
 }
 
-/// Checks that the maps can be searched, and that the metadata names the newest one.
 fn map(recording: &Recording) -> Vec<Finding> {
     let maps = match recording.maps() {
         Ok(maps) => maps,
@@ -154,7 +152,6 @@ fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Fi
         .then(|| Finding::problem(format!("the map is {found}, but the metadata says {other}")))
 }
 
-/// Checks that the mount of each laser is known.
 fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let lasers: BTreeSet<&String> = survey
         .of_kind(Kind::Scan)
@@ -241,7 +238,6 @@ fn frames(survey: &Survey) -> Vec<Finding> {
     found
 }
 
-/// Checks that stamps increase from message to message.
 fn stamps(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
     for (topic, seen) in &survey.channels {
@@ -301,7 +297,6 @@ fn scans(survey: &Survey) -> Vec<Finding> {
     found
 }
 
-/// Checks that a scan ends before the next ones begin.
 fn durations((topic, seen): (&String, &Seen)) -> Option<Finding> {
     let (longest, step_s) = (seen.longest?, seen.usual_step_s()?);
     let time_increment = longest.time_increment_s;
@@ -314,7 +309,6 @@ fn durations((topic, seen): (&String, &Seen)) -> Option<Finding> {
     })
 }
 
-/// Checks that ranges are in metres.
 fn units((topic, seen): (&String, &Seen)) -> Option<Finding> {
     let middle_m = seen.first_middle_m?;
     (2 * seen.unreachable > seen.stamps_ns.len() as u64).then(|| {
@@ -348,7 +342,6 @@ fn pile(topic: &str, seen: &Seen) -> Option<Finding> {
     (share >= PILED_UP).then(|| Finding::note(format!("{what}, {reason}")))
 }
 
-/// Reports orientations that had to be corrected.
 fn mended((topic, seen): (&String, &Seen)) -> Option<Finding> {
     let first = seen.first_mend?;
     let count = seen.mended;
@@ -357,7 +350,6 @@ fn mended((topic, seen): (&String, &Seen)) -> Option<Finding> {
     )))
 }
 
-/// Checks that true poses are valid and belong to scans.
 fn truths(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let truths = match recording.ground_truths() {
         Ok(truths) => truths,

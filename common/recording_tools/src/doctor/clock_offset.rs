@@ -91,7 +91,6 @@ fn covers(motion: &Motion, pair: &[Sighting; 2], child_from_laser: Pose) -> bool
         .all(|delay_ns| between(motion, pair, delay_ns, child_from_laser).is_some())
 }
 
-/// Motion of the laser between two sightings by delayed odometry.
 fn between(
     motion: &Motion,
     pair: &[Sighting; 2],

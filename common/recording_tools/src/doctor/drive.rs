@@ -35,7 +35,6 @@ const COVER_FIELD: f64 = std::f64::consts::FRAC_PI_2;
 /// Largest plausible distance of a laser from the base of its robot, in metres.
 const FAR_MOUNT_M: f64 = 10.0;
 
-/// True if a laser is implausibly far from the base.
 pub(super) fn is_far(base_from_laser: Pose) -> bool {
     base_from_laser.distance_to(Pose::IDENTITY) > FAR_MOUNT_M
 }
@@ -159,7 +158,6 @@ impl Drive {
         self.matcher.step(&ends, how, &TrackingConfig::default())
     }
 
-    /// Motion of the laser from one scan to another by odometry.
     pub(super) fn moved(&self, from: &Look, to: &Look) -> Option<Pose> {
         let at = |look: &Look| {
             let odom_from_child = self.motion.until(look.stamp_ns)?;

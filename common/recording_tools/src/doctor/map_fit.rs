@@ -40,7 +40,6 @@ fn means(located: &Located) -> Option<[f64; SCALES.len()]> {
     (count >= MIN_SCANS).then(|| std::array::from_fn(mean))
 }
 
-/// Checks that the map is of the place of the recording.
 fn elsewhere(located: &Located) -> Option<Finding> {
     let means = means(located)?;
     let (least, most) = means.iter().fold((1.0f64, 0.0f64), |(least, most), &mean| {
@@ -58,7 +57,6 @@ fn elsewhere(located: &Located) -> Option<Finding> {
     })
 }
 
-/// Checks that scans do not fit better with scaled ranges.
 fn scale(located: &Located) -> Option<Finding> {
     let means = means(located)?;
     let best = (0..SCALES.len()).max_by(|&a, &b| means[a].total_cmp(&means[b]))?;

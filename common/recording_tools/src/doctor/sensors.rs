@@ -47,7 +47,6 @@ pub(super) fn all(drive: &Drive) -> Vec<Finding> {
         .collect()
 }
 
-/// Checks that scans and odometry are of the same time.
 fn clocks(drive: &Drive) -> Option<Finding> {
     let stamps = || drive.looks.iter().map(|look| look.stamp_ns);
     let (first, last) = (stamps().min()?, stamps().max()?);
@@ -67,7 +66,6 @@ fn clocks(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Checks that odometry does not end long before the scans do.
 fn ended(drive: &Drive) -> Option<Finding> {
     let end = *drive.odometry_ns.iter().max()?;
     let last = drive.looks.iter().map(|look| look.stamp_ns).max()?;
@@ -85,7 +83,6 @@ fn ended(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Checks that odometry changes if the scans do.
 fn never_moves(drive: &Drive) -> Option<Finding> {
     let end = *drive.odometry_ns.iter().max()?;
     let during = drive.looks.iter().filter(|look| look.stamp_ns <= end);
@@ -106,7 +103,6 @@ fn never_moves(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Checks that scans do not repeat while the robot moves.
 fn frozen(drive: &Drive) -> Option<Finding> {
     let (scans, moved) = moved_while(drive, |_, now| now.is_repeated)?;
     Some(Finding::problem(format!(
@@ -115,7 +111,6 @@ fn frozen(drive: &Drive) -> Option<Finding> {
     )))
 }
 
-/// Checks that the laser does not read one range in all directions while the robot moves.
 fn covered(drive: &Drive) -> Option<Finding> {
     let (scans, moved) = moved_while(drive, |before, now| {
         before.only_range_m.is_some() && now.only_range_m.is_some()
@@ -142,7 +137,6 @@ fn moved_while(drive: &Drive, goes_on: fn(&Look, &Look) -> bool) -> Option<(usiz
     })
 }
 
-/// Checks that scans turn the same way as odometry.
 fn mirrored(drive: &Drive) -> Option<Finding> {
     let stretches = drive.stretches(STRETCH).into_iter();
     let is_turn = |stretch: &Stretch| stretch.by_odometry.yaw.abs() >= TURN;
@@ -171,7 +165,6 @@ fn mirrored(drive: &Drive) -> Option<Finding> {
     })
 }
 
-/// Checks that the laser has the direction on the robot that its mount gives.
 fn mount(drive: &Drive) -> Option<Finding> {
     if drive.has_far_mount() {
         return None;

@@ -206,7 +206,6 @@ fn middle(ranges: &[f32]) -> Option<f32> {
     (read.len() >= MIN_READINGS).then_some(middle)
 }
 
-/// Converts to the engine's type.
 /// Converts to a scan of the engine, as measured.
 pub(super) fn as_taken(scan: &LaserScan) -> Scan<'_> {
     Scan {
