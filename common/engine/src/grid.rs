@@ -12,7 +12,7 @@ use messages::BoundaryCell;
 use crate::EngineError;
 pub use messages::CellRules;
 
-pub(crate) use cell_set::{CellSet, WORD};
+pub(crate) use cell_set::{CellSet, WORD, ones};
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
 
@@ -35,7 +35,7 @@ pub const MAX_RESOLUTION_M: f64 = 10.0;
 pub const MAX_ORIGIN_M: f64 = 1e8;
 
 /// Class of a cell, by its effect on rays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::NoUninit)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::NoUninit)]
 #[repr(u8)]
 pub enum Cell {
     /// Rays pass, and the robot may stand here unless limits exclude it: a free cell, or an unknown
@@ -45,6 +45,7 @@ pub enum Cell {
     Occupied,
     /// Rays end here without a hit, and the robot cannot stand here: an unknown cell if these block,
     /// or an obstacle that is missing from the boundary.
+    #[default]
     Blocked,
 }
 

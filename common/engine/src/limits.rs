@@ -128,14 +128,14 @@ impl Limits {
         }
     }
 
-    /// Returns, for blocks of `side` cells a side, row by row, true if poses are searched in any
-    /// cell. An index contains only these blocks.
-    pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {
+    /// Returns the blocks of `side` cells a side, row by row, in any cell of which poses are
+    /// searched. An index contains only these blocks.
+    pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> CellSet {
         let columns = grid.width().div_ceil(side);
-        let mut blocks = vec![false; columns * grid.height().div_ceil(side)];
+        let mut blocks = CellSet::none(columns * grid.height().div_ceil(side));
         for i in self.open_cells(grid) {
             let (x, y) = (i % grid.width(), i / grid.width());
-            blocks[y / side * columns + x / side] = true;
+            blocks.insert(y / side * columns + x / side);
         }
         blocks
     }
@@ -235,7 +235,10 @@ mod tests {
         };
         let limits = limits(&config).unwrap();
         assert_eq!(drawn(&limits), ["------", "-+++--", "-+++--", "------"]);
-        assert_eq!(limits.blocks(4, &grid(&ROOM)), [true, false]);
+        assert_eq!(
+            limits.blocks(4, &grid(&ROOM)),
+            CellSet::of(2, |block| block == 0)
+        );
         let mut field = vec![7; 24];
         limits.clear(&mut field, 0);
         assert_eq!(field.iter().filter(|&&votes| votes == 7).count(), 6);

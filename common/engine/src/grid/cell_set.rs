@@ -119,12 +119,14 @@ impl CellSet {
     }
 }
 
-/// Indices of the one bits of a word, in ascending order.
-fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+/// Returns the places of the set bits of a word, in ascending order.
+pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> + Clone {
     std::iter::from_fn(move || {
         let bit = word.trailing_zeros() as usize;
-        word &= word.wrapping_sub(1);
-        (bit < WORD).then_some(bit)
+        (word != 0).then(|| {
+            word &= word - 1;
+            bit
+        })
     })
 }
 

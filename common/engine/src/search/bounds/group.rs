@@ -5,7 +5,7 @@
 //! adding a window to all these sums takes two operations, and as many again for its
 //! carries.
 
-use super::quad_rows::{Extent, Reader, Window, Windows};
+use super::quad_rows::{Extent, QuadRows, RowLayout, Window, Windows};
 use crate::simd::words::{BitWords, Words};
 
 /// Words of a quad, aligned to a cache line.
@@ -18,7 +18,7 @@ pub(in crate::parts::search) struct Aligned(pub Words);
 pub(in crate::parts::search) type Carries = [Vec<Aligned>; 3];
 
 /// Beams with the same bearing modulo 8.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(in crate::parts::search) struct Group {
     /// Bearing modulo 8.
     shift: u32,
@@ -41,39 +41,14 @@ struct Plane {
     pairs: Vec<[Window; 2]>,
 }
 
-impl Plane {
-    fn clear(&mut self) {
-        self.windows.clear();
-        self.pairs.clear();
-    }
-
-    fn lay_out(&mut self, nothing: Window) {
-        self.windows.sort_unstable_by_key(|window| window.reads);
-        let (pairs, rest) = self.windows.as_chunks();
-        self.pairs.extend(pairs);
-        self.pairs
-            .extend(rest.iter().map(|&window| [nothing, window]));
-    }
-}
-
 impl Group {
-    pub(in crate::parts::search) fn new(shift: u32) -> Self {
-        Group {
-            shift,
-            planes: Vec::new(),
-            possible: 0,
-            reads: 0,
-            extent: Extent::default(),
+    /// Starts without windows, for a bearing modulo 8; the buffers stay.
+    pub(in crate::parts::search) fn start(&mut self, shift: u32) {
+        for plane in &mut self.planes {
+            plane.windows.clear();
+            plane.pairs.clear();
         }
-    }
-
-    pub(in crate::parts::search) fn shift(&self) -> u32 {
-        self.shift
-    }
-
-    /// Drops all windows; their buffer stays.
-    pub(in crate::parts::search) fn clear(&mut self) {
-        self.planes.iter_mut().for_each(Plane::clear);
+        self.shift = shift;
         self.possible = 0;
         self.reads = 0;
         self.extent = Extent::default();
@@ -93,9 +68,12 @@ impl Group {
     /// pairs.
     pub(in crate::parts::search) fn lay_out(&mut self, nothing: Window) {
         self.extent.take(&nothing);
-        self.planes
-            .iter_mut()
-            .for_each(|plane| plane.lay_out(nothing));
+        for Plane { windows, pairs } in &mut self.planes {
+            windows.sort_unstable_by_key(|window| window.reads);
+            let (full, rest) = windows.as_chunks();
+            pairs.extend(full);
+            pairs.extend(rest.iter().map(|&window| [nothing, window]));
+        }
     }
 
     /// Largest number of words carried over from a plane to another.
@@ -104,17 +82,17 @@ impl Group {
         windows.div_ceil(2) + 1
     }
 
-    /// Adds up the windows plane by plane with carry-save adders, and adds the result to
-    /// `total`, the sums of all groups.
+    /// Adds up the windows plane by plane with carry-save adders, in the rows of a quad at the
+    /// headings of a chunk, and adds the result to `total`, the sums of all groups.
     #[inline(always)]
     pub(in crate::parts::search) fn add<W: BitWords>(
         &self,
         set: W::Set,
-        reader: Reader<'_>,
+        rows: (&RowLayout, &QuadRows, usize),
         carries: &mut Carries,
         total: &mut [W],
     ) {
-        let windows = reader.within(&self.extent);
+        let windows = Windows::new(rows, &self.extent);
         let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
         let (mut carried, mut carried_next) = (0, 0);
         let mut planes = self.planes.iter();
@@ -218,7 +196,6 @@ mod tests {
 
     use super::*;
     use crate::instruction_set::InstructionSet;
-    use crate::search::bounds::quad_rows::{QuadRows, RowLayout};
     use crate::search::index::bits::{CHUNK, PLANES};
     use crate::search::index::sets::{Byte, SetRows};
     use crate::simd::words::{EMPTY, QUAD};
@@ -269,8 +246,8 @@ mod tests {
             let carries = vec![Aligned(EMPTY); self.group.carries()];
             let mut carries = [carries.clone(), carries.clone(), carries];
             let mut total = [S::Words::empty(set); PLANES];
-            let reader = Reader::new(self.layout, &rows, self.chunk);
-            self.group.add(set, reader, &mut carries, &mut total);
+            let rows = (self.layout, &rows, self.chunk);
+            self.group.add(set, rows, &mut carries, &mut total);
             total.map(BitWords::to_words)
         }
     }
@@ -301,7 +278,8 @@ mod tests {
             let directions = 8 * stride;
             let mut layout = RowLayout::default();
             layout.start(directions);
-            let mut group = Group::new(shift);
+            let mut group = Group::default();
+            group.start(shift);
             for (plane, rows, byte) in &windows {
                 group.push(*plane, layout.window(rows.clone(), *byte));
             }

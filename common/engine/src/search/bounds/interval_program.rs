@@ -3,7 +3,7 @@
 use super::sectors;
 use crate::directions::Directions;
 use crate::program::ScanProgram;
-use crate::search::index::steps::BinSteps;
+use crate::search::index::bins::Bins;
 use crate::simd::Simd;
 use crate::simd::headings::BinVotes;
 use crate::tables::TABLE;
@@ -34,14 +34,14 @@ impl IntervalProgram {
         &mut self,
         (program, order): (&ScanProgram, &[usize]),
         directions: &Directions,
-        steps: &BinSteps,
+        bins: &Bins,
         simd: Simd,
     ) {
         self.directions = directions.count();
         self.simd = simd;
         self.beams.clear();
         let beams = order.iter();
-        let beams = beams.map(|&beam| IntervalBeam::new(program, beam, directions, steps));
+        let beams = beams.map(|&beam| IntervalBeam::new(program, beam, directions, bins));
         self.beams.extend(beams);
         self.rests.clear();
         let mut rest = 0;
@@ -62,7 +62,7 @@ impl IntervalProgram {
 }
 
 impl IntervalBeam {
-    fn new(program: &ScanProgram, beam: usize, directions: &Directions, steps: &BinSteps) -> Self {
+    fn new(program: &ScanProgram, beam: usize, directions: &Directions, bins: &Bins) -> Self {
         // Most votes in each bin, over all classes of directions.
         let mut most = [0u8; 256];
         for class in 0..directions.classes() {
@@ -74,7 +74,7 @@ impl IntervalBeam {
                     taper.centre.saturating_sub(distance),
                     taper.centre + distance,
                 ] {
-                    let most = &mut most[usize::from(steps.bin(class, at))];
+                    let most = &mut most[usize::from(bins.bin(class, at))];
                     *most = (*most).max(votes);
                 }
             }

@@ -5,7 +5,6 @@
 //! cost.
 
 pub(in crate::parts::search) mod group;
-pub(in crate::parts::search) mod heading_bounds;
 pub(in crate::parts::search) mod interval_bounds;
 pub(in crate::parts::search) mod interval_program;
 pub(in crate::parts::search) mod quad_rows;

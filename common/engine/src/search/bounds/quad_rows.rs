@@ -54,15 +54,10 @@ pub(crate) struct Extent {
     rows: usize,
 }
 
-/// The rows of a quad, for reading windows within an [`Extent`] that was checked.
+/// The rows of a quad, for reading windows within an [`Extent`] that was checked, at the
+/// headings of a chunk.
 #[derive(Clone, Copy)]
 pub(crate) struct Windows<'a> {
-    reader: Reader<'a>,
-}
-
-/// The rows of a quad, for reading at the headings of a chunk.
-#[derive(Clone, Copy)]
-pub(crate) struct Reader<'a> {
     layout: &'a RowLayout,
     bytes: &'a [Byte],
     /// First byte of the chunk.
@@ -173,31 +168,6 @@ fn bytes_mut(of: &mut [Byte]) -> &mut [u8; BYTES] {
     bytemuck::cast_mut(of.first_chunk_mut::<READ>().expect("a word"))
 }
 
-impl<'a> Reader<'a> {
-    #[inline(always)]
-    pub(crate) fn new(layout: &'a RowLayout, rows: &'a QuadRows, chunk: usize) -> Self {
-        let start = chunk * (CHUNK / 8);
-        let end = layout.end();
-        assert!(start < layout.stride && rows.bytes.len() >= end);
-        Reader {
-            layout,
-            bytes: &rows.bytes[..end],
-            start,
-        }
-    }
-
-    /// Returns a reader of windows, none of which goes further than `extent`.
-    ///
-    /// # Panics
-    /// If the extent goes further than the rows.
-    #[inline(always)]
-    pub(crate) fn within(self, extent: &Extent) -> Windows<'a> {
-        let stride = self.layout.stride;
-        assert!(extent.bytes <= stride && extent.rows + stride + READ <= self.bytes.len());
-        Windows { reader: self }
-    }
-}
-
 impl Extent {
     /// Extends this to a window.
     pub(crate) fn take(&mut self, window: &Window) {
@@ -206,7 +176,26 @@ impl Extent {
     }
 }
 
-impl Windows<'_> {
+impl<'a> Windows<'a> {
+    /// Returns windows in the rows of a chunk, none of which goes further than `extent`.
+    ///
+    /// # Panics
+    /// If the extent or the chunk goes further than the rows.
+    #[inline(always)]
+    pub(crate) fn new(
+        (layout, rows, chunk): (&'a RowLayout, &'a QuadRows, usize),
+        extent: &Extent,
+    ) -> Self {
+        let (start, stride, end) = (chunk * (CHUNK / 8), layout.stride, layout.end());
+        assert!(start < stride && rows.bytes.len() >= end);
+        assert!(extent.bytes <= stride && extent.rows + stride + READ <= end);
+        Windows {
+            layout,
+            bytes: &rows.bytes[..end],
+            start,
+        }
+    }
+
     /// Reads the bits of a window with `reads` reads, in the order of sets, see
     /// [`BitWords::sorted`]. More reads than needed change nothing.
     ///
@@ -214,11 +203,11 @@ impl Windows<'_> {
     /// The extent within which windows are read must have taken this one in.
     #[inline(always)]
     pub(crate) unsafe fn read<W: BitWords>(&self, set: W::Set, window: &Window, reads: u32) -> W {
-        let Reader {
+        let Windows {
             layout,
             bytes,
             start: chunk,
-        } = self.reader;
+        } = *self;
         // SAFETY: a window's byte and the start of a chunk are less than a turn each, as
         // was asserted of the extent and of the chunk.
         let place = unsafe { *layout.turns.get_unchecked(chunk + window.byte as usize) } as usize;
@@ -238,4 +227,29 @@ impl Windows<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    /// Reads a window of a large layout in the rows of a small one.
+    fn read_beyond(window: impl FnOnce(&mut RowLayout) -> Window) {
+        let [mut small, mut large] = [RowLayout::default(), RowLayout::default()];
+        small.start(8);
+        large.start(720);
+        let (mut extent, mut rows) = (Extent::default(), QuadRows::default());
+        extent.take(&window(&mut large));
+        rows.fit(&small);
+        let _ = Windows::new((&small, &rows, 0), &extent);
+    }
+
+    #[test]
+    #[should_panic(expected = "extent")]
+    fn windows_beyond_the_rows_are_refused() {
+        read_beyond(|large| large.nothing());
+    }
+
+    #[test]
+    #[should_panic(expected = "extent")]
+    fn bearings_beyond_a_turn_are_refused() {
+        read_beyond(|large| large.window(0..1, 1));
+    }
+}

@@ -9,41 +9,80 @@
 use std::sync::atomic::{AtomicU16, Ordering};
 
 use super::group::{Aligned, Carries, Group};
-use super::heading_bounds::HeadingBounds;
-use super::quad_rows::{QuadRows, Reader};
+use super::quad_rows::QuadRows;
 use super::set_program::SetProgram;
 use crate::search::index::bits;
 use crate::search::index::sets::{Quad, RangeSets};
-use crate::simd::words::{BitWords, EMPTY, QUAD};
+use crate::simd::words::{BitWords, EMPTY, QUAD, Words};
 use crate::simd::{Kernel, Set};
 
 /// Known limits of the blocks of a quad: votes that none of them exceeds in each chunk, and
 /// the least votes that matter.
 pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 
-/// Bounds of the blocks of a quad, with the buffers for finding them.
+/// Upper bounds of the votes in the blocks of a quad, by heading, with the buffers for finding
+/// them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
-    pub found: HeadingBounds,
-    /// Number of words read since [`SetBounds::fit`].
+    /// Number of words read for bounds.
     pub reads: u64,
-    /// Chunks in which any heading matters.
-    chunks: Vec<usize>,
+    /// Unit of all numbers, in votes.
+    unit: u16,
+    /// Greatest bound of each block, in units.
+    greatest: [u16; QUAD],
+    chunks: Vec<Chunk>,
     rows: QuadRows,
     carries: Carries,
+}
+
+/// Bounds at the headings of a chunk.
+#[derive(Debug, Clone)]
+struct Chunk {
+    /// Greatest bound of each block, in units.
+    greatest: [u16; QUAD],
+    /// A bit for each heading that is searched.
+    valid: u128,
+    /// Headings at which each block was bounded and may have as many votes as was asked for.
+    reach: Words,
 }
 
 impl SetBounds {
     /// Allocates the bounds of a program at some headings, a word of `headings` for each chunk;
     /// drops those of an earlier program.
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
-        self.found.fit(program.unit, headings);
+        self.unit = program.unit;
+        self.greatest = [0; QUAD];
+        self.chunks.clear();
+        self.chunks.extend(headings.map(|valid| Chunk {
+            greatest: [0; QUAD],
+            valid,
+            reach: EMPTY,
+        }));
         self.reads = 0;
         self.rows.fit(&program.layout);
-        let carries = program.groups().iter().map(Group::carries).max();
+        let carries = program.groups.iter().map(Group::carries).max();
         for rows in &mut self.carries {
             rows.resize(carries.unwrap_or(0), Aligned(EMPTY));
         }
+    }
+
+    /// Returns the greatest bound of a block, in votes.
+    pub(crate) fn greatest(&self, place: usize) -> u16 {
+        self.unit * self.greatest[place]
+    }
+
+    /// Returns the greatest bound of a block in each chunk, in votes.
+    pub(crate) fn by_chunk(&self, place: usize) -> impl Iterator<Item = u16> {
+        let chunks = self.chunks.iter();
+        chunks.map(move |chunk| self.unit * chunk.greatest[place])
+    }
+
+    /// Returns the headings at which a block reaches the votes asked for, as windows of bits:
+    /// the first heading, and a bit for each from there on.
+    pub(crate) fn reach(&self, place: usize) -> impl Iterator<Item = (usize, u64)> {
+        bits::windows(self.chunks.len(), move |chunk| {
+            bits::of_block(&self.chunks[chunk].reach, place)
+        })
     }
 }
 
@@ -55,14 +94,14 @@ impl SetProgram {
         blocks: (&RangeSets, &Quad),
         known: Option<Known<'_>>,
         bounds: &'a mut SetBounds,
-    ) -> &'a HeadingBounds {
+    ) -> &'a SetBounds {
         self.simd.run(Bounding {
             program: self,
             blocks,
             known,
             bounds: &mut *bounds,
         });
-        &bounds.found
+        bounds
     }
 
     /// Bounds the blocks of each quad, and hands the bounds to `take`.
@@ -71,82 +110,39 @@ impl SetProgram {
         sets: &RangeSets,
         quads: impl Iterator<Item = Quad>,
         bounds: &mut SetBounds,
-        mut take: impl FnMut(&Quad, &HeadingBounds),
+        mut take: impl FnMut(&Quad, &SetBounds),
     ) {
         for quad in quads {
             take(&quad, self.bound((sets, &quad), None, bounds));
         }
     }
 
-    #[inline(always)]
-    fn run<S: Set>(
-        &self,
-        set: S,
-        (sets, quad): (&RangeSets, &Quad),
-        known: Option<Known<'_>>,
-        bounds: &mut SetBounds,
-    ) {
-        let mut chunks = std::mem::take(&mut bounds.chunks);
-        bounds.found.greatest = [0; QUAD];
-        self.choose(quad, known, &mut bounds.found, &mut chunks);
-        if !chunks.is_empty() {
-            let rows = sets.quad(quad.index);
-            bounds.rows.take::<S::Words>(set, &self.layout, &rows);
-        }
-        let least = known.map(|(_, least)| least.div_ceil(self.unit));
-        for &chunk in &chunks {
-            self.run_chunk(set, least, chunk, bounds);
-        }
-        bounds.chunks = chunks;
-    }
-
-    /// Chooses the headings at which the blocks are bounded, and the chunks that hold any.
-    #[inline(always)]
-    fn choose(
-        &self,
-        quad: &Quad,
-        known: Option<Known<'_>>,
-        bounds: &mut HeadingBounds,
-        chunks: &mut Vec<usize>,
-    ) {
-        let matters = |chunk: usize| {
-            known.is_none_or(|(known, least)| known[chunk].load(Ordering::Relaxed) >= least)
-        };
-        chunks.clear();
-        for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
-            chunk.greatest = [0; QUAD];
-            let valid = if matters(i) { chunk.valid } else { 0 };
-            chunk.reach = bits::words(|place| quad.blocks[place].map_or(0, |_| valid));
-            if chunk.reach != EMPTY {
-                chunks.push(i);
-            }
-        }
-    }
-
     /// Bounds blocks at the headings of a chunk; stops once none can have `least` units.
     #[inline(always)]
     fn run_chunk<S: Set>(&self, set: S, least: Option<u16>, place: usize, bounds: &mut SetBounds) {
-        let groups = self.groups();
         let SetBounds {
-            found,
+            chunks,
+            greatest,
             reads,
             carries,
             rows,
             ..
         } = bounds;
-        let reader = Reader::new(&self.layout, rows, place);
-        let chunk = &mut found.chunks[place];
+        let chunk = &mut chunks[place];
         let mut total = [S::Words::empty(set); bits::PLANES];
         let total = &mut total[..self.planes];
         let valid = S::Words::from_words(set, &chunk.reach);
         let mut reach = valid;
-        for left in (0..groups.len()).rev() {
-            groups[left].add(set, reader, carries, total);
-            *reads += u64::from(groups[left].reads);
+        for (left, group) in self.groups.iter().enumerate().rev() {
+            if group.possible == 0 {
+                continue;
+            }
+            group.add(set, (&self.layout, &*rows, place), carries, total);
+            *reads += u64::from(group.reads);
             let Some(least) = least else {
                 continue;
             };
-            let rest: u16 = groups[..left].iter().map(|group| group.possible).sum();
+            let rest: u16 = self.groups[..left].iter().map(|group| group.possible).sum();
             let least = least.saturating_sub(rest);
             reach = bits::at_least(set, self.planes, |plane| total[plane], least, valid);
             if reach.is_empty() {
@@ -156,7 +152,7 @@ impl SetProgram {
         chunk.reach = reach.to_words();
         if !reach.is_empty() {
             chunk.greatest = bits::greatest_of_each(set, self.planes, |plane| total[plane], reach);
-            for (greatest, most) in found.greatest.iter_mut().zip(chunk.greatest) {
+            for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
                 *greatest = most.max(*greatest);
             }
         }
@@ -176,7 +172,34 @@ impl Kernel for Bounding<'_, '_> {
 
     #[inline(always)]
     fn run<S: Set>(self, set: S) {
-        self.program.run(set, self.blocks, self.known, self.bounds);
+        let Bounding {
+            program,
+            blocks: (sets, quad),
+            known,
+            bounds,
+        } = self;
+        let matters = |chunk: usize| {
+            known.is_none_or(|(known, least)| known[chunk].load(Ordering::Relaxed) >= least)
+        };
+        bounds.greatest = [0; QUAD];
+        let mut any = false;
+        for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
+            chunk.greatest = [0; QUAD];
+            let valid = if matters(i) { chunk.valid } else { 0 };
+            chunk.reach = bits::words(|place| quad.blocks[place].map_or(0, |_| valid));
+            any |= chunk.reach != EMPTY;
+        }
+        if !any {
+            return;
+        }
+        let rows = sets.quad(quad.index);
+        bounds.rows.take::<S::Words>(set, &program.layout, &rows);
+        let least = known.map(|(_, least)| least.div_ceil(program.unit));
+        for chunk in 0..bounds.chunks.len() {
+            if bounds.chunks[chunk].reach != EMPTY {
+                program.run_chunk(set, least, chunk, bounds);
+            }
+        }
     }
 }
 
@@ -188,16 +211,11 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::limits::Limits;
     use crate::reference;
-    use crate::search::index::SearchIndex;
     use crate::search::index::bins::Bins;
     use crate::search::index::intervals::RangeIntervals;
-    use crate::search::index::steps::BinSteps;
     use crate::search::index::within::Within;
-    use crate::search::task::lead::Lead;
-    use crate::search::task::{Shared, Task};
     use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
-    use crate::votes::CollectConfig;
 
     proptest! {
         #[test]
@@ -207,9 +225,8 @@ mod tests {
             let space = space_of(&grid, 8 * headings as u32);
             let directions = &space.directions;
             let program = scan.program(&space);
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let bins = Bins::new(&grid, directions);
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, &bins, InstructionSet::best());
             let fine = RangeSets::new(&intervals, &wide);
             // Some headings, spread over the turn, are enough to meet any error.
             let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
@@ -220,7 +237,7 @@ mod tests {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
                     let mut set_program = SetProgram::default();
-                    set_program.make(&program, directions, &steps, Simd::new(instruction_set));
+                    set_program.make(&program, directions, &bins, Simd::new(instruction_set));
                     let all = Within::new(Limits::none(grid.width()), &grid);
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
@@ -252,60 +269,6 @@ mod tests {
                     of_all_sets.push(found);
                 }
                 prop_assert!(of_all_sets.windows(2).all(|pair| pair[0] == pair[1]));
-            }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn what_is_known_of_the_block_around_changes_no_answer(
-            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(80)],
-            share in 0.0..=1.0f64,
-        ) {
-            let space = space_of(&grid, 8 * headings as u32);
-            let program = scan.program(&space);
-            let index = SearchIndex::new(&grid, &space);
-            let SearchIndex { coarse, fine, .. } = &index;
-            for instruction_set in InstructionSet::available() {
-                let mut shared = Shared::default();
-                let (scan, lead) = ((&program, &space), Lead::default());
-                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, (CollectConfig::default(), &lead));
-                let set_program = &task.programs.sets;
-                let [mut around, mut alone] = [(); 2].map(|()| {
-                    let mut bounds = SetBounds::default();
-                    bounds.fit(set_program, task.headings());
-                    bounds
-                });
-                let (mut found, mut plain) = (alone.clone(), alone.clone());
-                // As many votes as any chunk can have.
-                let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
-                for outside in 0..coarse.blocks() {
-                    let (outer_quad, outer_place) = coarse.place_of(outside);
-                    let outer_quad = coarse.searched(outer_quad, |_| true);
-                    let around = set_program.bound((coarse, &outer_quad), None, &mut around);
-                    let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
-                    let quad = fine.searched(outside, |_| true);
-                    // About as many votes as they have, where it matters most.
-                    let greatest = set_program.bound((fine, &quad), None, &mut alone).greatest(0);
-                    let least = (f64::from(greatest) * share) as u16;
-                    for least in [0, least, greatest, greatest + 1] {
-                        for wanted in 1..1 << QUAD {
-                            let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
-                            let quad = fine.searched(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
-                            let found = set_program.bound((fine, &quad), Some((&known, least)), &mut found);
-                            let plain = set_program.bound((fine, &quad), Some((&possible, least)), &mut plain);
-                            let alone = set_program.bound((fine, &quad), None, &mut alone);
-                            for place in 0..QUAD {
-                                let is_searched = quad.blocks[place].is_some();
-                                let reaches = is_searched && alone.greatest(place) >= least;
-                                prop_assert_eq!(found.reach(place).next().is_some(), reaches);
-                                prop_assert!(found.reach(place).eq(plain.reach(place)));
-                                let greatest = if reaches { alone.greatest(place) } else { 0 };
-                                prop_assert_eq!([found, plain].map(|bounds| bounds.greatest(place)), [greatest; 2]);
-                            }
-                        }
-                    }
-                }
             }
         }
     }

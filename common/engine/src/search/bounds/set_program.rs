@@ -9,40 +9,25 @@ use super::group::Group;
 use super::quad_rows::RowLayout;
 use crate::directions::Directions;
 use crate::program::ScanProgram;
+use crate::search::index::bins::Bins;
 use crate::search::index::bits;
 use crate::search::index::intervals::ROW_SHIFT;
-use crate::search::index::steps::BinSteps;
 use crate::simd::Simd;
 
 /// Number of groups of beams: one for each bearing modulo 8.
 pub(in crate::parts::search) const GROUPS: usize = 8;
 
 /// A scan program laid out for bounds from sets; made again for each scan.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SetProgram {
     pub(in crate::parts::search) simd: Simd,
     /// Unit of the sums, in votes: all peaks are multiples of it.
     pub(in crate::parts::search) unit: u16,
     /// Number of planes that hold every sum.
     pub(in crate::parts::search) planes: usize,
-    /// One group for each bearing modulo 8; those with beams come first.
-    groups: [Group; GROUPS],
-    /// Number of groups with beams.
-    used: usize,
+    /// One group for each bearing modulo 8.
+    pub(in crate::parts::search) groups: [Group; GROUPS],
     pub(in crate::parts::search) layout: RowLayout,
-}
-
-impl Default for SetProgram {
-    fn default() -> Self {
-        SetProgram {
-            simd: Simd::default(),
-            unit: 1,
-            planes: 0,
-            groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
-            used: 0,
-            layout: RowLayout::default(),
-        }
-    }
 }
 
 impl SetProgram {
@@ -50,38 +35,29 @@ impl SetProgram {
         &mut self,
         program: &ScanProgram,
         directions: &Directions,
-        steps: &BinSteps,
+        bins: &Bins,
         simd: Simd,
     ) {
         let peaks = (0..program.beams()).map(|beam| program.peak(beam));
         let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
         (self.simd, self.unit) = (simd, unit);
         self.layout.start(directions.count());
-        self.groups.sort_unstable_by_key(Group::shift);
-        self.groups.iter_mut().for_each(Group::clear);
+        for (shift, group) in (0..).zip(&mut self.groups) {
+            group.start(shift);
+        }
         for beam in 0..program.beams() {
             let bearing = program.bearing(beam);
-            for (plane, rows) in windows(program, beam, directions, steps, unit) {
+            for (plane, rows) in windows(program, beam, directions, bins, unit) {
                 let window = self.layout.window(rows, bearing / 8);
                 self.groups[bearing % 8].push(plane, window);
             }
         }
-        self.groups
-            .sort_unstable_by_key(|group| (group.possible == 0, group.shift()));
         let nothing = self.layout.nothing();
         self.groups
             .iter_mut()
             .for_each(|group| group.lay_out(nothing));
-        self.used = self.groups.partition_point(|group| group.possible > 0);
         let possible: u16 = self.groups.iter().map(|group| group.possible).sum();
-        self.planes = possible
-            .checked_ilog2()
-            .map_or(0, |plane| plane as usize + 1);
-    }
-
-    /// Returns the groups that have beams.
-    pub(in crate::parts::search) fn groups(&self) -> &[Group] {
-        &self.groups[..self.used]
+        self.planes = (u16::BITS - possible.leading_zeros()) as usize;
     }
 }
 
@@ -100,7 +76,7 @@ fn windows(
     program: &ScanProgram,
     beam: usize,
     directions: &Directions,
-    steps: &BinSteps,
+    bins: &Bins,
     unit: u16,
 ) -> impl Iterator<Item = (usize, Range<usize>)> {
     let peak = program.peak(beam) / unit;
@@ -114,7 +90,7 @@ fn windows(
                 let taper = program.taper(beam, class);
                 let votes = |&votes: &u8| u16::from(votes) > below;
                 let last = taper.profile.partition_point(votes).checked_sub(1)? as u16;
-                let row = |at| usize::from(steps.bin(class, at) >> ROW_SHIFT);
+                let row = |at| usize::from(bins.bin(class, at) >> ROW_SHIFT);
                 Some((
                     row(taper.centre.saturating_sub(last)),
                     row(taper.centre + last) + 1,

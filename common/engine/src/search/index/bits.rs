@@ -3,6 +3,7 @@
 //! Headings come in chunks with one word of bits each. Plane `j` holds bit `j` of all
 //! numbers.
 
+pub(crate) use crate::grid::ones;
 use crate::simd::words::{BitWords, QUAD, Words};
 
 /// Headings of a chunk: the 128 bits of a word, less those that shifting takes up.
@@ -77,18 +78,6 @@ pub(crate) fn at_least<W: BitWords>(
         }
     }
     greater.or(equal)
-}
-
-/// Returns the places of the set bits of a word, in ascending order.
-pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> + Clone {
-    let mut word = word;
-    std::iter::from_fn(move || {
-        let bit = word.trailing_zeros() as usize;
-        (word != 0).then(|| {
-            word &= word - 1;
-            bit
-        })
-    })
 }
 
 /// Returns the set bits of this many chunks in windows: the place of a window's first bit,

@@ -8,17 +8,12 @@ use crate::grid::{CellSet, WORD};
 /// A set of blocks of a grid, by their places in it, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct BlockIds {
-    blocks: CellSet,
+    pub blocks: CellSet,
     /// Number of blocks before each word of the set, and at the end their total.
     before: Vec<u32>,
 }
 
 impl BlockIds {
-    /// Makes the set of the blocks for which `holds` is true.
-    pub(crate) fn new(holds: &[bool]) -> Self {
-        Self::of(CellSet::of(holds.len(), |block| holds[block]))
-    }
-
     pub(crate) fn of(blocks: CellSet) -> Self {
         let mut ids = BlockIds {
             blocks,
@@ -37,20 +32,6 @@ impl BlockIds {
             count += word.count_ones();
             count
         }));
-    }
-
-    pub(crate) fn set(&self) -> &CellSet {
-        &self.blocks
-    }
-
-    /// Returns the set to be filled in; [`BlockIds::number`] must follow.
-    pub(crate) fn set_mut(&mut self) -> &mut CellSet {
-        &mut self.blocks
-    }
-
-    #[cfg(test)]
-    pub(crate) fn all(blocks: usize) -> Self {
-        Self::new(&vec![true; blocks])
     }
 
     /// Number of blocks in the set.
@@ -89,7 +70,7 @@ mod tests {
     proptest! {
         #[test]
         fn blocks_are_numbered_in_their_order(holds in vec(any::<bool>(), 0..300)) {
-            let ids = BlockIds::new(&holds);
+            let ids = BlockIds::of(CellSet::of(holds.len(), |block| holds[block]));
             let mut count = 0;
             for (block, &is_held) in holds.iter().enumerate() {
                 prop_assert_eq!(ids.holds(block), is_held);

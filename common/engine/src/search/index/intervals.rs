@@ -13,7 +13,6 @@ mod wide;
 
 use super::bins::Bins;
 use super::block_ids::BlockIds;
-use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::grid::{CellSet, Grid};
 use crate::instruction_set::InstructionSet;
@@ -49,7 +48,7 @@ pub(crate) struct RangeIntervals {
     /// Blocks whose intervals are kept.
     pub ids: BlockIds,
     /// Instruction set that unpacks blocks.
-    simd: Simd,
+    pub(super) simd: Simd,
     /// Three rows for each block that is kept, with a byte for each direction: nearest bin,
     /// farthest bin, and the widths of the two intervals.
     packed: Vec<u8>,
@@ -89,56 +88,46 @@ impl<'a> RowsOfBlock<'a> {
 }
 
 impl RangeIntervals {
-    /// Builds the intervals of some blocks of a grid, and the views of directions in which they
-    /// are wide.
+    /// Builds the intervals of some blocks of a grid with an instruction set, and the views of
+    /// directions in which they are wide.
     pub(crate) fn new(
         grid: &Grid,
         directions: &Directions,
-        bins: (&Bins, &BinSteps),
-        blocks: BlockIds,
-    ) -> (Self, WideViews) {
-        Self::with(grid, directions, bins, blocks, InstructionSet::best())
-    }
-
-    #[cfg(test)]
-    pub(crate) fn of_all(
-        grid: &Grid,
-        directions: &Directions,
-        bins: (&Bins, &BinSteps),
-    ) -> (Self, WideViews) {
-        let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
-        Self::new(grid, directions, bins, BlockIds::all(blocks))
-    }
-
-    /// Does the same as [`RangeIntervals::new`] with a given instruction set.
-    pub(crate) fn with(
-        grid: &Grid,
-        directions: &Directions,
-        (bins, steps): (&Bins, &BinSteps),
+        bins: &Bins,
         ids: BlockIds,
-        set: InstructionSet,
+        simd: Simd,
     ) -> (Self, WideViews) {
-        let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
-        let mut packed = vec![0; PACKED * directions.count() * ids.count()];
-        let source = Source {
-            grid,
-            directions,
-            bins,
-            steps,
-            ids: &ids,
-        };
-        let simd = Simd::new(set);
-        let views = build::build(source, simd, &mut packed);
-        let wide = WideViews::new(ids.count(), &views);
-        let intervals = RangeIntervals {
-            columns,
-            rows,
+        let packed = vec![0; PACKED * directions.count() * ids.count()];
+        let mut intervals = RangeIntervals {
+            columns: grid.width().div_ceil(SIDE),
+            rows: grid.height().div_ceil(SIDE),
             directions: directions.count(),
             ids,
             simd,
             packed,
         };
+        let source = Source {
+            grid,
+            directions,
+            bins,
+            ids: &intervals.ids,
+        };
+        let views = build::build(source, simd, &mut intervals.packed);
+        let wide = WideViews::new(intervals.ids.count(), &views);
         (intervals, wide)
+    }
+
+    /// Builds the intervals of all blocks with an instruction set.
+    #[cfg(test)]
+    pub(crate) fn of_all(
+        grid: &Grid,
+        directions: &Directions,
+        bins: &Bins,
+        set: InstructionSet,
+    ) -> (Self, WideViews) {
+        let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
+        let all = BlockIds::of(CellSet::of(blocks, |_| true));
+        Self::new(grid, directions, bins, all, Simd::new(set))
     }
 
     /// Allocates intervals of some blocks of a grid, to be filled in: this many bytes. Returns
@@ -156,14 +145,14 @@ impl RangeIntervals {
         })
     }
 
-    /// Returns the packed bytes of all blocks.
-    pub(crate) fn all_packed(&self) -> &[u8] {
-        &self.packed
+    /// Returns the set of the blocks and the packed bytes.
+    pub(crate) fn parts(&self) -> (&CellSet, &[u8]) {
+        (&self.ids.blocks, &self.packed)
     }
 
-    /// Returns the set of the blocks and the packed bytes, to be filled in.
-    pub(crate) fn filling(&mut self) -> (&mut CellSet, &mut [u8]) {
-        (self.ids.set_mut(), &mut self.packed)
+    /// Returns the same, to be filled in; [`RangeIntervals::number`] must follow.
+    pub(crate) fn parts_mut(&mut self) -> (&mut CellSet, &mut [u8]) {
+        (&mut self.ids.blocks, &mut self.packed)
     }
 
     /// Numbers the blocks that were filled in. Returns true if they are blocks of the grid, and
@@ -171,7 +160,7 @@ impl RangeIntervals {
     pub(crate) fn number(&mut self) -> bool {
         self.ids.number();
         let packed = PACKED * self.directions * self.ids.count();
-        self.ids.set().are_below(self.columns * self.rows) && packed == self.packed.len()
+        self.ids.blocks.are_below(self.columns * self.rows) && packed == self.packed.len()
     }
 
     /// Size in bytes.
@@ -215,7 +204,6 @@ impl RangeIntervals {
 mod tests {
     use std::collections::BTreeMap;
 
-    use proptest::collection::vec;
     use proptest::prelude::*;
 
     use super::*;
@@ -229,13 +217,8 @@ mod tests {
             headings in prop_oneof![1u32..12, Just(45)],
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
-            let with = |set| {
-                let ids = BlockIds::all(blocks);
-                RangeIntervals::with(&grid, directions, (&bins, &steps), ids, set)
-            };
+            let bins = Bins::new(&grid, directions);
+            let with = |set| RangeIntervals::of_all(&grid, directions, &bins, set);
             let (intervals, noted) = with(InstructionSet::Portable);
             let views = |wide: &WideViews, block| wide.of(block).collect::<BTreeMap<_, _>>();
             for set in InstructionSet::available() {
@@ -284,29 +267,6 @@ mod tests {
                 for row in &read.rows {
                     let again = (directions.count()..row.len()).all(|i| row[i] == row[i - directions.count()]);
                     prop_assert!(again && row.len() == directions.count() + READ);
-                }
-            }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn blocks_that_are_left_out_change_nothing_of_the_others(
-            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
-            headings in prop_oneof![1u32..12, Just(45)], kept in vec(any::<bool>(), 300),
-        ) {
-            let directions = &space_of(&grid, headings * 8).directions;
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (all, noted) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
-            let blocks = all.columns * all.rows;
-            for set in InstructionSet::available() {
-                let ids = BlockIds::new(&kept[..blocks]);
-                let (some, others) = RangeIntervals::with(&grid, directions, (&bins, &steps), ids, set);
-                for block in (0..blocks).filter(|&block| kept[block]) {
-                    prop_assert_eq!(some.packed(block), all.packed(block), "{}", set);
-                    let views = |wide: &WideViews, id| wide.of(id).collect::<BTreeMap<_, _>>();
-                    prop_assert_eq!(views(&others, some.ids.before(block)), views(&noted, block));
                 }
             }
         }

@@ -14,7 +14,6 @@ mod needed;
 pub(in crate::parts::search) mod obstacles;
 mod sections;
 pub(in crate::parts::search) mod sets;
-pub(in crate::parts::search) mod steps;
 pub(in crate::parts::search) mod within;
 
 pub use key::IndexKey;
@@ -27,18 +26,19 @@ use block_ids::BlockIds;
 use intervals::{RangeIntervals, SIDE};
 use obstacles::Obstacles;
 use sets::RangeSets;
-use steps::BinSteps;
 use within::Within;
 
 use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
+use crate::simd::Simd;
 use crate::space::Space;
 use crate::sweep::FieldSweep;
 
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
-    pub(in crate::parts::search) steps: BinSteps,
+    pub(in crate::parts::search) bins: Bins,
     pub(in crate::parts::search) intervals: RangeIntervals,
     pub(in crate::parts::search) fine: RangeSets,
     pub(in crate::parts::search) coarse: RangeSets,
@@ -60,14 +60,15 @@ impl SearchIndex {
     #[must_use]
     pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
         let directions = &space.directions;
-        let (steps, bins) = Self::scale(grid, space);
-        let blocks = BlockIds::new(&limits.blocks(SIDE, grid));
-        let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps), blocks);
+        let bins = Bins::new(grid, directions);
+        let blocks = BlockIds::of(limits.blocks(SIDE, grid));
+        let best = Simd::new(InstructionSet::best());
+        let (intervals, wide) = RangeIntervals::new(grid, directions, &bins, blocks, best);
         let fine = RangeSets::new(&intervals, &wide);
         drop(wide);
         let coarse = fine.joined();
         SearchIndex {
-            steps,
+            bins,
             intervals,
             fine,
             coarse,
@@ -75,15 +76,6 @@ impl SearchIndex {
             within: Within::new(limits, grid),
             sweeps: OnceLock::new(),
         }
-    }
-
-    /// Returns the bins of distances, and the steps that they stand for.
-    fn scale(grid: &Grid, space: &Space) -> (BinSteps, Bins) {
-        let bins = Bins::new(&space.directions);
-        // No ray has more steps than it crosses columns or rows.
-        let longest = grid.width().max(grid.height()) as u16;
-        let steps = BinSteps::new(&bins, &space.directions, longest);
-        (steps, bins)
     }
 
     /// Returns the limits within which poses are searched.

@@ -25,8 +25,7 @@ impl SearchIndex {
     /// only when they are built.
     #[must_use]
     pub fn needed_bytes(grid: &Grid, space: &Space, limits: &Limits) -> usize {
-        let blocks = limits.blocks(SIDE, grid);
-        let searched = blocks.iter().filter(|&&is_searched| is_searched).count();
+        let searched = limits.blocks(SIDE, grid).count();
         let by_blocks = searched * space.directions.count() * BYTES_A_DIRECTION;
         BYTES_OF_ALL + by_blocks + grid.cells().len() * BYTES_A_CELL
     }

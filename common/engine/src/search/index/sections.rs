@@ -8,6 +8,7 @@
 use bytemuck::{cast_slice, cast_slice_mut};
 
 use super::SearchIndex;
+use super::bins::Bins;
 use super::intervals::RangeIntervals;
 use super::obstacles::Obstacles;
 use super::sets::RangeSets;
@@ -79,16 +80,17 @@ impl SearchIndex {
             .sets()
             .map(|set| set.map_or(&[][..], words));
         let [fine_blocks, coarse_blocks] = self.within.blocks.each_ref().map(words);
+        let (small_blocks, packed) = self.intervals.parts();
         let [a, b, c] = self.fine.parts();
         let [d, e, f] = self.coarse.parts();
         let ([along_x, along_y], clearance) = self.obstacles.parts();
         [
             cells,
             headings,
-            words(self.intervals.ids.set()),
+            words(small_blocks),
             fine_blocks,
             coarse_blocks,
-            self.intervals.all_packed(),
+            packed,
             a,
             b,
             c,
@@ -121,14 +123,13 @@ impl UncheckedIndex {
         let directions = &space.directions;
         let by = [lengths[0] > 0, lengths[1] > 0];
         let limits = Limits::unfilled(grid, directions, by);
-        let (steps, _) = SearchIndex::scale(grid, space);
         let intervals = RangeIntervals::unfilled(grid, directions, length(5)?);
         let sets = |side, first| {
             let sets = RangeSets::unfilled(side, grid, directions, lengths_from(first)?);
             sets.ok_or_else(|| impossible(first))
         };
         let mut unchecked = UncheckedIndex(SearchIndex {
-            steps,
+            bins: Bins::new(grid, directions),
             intervals: intervals.ok_or_else(|| impossible(5))?,
             fine: sets(8, 6)?,
             coarse: sets(16, 9)?,
@@ -161,7 +162,7 @@ impl UncheckedIndex {
             .sets_mut()
             .map(|set| set.map_or(&mut [][..], words_mut));
         let [fine_blocks, coarse_blocks] = blocks.each_mut().map(words_mut);
-        let (small_blocks, packed) = intervals.filling();
+        let (small_blocks, packed) = intervals.parts_mut();
         let [a, b, c] = fine.parts_mut();
         let [d, e, f] = coarse.parts_mut();
         let ([along_x, along_y], clearance) = obstacles.parts_mut();

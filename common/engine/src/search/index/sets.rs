@@ -13,13 +13,12 @@ mod build;
 mod marks;
 mod packed;
 
+use std::ops::Range;
+
 use super::intervals::{self, RangeIntervals, WideViews};
 use crate::directions::Directions;
 use crate::grid::Grid;
-use crate::instruction_set::InstructionSet;
-use crate::simd::Simd;
 use crate::simd::words::{BYTES, QUAD};
-use build::{Rows, build};
 pub(crate) use packed::SetRows;
 use packed::{PackedRows, words};
 
@@ -66,43 +65,53 @@ struct Start {
 }
 
 impl RangeSets {
-    /// Builds the sets of blocks of 2 × 2 blocks of intervals.
+    /// Builds the sets of blocks of 2 × 2 blocks of intervals, with the instruction set of these.
     pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
-        Self::with(intervals, wide, InstructionSet::best())
-    }
-
-    /// Does the same with a given instruction set.
-    pub(crate) fn with(intervals: &RangeIntervals, wide: &WideViews, set: InstructionSet) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
         let (side, stride) = (2 * intervals::SIDE, intervals.directions / 8);
-        let rows_of = build(Simd::new(set), (intervals, wide));
-        Self::of_rows(side, (columns, rows), stride, rows_of)
+        let sets = Self::without_quads(side, (columns, rows), stride);
+        intervals.simd.run(build::Joining(intervals, wide, sets))
     }
 
-    fn of_rows(
-        side: usize,
-        (columns, rows): (usize, usize),
-        stride: usize,
-        mut rows_of: Rows,
-    ) -> Self {
-        let mut starts = Vec::with_capacity(rows_of.quads.len() + 1);
-        let mut start = Start::default();
-        for (rows, bytes) in rows_of.quads {
-            let first = rows.start as u32;
-            starts.push(Start { first, ..start });
-            start.row += rows.len() as u32;
-            start.byte += bytes as u32;
-        }
-        starts.push(start);
-        rows_of.packed.finish();
+    fn without_quads(side: usize, (columns, rows): (usize, usize), stride: usize) -> Self {
         RangeSets {
             side,
             columns,
             rows,
             stride,
-            starts,
-            packed: rows_of.packed,
+            starts: Vec::with_capacity(columns.div_ceil(2) * rows.div_ceil(2) + 1),
+            packed: PackedRows::default(),
         }
+    }
+
+    /// Adds a quad with these rows, each of which `row` fills in.
+    fn push(
+        &mut self,
+        rows: Range<usize>,
+        turn: &mut [Byte],
+        mut row: impl FnMut(usize, &mut [Byte]),
+    ) {
+        self.starts.push(self.next(rows.start));
+        for i in rows {
+            row(i, turn);
+            self.packed.push(turn);
+        }
+    }
+
+    /// Returns the start of the next quad.
+    fn next(&self, first: usize) -> Start {
+        Start {
+            row: (self.packed.masks.len() / words(self.stride)) as u32,
+            byte: self.packed.bytes.len() as u32,
+            first: first as u32,
+        }
+    }
+
+    /// Ends the quads.
+    fn finished(mut self) -> Self {
+        self.starts.push(self.next(0));
+        self.packed.finish();
+        self
     }
 
     /// Allocates sets of blocks with this many cells a side, to be filled in, with these
@@ -175,7 +184,7 @@ impl RangeSets {
     pub(crate) fn joined(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
         let quads = (columns.div_ceil(2), rows.div_ceil(2));
-        let mut joined = Rows::default();
+        let mut joined = Self::without_quads(2 * self.side, (columns, rows), self.stride);
         let mut turn = vec![[0; QUAD]; self.stride];
         let mut unpacked = [(); QUAD].map(|()| Vec::new());
         for quad in 0..quads.0 * quads.1 {
@@ -201,7 +210,7 @@ impl RangeSets {
                 }
             });
         }
-        Self::of_rows(2 * self.side, (columns, rows), self.stride, joined)
+        joined.finished()
     }
 
     pub(crate) fn blocks(&self) -> usize {
@@ -237,9 +246,12 @@ impl RangeSets {
         let (start, end) = (self.starts[quad], self.starts[quad + 1]);
         let (row, rows) = (start.row as usize, (end.row - start.row) as usize);
         let (first, words) = (start.first as usize, words(self.stride));
-        let masks = &self.packed.masks[row * words..(row + rows) * words];
-        let bytes = &self.packed.bytes[start.byte as usize..end.byte as usize + READ];
-        SetRows::new(first..first + rows, self.stride, (masks, bytes))
+        SetRows {
+            rows: first..first + rows,
+            stride: self.stride,
+            masks: &self.packed.masks[row * words..(row + rows) * words],
+            bytes: &self.packed.bytes[start.byte as usize..end.byte as usize + READ],
+        }
     }
 }
 
@@ -272,10 +284,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::reference;
     use crate::search::index::bins::Bins;
-    use crate::search::index::bits;
-    use crate::search::index::steps::BinSteps;
     use crate::testing::{any_grid, space_of};
 
     /// Returns a row as it was before it was packed, if it is kept.
@@ -293,12 +304,14 @@ mod tests {
             grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)],
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
-            let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable);
+            let bins = Bins::new(&grid, directions);
+            let with = |set| {
+                let (intervals, wide) = RangeIntervals::of_all(&grid, directions, &bins, set);
+                RangeSets::new(&intervals, &wide)
+            };
+            let fine = with(InstructionSet::Portable);
             for set in InstructionSet::available() {
-                let other = RangeSets::with(&intervals, &wide, set);
+                let other = with(set);
                 prop_assert!(other.packed == fine.packed && other.starts == fine.starts, "{}", set);
             }
             for sets in [&fine, &fine.joined()] {
@@ -313,53 +326,6 @@ mod tests {
                         prop_assert!(bits >> (d % 8) & 1 == 1);
                     }
                 }
-            }
-        }
-
-        #[test]
-        fn sets_hold_nothing_but_the_intervals_and_wide_views(grid in any_grid(), headings in 1u32..10) {
-            let directions = &space_of(&grid, headings * 8).directions;
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
-            let sets = RangeSets::new(&intervals, &wide);
-            let mut plain = vec![Vec::new(); sets.blocks()];
-            let mut read = intervals::BlockIntervals::default();
-            for block in 0..intervals.columns * intervals.rows {
-                intervals.read(block, &mut read);
-                let (x, y) = (block % intervals.columns, block / intervals.columns);
-                let rows: &mut Vec<u8> = &mut plain[y / 2 * sets.columns + x / 2];
-                for d in 0..directions.count() {
-                    let [near_first, near_last, far_first, far_last] = [0, 1, 2, 3].map(|i| read.rows[i][d]);
-                    let within = (near_first..=near_last).chain(far_first..=far_last);
-                    let seen: Vec<usize> = match wide.of(block).find(|&(direction, _)| direction == d) {
-                        Some((_, rows)) => bits::ones(rows).collect(),
-                        None => within.map(|bin| usize::from(bin >> intervals::ROW_SHIFT)).collect(),
-                    };
-                    for row in seen {
-                        let at = row * sets.stride;
-                        rows.resize(rows.len().max(at + sets.stride), 0);
-                        rows[at + d / 8] |= 1 << (d % 8);
-                    }
-                }
-            }
-            for quad in 0..sets.quads() {
-                let rows = sets.quad(quad);
-                let mut any = 0..0;
-                for row in 0..=usize::from(u8::MAX) {
-                    let of_block = |block: Option<usize>| {
-                        let rows = plain.get(block?)?.get(row * sets.stride..)?;
-                        rows.get(..sets.stride)
-                    };
-                    let blocks = sets.searched(quad, |_| true).blocks.map(of_block);
-                    let turn = (0..sets.stride).map(|byte| blocks.map(|row| row.map_or(0, |row| row[byte])));
-                    let turn: Vec<Byte> = turn.collect();
-                    if turn.as_flattened().iter().any(|&byte| byte != 0) {
-                        any = if any.is_empty() { row..row + 1 } else { any.start..row + 1 };
-                        prop_assert_eq!(row_of(&rows, row), Some(turn));
-                    }
-                }
-                prop_assert_eq!(rows.rows, any);
             }
         }
     }

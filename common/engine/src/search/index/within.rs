@@ -24,10 +24,7 @@ pub(in crate::parts::search) enum Size {
 impl Within {
     /// Lays out the limits of a grid.
     pub(in crate::parts::search) fn new(limits: Limits, grid: &Grid) -> Self {
-        let blocks = [2 * SIDE, 4 * SIDE].map(|side| {
-            let blocks = limits.blocks(side, grid);
-            CellSet::of(blocks.len(), |block| blocks[block])
-        });
+        let blocks = [2 * SIDE, 4 * SIDE].map(|side| limits.blocks(side, grid));
         Within { limits, blocks }
     }
 

@@ -10,21 +10,21 @@ use crate::directions::Directions;
 use crate::grid::{Cell, Grid};
 use crate::limits::Limits;
 use crate::program::NO_RANGE;
+use crate::search::index::bins::Bins;
 use crate::search::index::intervals::{BlockIntervals, CELLS, RangeIntervals, SIDE};
 use crate::search::index::obstacles::Obstacles;
-use crate::search::index::steps::BinSteps;
 
 /// A map and the tables for following rays in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View<'a> {
     pub grid: &'a Grid,
     pub obstacles: &'a Obstacles,
-    pub steps: &'a BinSteps,
+    pub bins: &'a Bins,
     pub directions: &'a Directions,
 }
 
 /// The ranges of the cells of one block.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct BlockRanges {
     by_direction: Vec<[u16; CELLS]>,
     /// Number of the block for which each direction was computed last.
@@ -37,31 +37,13 @@ pub(crate) struct BlockRanges {
     /// True if all of the block's cells are open.
     all_open: bool,
     /// All ones for each cell in which poses are searched, else 0.
-    open: [u16; CELLS],
-    intervals: BlockIntervals,
+    pub open: [u16; CELLS],
+    pub intervals: BlockIntervals,
     /// True if unknown cells block rays. Then rays must be followed from the start, because
     /// intervals say only where they hit an obstacle.
     has_blocked: bool,
-    /// Number of times that rays were cast in a direction.
-    casts: u64,
-}
-
-impl Default for BlockRanges {
-    fn default() -> Self {
-        BlockRanges {
-            by_direction: Vec::new(),
-            computed_for: Vec::new(),
-            number: 0,
-            left: 0,
-            bottom: 0,
-            cells: [Cell::Blocked; CELLS],
-            all_open: false,
-            open: [0; CELLS],
-            intervals: BlockIntervals::default(),
-            has_blocked: false,
-            casts: 0,
-        }
-    }
+    /// Number of times that rays were cast in a direction of any block, until they are taken.
+    pub casts: u64,
 }
 
 impl BlockRanges {
@@ -111,15 +93,6 @@ impl BlockRanges {
         (self.left + i % SIDE, self.bottom + i / SIDE)
     }
 
-    pub(crate) fn intervals(&self) -> &BlockIntervals {
-        &self.intervals
-    }
-
-    /// Returns all ones for each cell where the robot may stand and is searched, else 0.
-    pub(crate) fn open(&self) -> &[u16; CELLS] {
-        &self.open
-    }
-
     /// Computes the ranges in direction `d`, unless that was done for this block.
     #[inline(always)]
     pub(in crate::parts::search) fn compute(&mut self, view: &View<'_>, d: usize) {
@@ -136,18 +109,13 @@ impl BlockRanges {
         &self.by_direction[d]
     }
 
-    /// Number of times that rays were cast in a direction of any block.
-    pub(crate) fn casts(&self) -> u64 {
-        self.casts
-    }
-
     /// Returns the two spans of steps at which rays in direction `d` may end, their ends
     /// exclusive.
     #[inline(always)]
     pub(crate) fn spans(&self, view: &View<'_>, d: usize) -> [(u16, u16); 2] {
         let class = view.directions.all()[d].class;
         let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
-        let span = |first: u8, last: u8| view.steps.span(class, first, last);
+        let span = |first: u8, last: u8| view.bins.span(class, first, last);
         [
             span(near_first[d], near_last[d]),
             span(far_first[d], far_last[d]),
@@ -182,8 +150,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::reference;
-    use crate::search::index::bins::Bins;
     use crate::testing::{any_grid, any_long_grid, space_of};
 
     proptest! {
@@ -192,17 +160,16 @@ mod tests {
             grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()], headings in 1u32..10,
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let bins = Bins::new(&grid, directions);
+            let (intervals, _) = RangeIntervals::of_all(&grid, directions, &bins, InstructionSet::best());
             let obstacles = Obstacles::new(&grid);
-            let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
+            let view = View { grid: &grid, obstacles: &obstacles, bins: &bins, directions };
             let mut block_ranges = BlockRanges::default();
             block_ranges.prepare(&grid, directions);
             let blocks = 0..intervals.columns * intervals.rows;
             for block in blocks {
                 block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
-                let open = *block_ranges.open();
+                let open = block_ranges.open;
                 for (d, direction) in directions.all().iter().enumerate() {
                     block_ranges.compute(&view, d);
                     for (i, &open) in open.iter().enumerate() {

@@ -63,8 +63,13 @@ impl LeafProgram {
         counts: &mut [Count],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
-        let of_sector = (beams.start, &voting[beams]);
-        self.add_beams(rays, of_sector, headings, counts);
+        self.simd.run(Adding {
+            program: self,
+            rays,
+            beams: (beams.start, &voting[beams]),
+            headings,
+            counts,
+        });
     }
 
     /// Returns the votes of the block's cells at a heading, by the beams that may vote
@@ -87,29 +92,15 @@ impl LeafProgram {
             for (voting, beam) in voting.iter_mut().zip(beams.clone()) {
                 *voting = u64::from(may_vote(beam));
             }
-            let beams = (beams.start, &voting[..beams.len()]);
-            let counts = std::slice::from_mut(&mut count);
-            self.add_beams((block_ranges, view), beams, (heading, 1), counts);
+            self.simd.run(Adding {
+                program: self,
+                rays: (&mut *block_ranges, view),
+                beams: (beams.start, &voting[..beams.len()]),
+                headings: (heading, 1),
+                counts: std::slice::from_mut(&mut count),
+            });
         }
         count.votes
-    }
-
-    /// Adds the votes of beams from a first one on, each at the headings at which its bits say
-    /// that it may vote.
-    fn add_beams(
-        &self,
-        rays: (&mut BlockRanges, &View<'_>),
-        beams: (usize, &[u64]),
-        headings: (usize, u64),
-        counts: &mut [Count],
-    ) {
-        self.simd.run(Adding {
-            program: self,
-            rays,
-            beams,
-            headings,
-            counts,
-        });
     }
 
     #[inline(always)]
@@ -167,7 +158,7 @@ impl Kernel for Adding<'_, '_> {
                 let (direction, table) = program.place(beam, first + lane);
                 table.add(set, block_ranges.ranges(direction), &mut votes);
             }
-            let open = votes.iter().zip(block_ranges.open());
+            let open = votes.iter().zip(&block_ranges.open);
             let most = open.map(|(votes, open)| votes & open).fold(0, u16::max);
             counts[lane] = Count { votes, most };
         }
@@ -185,7 +176,6 @@ mod tests {
     use crate::search::index::bins::Bins;
     use crate::search::index::intervals::RangeIntervals;
     use crate::search::index::obstacles::Obstacles;
-    use crate::search::index::steps::BinSteps;
     use crate::testing::{any_grid, any_scan, space_of};
 
     proptest! {
@@ -196,11 +186,10 @@ mod tests {
             let space = space_of(&grid, headings * 8);
             let directions = &space.directions;
             let program = scan.program(&space);
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let bins = Bins::new(&grid, directions);
+            let (intervals, _) = RangeIntervals::of_all(&grid, directions, &bins, InstructionSet::best());
             let obstacles = Obstacles::new(&grid);
-            let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
+            let view = View { grid: &grid, obstacles: &obstacles, bins: &bins, directions };
             let block = seed[0] % (intervals.columns * intervals.rows);
             let heading = seed[1] % directions.count();
             for instruction_set in InstructionSet::available() {

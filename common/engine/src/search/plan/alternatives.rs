@@ -10,14 +10,12 @@ use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use crate::search::bounds::heading_bounds::HeadingBounds;
 use crate::search::bounds::interval_bounds::IntervalBounds;
 use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::bits;
 use crate::search::index::intervals::{BlockIntervals, SIDE};
 use crate::search::index::sets::Quad;
-use crate::search::index::within::Size;
-use crate::search::index::within::quarters;
+use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::task::Task;
 use crate::votes::Distinct;
@@ -29,13 +27,8 @@ const COARSE_SHARE: usize = 4;
 /// 32, are skipped.
 const MIN_BOUND_RATIO: u32 = 31;
 
-/// Finds candidates on one thread, independent of how the search went.
-pub(in crate::parts::search) struct Alternatives<'a> {
-    task: &'a Task<'a>,
-    scratch: &'a mut Scratch,
-}
-
-/// Buffers for finding candidates, kept from scan to scan.
+/// Buffers for finding candidates on one thread, independent of how the search went; kept from
+/// scan to scan.
 #[derive(Debug, Default)]
 pub(in crate::parts::search) struct Scratch {
     bounds: SetBounds,
@@ -62,25 +55,18 @@ struct Spot {
     heading: Reverse<usize>,
 }
 
-impl<'a> Alternatives<'a> {
-    pub(in crate::parts::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
-        scratch.bounds.fit(&task.programs.sets, task.headings());
-        scratch
-            .block_ranges
-            .prepare(task.grid, &task.space.directions);
-        Alternatives { task, scratch }
-    }
-
-    /// Leaves poses of the `wanted` blocks with the highest bounds in its scratch buffer, in no
-    /// order. Blocks whose bounds are below `least` are not searched.
-    pub(in crate::parts::search) fn find(&mut self, wanted: usize, least: u16) {
-        let task = self.task;
+impl Scratch {
+    /// Leaves poses of the `wanted` blocks with the highest bounds in the buffer, in no order.
+    /// Blocks whose bounds are below `least` are not searched.
+    pub(in crate::parts::search) fn find(&mut self, task: &Task<'_>, wanted: usize, least: u16) {
+        self.bounds.fit(&task.programs.sets, task.headings());
+        self.block_ranges.prepare(task.grid, &task.space.directions);
         let Scratch {
             bounds,
             coarse,
             fine,
             ..
-        } = &mut *self.scratch;
+        } = self;
         let within = &task.index.within;
         let bounded = task.coarse_bounds.iter().enumerate();
         let searched = bounded.filter(|&(block, _)| within.holds(Size::Coarse, block));
@@ -108,39 +94,37 @@ impl<'a> Alternatives<'a> {
                 least = fine[wanted - 1].0;
             }
         }
-        self.scratch.spots.clear();
-        for i in 0..self.scratch.fine.len() {
-            let spot = self.best_spot(self.scratch.fine[i]);
-            self.scratch.spots.extend(spot);
+        let mut spots = std::mem::take(&mut self.spots);
+        spots.clear();
+        for i in 0..self.fine.len() {
+            spots.extend(self.best_spot(task, self.fine[i]));
         }
-        let Scratch {
-            spots, distinct, ..
-        } = &mut *self.scratch;
         spots.sort_unstable_by(|a, b| b.cmp(a));
         let columns = task.index.intervals.columns;
-        let mut distinct = Distinct::new(task.space, wanted, distinct);
+        let mut distinct = Distinct::new(task.space, wanted, &mut self.distinct);
         spots.retain(|spot| distinct.take(&spot.corner(columns)));
-        self.scratch.votes.clear();
-        for i in 0..self.scratch.spots.len() {
-            let vote = self.count(self.scratch.spots[i]);
-            self.scratch.votes.extend(vote);
+        self.votes.clear();
+        for &spot in &spots {
+            let vote = self.count(task, spot);
+            self.votes.extend(vote);
         }
+        self.spots = spots;
     }
 
     /// Returns the small block in an 8 × 8 block, and the heading, with the highest bound.
-    fn best_spot(&mut self, (bound, Reverse(block)): Bounded) -> Option<Spot> {
-        let index = self.task.index;
+    fn best_spot(&mut self, task: &Task<'_>, (bound, Reverse(block)): Bounded) -> Option<Spot> {
+        let index = task.index;
         let Scratch {
             bounds,
             intervals,
             interval_bounds,
             ..
-        } = &mut *self.scratch;
+        } = self;
         let (quad, place) = index.fine.place_of(block);
         let quad = index.fine.searched(quad, |other| other == block);
         let least = (u32::from(bound) * MIN_BOUND_RATIO / 32) as u16;
-        let bounds = bound_fine(self.task, &quad, least.max(1), bounds);
-        let program = &self.task.programs.interval;
+        let bounds = bound_fine(task, &quad, least.max(1), bounds);
+        let program = &task.programs.interval;
         let sides = (index.intervals.columns, index.intervals.rows);
         let smalls = quarters(block, index.fine.columns, sides);
         let mut best: Option<Spot> = None;
@@ -162,15 +146,17 @@ impl<'a> Alternatives<'a> {
     }
 
     /// Returns the best pose of a spot; `None` if no cell of it is searched or no beam votes.
-    fn count(&mut self, spot: Spot) -> Option<Vote> {
-        let index = self.task.index;
+    fn count(&mut self, task: &Task<'_>, spot: Spot) -> Option<Vote> {
+        let index = task.index;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
-        let view = self.task.view();
-        let block_ranges = &mut self.scratch.block_ranges;
+        let view = task.view();
+        let block_ranges = &mut self.block_ranges;
         block_ranges.enter((&view, &index.within.limits), &index.intervals, block);
-        let counts = self.task.programs.leaf.count(block_ranges, &view, heading);
-        let open = block_ranges.open();
-        let votes = counts.iter().zip(open).map(|(count, open)| count & open);
+        let counts = task.programs.leaf.count(block_ranges, &view, heading);
+        let votes = counts
+            .iter()
+            .zip(&block_ranges.open)
+            .map(|(count, open)| count & open);
         let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;
         let (x, y) = block_ranges.cell(i);
         (intensity > 0).then_some(Vote {
@@ -188,7 +174,7 @@ fn bound_fine<'a>(
     quad: &Quad,
     least: u16,
     bounds: &'a mut SetBounds,
-) -> &'a HeadingBounds {
+) -> &'a SetBounds {
     // A coarse block has the index of the quad of 8 × 8 blocks within.
     let known = (task.by_chunk(quad.index), least);
     let blocks = (&task.index.fine, quad);

@@ -1,6 +1,6 @@
 //! One search: by bounds or, if these do not help, by counting every pose.
 
-use super::alternatives::{self, Alternatives};
+use super::alternatives;
 use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
@@ -87,7 +87,7 @@ impl Attempt<'_> {
             let most = most_candidates(wanted, task.space.resolution_m);
             for count in [wanted, most] {
                 found.votes.truncate(certain);
-                Alternatives::new(task, alternatives).find(count, least);
+                alternatives.find(task, count, least);
                 let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
                 let distinct = distinct.and_close(best);
                 alternatives.votes.retain(|vote| vote.intensity >= least);
@@ -113,7 +113,7 @@ mod tests {
     use crate::search::index::SearchIndex;
     use crate::search::task::budget::Cost;
     use crate::search::task::lead::Lead;
-    use crate::testing::{any_grid, any_limited_grid, any_scan, plain_votes, space_of};
+    use crate::testing::{any_limited_grid, any_scan, plain_votes_within, space_of};
     use crate::votes::CollectConfig;
 
     proptest! {
@@ -139,26 +139,32 @@ mod tests {
         }
 
         #[test]
-        fn a_search_that_would_cost_too_much_gives_up_at_once(
-            grid in any_grid(), scan in any_scan(), threads in 1usize..4,
+        fn a_search_that_would_cost_too_much_gives_up_and_counting_equals_the_reference(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(), threads in 1usize..4,
+            floor_share in 0.6..=1.0f64, max_votes in 1u32..400,
         ) {
-            let space = space_of(&grid, 64);
+            let space = space_of(&grid, headings);
             let program = scan.program(&space);
-            let config = CollectConfig { candidates: 0, ..CollectConfig::default() };
-            let index = SearchIndex::new(&grid, &space);
-            let (mut workspace, lead) = (Workspace::default(), Lead::default());
-            let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
-            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, (&lead, &|| false));
-            attempt.task.brute_force = Cost(0.0);
-            let (mut found, plain) = (VoteSet::default(), plain_votes(&grid, &program, &space, config));
-            // A search that is done after the first block has nothing to give up.
-            match attempt.by_bounds(&mut found) {
-                End::Done => prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found.clone() }, plain.clone()),
-                End::Hopeless => (),
-                End::Stopped => prop_assert!(false, "nobody said stop"),
+            let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
+            let plain = plain_votes_within(&limits, &grid, &program, &space, config);
+            let index = SearchIndex::within(&grid, &space, limits);
+            let (mut workspace, scan) = (Workspace::default(), (&program, &space));
+            let mut found = VoteSet::default();
+            for set in InstructionSet::available() {
+                let lead = Lead::default();
+                let mut attempt =
+                    index.attempt(&mut workspace, (set, threads), &grid, scan, config, (&lead, &|| false));
+                attempt.task.brute_force = Cost(0.0);
+                // A search that is done after the first block has nothing to give up.
+                match attempt.by_bounds(&mut found) {
+                    End::Done => (),
+                    End::Hopeless => prop_assert!(attempt.by_counting(&mut found).is_some()),
+                    End::Stopped => prop_assert!(false, "nothing said stop"),
+                }
+                prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found.clone() }, plain.clone());
+                prop_assert!(attempt.find(&mut found).is_some());
+                prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found.clone() }, plain.clone());
             }
-            prop_assert!(attempt.find(&mut found).is_some());
-            prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found }, plain);
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Upper bounds of the votes, block by block: roughly where the robot may be.
 
 use super::Workspace;
-use super::search::Bounding;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::index::SearchIndex;
@@ -48,11 +47,8 @@ impl SearchIndex {
     ) {
         let (coarse, directions) = (&self.coarse, &space.directions);
         let best = Simd::new(InstructionSet::best());
-        let Bounding {
-            program: set_program,
-            bounds,
-        } = &mut workspace.bounding;
-        set_program.make(program, directions, &self.steps, best);
+        let (set_program, bounds) = &mut workspace.bounding;
+        set_program.make(program, directions, &self.bins, best);
         bounds.fit(set_program, self.within.headings(directions.count()));
         blocks.side = coarse.side;
         blocks.columns = coarse.columns;

@@ -1,23 +1,83 @@
 //! One branch-and-bound search: from large blocks down to poses, those with the highest
 //! bound first.
 
-mod scratch;
-
+use std::collections::BinaryHeap;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::queue::{Block, Level};
 use crate::search::bounds::interval_bounds::IntervalBounds;
+use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
-use crate::search::index::intervals::CELLS;
+use crate::search::index::intervals::{BlockIntervals, CELLS};
 use crate::search::index::within::{Size, quarters};
+use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
-use crate::search::task::budget::Budget;
+use crate::search::task::budget::{Budget, Tally};
 use crate::search::task::{End, Task};
-pub(in crate::parts::search) use scratch::Scratch;
+use crate::simd::headings::HEADINGS;
+use crate::votes::Collector;
+
+/// A block in the queue. The one with the highest bound comes first, of equal ones the
+/// smallest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Block {
+    /// Votes that none of its poses exceeds.
+    bound: u16,
+    level: Level,
+    index: u32,
+}
+
+/// Size of a block, and the places of the headings known for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    /// 16 × 16 cells.
+    Coarse,
+    /// 8 × 8 cells, at the headings of these windows.
+    Fine { start: u32, end: u32 },
+    /// 4 × 4 cells, at headings from this one on: those of the bits.
+    Leaf { first: u16, among: u64 },
+}
+
+/// Buffers of one thread's search, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::parts::search) struct Scratch {
+    set_bounds: SetBounds,
+    intervals: BlockIntervals,
+    interval_bounds: IntervalBounds,
+    block_ranges: BlockRanges,
+    /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
+    counts: Vec<Count>,
+    queue: BinaryHeap<Block>,
+    /// Headings at which blocks of 8 × 8 cells may matter: the first, and a bit for each from
+    /// there on.
+    windows: Vec<(usize, u64)>,
+    /// Poses that matter.
+    pub collector: Collector,
+    /// Number of poses that were counted.
+    pub poses_evaluated: u64,
+    /// Most votes of any pose that the search did not reach because it was cut.
+    pub left: u16,
+    tally: Tally,
+}
+
+impl Scratch {
+    /// Prepares the buffers for a task; drops the contents of the one before.
+    fn start(&mut self, task: &Task<'_>) {
+        let programs = task.programs;
+        self.set_bounds.fit(&programs.sets, task.headings());
+        self.block_ranges.prepare(task.grid, &task.space.directions);
+        self.counts.resize(HEADINGS, Count::default());
+        self.queue.clear();
+        self.windows.clear();
+        self.collector.start(task.config);
+        self.poses_evaluated = 0;
+        self.left = 0;
+        self.tally = Tally::default();
+    }
+}
 
 /// One thread's part of a search.
 pub(in crate::parts::search) struct Descent<'a> {
@@ -79,7 +139,15 @@ impl<'a> Descent<'a> {
             }
             Level::Leaf { first, among } => self.count(index, first.into(), among),
         }
-        let cost = self.scratch.tally.take(self.task.programs.beams);
+        let Scratch {
+            tally,
+            set_bounds,
+            block_ranges,
+            ..
+        } = &mut *self.scratch;
+        tally.reads = std::mem::take(&mut set_bounds.reads);
+        tally.casts = std::mem::take(&mut block_ranges.casts);
+        let cost = std::mem::take(tally).cost(self.task.programs.beams);
         self.budget.spend(cost);
         // Some pose has to be found: without any it would seem that no beam votes.
         if self.budget.is_used_up(elsewhere) && self.task.best() > 0 {
@@ -147,10 +215,6 @@ impl<'a> Descent<'a> {
         for (place, block) in quad.blocks() {
             self.queue_fine(block, place);
         }
-        let Scratch {
-            set_bounds, tally, ..
-        } = &mut *self.scratch;
-        tally.reads = set_bounds.reads;
     }
 
     /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
@@ -158,10 +222,9 @@ impl<'a> Descent<'a> {
     fn queue_fine(&mut self, index: usize, place: usize) {
         let Scratch {
             windows,
-            set_bounds,
+            set_bounds: bounds,
             ..
         } = &mut *self.scratch;
-        let bounds = &set_bounds.found;
         let start = windows.len();
         windows.extend(bounds.reach(place));
         let (start, end) = (start as u32, windows.len() as u32);
@@ -213,7 +276,7 @@ impl<'a> Descent<'a> {
         block_ranges.enter((&self.task.view(), &within.limits), intervals, index);
         let (program, floor) = (&self.task.programs.interval, collector.floor());
         tally.windows += 1;
-        if program.bound::<true>(block_ranges.intervals(), first, floor, bounds) {
+        if program.bound::<true>(&block_ranges.intervals, first, floor, bounds) {
             let (among, _) = bounds.reach(floor, among);
             self.count_at(first, among);
         }
@@ -253,12 +316,11 @@ impl<'a> Descent<'a> {
             let votes = self.scratch.counts[lane].votes;
             self.take((first + lane) as u16, &votes);
         }
-        self.scratch.tally.casts = self.scratch.block_ranges.casts();
         self.task.raise_best(self.scratch.collector.best_taken());
     }
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {
-        let open = *self.scratch.block_ranges.open();
+        let open = self.scratch.block_ranges.open;
         self.scratch.poses_evaluated += CELLS as u64;
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {

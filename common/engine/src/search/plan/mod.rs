@@ -10,7 +10,6 @@ mod attempt;
 mod block_bounds;
 mod descent;
 mod parts;
-mod queue;
 mod search;
 mod together;
 

@@ -25,14 +25,8 @@ pub struct Workspace {
     alternatives: alternatives::Scratch,
     /// Buffers for counting every pose, one for each thread.
     shares: Vec<counting::Share>,
-    pub(in crate::parts::search) bounding: Bounding,
-}
-
-/// Program and buffers for bounding blocks.
-#[derive(Debug, Default)]
-pub(in crate::parts::search) struct Bounding {
-    pub(super) program: SetProgram,
-    pub(super) bounds: SetBounds,
+    /// Program and buffers for bounding blocks.
+    pub(super) bounding: (SetProgram, SetBounds),
 }
 
 impl SearchIndex {
@@ -130,10 +124,8 @@ impl SearchIndex {
 
 #[cfg(test)]
 mod tests {
-    use proptest::collection::vec;
     use proptest::prelude::*;
 
-    use super::super::BlockBounds;
     use super::*;
     use crate::beams::BeamConfig;
     use crate::grid::CellRules;
@@ -307,31 +299,6 @@ mod tests {
             prop_assert!(!none.cut);
             prop_assert_eq!(&none, &zero);
             prop_assert_eq!(&none, &large);
-        }
-
-        #[test]
-        fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
-            worlds in vec((any_limited_grid(8), any_scan(), 1usize..4), 2..5), candidates in 0u32..9,
-        ) {
-            let config = CollectConfig { candidates, ..CollectConfig::default() };
-            let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
-            let mut blocks = BlockBounds::default();
-            for ((grid, limits, headings), scan, threads) in worlds {
-                let space = space_of(&grid, headings);
-                let (index, program) = (SearchIndex::within(&grid, &space, limits), scan.program(&space));
-                let scan = (&program, &space);
-                for instruction_set in InstructionSet::available() {
-                    let how = (instruction_set, threads);
-                    let fresh = index.search_with(how, &grid, scan, config, &|| false).unwrap();
-                    let collect = (config, &mut found);
-                    prop_assert!(index.search_in(&mut workspace, how, &grid, scan, collect, &|| false).is_some());
-                    // How many poses threads count depends on who is first.
-                    found.poses_evaluated = fresh.poses_evaluated;
-                    prop_assert_eq!(&found, &fresh, "{:?}", how);
-                }
-                index.block_bounds_in(&mut workspace, scan, &mut blocks);
-                prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
-            }
         }
     }
 

@@ -15,16 +15,14 @@ pub(in crate::parts::search) struct Cost(pub f64);
 /// Work that was done since it was last taken.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::parts::search) struct Tally {
-    /// Words that were read for bounds from sets, ever.
+    /// Words that were read for bounds from sets.
     pub reads: u64,
-    reads_before: u64,
     /// Bounds of blocks from intervals, 64 headings each.
     pub windows: u64,
     /// Sectors of beams that were counted at a heading.
     pub sectors: u64,
-    /// Directions in which rays were cast, ever.
+    /// Directions in which rays were cast.
     pub casts: u64,
-    casts_before: u64,
 }
 
 /// Cost of a search so far, and its limits.
@@ -61,20 +59,14 @@ impl Cost {
 }
 
 impl Tally {
-    /// Returns the cost of the work since the last call, with this many beams.
-    pub(in crate::parts::search) fn take(&mut self, beams: usize) -> Cost {
-        let cost = (self.reads - self.reads_before) as f64 * READ
-            + self.windows as f64 * WINDOW_PER_BEAM * beams as f64
-            + self.sectors as f64 * SECTOR
-            + (self.casts - self.casts_before) as f64 * CAST;
-        *self = Tally {
-            casts: self.casts,
-            casts_before: self.casts,
-            reads: self.reads,
-            reads_before: self.reads,
-            ..Tally::default()
-        };
-        Cost(cost)
+    /// Cost of the work with this many beams.
+    pub(in crate::parts::search) fn cost(&self, beams: usize) -> Cost {
+        Cost(
+            self.reads as f64 * READ
+                + self.windows as f64 * WINDOW_PER_BEAM * beams as f64
+                + self.sectors as f64 * SECTOR
+                + self.casts as f64 * CAST,
+        )
     }
 }
 
@@ -133,19 +125,5 @@ mod tests {
         );
         assert!(!budget.is_hopeless(0.0), "and would end beyond it");
         assert!(!budget.is_used_up(229.0) && budget.is_used_up(230.0));
-    }
-
-    #[test]
-    fn a_tally_counts_each_thing_once() {
-        let mut tally = Tally {
-            reads: 1,
-            windows: 2,
-            sectors: 3,
-            casts: 4,
-            ..Tally::default()
-        };
-        let cost = READ + 2.0 * WINDOW_PER_BEAM * 10.0 + 3.0 * SECTOR + 4.0 * CAST;
-        assert_eq!(tally.take(10), Cost(cost));
-        assert_eq!(tally.take(10), Cost(0.0));
     }
 }

@@ -72,11 +72,11 @@ pub(in crate::parts::search) struct Programs {
 
 impl Programs {
     fn make(&mut self, simd: Simd, index: &SearchIndex, program: &ScanProgram, space: &Space) {
-        let (directions, steps) = (&space.directions, &index.steps);
-        self.sets.make(program, directions, steps, simd);
+        let (directions, bins) = (&space.directions, &index.bins);
+        self.sets.make(program, directions, bins, simd);
         self.leaf.make(program, directions, simd);
         let ordered = (program, self.leaf.order());
-        self.interval.make(ordered, directions, steps, simd);
+        self.interval.make(ordered, directions, bins, simd);
         self.beams = program.beams();
         self.simd = simd;
     }
@@ -140,7 +140,7 @@ impl<'a> Task<'a> {
         View {
             grid: self.grid,
             obstacles: &self.index.obstacles,
-            steps: &self.index.steps,
+            bins: &self.index.bins,
             directions: &self.space.directions,
         }
     }

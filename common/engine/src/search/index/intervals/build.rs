@@ -17,7 +17,6 @@ use crate::grid::Grid;
 use crate::search::index::bins::Bins;
 use crate::search::index::bits;
 use crate::search::index::block_ids::BlockIds;
-use crate::search::index::steps::BinSteps;
 use crate::simd::{Kernel, Set, Simd};
 
 /// Input for building the intervals.
@@ -26,7 +25,6 @@ pub(super) struct Source<'a> {
     pub grid: &'a Grid,
     pub directions: &'a Directions,
     pub bins: &'a Bins,
-    pub steps: &'a BinSteps,
     /// Blocks whose intervals are wanted.
     pub ids: &'a BlockIds,
 }
@@ -36,23 +34,14 @@ pub(super) struct Source<'a> {
 pub(super) fn build(source: Source<'_>, simd: Simd, packed: &mut [u8]) -> Vec<WideView> {
     let mut views = Vec::new();
     for part in &parts(source.directions) {
-        let built = &mut Built {
-            packed: &mut *packed,
-            views: &mut views,
-        };
         simd.run(Sweeping {
             source,
             part,
-            built,
+            packed: &mut *packed,
+            views: &mut views,
         });
     }
     views
-}
-
-/// Output: the packed intervals, and the views where they are wide.
-struct Built<'a> {
-    packed: &'a mut [u8],
-    views: &'a mut Vec<WideView>,
 }
 
 /// Directions that sweep together.
@@ -81,73 +70,70 @@ fn parts(directions: &Directions) -> [Part; 4] {
 }
 
 /// Kernel that sweeps in the directions of a part.
-struct Sweeping<'a, 'b> {
+struct Sweeping<'a> {
     source: Source<'a>,
     part: &'a Part,
-    built: &'a mut Built<'b>,
+    packed: &'a mut [u8],
+    views: &'a mut Vec<WideView>,
 }
 
-impl Kernel for Sweeping<'_, '_> {
+impl Kernel for Sweeping<'_> {
     type Result = ();
 
     #[inline(always)]
-    fn run<S: Set>(self, set: S) {
-        sweep(set, self.source, self.part, self.built);
-    }
-}
-
-#[inline(always)]
-fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_>) {
-    let (width, height) = (source.grid.width(), source.grid.height());
-    let (majors, minors) = swap_unless(part.x_major, (width, height));
-    let row_blocks = width.div_ceil(SIDE);
-    let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
-    let layout = RowLayout::new(blocks);
-    let mut masks = StripMasks::new(layout);
-    let mut swept = vec![Row::new(layout); part.directions.len()];
-    let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(layout));
-    let mut planes = Planes::new(part, blocks, source.directions.count());
-    for i in 0..strips {
-        let strip = if part.forward { strips - 1 - i } else { i };
-        masks.fill(source.grid, part.x_major, strip);
-        let places = if part.x_major {
-            (strip, row_blocks)
-        } else {
-            (strip * row_blocks, 1)
-        };
-        let strip_blocks = StripBlocks::new(source.ids, places, blocks);
-        for (slot, (&d, swept)) in part.directions.iter().zip(&mut swept).enumerate() {
-            let direction = source.directions.get(d);
-            let [a, b, c] = &mut between;
-            for i in 0..SIDE {
-                let row = if part.forward { SIDE - 1 - i } else { i };
-                let major = (SIDE * strip + row) as i64;
-                let shift = direction.minor(major + direction.step) - direction.minor(major);
-                let (next, ranges) = match i {
-                    0 => (&*swept, &mut *a),
-                    1 => (&*a, &mut *b),
-                    2 => (&*b, &mut *c),
-                    _ => (&*c, &mut *swept),
-                };
-                masks.sweep(lanes, row, shift, next, ranges);
-            }
-            let rows = [&*a, b, c, swept];
-            let mut noting = Noting {
-                views: &mut *built.views,
-                steps: source.steps,
-                direction: d,
-                class: direction.class,
-                blocks: &strip_blocks,
+    fn run<S: Set>(self, lanes: S) {
+        let Sweeping {
+            source,
+            part,
+            packed,
+            views,
+        } = self;
+        let (width, height) = (source.grid.width(), source.grid.height());
+        let (majors, minors) = swap_unless(part.x_major, (width, height));
+        let row_blocks = width.div_ceil(SIDE);
+        let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
+        let layout = RowLayout::new(blocks);
+        let mut masks = StripMasks::new(layout);
+        let mut swept = vec![Row::new(layout); part.directions.len()];
+        let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(layout));
+        let mut planes = Planes::new(part, blocks, source.directions.count());
+        for i in 0..strips {
+            let strip = if part.forward { strips - 1 - i } else { i };
+            masks.fill(source.grid, part.x_major, strip);
+            let places = if part.x_major {
+                (strip, row_blocks)
+            } else {
+                (strip * row_blocks, 1)
             };
-            pool(
-                lanes,
-                rows,
-                source.bins.lines(direction.class),
-                planes.of(slot),
-                &mut noting,
-            );
+            let strip_blocks = StripBlocks::new(source.ids, places, blocks);
+            for (slot, (&d, swept)) in part.directions.iter().zip(&mut swept).enumerate() {
+                let direction = source.directions.get(d);
+                let [a, b, c] = &mut between;
+                for i in 0..SIDE {
+                    let row = if part.forward { SIDE - 1 - i } else { i };
+                    let major = (SIDE * strip + row) as i64;
+                    let shift = direction.minor(major + direction.step) - direction.minor(major);
+                    let (next, ranges) = match i {
+                        0 => (&*swept, &mut *a),
+                        1 => (&*a, &mut *b),
+                        2 => (&*b, &mut *c),
+                        _ => (&*c, &mut *swept),
+                    };
+                    masks.sweep(lanes, row, shift, next, ranges);
+                }
+                let rows = [&*a, b, c, swept];
+                let mut noting = Noting {
+                    views: &mut *views,
+                    bins: source.bins,
+                    direction: d,
+                    class: direction.class,
+                    blocks: &strip_blocks,
+                };
+                let lines = source.bins.lines(direction.class);
+                pool(lanes, rows, lines, planes.of(slot), &mut noting);
+            }
+            planes.write(&strip_blocks, packed);
         }
-        planes.write(&strip_blocks, built.packed);
     }
 }
 

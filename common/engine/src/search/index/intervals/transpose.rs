@@ -34,26 +34,3 @@ fn swap(words: &mut [[u64; WORD]; WORD], distance: usize, low: u64) {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_byte_finds_its_place() {
-        let byte = |direction: usize, block: usize| (direction * 31 + block * 7) as u8;
-        let word = |direction: usize, i: usize| {
-            u64::from_le_bytes(std::array::from_fn(|j| byte(direction, WORD * i + j)))
-        };
-        let mut words =
-            std::array::from_fn(|direction| std::array::from_fn(|i| word(direction, i)));
-        transpose(&mut words);
-        for block in 0..TILE {
-            let bytes = words[block % WORD][block / WORD].to_le_bytes();
-            assert_eq!(
-                bytes,
-                std::array::from_fn(|direction| byte(direction, block))
-            );
-        }
-    }
-}

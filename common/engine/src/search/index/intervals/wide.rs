@@ -7,8 +7,8 @@
 
 use super::strip_blocks::StripBlocks;
 use crate::program::NO_RANGE;
+use crate::search::index::bins::Bins;
 use crate::search::index::bits;
-use crate::search::index::steps::BinSteps;
 
 /// Number of neighbouring bins that are noted together, as a power of two: a block of 8 × 8
 /// cells blurs distances by more.
@@ -76,7 +76,7 @@ impl WideViews {
 /// Output for the wide views of a strip of blocks in one direction.
 pub(super) struct Noting<'a> {
     pub views: &'a mut Vec<WideView>,
-    pub steps: &'a BinSteps,
+    pub bins: &'a Bins,
     pub direction: usize,
     pub class: usize,
     pub blocks: &'a StripBlocks<'a>,
@@ -89,7 +89,7 @@ impl Noting<'_> {
         for i in bits::ones(among).map(|lane| start + lane) {
             let ranges = cells.iter().map(|cells| cells[i]);
             let seen = ranges.filter(|&range| range != 0 && range != NO_RANGE);
-            let rows = seen.map(|range| self.steps.bin(self.class, range) >> ROW_SHIFT);
+            let rows = seen.map(|range| self.bins.bin(self.class, range) >> ROW_SHIFT);
             self.views.push(WideView {
                 block: self.blocks.id(i) as u32,
                 direction: self.direction as u16,

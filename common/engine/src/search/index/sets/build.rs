@@ -3,98 +3,59 @@
 
 use std::ops::Range;
 
-use super::Byte;
+use super::RangeSets;
 use super::marks::{CHUNK, Chunk};
-use super::packed::PackedRows;
 use crate::search::index::bins::Bins;
 use crate::search::index::bits;
 use crate::search::index::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
 use crate::simd::words::QUAD;
-use crate::simd::{Kernel, Set, Simd};
+use crate::simd::{Kernel, Set};
 
 /// No rows; the range from which others grow.
 #[expect(clippy::reversed_empty_ranges, reason = "it is where growing starts")]
 const NONE: Range<usize> = usize::MAX..0;
 
-/// Rows of bits, quad by quad.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Rows {
-    /// Range of the rows of each quad that have any bits, and number of bytes kept of them.
-    pub quads: Vec<(Range<usize>, usize)>,
-    pub packed: PackedRows,
-}
-
-impl Rows {
-    /// Adds a quad with these rows, each of which `row` fills in.
-    pub(super) fn push(
-        &mut self,
-        rows: Range<usize>,
-        turn: &mut [Byte],
-        mut row: impl FnMut(usize, &mut [Byte]),
-    ) {
-        let before = self.packed.bytes.len();
-        for i in rows.clone() {
-            row(i, turn);
-            self.packed.push(turn);
-        }
-        self.quads.push((rows, self.packed.bytes.len() - before));
-    }
-}
-
-/// Input from which the sets are built.
-pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
-
-/// Builds the rows of all quads.
-pub(super) fn build(simd: Simd, source: Source<'_>) -> Rows {
-    simd.run(Joining(source))
-}
-
-/// Kernel that joins the sets of all quads.
-struct Joining<'a>(Source<'a>);
+/// Kernel that joins the sets of all quads, and adds them to those without any.
+pub(super) struct Joining<'a>(pub &'a RangeIntervals, pub &'a WideViews, pub RangeSets);
 
 impl Kernel for Joining<'_> {
-    type Result = Rows;
+    type Result = RangeSets;
 
     #[inline(always)]
-    fn run<S: Set>(self, set: S) -> Rows {
-        join(set, self.0)
-    }
-}
-
-#[inline(always)]
-fn join<S: Set>(set: S, source: Source<'_>) -> Rows {
-    let (intervals, _) = source;
-    let stride = intervals.directions / 8;
-    let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
-    let (mut joined, mut turn) = (Rows::default(), vec![[0; QUAD]; stride]);
-    // For each block of a quad, a row of words for each row of bits.
-    let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
-    for y in 0..intervals.rows.div_ceil(4) {
-        for x in 0..intervals.columns.div_ceil(4) {
-            let mut rows = NONE;
-            for (place, words) in words.iter_mut().enumerate() {
-                let block = (2 * x + place % 2, 2 * y + place / 2);
-                let marked = mark(set, source, block, &mut chunks, words);
-                rows = rows.start.min(marked.start)..rows.end.max(marked.end);
-            }
-            if rows.is_empty() {
-                rows = 0..0;
-            }
-            joined.push(rows.clone(), &mut turn, |row, turn| {
-                let row = row * chunks.len();
-                let [a, b, c, d] = words
-                    .each_ref()
-                    .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
-                let bytes = a.iter().zip(b).zip(c).zip(d);
-                let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
-                turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
-            });
-            for words in &mut words {
-                words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
+    fn run<S: Set>(self, set: S) -> RangeSets {
+        let Joining(intervals, wide, mut joined) = self;
+        let stride = intervals.directions / 8;
+        let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
+        let mut turn = vec![[0; QUAD]; stride];
+        // For each block of a quad, a row of words for each row of bits.
+        let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
+        for y in 0..intervals.rows.div_ceil(4) {
+            for x in 0..intervals.columns.div_ceil(4) {
+                let mut rows = NONE;
+                for (place, words) in words.iter_mut().enumerate() {
+                    let block = (2 * x + place % 2, 2 * y + place / 2);
+                    let marked = mark(set, (intervals, wide), block, &mut chunks, words);
+                    rows = rows.start.min(marked.start)..rows.end.max(marked.end);
+                }
+                if rows.is_empty() {
+                    rows = 0..0;
+                }
+                joined.push(rows.clone(), &mut turn, |row, turn| {
+                    let row = row * chunks.len();
+                    let [a, b, c, d] = words
+                        .each_ref()
+                        .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
+                    let bytes = a.iter().zip(b).zip(c).zip(d);
+                    let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
+                    turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
+                });
+                for words in &mut words {
+                    words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
+                }
             }
         }
+        joined.finished()
     }
-    joined
 }
 
 /// Marks the distances that the block in column `x` and row `y` sees in `words`, all of
@@ -103,7 +64,7 @@ fn join<S: Set>(set: S, source: Source<'_>) -> Rows {
 #[inline(always)]
 fn mark<S: Set>(
     set: S,
-    (intervals, wide): Source<'_>,
+    (intervals, wide): (&RangeIntervals, &WideViews),
     (x, y): (usize, usize),
     chunks: &mut [Chunk],
     words: &mut [u64],

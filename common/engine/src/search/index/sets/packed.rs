@@ -26,7 +26,7 @@ pub(crate) struct SetRows<'a> {
     /// Rows that have any bits, from the nearest bin on.
     pub rows: Range<usize>,
     /// Bytes of a row.
-    stride: usize,
+    pub(super) stride: usize,
     pub(super) masks: &'a [u16],
     /// Kept bytes, and [`READ`] more that can be read.
     pub bytes: &'a [Byte],
@@ -66,21 +66,6 @@ impl PackedRows {
 }
 
 impl<'a> SetRows<'a> {
-    /// Rows of this many bytes each, with their masks and the bytes that were kept.
-    #[inline(always)]
-    pub(super) fn new(
-        rows: Range<usize>,
-        stride: usize,
-        (masks, bytes): (&'a [u16], &'a [Byte]),
-    ) -> Self {
-        SetRows {
-            rows,
-            stride,
-            masks,
-            bytes,
-        }
-    }
-
     /// Returns the masks of the words of a row, which must be one of `rows`.
     #[inline(always)]
     pub(crate) fn masks_of(&self, row: usize) -> &'a [u16] {
@@ -119,40 +104,11 @@ impl SetRows<'_> {
         let mut packed = PackedRows::default();
         plain.iter().for_each(|row| packed.push(row));
         packed.finish();
-        let rows = first..first + plain.len();
-        then(&SetRows::new(rows, stride, (&packed.masks, &packed.bytes)));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::collection::vec;
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn rows_are_unpacked_as_they_were(
-            stride in 1usize..100, count in 0usize..9, first in 0usize..9, seed in vec(any::<u32>(), 900),
-        ) {
-            // Most bytes have no bits.
-            let byte = |seed: u32| if seed.is_multiple_of(4) { seed.to_ne_bytes() } else { NOTHING };
-            let plain: Vec<Byte> = seed[..stride * count].iter().map(|&seed| byte(seed)).collect();
-            let mut packed = PackedRows::default();
-            plain.chunks(stride).for_each(|row| packed.push(row));
-            let kept = packed.bytes.len();
-            prop_assert_eq!(kept, plain.iter().filter(|&&byte| byte != NOTHING).count());
-            packed.finish();
-            let rows = SetRows::new(first..first + count, stride, (&packed.masks, &packed.bytes));
-            let mut unpacked = vec![[1; QUAD]];
-            rows.unpack(&mut unpacked);
-            prop_assert_eq!(&unpacked, &plain);
-            for row in 0..20 {
-                let before = (row.max(first) - first).min(count) * stride;
-                let kept = plain[..before].iter().filter(|&&byte| byte != NOTHING).count();
-                prop_assert_eq!(rows.kept_before(row), kept);
-            }
-        }
+        then(&SetRows {
+            rows: first..first + plain.len(),
+            stride,
+            masks: &packed.masks,
+            bytes: &packed.bytes,
+        });
     }
 }
