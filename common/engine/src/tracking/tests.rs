@@ -49,11 +49,7 @@ fn unanswered(
     truth: Pose,
     moved: Option<Pose>,
 ) -> Need {
-    let (ends, fit) = (building.ends(truth), FitConfig::default());
-    let seen = building.seen(&ends, &fit);
-    let need = tracker.begin(&[seen], 1, moved);
-    tracker.finish(&[seen], None);
-    need
+    building.see(tracker, &building.ends(truth), moved, |_| None)
 }
 
 #[test]
@@ -96,10 +92,9 @@ fn the_map_is_only_blamed_after_a_search() {
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
     unanswered(&building, &mut tracker, START, None);
     assert_eq!(tracker.report().reason, TrackReason::NoSearch);
-    let (ends, fit) = (building.ends(START), FitConfig::default());
-    let seen = building.seen(&ends, &fit);
-    assert_eq!(tracker.begin(&[seen], 2, None), Need::ThisScan);
-    tracker.finish(&[seen], Some(&[]));
+    let found_nothing = |_: Need| Some(Vec::new());
+    let need = building.see(&mut tracker, &building.ends(START), None, found_nothing);
+    assert_eq!(need, Need::ThisScan);
     assert_eq!(tracker.report().reason, TrackReason::NoPlace);
 }
 
@@ -122,9 +117,7 @@ fn nothing_becomes_the_only_place_without_a_search() {
 #[test]
 fn places_that_look_alike_are_never_distinguished() {
     let building = building(&ALIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    building.drive(&mut tracker, START, 6);
+    let (tracker, _) = building.tracked(6);
     let report = tracker.report();
     assert_eq!(
         (report.state, report.reason),
@@ -142,9 +135,7 @@ fn places_that_look_alike_are_never_distinguished() {
 #[test]
 fn a_robot_that_is_carried_away_is_noticed_at_once_and_found_again() {
     let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    building.drive(&mut tracker, START, 8);
+    let (mut tracker, _) = building.tracked(8);
     assert_eq!(tracker.report().state, TrackState::Unique);
     let elsewhere = Pose::new(4.0, 1.9, PI);
     assert_eq!(
@@ -196,13 +187,9 @@ fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
         for nine in ranges.chunks_mut(9) {
             nine[..of_nine].iter_mut().for_each(|range| *range *= 1.6);
         }
-        let scan = building.scan(&ranges);
-        let ends = Ends::new(&scan, &building.space, &BeamConfig::default()).unwrap();
-        let fit = FitConfig::default();
-        let seen = building.seen(&ends, &fit);
-        let need = tracker.begin(&[seen], 1, Some(step));
         // A search finds nothing better.
-        tracker.finish(&[seen], (need != Need::Nothing).then_some(&[]));
+        let find = |need: Need| (need != Need::Nothing).then(Vec::new);
+        building.see(&mut tracker, &building.ends_of(&ranges), Some(step), find);
         tracker.report().state
     };
     (0..20).map(take).collect()
@@ -233,9 +220,7 @@ fn what_fits_badly_for_long_is_not_taken_for_good() {
 #[test]
 fn what_odometry_misses_is_followed() {
     let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    let at = building.drive(&mut tracker, START, 8);
+    let (mut tracker, at) = building.tracked(8);
     // The robot turns by 20° and the wheels do not report it.
     let turned = at.then(Pose::new(0.3, 0.0, 0.35));
     building.step(&mut tracker, turned, Some(Pose::new(0.3, 0.0, 0.0)));
@@ -252,9 +237,7 @@ fn what_odometry_misses_is_followed() {
 #[test]
 fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_lost() {
     let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    let at = building.drive(&mut tracker, START, 8);
+    let (mut tracker, at) = building.tracked(8);
     assert_eq!(tracker.report().state, TrackState::Unique);
     let step = Some(Pose::new(0.1, 0.0, 0.0));
     let states: Vec<TrackState> = (0..60)
@@ -277,9 +260,7 @@ fn a_laser_whose_scans_stay_the_same_while_odometry_drives_on_is_doubted_and_los
 #[test]
 fn a_robot_that_stands_keeps_its_pose() {
     let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    let at = building.drive(&mut tracker, START, 8);
+    let (mut tracker, at) = building.tracked(8);
     let pose = tracker.report().pose;
     for i in 0..100 {
         let mut ranges = building.ranges(at);
@@ -288,10 +269,7 @@ fn a_robot_that_stands_keeps_its_pose() {
             *range += 0.03 * ((beam * 7 + i * 13) as f32).sin();
         }
         let ends = building.ends_of(&ranges);
-        let fit = FitConfig::default();
-        let seen = building.seen(&ends, &fit);
-        tracker.begin(&[seen], 1, Some(Pose::IDENTITY));
-        tracker.finish(&[seen], None);
+        building.see(&mut tracker, &ends, Some(Pose::IDENTITY), |_| None);
     }
     assert_eq!(tracker.report().state, TrackState::Unique);
     let moved = pose.zip(tracker.report().pose).unwrap();
@@ -334,14 +312,12 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
     // The robot turns on the spot: each scan is a key scan.
     for _ in 0..40 {
         at = at.then(step);
-        let (ends, fit) = (building.ends(at), FitConfig::default());
-        let seen = building.seen(&ends, &fit);
-        let need = tracker.begin(&[seen], 1, Some(step));
+        let need = building.see(&mut tracker, &building.ends(at), Some(step), |need| {
+            let earlier = at.then(step.inverse()).then(step.inverse());
+            (need == Need::EarlierScan).then(|| building.found(earlier))
+        });
         assert_ne!(need, Need::ThisScan);
-        let found = (need == Need::EarlierScan)
-            .then(|| building.found(at.then(step.inverse()).then(step.inverse())));
-        due += u32::from(found.is_some());
-        tracker.finish(&[seen], found.as_deref());
+        due += u32::from(need == Need::EarlierScan);
         asked += u32::from(tracker.asks_ahead());
     }
     assert_eq!((asked, due), (3, 3));
@@ -353,10 +329,8 @@ fn while_the_pose_is_sure_few_scans_are_searched() {
 fn a_scan_of_nothing_changes_nothing() {
     let building = building(&UNLIKE);
     let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    let (ends, fit) = (Ends::default(), FitConfig::default());
-    let seen = building.seen(&ends, &fit);
-    assert_eq!(tracker.begin(&[seen], 1, None), Need::Nothing);
-    tracker.finish(&[seen], None);
+    let need = building.see(&mut tracker, &Ends::default(), None, |_| None);
+    assert_eq!(need, Need::Nothing);
     assert_eq!(
         (tracker.report().pose, tracker.report().reason),
         (None, TrackReason::NoScan)
@@ -366,9 +340,7 @@ fn a_scan_of_nothing_changes_nothing() {
 #[test]
 fn tracking_allocates_nothing() {
     let building = building(&UNLIKE);
-    let mut tracker = PlaceTracker::new(TrackingConfig::default());
-    building.step(&mut tracker, START, None);
-    let mut at = building.drive(&mut tracker, START, 8);
+    let (mut tracker, mut at) = building.tracked(8);
     let step = Pose::new(0.0, 0.0, 0.1);
     for _ in 0..20 {
         at = at.then(step);
@@ -384,26 +356,19 @@ fn tracking_allocates_nothing() {
 }
 
 #[test]
-fn a_robot_that_stands_is_found_by_one_scan_where_that_is_believed() {
-    let building = building(&UNLIKE);
+fn where_one_scan_is_believed_rooms_that_are_alike_are_not() {
     let config = TrackingConfig {
         start: Start::Believe,
         ..TrackingConfig::default()
     };
-    let mut tracker = PlaceTracker::new(config);
-    building.step(&mut tracker, START, None);
+    let after_a_scan = |rows: &[&str]| {
+        let mut tracker = PlaceTracker::new(config);
+        building(rows).step(&mut tracker, START, None);
+        tracker
+    };
+    let tracker = after_a_scan(&UNLIKE);
     assert_eq!(tracker.report().state, TrackState::Unique);
     assert!(is_at(&tracker, START));
-}
-
-#[test]
-fn rooms_that_are_alike_are_believed_by_no_single_scan() {
-    let building = building(&ALIKE);
-    let config = TrackingConfig {
-        start: Start::Believe,
-        ..TrackingConfig::default()
-    };
-    let mut tracker = PlaceTracker::new(config);
-    building.step(&mut tracker, START, None);
-    assert_eq!(tracker.report().state, TrackState::Searching);
+    let state = after_a_scan(&ALIKE).report().state;
+    assert_eq!(state, TrackState::Searching);
 }

@@ -10,12 +10,10 @@ fn a_robot_that_sees_nothing_goes_on_by_odometry_and_is_doubtful_once_it_may_be_
     let believed = tracker.report().pose.unwrap();
     let deviation = tracker.report().covariance.to_rows()[0].sqrt();
     assert_eq!(tracker.report().state, TrackState::Unique);
-    let (nothing, fit) = (Ends::default(), FitConfig::default());
-    let seen = building.seen(&nothing, &fit);
     let step = Pose::new(0.2, 0.0, 0.0);
     let see_nothing = |tracker: &mut PlaceTracker| {
-        assert_eq!(tracker.begin(&[seen], 1, Some(step)), Need::Nothing);
-        tracker.finish(&[seen], None);
+        let need = building.see(tracker, &Ends::default(), Some(step), |_| None);
+        assert_eq!(need, Need::Nothing);
         tracker.report()
     };
     for number in 1..=9 {
@@ -52,9 +50,6 @@ fn a_robot_that_sees_nothing_and_has_no_odometry_is_doubtful_at_once() {
     let building = building(&UNLIKE);
     let mut tracker = building.believed(START);
     building.drive(&mut tracker, START, 4);
-    let (nothing, fit) = (Ends::default(), FitConfig::default());
-    let seen = building.seen(&nothing, &fit);
-    tracker.begin(&[seen], 1, None);
-    tracker.finish(&[seen], None);
+    building.see(&mut tracker, &Ends::default(), None, |_| None);
     assert_eq!(tracker.report().state, TrackState::Doubtful);
 }

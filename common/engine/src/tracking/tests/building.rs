@@ -107,6 +107,22 @@ impl Building {
         }
     }
 
+    /// Gives a tracker a scan, and what a search finds, by the one that was needed, which is
+    /// returned.
+    pub(super) fn see(
+        &self,
+        tracker: &mut PlaceTracker,
+        ends: &Ends,
+        moved: Option<Pose>,
+        find: impl FnOnce(Need) -> Option<Vec<Candidate>>,
+    ) -> Need {
+        let fit = FitConfig::default();
+        let seen = [self.seen(ends, &fit)];
+        let need = tracker.begin(&seen, 1, moved);
+        tracker.finish(&seen, find(need).as_deref());
+        need
+    }
+
     /// Gives a tracker the scan at a pose; returns the search that was needed.
     pub(super) fn step(
         &self,
@@ -114,12 +130,9 @@ impl Building {
         truth: Pose,
         moved: Option<Pose>,
     ) -> Need {
-        let (ends, fit) = (self.ends(truth), FitConfig::default());
-        let seen = self.seen(&ends, &fit);
-        let need = tracker.begin(&[seen], 1, moved);
-        let found = (need == Need::ThisScan).then(|| self.found(truth));
-        tracker.finish(&[seen], found.as_deref());
-        need
+        self.see(tracker, &self.ends(truth), moved, |need| {
+            (need == Need::ThisScan).then(|| self.found(truth))
+        })
     }
 
     /// A tracker that believes the true pose of the robot.
@@ -130,6 +143,14 @@ impl Building {
         tracker.start_at(&[self.seen(&ends, &fit)], (0, truth), covariance);
         self.step(&mut tracker, truth, Some(Pose::IDENTITY));
         tracker
+    }
+
+    /// A tracker that found the robot at [`START`] by itself and followed it, and the last pose.
+    pub(super) fn tracked(&self, steps: usize) -> (PlaceTracker, Pose) {
+        let mut tracker = PlaceTracker::new(TrackingConfig::default());
+        self.step(&mut tracker, START, None);
+        let end = self.drive(&mut tracker, START, steps);
+        (tracker, end)
     }
 
     /// Drives straight on by steps of 0.3 m.

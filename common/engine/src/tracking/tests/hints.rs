@@ -20,12 +20,10 @@ fn twin(pose: Pose) -> Pose {
 /// Gives a tracker the scan of a standing robot, and the answers to all searches in time; returns
 /// the search that was needed.
 fn stand(building: &Building, tracker: &mut PlaceTracker, truth: Pose) -> Need {
-    let (ends, fit) = (building.ends(truth), FitConfig::default());
-    let seen = building.seen(&ends, &fit);
-    let need = tracker.begin(&[seen], 1, Some(Pose::IDENTITY));
-    let found = (need != Need::Nothing).then(|| building.found(truth));
-    tracker.finish(&[seen], found.as_deref());
-    need
+    let still = Some(Pose::IDENTITY);
+    building.see(tracker, &building.ends(truth), still, |need| {
+        (need != Need::Nothing).then(|| building.found(truth))
+    })
 }
 
 fn believes(tracker: &PlaceTracker, pose: Pose) -> bool {
