@@ -70,8 +70,10 @@ pub enum HeadingError {
 /// Recent odometry and ground truth.
 #[derive(Debug, Clone)]
 pub struct History {
-    odometry: Recent<Driven>,
-    truths: Recent<Truth>,
+    odometry: VecDeque<Driven>,
+    truths: VecDeque<Truth>,
+    /// Largest number of readings of each kind.
+    most: usize,
     /// Added to the stamps of odometry, in nanoseconds.
     delay_ns: i64,
 }
@@ -94,27 +96,30 @@ impl History {
     #[must_use]
     pub fn keeping(readings: usize, motion: &MotionConfig) -> Self {
         History {
-            odometry: Recent::keeping(readings),
-            truths: Recent::keeping(readings),
+            odometry: VecDeque::new(),
+            truths: VecDeque::new(),
+            most: readings,
             delay_ns: motion.delay_ns(),
         }
     }
 
     /// Adds an odometry sample.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
-        self.odometry.push(Driven {
+        let driven = Driven {
             measured_ns: odometry.stamp.measured_ns.saturating_add(self.delay_ns),
             odom_from_child: odometry.odom_from_child.into(),
             child_frame: odometry.child_frame,
-        });
+        };
+        push(&mut self.odometry, self.most, driven);
     }
 
     /// Adds a true pose.
     pub fn on_truth(&mut self, truth: &GroundTruth) {
-        self.truths.push(Truth {
+        let truth = Truth {
             measured_ns: truth.stamp.measured_ns,
             yaw: truth.map_from_laser.yaw,
-        });
+        };
+        push(&mut self.truths, self.most, truth);
     }
 
     /// Returns the pose of the laser by odometry at the time of `scan`. As for headings, a laser
@@ -146,7 +151,6 @@ impl Driven {
 
 impl HeadingSource {
     /// Returns the kind of prior for which the map must be prepared.
-    #[must_use]
     pub fn prior(&self) -> Prior {
         match self {
             HeadingSource::Searched => Prior::None,
@@ -183,7 +187,7 @@ impl HeadingSource {
 
 fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
     let scan_ns = scan.stamp.measured_ns;
-    let mut newest_first = history.truths.readings.iter().rev();
+    let mut newest_first = history.truths.iter().rev();
     newest_first
         .find(|truth| truth.measured_ns == scan_ns)
         .map(|truth| truth.yaw)
@@ -198,7 +202,7 @@ fn odometry_of(
     allowed_ns: i64,
 ) -> Result<Driven, HeadingError> {
     let scan_ns = scan.stamp.measured_ns;
-    let before = history.odometry.readings.iter();
+    let before = history.odometry.iter();
     let newest = before
         .filter(|odometry| odometry.measured_ns <= scan_ns)
         .max_by_key(|odometry| odometry.measured_ns)
@@ -210,27 +214,12 @@ fn odometry_of(
     Ok(*newest)
 }
 
-/// The last readings, oldest first.
-#[derive(Debug, Clone)]
-struct Recent<R> {
-    readings: VecDeque<R>,
-    most: usize,
-}
-
-impl<R> Recent<R> {
-    fn keeping(most: usize) -> Self {
-        Recent {
-            readings: VecDeque::new(),
-            most,
-        }
+/// Adds a reading to the last ones, oldest first, of which at most this many are kept.
+fn push<R>(readings: &mut VecDeque<R>, most: usize, reading: R) {
+    if readings.len() == most {
+        readings.pop_front();
     }
-
-    fn push(&mut self, reading: R) {
-        if self.readings.len() == self.most {
-            self.readings.pop_front();
-        }
-        self.readings.push_back(reading);
-    }
+    readings.push_back(reading);
 }
 
 #[cfg(test)]

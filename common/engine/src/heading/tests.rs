@@ -204,7 +204,7 @@ fn the_truth_has_exactly_the_time_of_the_scan() {
 fn only_the_last_readings_are_kept() {
     let readings: Vec<(i64, f64)> = (0..=KEPT as i64).map(|i| (i, 0.0)).collect();
     let history = history(&readings);
-    assert_eq!(history.odometry.readings.len(), KEPT);
+    assert_eq!(history.odometry.len(), KEPT);
     assert!(BY_ODOMETRY.heading_of(&scan(0), &history).is_err());
     assert!(BY_ODOMETRY.heading_of(&scan(1), &history).is_ok());
 }
