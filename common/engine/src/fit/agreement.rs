@@ -1,7 +1,7 @@
 //! Agreement of a scan with the map at a pose, beam by beam.
 
-use super::ends::{End, Ends};
-use super::{BeamClass, DistanceField, FitConfig, GridPose};
+use super::ends::{BeamClass, End, Ends};
+use super::{DistanceField, FitConfig, GridPose};
 
 /// Largest distance of an end point from an obstacle that counts as a hit, in standard deviations.
 const HIT_SIGMAS: f64 = 2.0;

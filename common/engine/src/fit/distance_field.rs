@@ -2,7 +2,7 @@
 
 use geometry::Pose;
 
-use super::lanes::{LANES, Lanes, lanes};
+use super::pull::{LANES, Lanes, lanes};
 use super::{FitConfig, GridPose, distance, drawing};
 use crate::EngineError;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
@@ -106,7 +106,6 @@ impl DistanceField {
     }
 
     /// Returns the error of the walls that comes from drawing, in metres; 0 on a measured map.
-    #[must_use]
     pub fn drawn_error_m(&self) -> f64 {
         self.drawn_share * DRAWN_ERROR_M
     }
@@ -201,7 +200,6 @@ impl DistanceField {
     }
 
     /// Memory of the distances in bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         size_of_val(&self.to_occupied[..]) + size_of_val(&self.to_unknown[..])
     }
@@ -216,7 +214,6 @@ impl DistanceField {
     }
 
     /// Number of cells along x.
-    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }

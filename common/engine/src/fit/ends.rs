@@ -2,11 +2,10 @@
 
 use messages::Reading;
 
-use super::BeamClass;
-use super::lanes::{EndLanes, LANES};
+use super::pull::{EndLanes, LANES};
 use crate::EngineError;
-use crate::beams::{BeamConfig, Chosen};
-use crate::fit::readings::{Readings, is_sound};
+use crate::beams::BeamConfig;
+use crate::fit::readings::{Readings, is_sound, still};
 use crate::observation::Observation;
 use crate::space::Space;
 
@@ -14,7 +13,6 @@ use crate::space::Space;
 /// scan to scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
-    chosen: Chosen,
     pub(crate) ends: Vec<End>,
     /// Copy of `ends` in groups of eight.
     pub(super) lanes: Vec<EndLanes>,
@@ -73,32 +71,18 @@ impl Ends {
         config: &BeamConfig,
     ) -> Result<(), EngineError> {
         let scan = scan.into();
+        scan.check()?;
+        let mut readings = std::mem::take(&mut self.readings);
         match scan {
-            Observation::Still(scan) => {
-                scan.check()?;
-                self.clear();
-                self.chosen.choose((&scan).into(), 0.0, space, config);
-                let cell_m = space.resolution_m;
-                self.ends.extend(self.chosen.beams.iter().map(|beam| {
-                    let reading = (beam.reading_m, beam.reading_m / cell_m);
-                    End::new((0.0, 0.0), beam.angle, reading, beam.weight)
-                }));
-                self.silent.extend_from_slice(&self.chosen.silent);
-                self.sum_up();
-                Ok(())
-            }
-            Observation::Carried(_) => {
-                let mut readings = std::mem::take(&mut self.readings);
-                let found = readings.find(scan, space, config);
-                let taken = found.and_then(|()| self.take(&readings.found, space.resolution_m));
-                self.readings = readings;
-                taken
-            }
+            Observation::Still(scan) => readings.collect(&[still(scan)], space, config),
+            Observation::Carried(scans) => readings.collect(scans, space, config),
         }
+        let taken = self.take(&readings.found, space.resolution_m);
+        self.readings = readings;
+        taken
     }
 
     /// Number of beams with an end.
-    #[must_use]
     pub fn beams(&self) -> usize {
         self.ends.len()
     }
@@ -164,6 +148,19 @@ impl Ends {
     }
 }
 
+/// Class of a beam at a pose, by its agreement with the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BeamClass {
+    /// The beam ends at an obstacle.
+    Hit,
+    /// The beam ends in the open, at something that is not on the map.
+    Short,
+    /// The beam passes through an obstacle of the map.
+    Through,
+    /// The beam ends behind unknown space, where the map has no information.
+    Unknown,
+}
+
 /// A beam with its class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgedBeam {
@@ -196,7 +193,6 @@ impl Ends {
 
     /// Returns the number of beams of equal weight whose score would vary as much by chance: Kish's
     /// effective sample size, (Σ w)² / Σ w².
-    #[must_use]
     pub fn effective_beams(&self) -> f64 {
         self.effective(self.ends.iter().map(|end| end.weight))
     }
@@ -219,7 +215,6 @@ impl Ends {
     }
 
     /// Bearings of the silent beams in the target frame, in radians.
-    #[must_use]
     pub fn silent(&self) -> &[f64] {
         &self.silent
     }

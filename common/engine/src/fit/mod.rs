@@ -14,7 +14,6 @@
 //! is (0.5, 0.5).
 
 mod agreement;
-mod beam_class;
 mod config;
 pub mod distance;
 mod distance_field;
@@ -22,7 +21,6 @@ mod drawing;
 #[cfg(test)]
 pub(crate) mod drawn;
 mod ends;
-mod lanes;
 mod pull;
 mod readings;
 mod refine;
@@ -31,12 +29,11 @@ use geometry::{Pose, wrap_angle};
 use nalgebra::Vector3;
 
 use crate::grid::GridFrame;
-pub use beam_class::BeamClass;
 pub use config::FitConfig;
 pub use distance_field::DistanceField;
 pub(crate) use distance_field::lacks;
 pub(crate) use ends::End;
-pub use ends::{Ends, JudgedBeam};
+pub use ends::{BeamClass, Ends, JudgedBeam};
 pub use readings::Readings;
 pub use refine::{Expected, Refined};
 

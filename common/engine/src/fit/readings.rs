@@ -5,6 +5,7 @@ use messages::Reading;
 use crate::EngineError;
 use crate::beams::{BeamConfig, Chosen};
 use crate::observation::{CarriedScan, Observation};
+use crate::scan::Scan;
 use crate::space::Space;
 
 /// The beams of an observation in the target frame; the buffers are reused from scan to scan.
@@ -27,17 +28,29 @@ impl Readings {
         config: &BeamConfig,
     ) -> Result<(), EngineError> {
         observation.check()?;
+        match observation {
+            Observation::Still(_) => self.found.clear(),
+            Observation::Carried(scans) => self.collect(scans, space, config),
+        }
+        Ok(())
+    }
+
+    /// Takes the beams of scans that were checked.
+    pub(super) fn collect(
+        &mut self,
+        scans: &[CarriedScan<'_>],
+        space: &Space,
+        config: &BeamConfig,
+    ) {
         self.found.clear();
-        let Observation::Carried(scans) = observation else {
-            return Ok(());
-        };
         for carried in scans {
             self.add(carried, space, config);
         }
-        // Stable sort: beams with an end first, otherwise in the same order.
-        self.found
-            .sort_by_key(|reading| reading.range_m == f64::INFINITY);
-        Ok(())
+        if scans.len() > 1 {
+            // Stable sort: beams with an end first, otherwise in the same order.
+            let is_silent = |reading: &Reading| reading.range_m == f64::INFINITY;
+            self.found.sort_by_key(is_silent);
+        }
     }
 
     fn add(&mut self, carried: &CarriedScan<'_>, space: &Space, config: &BeamConfig) {
@@ -63,6 +76,14 @@ impl Readings {
     }
 }
 
+/// Returns a scan as carried nowhere: where a pose is missing, the laser is at the origin.
+pub(super) fn still(scan: Scan<'_>) -> CarriedScan<'_> {
+    CarriedScan {
+        scan,
+        target_from_laser: &[],
+    }
+}
+
 /// True if a reading from another process is valid.
 pub(super) fn is_sound(reading: &Reading) -> bool {
     let Reading {
@@ -84,7 +105,6 @@ mod tests {
 
     use super::*;
     use crate::fit::Ends;
-    use crate::scan::Scan;
 
     fn space() -> Space {
         Space::new(360, 0.1, 500, 500).unwrap()

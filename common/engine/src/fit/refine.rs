@@ -4,8 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::ends::Ends;
-use super::lanes::{Lanes, lanes};
-use super::pull::{Add, Pull, Pulls};
+use super::pull::{Add, Lanes, Pull, Pulls, lanes};
 use super::{DistanceField, FitConfig, GridPose};
 
 /// A refined pose and the quality of its fit.
@@ -70,7 +69,6 @@ fn independent(variance: f64) -> f64 {
 impl Refined {
     /// Information of the scan about the pose: the inverse of its covariance over x, y (cells) and
     /// the heading (radians).
-    #[must_use]
     pub fn information(&self) -> Matrix3<f64> {
         self.curvature / independent(self.variance)
     }
