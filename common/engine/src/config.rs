@@ -1,15 +1,11 @@
 //! Parsers of settings; their errors name the value and the allowed range.
 
+use std::ops::RangeInclusive;
+
 /// Parses a length of 0 to 2 metres: the width of a taper, the arc of a beam.
 #[cfg(feature = "clap")]
 pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=2.0, "metres")
-}
-
-/// Parses a range error as a share of the range, 0 to 0.25; real lasers are better than that.
-#[cfg(feature = "clap")]
-pub(crate) fn parse_range_share(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=0.25, "as a share of the range")
 }
 
 /// Parses a share of 0 to 1.
@@ -24,24 +20,25 @@ pub(crate) fn parse_degrees(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=180.0, "degrees")
 }
 
+/// Returns a parser of numbers within a range.
+#[cfg(feature = "clap")]
+pub(crate) fn within(
+    allowed: RangeInclusive<f64>,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text| parse(text, allowed.clone(), unit)
+}
+
 /// Parses a number within a range.
-pub(crate) fn parse(
-    text: &str,
-    allowed: std::ops::RangeInclusive<f64>,
-    unit: &str,
-) -> Result<f64, String> {
+pub(crate) fn parse(text: &str, allowed: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let value: f64 = text
         .parse()
         .map_err(|_| format!("{text:?} is not a number"))?;
     if allowed.contains(&value) {
-        Ok(value)
-    } else {
-        Err(format!(
-            "{value} is not within {} to {} {unit}",
-            allowed.start(),
-            allowed.end()
-        ))
+        return Ok(value);
     }
+    let (from, to) = (allowed.start(), allowed.end());
+    Err(format!("{value} is not within {from} to {to} {unit}"))
 }
 
 #[cfg(test)]

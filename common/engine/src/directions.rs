@@ -49,13 +49,11 @@ impl Directions {
     }
 
     /// Number of headings, a multiple of 8.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.all.len()
     }
 
     /// Number of distinct values of `steps_per_cell`.
-    #[must_use]
     pub fn classes(&self) -> usize {
         self.all.len() / 8 + 1
     }
@@ -67,13 +65,11 @@ impl Directions {
     }
 
     /// Angle from one heading to the next, in radians.
-    #[must_use]
     pub fn spacing(&self) -> f64 {
         TAU / self.all.len() as f64
     }
 
     /// All directions, by heading.
-    #[must_use]
     pub fn all(&self) -> &[Direction] {
         &self.all
     }
@@ -156,18 +152,11 @@ impl Direction {
     }
 
     /// Returns the opposite direction, on the same lines.
-    #[must_use]
     pub fn opposite(&self) -> Direction {
         Direction {
             step: -self.step,
             ..*self
         }
-    }
-
-    /// Converts a distance in cells to steps: `floor(cells · max(|cos|, |sin|) + ½)`.
-    #[must_use]
-    pub fn steps(&self, cells: f64) -> f64 {
-        (cells * self.steps_per_cell + 0.5).floor()
     }
 }
 
@@ -245,16 +234,6 @@ mod tests {
                 *directions.get(d + 180),
                 "{d}"
             );
-        }
-    }
-
-    #[test]
-    fn a_ray_and_its_opposite_retrace_each_other() {
-        let directions = Directions::new(72).unwrap();
-        for d in 0..72 {
-            let there = directions.get(d);
-            let (x, y) = there.advance(17, 23);
-            assert_eq!(there.opposite().advance(x, y), (17, 23), "{d}");
         }
     }
 

@@ -135,19 +135,16 @@ impl Grid {
     }
 
     /// Number of cells along x.
-    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of cells along y.
-    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// All cells, row by row from the lowest y.
-    #[must_use]
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
@@ -160,7 +157,6 @@ impl Grid {
     }
 
     /// Number of free cells, the paper's n; unknown ones do not count.
-    #[must_use]
     pub fn free_cells(&self) -> usize {
         self.free_cells
     }
@@ -175,13 +171,11 @@ impl Grid {
     }
 
     /// Number of occupied cells.
-    #[must_use]
     pub fn occupied_cells(&self) -> usize {
         self.occupied
     }
 
     /// True if any cell blocks rays without a hit.
-    #[must_use]
     pub fn has_blocked(&self) -> bool {
         self.blocked > 0
     }

@@ -70,17 +70,3 @@ impl fmt::Display for InstructionSet {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_best_is_the_last_that_is_available() {
-        let available: Vec<_> = InstructionSet::available().collect();
-        assert_eq!(available.first(), Some(&InstructionSet::Portable));
-        assert_eq!(available.last(), Some(&InstructionSet::best()));
-        assert!(available.is_sorted());
-        assert_eq!(InstructionSet::best().checked(), InstructionSet::best());
-    }
-}

@@ -104,7 +104,6 @@ pub enum Seen<'a> {
 
 impl Seen<'_> {
     /// Returns the observation to search for.
-    #[must_use]
     pub fn observation(&self) -> Observation<'_> {
         match self {
             Seen::Still(scan) => Observation::Still(*scan),
@@ -145,7 +144,6 @@ impl Joiner {
     }
 
     /// True if poses are the base's, not the laser's.
-    #[must_use]
     pub fn targets_base(&self) -> bool {
         self.lasers.len() > 1
     }
@@ -187,7 +185,6 @@ impl Joiner {
     }
 
     /// True if odometry that covers the last beam is still expected.
-    #[must_use]
     pub fn lacks_odometry(&self) -> bool {
         let lasers = self.lasers.iter().filter(|_| self.config.motion.deskew);
         let moving = lasers.filter(|laser| self.targets_base() || laser.takes_time());
@@ -202,7 +199,6 @@ impl Joiner {
     }
 
     /// True if any odometry has arrived.
-    #[must_use]
     pub fn flows(&self) -> bool {
         self.motion.newest_ns().is_some()
     }
@@ -316,13 +312,11 @@ impl Joiner {
 
     /// Returns the pose of the target frame, by odometry, at the middle of the newest scan of the
     /// first laser, see [`Motion::until`].
-    #[must_use]
     pub fn by_odometry(&self) -> Option<ByOdometry> {
         self.at_time(self.lasers[0].middle_ns())
     }
 
     /// Returns the pose of the target frame by the newest odometry.
-    #[must_use]
     pub fn by_newest_odometry(&self) -> Option<ByOdometry> {
         self.at_time(self.motion.newest_ns()?)
     }
@@ -337,13 +331,11 @@ impl Joiner {
     }
 
     /// Parent frame of the odometry; empty before the first sample.
-    #[must_use]
     pub fn odom_frame(&self) -> FrameName {
         self.odom_frame
     }
 
     /// Pose of the first laser on the base; `None` if its newest scan does not state it.
-    #[must_use]
     pub fn base_from_laser(&self) -> Option<Pose> {
         let first = &self.lasers[0];
         first.is_mounted().then(|| first.base_from_laser())
@@ -358,7 +350,6 @@ impl Joiner {
     }
 
     /// Returns the scans that the last [`Joiner::bring`] joined.
-    #[must_use]
     pub fn seen(&self) -> Seen<'_> {
         if !self.is_carried {
             return Seen::Still(self.lasers[0].scan());

@@ -154,19 +154,16 @@ impl PreparedMap {
     }
 
     /// The first stage.
-    #[must_use]
     pub fn vote_search(&self) -> &VoteSearch {
         &self.vote_search
     }
 
     /// Distance field of the map, for the second stage.
-    #[must_use]
     pub fn distance_field(&self) -> &DistanceField {
         &self.distance_field
     }
 
     /// Settings of the second stage.
-    #[must_use]
     pub fn peaks(&self) -> &PeakConfig {
         &self.peaks
     }
@@ -193,7 +190,6 @@ impl Localizer {
     }
 
     /// Maps, in the order that decides ties.
-    #[must_use]
     pub fn maps(&self) -> &[PreparedMap] {
         &self.maps
     }

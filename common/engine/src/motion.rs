@@ -109,13 +109,11 @@ impl Motion {
     }
 
     /// Number of restarts of odometry; poses before and after a restart cannot be compared.
-    #[must_use]
     pub fn starts(&self) -> u32 {
         self.starts
     }
 
     /// Time of the newest sample, in nanoseconds.
-    #[must_use]
     pub fn newest_ns(&self) -> Option<i64> {
         self.samples.back().map(|&(stamp, _)| stamp)
     }
@@ -137,7 +135,6 @@ impl Motion {
 
     /// True if the newest two samples differ by more than rounding: a tenth of a millimetre or of a
     /// milliradian.
-    #[must_use]
     pub fn is_moving(&self) -> bool {
         let mut newest = self.samples.iter().rev().map(|&(_, pose)| pose);
         match (newest.next(), newest.next()) {

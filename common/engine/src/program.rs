@@ -7,6 +7,7 @@ use crate::EngineError;
 use crate::beams::{Beam, BeamConfig, Chosen, MIN_WEIGHT};
 use crate::observation::Observation;
 use crate::space::Space;
+use crate::tables::{TABLE, VoteTable};
 use crate::taper::TaperShape;
 
 /// Range of a ray that meets no obstacle.
@@ -37,7 +38,7 @@ pub struct VoteConfig {
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length))]
     pub sigma_m: f64,
     /// Increase of the standard deviation per metre of range, 0..=0.25.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::parse_range_share))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::within(0.0..=0.25, "as a share of the range")))]
     pub sigma_per_m: f64,
 }
 
@@ -72,7 +73,6 @@ impl Taper<'_> {
     }
 
     /// Returns the smallest number of steps, beyond the reading, without votes.
-    #[must_use]
     pub fn end(&self) -> u16 {
         self.centre.saturating_add(self.profile.len() as u16)
     }
@@ -86,6 +86,7 @@ pub struct ScanProgram {
     bearings: Vec<usize>,
     /// Taper of beam `i` and class `c` at `i · classes + c`.
     tapers: Vec<TaperEntry>,
+    /// Votes of all tapers, with a 0 after each, and [`TABLE`] bytes more that can be read.
     profiles: Vec<u8>,
     classes: usize,
     highest_possible: u32,
@@ -94,9 +95,9 @@ pub struct ScanProgram {
 
 #[derive(Debug, Clone, Copy)]
 struct TaperEntry {
-    centre: u16,
     start: u32,
-    len: u32,
+    centre: u16,
+    len: u16,
 }
 
 impl ScanProgram {
@@ -148,6 +149,7 @@ impl ScanProgram {
                 self.push(&beam, peak, space, config);
             }
         }
+        self.profiles.resize(self.profiles.len() + TABLE, 0);
         Ok(())
     }
 
@@ -161,17 +163,17 @@ impl ScanProgram {
             let profile = config.taper.profile(peak, sigma_cells * steps_per_cell);
             self.profiles.extend(profile);
             self.tapers.push(TaperEntry {
-                centre: (reading_cells * steps_per_cell + 0.5).floor() as u16,
                 start: start as u32,
-                len: (self.profiles.len() - start) as u32,
+                centre: (reading_cells * steps_per_cell + 0.5).floor() as u16,
+                len: (self.profiles.len() - start) as u16,
             });
+            self.profiles.push(0);
         }
         self.bearings.push(beam.bearing);
         self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
     }
 
     /// Number of beams that vote and are no longer than the grid; the paper's m.
-    #[must_use]
     pub fn beams(&self) -> usize {
         self.bearings.len()
     }
@@ -185,10 +187,23 @@ impl ScanProgram {
     /// Votes of beam `i` along rays of a class of directions.
     #[must_use]
     pub fn taper(&self, i: usize, class: usize) -> Taper<'_> {
-        let TaperEntry { centre, start, len } = self.tapers[i * self.classes + class];
-        Taper {
+        let VoteTable {
             centre,
-            profile: &self.profiles[start as usize..][..len as usize],
+            used,
+            votes,
+        } = self.table(i, class);
+        let profile = &votes[..usize::from(used)];
+        Taper { centre, profile }
+    }
+
+    /// Votes of beam `i` along rays of a class of directions, for lookups of several at once.
+    #[inline(always)]
+    pub(crate) fn table(&self, i: usize, class: usize) -> VoteTable<'_> {
+        let TaperEntry { start, centre, len } = self.tapers[i * self.classes + class];
+        VoteTable {
+            centre,
+            used: len,
+            votes: &self.profiles[start as usize..],
         }
     }
 
@@ -200,19 +215,16 @@ impl ScanProgram {
 
     /// Votes of a pose with which every beam agrees fully, including beams too long for the grid;
     /// at most 65535.
-    #[must_use]
     pub fn highest_possible(&self) -> u32 {
         self.highest_possible
     }
 
     /// Number of beams of the thinned scan without a usable reading.
-    #[must_use]
     pub fn silent(&self) -> usize {
         self.chosen.silent.len()
     }
 
     /// Largest rounding of a bearing to the heading grid, in radians.
-    #[must_use]
     pub fn bearing_rounding(&self) -> f64 {
         self.bearing_rounding
     }
@@ -236,23 +248,12 @@ fn fitting_full_vote(beams: &[Beam]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scan::Scan;
+    use crate::testing::scan_from;
 
     fn program(ranges: &[f32], config: &VoteConfig) -> ScanProgram {
-        let scan = Scan {
-            angle_min: 0.0,
-            angle_increment: std::f64::consts::TAU / ranges.len() as f64,
-            range_min_m: 0.0,
-            range_max_m: 100.0,
-            ranges,
-        };
-        ScanProgram::new(
-            &scan,
-            0.0,
-            &Space::new(360, 0.05, 1000, 1000).unwrap(),
-            config,
-        )
-        .unwrap()
+        let scan = scan_from(0.0, std::f64::consts::TAU / ranges.len() as f64, ranges);
+        let space = Space::new(360, 0.05, 1000, 1000).unwrap();
+        ScanProgram::new(&scan, 0.0, &space, config).unwrap()
     }
 
     #[test]

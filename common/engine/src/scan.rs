@@ -92,7 +92,6 @@ impl<'a> Scan<'a> {
     }
 
     /// Number of beams.
-    #[must_use]
     pub fn beams(&self) -> usize {
         self.ranges.len()
     }

@@ -90,7 +90,6 @@ impl FieldSweep {
     }
 
     /// Returns an accumulator on the grid with the best instruction set.
-    #[must_use]
     pub fn accumulator(&self) -> Sweep<'_> {
         self.accumulator_with(InstructionSet::best())
     }
@@ -170,7 +169,6 @@ impl FieldSweep {
     }
 
     /// Size of the prepared grid in bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         self.along_y.cells.len() + self.along_x.cells.len()
     }

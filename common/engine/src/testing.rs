@@ -59,6 +59,31 @@ pub(crate) fn scan_around(ranges: &[f32]) -> Scan<'_> {
     }
 }
 
+/// Scan with the first beam and the next ones at these angles, in radians.
+pub(crate) fn scan_from(angle_min: f64, angle_increment: f64, ranges: &[f32]) -> Scan<'_> {
+    Scan {
+        angle_min,
+        angle_increment,
+        range_min_m: 0.0,
+        range_max_m: 100.0,
+        ranges,
+    }
+}
+
+/// Grid of occupancies by column, row and a byte of noise, always the same.
+pub(crate) fn grid_of(
+    (width, height): (usize, usize),
+    occupancy: impl Fn(usize, usize, u8) -> u8,
+) -> Grid {
+    let mut state = 1u32;
+    let cells = (0..width * height).map(|i| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        occupancy(i % width, i / width, (state >> 24) as u8)
+    });
+    let cells: Vec<u8> = cells.collect();
+    Grid::new(width, height, &cells, CellRules::default()).expect("sides are in range")
+}
+
 /// Grids of 1 to [`SIDE`] cells a side, from empty to cluttered, with unknown cells that may block
 /// and are often in one large piece.
 pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
@@ -206,13 +231,8 @@ impl AnyScan {
     }
 
     pub(crate) fn scan(&self) -> Scan<'_> {
-        Scan {
-            angle_min: self.angle_min,
-            angle_increment: 0.9 * std::f64::consts::TAU / self.ranges.len() as f64,
-            range_min_m: 0.0,
-            range_max_m: 100.0,
-            ranges: &self.ranges,
-        }
+        let increment = 0.9 * std::f64::consts::TAU / self.ranges.len() as f64;
+        scan_from(self.angle_min, increment, &self.ranges)
     }
 
     pub(crate) fn config(&self) -> VoteConfig {

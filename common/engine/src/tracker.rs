@@ -85,20 +85,17 @@ pub struct TrackedPose {
 impl TrackedPose {
     /// Pose of the first laser in the map, with its covariance: the believed place, otherwise the
     /// leading one. `None` if there is no place.
-    #[must_use]
     pub fn laser(&self) -> Option<(Pose, Covariance)> {
         self.carried(|target| self.target.laser(target))
     }
 
     /// The same of the base; `None` if the mount of the laser is unknown, too.
-    #[must_use]
     pub fn base(&self) -> Option<(Pose, Covariance)> {
         let base = self.carried(|target| self.target.base(target));
         base.filter(|_| self.is_mount_known)
     }
 
     /// Pose of the odometry's origin in the map; `None` without a place or without odometry.
-    #[must_use]
     pub fn map_from_odom(&self) -> Option<Pose> {
         let (target, odom_from_target) = self.report.pose.zip(self.odom_from_target)?;
         Some(target.then(odom_from_target.inverse()))

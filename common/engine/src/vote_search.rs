@@ -34,11 +34,7 @@ pub enum Prior {
 /// A map prepared for searches with one kind of [`Prior`].
 #[derive(Debug, Clone)]
 pub struct VoteSearch {
-    frame: GridFrame,
-    pooling: usize,
-    grid: Grid,
-    space: Space,
-    config: VoteSearchConfig,
+    prepared: Preparation,
     method: Method,
 }
 
@@ -64,13 +60,11 @@ pub struct Workspace {
 impl Workspace {
     /// Intensities of all cells, row by row from the lowest y, at the heading of the last
     /// [`VoteSearch::search_at_in`]; empty before the first.
-    #[must_use]
     pub fn intensities(&self) -> &[u16] {
         &self.field
     }
 
     /// Outcome of the last scan.
-    #[must_use]
     pub fn outcome(&self) -> &Outcome {
         &self.outcome
     }
@@ -100,7 +94,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// Votes of the best collected pose as a share of the highest possible.
-    #[must_use]
     pub fn best_share(&self) -> VoteShare {
         VoteShare::new(self.found.best, self.highest_possible as u16)
     }
@@ -122,7 +115,6 @@ impl VoteSearch {
 
     /// Returns the search index, worth caching for the next start; `None` if prepared for known
     /// headings.
-    #[must_use]
     pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
         match &self.method {
             Method::Search(index) => Some(Arc::clone(index)),
@@ -131,37 +123,31 @@ impl VoteSearch {
     }
 
     /// Number of map cells along the side of a search cell.
-    #[must_use]
     pub fn pooling(&self) -> usize {
-        self.pooling
+        self.prepared.pooling
     }
 
     /// Cell size and pose in the map of the grid that is searched.
-    #[must_use]
     pub fn frame(&self) -> GridFrame {
-        self.frame
+        self.prepared.frame
     }
 
     /// Settings of the search.
-    #[must_use]
     pub fn config(&self) -> &VoteSearchConfig {
-        &self.config
+        &self.prepared.config
     }
 
     /// Cells that are searched.
-    #[must_use]
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.prepared.grid
     }
 
     /// Number of cells in which poses are searched.
-    #[must_use]
     pub fn searchable_cells(&self) -> usize {
-        self.limits().open_cells(&self.grid).count()
+        self.limits().open_cells(&self.prepared.grid).count()
     }
 
     /// Memory of the search data in bytes, without the cells.
-    #[must_use]
     pub fn index_bytes(&self) -> usize {
         match &self.method {
             Method::Search(index) => index.bytes(),
@@ -179,16 +165,19 @@ impl VoteSearch {
     /// Makes beams count up to this length, see [`Space::reaching`].
     #[must_use]
     pub fn reaching(self, reach_m: f64) -> Self {
+        let space = self.prepared.space.reaching(reach_m);
         VoteSearch {
-            space: self.space.reaching(reach_m),
+            prepared: Preparation {
+                space,
+                ..self.prepared
+            },
             ..self
         }
     }
 
     /// Space of poses that is searched.
-    #[must_use]
     pub fn space(&self) -> &Space {
-        &self.space
+        &self.prepared.space
     }
 
     /// Searches all poses in a new workspace, see [`VoteSearch::search_in`].
@@ -242,11 +231,16 @@ impl VoteSearch {
             outcome,
             ..
         } = workspace;
-        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
-        let how = (InstructionSet::best(), usize::from(self.config.threads));
-        let collect = (self.config.collect, &mut outcome.found);
-        let scan = (&*program, &self.space);
-        let found = index.search_in(search, how, &self.grid, scan, collect, stop);
+        let Preparation {
+            grid,
+            space,
+            config,
+            ..
+        } = &self.prepared;
+        program.compile(scan, 0.0, space, &config.votes)?;
+        let how = (InstructionSet::best(), usize::from(config.threads));
+        let collect = (config.collect, &mut outcome.found);
+        let found = index.search_in(search, how, grid, (program, space), collect, stop);
         Ok(found.map(|()| self.describe(program, None, outcome)))
     }
 
@@ -275,8 +269,8 @@ impl VoteSearch {
             blocks,
             ..
         } = workspace;
-        program.compile(scan, 0.0, &self.space, &self.config.votes)?;
-        index.block_bounds_in(search, (program, &self.space), blocks);
+        program.compile(scan, 0.0, &self.prepared.space, &self.prepared.config.votes)?;
+        index.block_bounds_in(search, (program, &self.prepared.space), blocks);
         Ok(blocks)
     }
 
@@ -325,25 +319,29 @@ impl VoteSearch {
             outcome,
             ..
         } = workspace;
+        let Preparation {
+            frame,
+            grid,
+            space,
+            config,
+            ..
+        } = &self.prepared;
         // The beams are turned by the rest of the heading after rounding to the heading grid.
-        let (index, turn) = self
-            .space
-            .directions
-            .nearest(heading - self.frame.map_from_grid.yaw);
-        program.compile(scan, turn, &self.space, &self.config.votes)?;
+        let turned = heading - frame.map_from_grid.yaw;
+        let (heading_index, turn) = space.directions.nearest(turned);
+        program.compile(scan, turn, space, &config.votes)?;
         let query = Query {
             program,
-            space: &self.space,
-            heading: index,
+            space,
+            heading: heading_index,
         };
         let simd = Simd::new(InstructionSet::best());
         if sweeps.fill(simd, query, sweep, field, stop).is_none() {
             return Ok(None);
         }
-        limits.clear(field, index);
-        let image = (&field[..], self.grid.width());
-        let how = (self.config.collect, &self.space);
-        field_votes.collect(image, index as u16, how, &mut outcome.found);
+        limits.clear(field, heading_index);
+        let (image, how) = ((&field[..], grid.width()), (config.collect, space));
+        field_votes.collect(image, heading_index as u16, how, &mut outcome.found);
         Ok(Some(self.describe(program, Some(heading), outcome)))
     }
 
@@ -359,7 +357,7 @@ impl VoteSearch {
         outcome.beams_used = program.beams() as u32;
         outcome.beams_silent = program.silent() as u32;
         outcome.bearing_rounding = program.bearing_rounding();
-        outcome.headings = self.config.headings;
+        outcome.headings = self.prepared.config.headings;
         outcome.known_heading = known_heading;
         outcome
     }

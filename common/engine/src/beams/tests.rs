@@ -1,6 +1,7 @@
 use geometry::Pose;
 
 use super::*;
+use crate::testing::scan_from;
 
 fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Chosen {
     let mut chosen = Chosen::default();
@@ -13,13 +14,7 @@ fn by_default(scan: &Scan<'_>) -> Chosen {
 }
 
 fn half_degrees(ranges: &[f32]) -> Scan<'_> {
-    Scan {
-        angle_min: -90f64.to_radians(),
-        angle_increment: 0.5f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 80.0,
-        ranges,
-    }
+    scan_from(-90f64.to_radians(), 0.5f64.to_radians(), ranges)
 }
 
 fn space() -> Space {
@@ -76,13 +71,7 @@ fn readings_beyond_the_map_are_silent() {
 
 /// Beams of 90 degrees: to the right, ahead and to the left of the laser.
 fn quarters(ranges: &[f32]) -> Scan<'_> {
-    Scan {
-        angle_min: -90f64.to_radians(),
-        angle_increment: 90f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 80.0,
-        ranges,
-    }
+    scan_from(-90f64.to_radians(), 90f64.to_radians(), ranges)
 }
 
 #[test]
@@ -108,6 +97,13 @@ fn carried_nowhere_a_scan_is_thinned_as_it_came() {
     }
 }
 
+/// Bearings and readings, to a micrometre.
+fn ends(chosen: &Chosen) -> Vec<(usize, f64)> {
+    let beams = chosen.beams.iter();
+    let end = |beam: &Beam| (beam.bearing, (beam.reading_m * 1e6).round() / 1e6);
+    beams.map(end).collect()
+}
+
 #[test]
 fn of_several_lasers_the_nearest_end_in_a_sector_votes() {
     // One laser is half a metre ahead; the other is half a metre behind and looks back. The rear
@@ -131,12 +127,7 @@ fn of_several_lasers_the_nearest_end_in_a_sector_votes() {
         beam_arc_m: 2.0,
     };
     chosen.choose(Observation::Carried(&scans), 0.0, &space(), &config);
-    let found: Vec<(usize, f64)> = chosen
-        .beams
-        .iter()
-        .map(|beam| (beam.bearing, (beam.reading_m * 1e6).round() / 1e6))
-        .collect();
-    assert_eq!(found, [(0, 4.0), (90, 2.0), (180, 1.0), (270, 2.5)]);
+    assert_eq!(ends(&chosen), [(0, 4.0), (90, 2.0), (180, 1.0), (270, 2.5)]);
     assert!(
         chosen.silent.is_empty(),
         "the rear laser sees what the front misses"
@@ -156,13 +147,8 @@ fn of_several_lasers_the_nearest_end_in_a_sector_votes() {
         },
     ];
     chosen.choose(Observation::Carried(&alone), 0.0, &space(), &config);
-    let found: Vec<(usize, f64)> = chosen
-        .beams
-        .iter()
-        .map(|beam| (beam.bearing, (beam.reading_m * 1e6).round() / 1e6))
-        .collect();
     let ahead = (4.0f64.hypot(1.0) * 1e6).round() / 1e6;
-    assert_eq!(found, [(14, ahead), (270, 2.0)]);
+    assert_eq!(ends(&chosen), [(14, ahead), (270, 2.0)]);
     assert_eq!(chosen.silent.len(), 2);
 }
 

@@ -1,7 +1,7 @@
 //! Settings of the second stage, which compares beams with the map.
 
 #[cfg(feature = "clap")]
-use crate::config::{parse_length, parse_share};
+use crate::config::{parse_length, parse_share, within};
 
 /// Scores of end points by their distance to obstacles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +13,7 @@ pub struct FitConfig {
     pub fit_sigma_m: f64,
     /// Lower limit of `--fit-sigma-m` in cells of the map, 0.1..=10, since coarse maps are
     /// less exact.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = within(0.1..=10.0, "cells")))]
     pub fit_sigma_cells: f64,
     /// Penalty for a beam that passes through an obstacle, as a share of its full
     /// score, 0..=1. A beam passes through if its reading is longer than the distance
@@ -29,11 +29,6 @@ pub struct FitConfig {
     /// if its walls are very straight.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.15, value_parser = parse_share))]
     pub drawn_doubt: f64,
-}
-
-#[cfg(feature = "clap")]
-fn parse_cells(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.1..=10.0, "cells")
 }
 
 impl Default for FitConfig {

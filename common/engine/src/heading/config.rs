@@ -8,7 +8,7 @@ use super::HeadingSource;
 pub struct HeadingConfig {
     /// The laser's heading in the map, degrees counter-clockwise from its x
     /// axis, -360..=360: only x and y are searched.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = crate::config::within(-360.0..=360.0, "degrees"), allow_negative_numbers = true))]
     #[cfg_attr(feature = "clap", arg(conflicts_with = "heading_from"))]
     pub heading: Option<f64>,
 
@@ -19,11 +19,11 @@ pub struct HeadingConfig {
     /// Added to the heading from odometry, degrees, -360..=360: the heading in the map
     /// where odometry reads 0. Odometry drifts, so this is useful at the start of a
     /// run. Default 0.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = crate::config::within(-360.0..=360.0, "degrees"), allow_negative_numbers = true))]
     pub heading_offset: Option<f64>,
 
     /// Maximum age of odometry at its scan, seconds, 0..=60. Default 1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = seconds))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = crate::config::within(0.0..=60.0, "seconds")))]
     pub heading_max_age_s: Option<f64>,
 }
 
@@ -48,7 +48,6 @@ impl std::fmt::Display for HeadingFrom {
 
 impl HeadingConfig {
     /// Returns the source of headings, in radians and nanoseconds.
-    #[must_use]
     pub fn source(&self) -> HeadingSource {
         match (self.heading, self.heading_from) {
             (Some(degrees), _) => HeadingSource::Fixed(degrees.to_radians()),
@@ -79,16 +78,6 @@ impl HeadingConfig {
             None => Ok(()),
         }
     }
-}
-
-#[cfg(feature = "clap")]
-fn degrees(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, -360.0..=360.0, "degrees")
-}
-
-#[cfg(feature = "clap")]
-fn seconds(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.0..=60.0, "seconds")
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ pub struct JoinConfig {
 pub struct MotionConfig {
     /// Added to the stamps of odometry, seconds, -1..=1: positive if odometry leads the
     /// laser.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::config::within(-1.0..=1.0, "seconds")))]
     pub odometry_delay_s: f64,
     /// Beam to which the stamp of a scan belongs.
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ScanStamp::First))]
@@ -57,11 +57,6 @@ impl Default for MotionConfig {
             deskew: true,
         }
     }
-}
-
-#[cfg(feature = "clap")]
-fn parse_delay(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, -1.0..=1.0, "seconds")
 }
 
 #[cfg(feature = "clap")]

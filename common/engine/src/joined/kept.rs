@@ -65,7 +65,6 @@ impl Kept {
     }
 
     /// Returns the scans; none if nothing was copied.
-    #[must_use]
     pub fn seen(&self) -> Seen<'_> {
         match &self.scans[..] {
             [one] if !self.is_carried => Seen::Still(one.scan()),

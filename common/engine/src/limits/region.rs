@@ -92,16 +92,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_region_is_refused_by_what_is_wrong() {
-        let refused = |text: &str| text.parse::<Region>().unwrap_err();
-        assert_eq!(
-            refused("1,2 3;4"),
-            "\"3;4\" is not a corner; needed are X,Y X,Y … in metres"
-        );
-        assert_eq!(refused("1,2"), "1 corners; allowed are 2 to 1000");
-        assert_eq!(
-            refused("1,2 NaN,0"),
-            "a corner at NaN,0; allowed are numbers up to 100000000 metres"
-        );
+    fn what_is_no_region_is_refused() {
+        for text in ["1,2 3;4", "1,2", "1,2 NaN,0", "1,2 1e9,0"] {
+            assert!(text.parse::<Region>().is_err(), "{text}");
+        }
     }
 }

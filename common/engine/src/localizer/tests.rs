@@ -6,8 +6,7 @@ use super::*;
 use crate::fit::GridPose;
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::program::VoteConfig;
-use crate::scan::Scan;
-use crate::testing::{any_grid, any_scan, occupancy_of};
+use crate::testing::{any_grid, any_scan, occupancy_of, scan_from};
 
 /// Prepares a map; `None` if the grid has no obstacle or no free cell.
 fn prepared(grid: &Grid, resolution_m: f64, votes: VoteConfig) -> Option<PreparedMap> {
@@ -90,13 +89,7 @@ fn a_place_on_another_map_is_an_alternative() {
     ];
     let grid = crate::grid::drawn::grid(&rows);
     let ranges: Vec<f32> = (0..36).map(|_| 0.2).collect();
-    let scan = Scan {
-        angle_min: 0.0,
-        angle_increment: 10f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 9.0,
-        ranges: &ranges,
-    };
+    let scan = scan_from(0.0, 10f64.to_radians(), &ranges);
     let map = prepared(&grid, 0.1, VoteConfig::default()).unwrap();
     let mut workspace = Workspace::default();
     let mut ask = |count| {
@@ -123,21 +116,12 @@ fn a_heading_that_does_not_go_with_the_preparation_is_an_error() {
     let occupancy = occupancy_of(&grid);
     let map = Map::new(0.1, Pose::IDENTITY, (4, 3), &occupancy);
     let prior = Prior::Heading;
-    let known = Localizer::new(
-        map,
-        Settings {
-            prior,
-            ..Settings::default()
-        },
-    )
-    .unwrap();
-    let scan = Scan {
-        angle_min: 0.0,
-        angle_increment: 0.1,
-        range_min_m: 0.0,
-        range_max_m: 9.0,
-        ranges: &[0.1; 12],
+    let settings = Settings {
+        prior,
+        ..Settings::default()
     };
+    let known = Localizer::new(map, settings).unwrap();
+    let scan = scan_from(0.0, 0.1, &[0.1; 12]);
     let mut workspace = Workspace::default();
     let mut ask = |localizer: &Localizer, heading| {
         let answer = localizer.locate_unless(&mut workspace, &scan, heading, &|| false);

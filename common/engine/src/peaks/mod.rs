@@ -218,7 +218,6 @@ impl Target {
 
 impl Places {
     /// Returns the verdict in words.
-    #[must_use]
     pub fn sentence(&self) -> String {
         let reported = self.places.iter().take(1 + self.alternatives as usize);
         let summaries: Vec<PlaceSummary> = reported
@@ -312,13 +311,11 @@ pub struct Judged<'w> {
 
 impl Workspace {
     /// Class of each beam of the last scan at its best place.
-    #[must_use]
     pub fn classes(&self) -> &Vec<BeamClass> {
         &self.places.classes
     }
 
     /// Beams of the last scan.
-    #[must_use]
     pub fn ends(&self) -> &Ends {
         &self.ends
     }

@@ -102,27 +102,6 @@ mod tests {
     }
 
     #[test]
-    fn each_verdict_has_its_words() {
-        let say = |verdict, places: &[PlaceSummary]| sentence(verdict, places);
-        assert_eq!(
-            say(Verdict::Unique, &[at(0.0, 0.0, 0.0)]),
-            "one place, fit 0.87"
-        );
-        assert_eq!(
-            say(Verdict::PoorFit, &[at(0.0, 0.0, 0.0)]),
-            "the best place has a fit of only 0.87: is it this map?"
-        );
-        assert_eq!(
-            say(Verdict::NoScan, &[]),
-            "no usable beams: is the laser covered?"
-        );
-        assert_eq!(
-            say(Verdict::Ambiguous, &[at(0.0, 0.0, 0.0)]),
-            "no place stands out enough to be sure"
-        );
-    }
-
-    #[test]
     fn rivals_are_reported_by_how_they_lie_to_the_best() {
         let say = |others: &[PlaceSummary]| {
             let places = [&[at(0.0, 0.0, 0.0)], others].concat();

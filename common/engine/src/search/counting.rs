@@ -1,7 +1,6 @@
 //! Counts every pose by sweeps, heading by heading, where bounds do not distinguish blocks.
 
 use crate::accumulator::Query;
-use crate::program::ScanProgram;
 use crate::search::task::Task;
 use crate::sweep;
 use crate::threads;
@@ -9,7 +8,7 @@ use crate::votes::{Collector, VoteSet};
 
 /// Buffers and results of one thread, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::parts::search) struct Share {
+pub(crate) struct Share {
     sweep: sweep::Workspace,
     field: Vec<u16>,
     collector: Collector,
@@ -18,8 +17,8 @@ pub(in crate::parts::search) struct Share {
 
 /// Finds the poses with the most votes, on as many threads as there are shares; `None` if
 /// `stop` returned true before the end.
-pub(in crate::parts::search) fn count(
-    (task, program): (&Task<'_>, &ScanProgram),
+pub(crate) fn count(
+    task: &Task<'_>,
     shares: &mut [Share],
     found: &mut VoteSet,
     stop: &dyn Fn() -> bool,
@@ -29,7 +28,7 @@ pub(in crate::parts::search) fn count(
         share.collector.start(task.config);
         share.poses_evaluated = 0;
         let mut own = task.searched().skip(thread).step_by(threads);
-        own.try_for_each(|heading| share.take(task, program, heading, stop))
+        own.try_for_each(|heading| share.take(task, heading, stop))
             .ok_or(())
     });
     counted.ok()?;
@@ -44,15 +43,9 @@ pub(in crate::parts::search) fn count(
 
 impl Share {
     /// Counts the poses of a heading.
-    fn take(
-        &mut self,
-        task: &Task<'_>,
-        program: &ScanProgram,
-        heading: usize,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<()> {
+    fn take(&mut self, task: &Task<'_>, heading: usize, stop: &dyn Fn() -> bool) -> Option<()> {
         let query = Query {
-            program,
+            program: task.program,
             space: task.space,
             heading,
         };

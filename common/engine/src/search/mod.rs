@@ -29,5 +29,6 @@ mod plan;
 mod task;
 
 pub use index::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
-pub use plan::{BlockBounds, Searched, Workspace};
+pub(crate) use plan::Attempt;
+pub use plan::{BlockBounds, Workspace};
 pub(crate) use task::lead::Lead;

@@ -12,10 +12,7 @@
 //! Calling such a function is all that is `unsafe`, and it happens in one place, in
 //! [`compiled!`]. Memory is read and written through arrays and slices alone.
 //!
-//! `fearless_simd` 1.2 was tried in place of this: its macro for a set's own instructions
-//! takes neither methods nor generic functions, and half of what is here has no operation
-//! among its portable ones (looking bytes up in tables of 64, sums and carries of three
-//! bits, leading zeros); `docs/engine.md` has the figures.
+//! `docs/engine_measurements.md` says why this is not done by `fearless_simd`.
 
 pub(crate) mod headings;
 pub(crate) mod numbers;
@@ -43,7 +40,7 @@ macro_rules! compiled {
             $($(#[$about:meta])* type $associated:ident = $associated_type:ty;)*
             $(const $constant:ident: $constant_type:ty = $constant_value:expr;)*
             $(
-                fn $name:ident $(<$(const $generic:ident: $generic_type:ty),+>)? (
+                fn $name:ident (
                     $first:ident $(: $first_type:ty)? $(, $argument:ident: $argument_type:ty)* $(,)?
                 ) $(-> $result:ty)? $body:block
             )*
@@ -53,7 +50,7 @@ macro_rules! compiled {
             $(
                 #[inline]
                 #[target_feature(enable = $features)]
-                fn $name $(<$(const $generic: $generic_type),+>)? (
+                fn $name (
                     $first $(: $first_type)? $(, $argument: $argument_type)*
                 ) $(-> $result)? $body
             )*
@@ -64,12 +61,12 @@ macro_rules! compiled {
             $(const $constant: $constant_type = $constant_value;)*
             $(
                 #[inline(always)]
-                fn $name $(<$(const $generic: $generic_type),+>)? (
+                fn $name (
                     $first $(: $first_type)? $(, $argument: $argument_type)*
                 ) $(-> $result)? {
                     // SAFETY: the first argument is a token or was made with one, so the
                     // processor has the instructions.
-                    unsafe { <$type>::$name $(::<$($generic),+>)? ($first $(, $argument)*) }
+                    unsafe { <$type>::$name($first $(, $argument)*) }
                 }
             )*
         }

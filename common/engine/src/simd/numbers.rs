@@ -45,17 +45,15 @@ pub(crate) trait Numbers: Copy {
     fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64;
 
     /// Returns a bit for each lane in which `byte` is at most `reaches` after `behind`, in any
-    /// of the `N` rows. Bytes wrap from 255 to 0.
-    fn any_within<const N: usize>(
-        self,
-        byte: u8,
-        behind: &[[u8; MARKED]; N],
-        reaches: &[[u8; MARKED]; N],
-    ) -> u64;
+    /// row. Bytes wrap from 255 to 0.
+    fn any_within(self, byte: u8, behind: &MarkedRows, reaches: &MarkedRows) -> u64;
 }
 
 /// Number of bytes that are marked at a time.
 pub(crate) const MARKED: usize = 64;
+
+/// Rows of bytes that are marked: of the near and the far interval of four blocks.
+pub(crate) type MarkedRows = [[u8; MARKED]; 8];
 
 /// Numbers of a vector of plain code.
 const PORTABLE: usize = 8;
@@ -113,12 +111,7 @@ impl Numbers for Portable {
     }
 
     #[inline(always)]
-    fn any_within<const N: usize>(
-        self,
-        byte: u8,
-        behind: &[[u8; MARKED]; N],
-        reaches: &[[u8; MARKED]; N],
-    ) -> u64 {
+    fn any_within(self, byte: u8, behind: &MarkedRows, reaches: &MarkedRows) -> u64 {
         // Distance of the byte beyond the nearest reach.
         let mut off = [u8::MAX; MARKED];
         for (behind, reaches) in behind.iter().zip(reaches) {
@@ -156,7 +149,7 @@ mod x86 {
 
     use bytemuck::must_cast;
 
-    use super::{MARKED, Numbers};
+    use super::{MarkedRows, Numbers};
     use crate::simd::{Avx2, avx2};
 
     const ENOUGH: &str = "as many numbers as a vector has";
@@ -206,12 +199,7 @@ mod x86 {
                 u64::from(_mm_movemask_epi8(bytes).cast_unsigned())
             }
 
-            fn any_within<const N: usize>(
-                self,
-                byte: u8,
-                behind: &[[u8; MARKED]; N],
-                reaches: &[[u8; MARKED]; N],
-            ) -> u64 {
+            fn any_within(self, byte: u8, behind: &MarkedRows, reaches: &MarkedRows) -> u64 {
                 let byte = _mm256_set1_epi8(byte.cast_signed());
                 let mut off = [_mm256_set1_epi8(-1); 2];
                 for (behind, reaches) in behind.iter().zip(reaches) {

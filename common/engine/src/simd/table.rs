@@ -107,32 +107,16 @@ mod x86 {
         }
     }
 
-    /// Looks 32 numbers in each register up in a table of which `used` entries are not 0;
-    /// numbers beyond those give 0.
-    #[inline(always)]
-    pub(in crate::simd) fn look_up_avx2<const N: usize>(
-        set: Avx2,
-        table: &[u8; TABLE],
-        used: usize,
-        index: [__m256i; N],
-    ) -> [__m256i; N] {
-        let pieces: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
-        let [first, others @ ..] = pieces;
-        let mut found =
-            index.map(|index| look_up_piece(set, first, 0, index, must_cast([0u8; 32])));
-        // The number of pieces is decided once for all registers.
-        for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
-            for (found, index) in found.iter_mut().zip(index) {
-                *found = look_up_piece(set, piece, number, index, *found);
-            }
-        }
-        found
-    }
-
     impl Tables for Avx2 {
         #[inline(always)]
         fn look_up(self, table: &[u8; TABLE], used: usize, index: [u8; LANES]) -> [u8; LANES] {
-            must_cast(look_up_avx2(self, table, used, [must_cast(index)]))
+            let index = must_cast(index);
+            let [first, others @ ..]: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
+            let mut found = look_up_piece(self, first, 0, index, must_cast([0u8; LANES]));
+            for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
+                found = look_up_piece(self, piece, number, index, found);
+            }
+            must_cast(found)
         }
 
         #[inline(always)]

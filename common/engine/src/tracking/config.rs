@@ -1,7 +1,7 @@
 //! Settings of the tracker.
 
 #[cfg(feature = "clap")]
-use crate::config::{parse, parse_degrees, parse_length, parse_share};
+use crate::config::{parse_degrees, parse_length, parse_share, within};
 
 /// Time at which a tracker without knowledge believes a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub struct TrackingConfig {
     )]
     pub start: Start,
     /// Scale of the usual standard deviations of odometry, 0.1..=10.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = within(0.1..=10.0, "as a factor")))]
     pub odometry_error: f64,
     /// Distance between key scans, metres, 0..=2. Places are weighed against each other at key
     /// scans only, because the errors of a map repeat from one scan to the next.
@@ -36,7 +36,7 @@ pub struct TrackingConfig {
     pub key_deg: f64,
     /// Maximum evidence of one key scan for or against a place, natural logarithm of odds, 0..=100:
     /// this often, a scan is explained by no model.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "LOG", default_value_t = 1.5, value_parser = parse_log))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LOG", default_value_t = 1.5, value_parser = within(0.0..=100.0, "as a logarithm of odds")))]
     pub scan_cap: f64,
     /// Probability from which a place is unique, 0..=1.
     #[cfg_attr(feature = "clap", arg(long, value_name = "PROBABILITY", default_value_t = 0.94, value_parser = parse_share))]
@@ -49,16 +49,6 @@ pub struct TrackingConfig {
     /// prediction, 0..=1, as odometry sometimes errs by tens of degrees.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.08, value_parser = parse_share))]
     pub restart_fall: f64,
-}
-
-#[cfg(feature = "clap")]
-fn parse_factor(text: &str) -> Result<f64, String> {
-    parse(text, 0.1..=10.0, "as a factor")
-}
-
-#[cfg(feature = "clap")]
-fn parse_log(text: &str) -> Result<f64, String> {
-    parse(text, 0.0..=100.0, "as a logarithm of odds")
 }
 
 impl Default for TrackingConfig {

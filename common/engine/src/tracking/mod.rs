@@ -333,13 +333,11 @@ impl PlaceTracker {
 
     /// True if a search for the scan just finished is needed a few scans later, see
     /// [`Need::EarlierScan`].
-    #[must_use]
     pub fn asks_ahead(&self) -> bool {
         self.asks_ahead
     }
 
     /// Returns the pose of the robot and its certainty.
-    #[must_use]
     pub fn report(&self) -> Report {
         let unseen = self.is_blank.then_some(&self.since_scan);
         self.belief.report(&self.places, &self.since_key, unseen)

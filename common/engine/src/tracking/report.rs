@@ -70,7 +70,6 @@ impl Report {
     }
 
     /// Returns the reason in words, and advice if there is any.
-    #[must_use]
     pub fn words(&self) -> String {
         let reason = self.reason_in_words();
         match self.advice() {
@@ -160,27 +159,6 @@ mod tests {
             since_ns: 0,
             since_m: 3.0,
         }
-    }
-
-    #[test]
-    fn each_reason_has_its_words() {
-        let say = |state, reason| report(state, reason).words();
-        assert_eq!(
-            say(TrackState::Searching, TrackReason::SeveralPlaces),
-            "2 places fit, 25 m apart, since 3 m: drive a few metres or turn on the spot, or mark a region"
-        );
-        assert_eq!(
-            say(TrackState::Lost, TrackReason::PoorFit),
-            "only fit 0.14, since 3 m: drive a few metres or turn on the spot, or mark a region"
-        );
-        assert_eq!(
-            say(TrackState::Doubtful, TrackReason::OdometryJump),
-            "laser and odometry disagree, fit 0.14: is the laser mirrored, frozen or covered?"
-        );
-        assert_eq!(
-            say(TrackState::Unique, TrackReason::OnePlace),
-            "one place, fit 0.14, since 3 m"
-        );
     }
 
     #[test]

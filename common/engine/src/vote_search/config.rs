@@ -29,18 +29,13 @@ pub struct VoteSearchConfig {
     /// Cell size of the search, metres, 0..=1: finer maps are searched at this
     /// resolution, and the places found are refined on the full map. 0 searches each
     /// map at its own resolution.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = crate::config::within(0.0..=1.0, "metres")))]
     pub search_cell: f64,
     /// Memory limit for preparing a map for searches of unknown headings, megabytes of
     /// 10⁶ bytes, 1..=1000000: a map that needs about more is rejected. No limit by
     /// default.
     #[cfg_attr(feature = "clap", arg(long, value_name = "MEGABYTES", value_parser = clap::value_parser!(u32).range(1..=1_000_000)))]
     pub memory_limit: Option<u32>,
-}
-
-#[cfg(feature = "clap")]
-fn parse_cell(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.0..=1.0, "metres")
 }
 
 impl Default for VoteSearchConfig {

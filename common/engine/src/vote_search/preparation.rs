@@ -21,14 +21,14 @@ const MEGABYTE: u64 = 1_000_000;
 const FEW_BLOCKS_FLOOR: f64 = 0.85;
 
 /// A map and its settings, checked: a [`VoteSearch`] without the parts that take long to build.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Preparation {
-    frame: GridFrame,
-    pooling: usize,
-    grid: Grid,
-    space: Space,
-    config: VoteSearchConfig,
-    prior: Prior,
+    pub(super) frame: GridFrame,
+    pub(super) pooling: usize,
+    pub(super) grid: Grid,
+    pub(super) space: Space,
+    pub(super) config: VoteSearchConfig,
+    pub(super) prior: Prior,
 }
 
 impl Preparation {
@@ -112,7 +112,6 @@ impl Preparation {
 
     /// Returns the key of the index that would be built; `None` for known headings, which need no
     /// index.
-    #[must_use]
     pub fn key(&self) -> Option<IndexKey> {
         let Preparation {
             frame,
@@ -171,16 +170,8 @@ impl Preparation {
         Ok(self.vote_search(method))
     }
 
-    fn vote_search(self, method: Method) -> VoteSearch {
-        let Preparation {
-            frame,
-            pooling,
-            grid,
-            space,
-            mut config,
-            ..
-        } = self;
-        let collect = &mut config.collect;
+    fn vote_search(mut self, method: Method) -> VoteSearch {
+        let collect = &mut self.config.collect;
         if let Method::Search(index) = &method
             && index.blocks() < collect.candidates as usize
         {
@@ -188,11 +179,7 @@ impl Preparation {
             collect.floor_share = collect.floor_share.min(FEW_BLOCKS_FLOOR);
         }
         VoteSearch {
-            frame,
-            pooling,
-            grid,
-            space,
-            config,
+            prepared: self,
             method,
         }
     }

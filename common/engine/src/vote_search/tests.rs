@@ -46,22 +46,6 @@ fn ranges(x: i64, y: i64, heading: usize) -> Vec<f32> {
 }
 
 #[test]
-fn finds_the_pose_that_a_scan_was_taken_at() {
-    let ranges = ranges(5, 3, 40);
-    let outcome = vote_search(Prior::None)
-        .search(&scan(&ranges), &|| false)
-        .unwrap()
-        .unwrap();
-    let best = outcome.found.votes[0];
-    assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
-    assert_eq!(
-        u32::from(best.intensity),
-        outcome.highest_possible,
-        "every beam agrees"
-    );
-}
-
-#[test]
 fn a_known_heading_is_taken_in_the_map_frame() {
     let ranges = ranges(5, 3, 40);
     let heading = 40f64.to_radians() + 0.5;

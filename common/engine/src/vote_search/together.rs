@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
-use super::{VoteSearch, Workspace};
+use super::{Preparation, VoteSearch, Workspace};
 use crate::EngineError;
 use crate::instruction_set::InstructionSet;
 use crate::observation::Observation;
-use crate::search::{Lead, SearchIndex, Searched};
+use crate::search::{Attempt, Lead};
 use crate::votes::{VoteShare, least_close};
 
 impl VoteSearch {
@@ -49,7 +49,7 @@ impl VoteSearch {
             let outcome = &mut workspace.outcome;
             outcome.lead = lead.on(outcome.highest_possible as u16);
             if heading.is_some() {
-                let floor = map.config.collect.floor(outcome.lead);
+                let floor = map.prepared.config.collect.floor(outcome.lead);
                 let least = least_close(outcome.lead);
                 outcome.found.confine((outcome.lead, floor), Some(least));
             }
@@ -67,31 +67,25 @@ fn at_any_heading(
     let mut indices = Vec::with_capacity(maps.len());
     for (map, workspace) in maps.iter_mut() {
         indices.push(map.index()?);
-        let (space, votes) = (&map.space, &map.config.votes);
+        let (space, votes) = (&map.prepared.space, &map.prepared.config.votes);
         workspace.program.compile(scan, 0.0, space, votes)?;
     }
-    let config = &maps.first().expect("a map").0.config;
+    let config = &maps.first().expect("a map").0.prepared.config;
     let how = (InstructionSet::best(), usize::from(config.threads));
-    let searched = maps
-        .iter_mut()
-        .zip(indices)
-        .map(|((map, workspace), index)| {
-            let Workspace {
-                program,
-                search,
-                outcome,
-                ..
-            } = &mut **workspace;
-            Searched {
-                index,
-                grid: &map.grid,
-                scan: (program, &map.space),
-                workspace: search,
-                found: &mut outcome.found,
-            }
-        });
-    let mut searched: Vec<_> = searched.collect();
-    let found = SearchIndex::search_together(&mut searched, how, (config.collect, lead), stop);
+    let attempts = maps.iter_mut().zip(indices);
+    let attempts = attempts.map(|((map, workspace), index)| {
+        let Workspace {
+            program,
+            search,
+            outcome,
+            ..
+        } = &mut **workspace;
+        let Preparation { grid, space, .. } = &map.prepared;
+        let (scan, together) = ((&*program, space), (lead, stop));
+        let attempt = index.attempt(search, how, grid, scan, config.collect, together);
+        (attempt, &mut outcome.found)
+    });
+    let found = Attempt::find_all(&mut attempts.collect::<Vec<_>>(), stop);
     for (map, workspace) in maps.iter_mut() {
         let Workspace {
             program, outcome, ..

@@ -23,13 +23,8 @@ pub struct CollectConfig {
     /// 0 is no limit. A step takes about a nanosecond of one 2 GHz processor, but steps
     /// are counted and not timed: on one thread the same scan always gives the same
     /// answer. [default: 5000 in the accumulator, none in the tools]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "MILLIONS", value_parser = parse_work))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MILLIONS", value_parser = crate::config::within(0.0..=1e9, "millions of steps")))]
     pub work_limit: Option<f64>,
-}
-
-#[cfg(feature = "clap")]
-fn parse_work(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.0..=1e9, "millions of steps")
 }
 
 impl CollectConfig {

@@ -11,15 +11,15 @@ use crate::simd::words::{BitWords, Words};
 /// Words of a quad, aligned to a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(in crate::parts::search) struct Aligned(pub Words);
+pub(crate) struct Aligned(pub Words);
 
 /// Rows carried over to the plane that is being added up, to the next one, and to the one
 /// after it.
-pub(in crate::parts::search) type Carries = [Vec<Aligned>; 3];
+pub(crate) type Carries = [Vec<Aligned>; 3];
 
 /// Beams with the same bearing modulo 8.
 #[derive(Debug, Clone, Default)]
-pub(in crate::parts::search) struct Group {
+pub(crate) struct Group {
     /// Bearing modulo 8.
     shift: u32,
     /// Windows with a share of `1 << i` units, by `i`.
@@ -43,7 +43,7 @@ struct Plane {
 
 impl Group {
     /// Starts without windows, for a bearing modulo 8; the buffers stay.
-    pub(in crate::parts::search) fn start(&mut self, shift: u32) {
+    pub(crate) fn start(&mut self, shift: u32) {
         for plane in &mut self.planes {
             plane.windows.clear();
             plane.pairs.clear();
@@ -54,7 +54,7 @@ impl Group {
         self.extent = Extent::default();
     }
 
-    pub(in crate::parts::search) fn push(&mut self, plane: usize, window: Window) {
+    pub(crate) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         self.reads += window.reads;
         self.extent.take(&window);
@@ -66,7 +66,7 @@ impl Group {
 
     /// Lays out the windows that were pushed; `nothing`, a window that sees nothing, fills up
     /// pairs.
-    pub(in crate::parts::search) fn lay_out(&mut self, nothing: Window) {
+    pub(crate) fn lay_out(&mut self, nothing: Window) {
         self.extent.take(&nothing);
         for Plane { windows, pairs } in &mut self.planes {
             windows.sort_unstable_by_key(|window| window.reads);
@@ -77,7 +77,7 @@ impl Group {
     }
 
     /// Largest number of words carried over from a plane to another.
-    pub(in crate::parts::search) fn carries(&self) -> usize {
+    pub(crate) fn carries(&self) -> usize {
         let windows: usize = self.planes.iter().map(|plane| plane.windows.len()).sum();
         windows.div_ceil(2) + 1
     }
@@ -85,7 +85,7 @@ impl Group {
     /// Adds up the windows plane by plane with carry-save adders, in the rows of a quad at the
     /// headings of a chunk, and adds the result to `total`, the sums of all groups.
     #[inline(always)]
-    pub(in crate::parts::search) fn add<W: BitWords>(
+    pub(crate) fn add<W: BitWords>(
         &self,
         set: W::Set,
         rows: (&RowLayout, &QuadRows, usize),

@@ -4,10 +4,9 @@
 //! each beam may choose the best cell of the block for itself. They differ in tightness and
 //! cost.
 
-pub(in crate::parts::search) mod group;
-pub(in crate::parts::search) mod interval_bounds;
-pub(in crate::parts::search) mod interval_program;
-pub(in crate::parts::search) mod quad_rows;
-pub(in crate::parts::search) mod sectors;
-pub(in crate::parts::search) mod set_bounds;
-pub(in crate::parts::search) mod set_program;
+pub(crate) mod group;
+pub(crate) mod interval_bounds;
+pub(crate) mod quad_rows;
+pub(crate) mod sectors;
+pub(crate) mod set_bounds;
+pub(crate) mod set_program;

@@ -38,30 +38,18 @@ pub(crate) fn order(program: &ScanProgram, order: &mut Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beams::BeamConfig;
     use crate::program::VoteConfig;
-    use crate::scan::Scan;
     use crate::space::Space;
+    use crate::testing::scan_from;
 
     #[test]
     fn each_beam_comes_once_in_sectors_of_neighbours_the_weightiest_first() {
         for count in [1, 14, 15, 16, 180, 181, 400] {
             // Near readings on the left, far ones, which weigh more, on the right.
             let ranges: Vec<f32> = (0..count).map(|i| 1.0 + 0.03 * i as f32).collect();
-            let scan = Scan {
-                angle_min: -3.0,
-                angle_increment: 0.015,
-                range_min_m: 0.0,
-                range_max_m: 30.0,
-                ranges: &ranges,
-            };
-            let config = VoteConfig {
-                beams: BeamConfig {
-                    max_beams: 1000,
-                    ..BeamConfig::default()
-                },
-                ..VoteConfig::default()
-            };
+            let scan = scan_from(-3.0, 0.015, &ranges);
+            let mut config = VoteConfig::default();
+            config.beams.max_beams = 1000;
             let space = Space::new(360, 0.05, 1000, 1000).expect("a small map");
             let program = ScanProgram::new(&scan, 0.0, &space, &config).expect("a sound scan");
             let mut order = vec![7];

@@ -15,19 +15,19 @@ use crate::search::index::intervals::ROW_SHIFT;
 use crate::simd::Simd;
 
 /// Number of groups of beams: one for each bearing modulo 8.
-pub(in crate::parts::search) const GROUPS: usize = 8;
+pub(crate) const GROUPS: usize = 8;
 
 /// A scan program laid out for bounds from sets; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetProgram {
-    pub(in crate::parts::search) simd: Simd,
+    pub(crate) simd: Simd,
     /// Unit of the sums, in votes: all peaks are multiples of it.
-    pub(in crate::parts::search) unit: u16,
+    pub(crate) unit: u16,
     /// Number of planes that hold every sum.
-    pub(in crate::parts::search) planes: usize,
+    pub(crate) planes: usize,
     /// One group for each bearing modulo 8.
-    pub(in crate::parts::search) groups: [Group; GROUPS],
-    pub(in crate::parts::search) layout: RowLayout,
+    pub(crate) groups: [Group; GROUPS],
+    pub(crate) layout: RowLayout,
 }
 
 impl SetProgram {

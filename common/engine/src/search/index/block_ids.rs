@@ -59,26 +59,3 @@ impl BlockIds {
         self.blocks.bytes() + size_of_val(&self.before[..])
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use proptest::collection::vec;
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn blocks_are_numbered_in_their_order(holds in vec(any::<bool>(), 0..300)) {
-            let ids = BlockIds::of(CellSet::of(holds.len(), |block| holds[block]));
-            let mut count = 0;
-            for (block, &is_held) in holds.iter().enumerate() {
-                prop_assert_eq!(ids.holds(block), is_held);
-                prop_assert_eq!(ids.before(block), count);
-                count += usize::from(is_held);
-            }
-            prop_assert_eq!(ids.count(), count);
-            prop_assert_eq!(ids.before(holds.len()), count);
-        }
-    }
-}

@@ -5,16 +5,16 @@
 //! its cells: no range that a cell sees is missing. Nothing here depends on a scan, a floor
 //! or the order in which blocks are searched.
 
-pub(in crate::parts::search) mod bins;
-pub(in crate::parts::search) mod bits;
-pub(in crate::parts::search) mod block_ids;
-pub(in crate::parts::search) mod intervals;
+pub(crate) mod bins;
+pub(crate) mod bits;
+pub(crate) mod block_ids;
+pub(crate) mod intervals;
 mod key;
 mod needed;
-pub(in crate::parts::search) mod obstacles;
+pub(crate) mod obstacles;
 mod sections;
-pub(in crate::parts::search) mod sets;
-pub(in crate::parts::search) mod within;
+pub(crate) mod sets;
+pub(crate) mod within;
 
 pub use key::IndexKey;
 pub use sections::{SECTIONS, SectionError, UncheckedIndex};
@@ -38,12 +38,12 @@ use crate::sweep::FieldSweep;
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
-    pub(in crate::parts::search) bins: Bins,
-    pub(in crate::parts::search) intervals: RangeIntervals,
-    pub(in crate::parts::search) fine: RangeSets,
-    pub(in crate::parts::search) coarse: RangeSets,
-    pub(in crate::parts::search) obstacles: Obstacles,
-    pub(in crate::parts::search) within: Within,
+    pub(crate) bins: Bins,
+    pub(crate) intervals: RangeIntervals,
+    pub(crate) fine: RangeSets,
+    pub(crate) coarse: RangeSets,
+    pub(crate) obstacles: Obstacles,
+    pub(crate) within: Within,
     /// Prepared for counting every pose; made when bounds first do not help.
     sweeps: OnceLock<FieldSweep>,
 }
@@ -79,7 +79,6 @@ impl SearchIndex {
     }
 
     /// Returns the limits within which poses are searched.
-    #[must_use]
     pub fn limits(&self) -> &Limits {
         &self.within.limits
     }
@@ -90,12 +89,11 @@ impl SearchIndex {
     }
 
     /// Returns the grid of the index, prepared for counting every pose.
-    pub(in crate::parts::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
+    pub(crate) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
         self.sweeps.get_or_init(|| FieldSweep::new(grid))
     }
 
     /// Size of the index in bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
         let sweeps = self.sweeps.get().map_or(0, FieldSweep::bytes);

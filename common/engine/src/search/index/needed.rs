@@ -34,29 +34,17 @@ impl SearchIndex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::CellRules;
-    use crate::testing::space_of;
+    use crate::testing::{grid_of, space_of};
     use messages::UNKNOWN;
 
     /// Rooms of 40 cells with doors on the left, clutter in the middle, and nothing known
     /// on the right.
     fn world() -> Grid {
-        const SIDE: usize = 400;
-        let mut state = 1u32;
-        let occupancy: Vec<u8> = (0..SIDE * SIDE)
-            .map(|i| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let (x, y) = (i % SIDE, i / SIDE);
-                match x {
-                    0..150 => {
-                        100 * u8::from((x % 40 == 0 && y % 40 > 8) || (y % 40 == 0 && x % 40 > 8))
-                    }
-                    150..250 => 100 * u8::from(state >> 24 < 50),
-                    _ => UNKNOWN,
-                }
-            })
-            .collect();
-        Grid::new(SIDE, SIDE, &occupancy, CellRules::default()).expect("sound sides")
+        grid_of((400, 400), |x, y, noise| match x {
+            0..150 => 100 * u8::from((x % 40 == 0 && y % 40 > 8) || (y % 40 == 0 && x % 40 > 8)),
+            150..250 => 100 * u8::from(noise < 50),
+            _ => UNKNOWN,
+        })
     }
 
     #[test]

@@ -10,10 +10,10 @@ use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
 
 /// Number of rows of a word, and of adjacent rays in each.
-pub(in crate::parts::search) const ROWS: i64 = 8;
+pub(crate) const ROWS: i64 = 8;
 
 /// Largest number of rays in a bundle.
-pub(in crate::parts::search) const RAYS: usize = ROWS as usize;
+pub(crate) const RAYS: usize = ROWS as usize;
 
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
@@ -60,7 +60,7 @@ struct Rows {
 
 /// Adjacent rays along a direction.
 #[derive(Debug)]
-pub(in crate::parts::search) struct Rays<'a> {
+pub(crate) struct Rays<'a> {
     rows: &'a Rows,
     clearance: &'a Clearance,
     direction: &'a Direction,
@@ -108,7 +108,7 @@ impl Obstacles {
 
     /// True if all cells of a small block are on the map and open.
     #[inline(always)]
-    pub(in crate::parts::search) fn are_none_in(&self, (left, bottom): (usize, usize)) -> bool {
+    pub(crate) fn are_none_in(&self, (left, bottom): (usize, usize)) -> bool {
         let Rows {
             stride,
             bits,
@@ -125,7 +125,7 @@ impl Obstacles {
     }
 
     /// Returns rays in a direction, the first of which is at `(major, minor)` at position 0.
-    pub(in crate::parts::search) fn rays<'a>(
+    pub(crate) fn rays<'a>(
         &'a self,
         direction: &'a Direction,
         (major, minor): (i64, i64),
@@ -249,7 +249,7 @@ impl Rays<'_> {
     /// ends at `position + j`. Returns `None` if all of them have left the map; there must be a
     /// row at `position`.
     #[inline(always)]
-    pub(in crate::parts::search) fn ends(&self, position: i64) -> Option<u64> {
+    pub(crate) fn ends(&self, position: i64) -> Option<u64> {
         const ENOUGH: &str = "rows go on before the first and behind the last";
         let Rays {
             rows, direction, ..

@@ -72,7 +72,6 @@ impl SearchIndex {
     pub const VERSION: u32 = 1;
 
     /// Returns the bytes of all sections, in their order.
-    #[must_use]
     pub fn sections(&self) -> [&[u8]; SECTIONS] {
         let [cells, headings] = self
             .within
@@ -224,9 +223,8 @@ mod tests {
     use twox_hash::XxHash3_64;
 
     use super::*;
-    use crate::grid::CellRules;
     use crate::instruction_set::InstructionSet;
-    use crate::testing::{any_limited_grid, any_scan, space_of};
+    use crate::testing::{any_limited_grid, any_scan, grid_of, space_of};
     use crate::votes::CollectConfig;
 
     fn lengths(index: &SearchIndex) -> [u64; SECTIONS] {
@@ -317,17 +315,10 @@ mod tests {
 
     /// Rooms and clutter.
     fn world() -> (Grid, Space) {
-        const SIDES: (usize, usize) = (150, 90);
-        let mut state = 1u32;
-        let occupancy: Vec<u8> = (0..SIDES.0 * SIDES.1)
-            .map(|i| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let (x, y) = (i % SIDES.0, i / SIDES.0);
-                let is_wall = x % 40 == 0 && y % 40 > 8 || y % 40 == 0 && x % 40 > 8;
-                100 * u8::from(is_wall || x > 100 && state >> 24 < 20)
-            })
-            .collect();
-        let grid = Grid::new(SIDES.0, SIDES.1, &occupancy, CellRules::default()).unwrap();
+        let grid = grid_of((150, 90), |x, y, noise| {
+            let is_wall = x % 40 == 0 && y % 40 > 8 || y % 40 == 0 && x % 40 > 8;
+            100 * u8::from(is_wall || x > 100 && noise < 20)
+        });
         let space = space_of(&grid, 360);
         (grid, space)
     }

@@ -8,7 +8,7 @@ use crate::limits::Limits;
 
 /// Limits of a search, and the blocks in which poses are searched.
 #[derive(Debug, Clone)]
-pub(in crate::parts::search) struct Within {
+pub(crate) struct Within {
     pub limits: Limits,
     /// Blocks of 8 × 8 and of 16 × 16 cells in which poses are searched.
     pub blocks: [CellSet; 2],
@@ -16,20 +16,20 @@ pub(in crate::parts::search) struct Within {
 
 /// Size of blocks that have sets.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::parts::search) enum Size {
+pub(crate) enum Size {
     Fine,
     Coarse,
 }
 
 impl Within {
     /// Lays out the limits of a grid.
-    pub(in crate::parts::search) fn new(limits: Limits, grid: &Grid) -> Self {
+    pub(crate) fn new(limits: Limits, grid: &Grid) -> Self {
         let blocks = [2 * SIDE, 4 * SIDE].map(|side| limits.blocks(side, grid));
         Within { limits, blocks }
     }
 
     /// Allocates the blocks of a grid, to be filled in along with the limits.
-    pub(in crate::parts::search) fn unfilled(limits: Limits, grid: &Grid) -> Self {
+    pub(crate) fn unfilled(limits: Limits, grid: &Grid) -> Self {
         let blocks = [2 * SIDE, 4 * SIDE].map(|side| {
             let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
             CellSet::none(columns * rows)
@@ -38,22 +38,22 @@ impl Within {
     }
 
     /// True if poses are searched in a block.
-    pub(in crate::parts::search) fn holds(&self, size: Size, block: usize) -> bool {
+    pub(crate) fn holds(&self, size: Size, block: usize) -> bool {
         self.blocks[size as usize].holds(block)
     }
 
     /// Size in bytes.
-    pub(in crate::parts::search) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.limits.bytes() + self.blocks.iter().map(CellSet::bytes).sum::<usize>()
     }
 
     /// Returns a quad of blocks of a size, with those in which poses are searched.
-    pub(in crate::parts::search) fn quad(&self, size: Size, sets: &RangeSets, quad: usize) -> Quad {
+    pub(crate) fn quad(&self, size: Size, sets: &RangeSets, quad: usize) -> Quad {
         sets.searched(quad, |block| self.holds(size, block))
     }
 
     /// Returns a bit for each heading below `count` that is searched, a word for each chunk.
-    pub(in crate::parts::search) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
+    pub(crate) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
         (0..count).step_by(CHUNK).map(move |first| {
             let headings = first..count.min(first + CHUNK);
             let searched = headings.filter(|&heading| self.limits.hold_heading(heading));
@@ -63,7 +63,7 @@ impl Within {
 }
 
 /// Returns the blocks of the next smaller size in a block, as far as they are on the map.
-pub(in crate::parts::search) fn quarters(
+pub(crate) fn quarters(
     index: usize,
     columns: usize,
     (finer_columns, finer_rows): (usize, usize),

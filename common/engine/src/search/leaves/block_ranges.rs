@@ -95,7 +95,7 @@ impl BlockRanges {
 
     /// Computes the ranges in direction `d`, unless that was done for this block.
     #[inline(always)]
-    pub(in crate::parts::search) fn compute(&mut self, view: &View<'_>, d: usize) {
+    pub(crate) fn compute(&mut self, view: &View<'_>, d: usize) {
         if self.computed_for[d] != self.number {
             self.computed_for[d] = self.number;
             self.casts += 1;

@@ -12,7 +12,7 @@ use crate::search::index::obstacles::{RAYS, ROWS, Rays};
 
 /// Order in which rays cross the cells of a block.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::parts::search) struct Across {
+pub(crate) struct Across {
     /// Number of columns that a ray has met before the cell.
     pub column: [u16; CELLS],
     /// Place of the cell in its column.
@@ -21,7 +21,7 @@ pub(in crate::parts::search) struct Across {
 
 impl Across {
     /// Orders for rays along y and along x, each forward and backward.
-    pub(in crate::parts::search) const ALL: [[Across; 2]; 2] = [
+    pub(crate) const ALL: [[Across; 2]; 2] = [
         [Across::new(false, false), Across::new(false, true)],
         [Across::new(true, false), Across::new(true, true)],
     ];
@@ -46,14 +46,14 @@ impl Across {
 
 /// Position at which each of adjacent rays ends first, or [`NO_RANGE`].
 #[derive(Debug, Clone, Copy)]
-pub(in crate::parts::search) struct Hits(pub [u16; RAYS]);
+pub(crate) struct Hits(pub [u16; RAYS]);
 
 impl Hits {
     /// Notes the rays that end at one of eight positions, unless they ended before. Bit `i` of
     /// byte `j` of the word is set if ray `i` ends at `position + j`. Returns a bit for each ray
     /// that ends in the word.
     #[inline(always)]
-    pub(in crate::parts::search) fn note(&mut self, word: u64, position: i64) -> u8 {
+    pub(crate) fn note(&mut self, word: u64, position: i64) -> u8 {
         /// The bits of the first ray.
         const FIRST: u64 = 0x0101_0101_0101_0101;
         for (i, hit) in self.0.iter_mut().enumerate() {
@@ -71,7 +71,7 @@ impl Hits {
 /// The adjacent rays of a direction through a block. Positions count along the major axis
 /// from the first of the block's columns that a ray meets; a column here is the cells with
 /// the same index on the major axis, whichever axis that is.
-pub(in crate::parts::search) struct Bundle {
+pub(crate) struct Bundle {
     x_major: bool,
     /// True if rays run towards lower indices.
     backward: bool,
@@ -84,10 +84,7 @@ pub(in crate::parts::search) struct Bundle {
 
 impl Bundle {
     #[inline(always)]
-    pub(in crate::parts::search) fn new(
-        direction: &Direction,
-        (left, bottom): (usize, usize),
-    ) -> Self {
+    pub(crate) fn new(direction: &Direction, (left, bottom): (usize, usize)) -> Self {
         let x_major = direction.x_major;
         let (major, minor) = direction.swap((left, bottom));
         let backward = direction.step < 0;
@@ -121,7 +118,7 @@ impl Bundle {
     /// Returns the positions at which the rays of the block end. The steps from the block's
     /// cells to there are in one of two spans.
     #[inline(always)]
-    pub(in crate::parts::search) fn follow(&self, rays: &Rays<'_>, spans: [(u16, u16); 2]) -> Hits {
+    pub(crate) fn follow(&self, rays: &Rays<'_>, spans: [(u16, u16); 2]) -> Hits {
         let mut hits = Hits([NO_RANGE; RAYS]);
         let mut pending = u8::MAX >> (RAYS as u32 - self.rays);
         let mut mask = self.behind();
@@ -160,7 +157,7 @@ impl Bundle {
     /// Returns the ranges of the block's cells if all of them are open: the steps to the ends
     /// of their rays.
     #[inline(always)]
-    pub(in crate::parts::search) fn ranges(&self, Hits(hits): &Hits) -> [u16; CELLS] {
+    pub(crate) fn ranges(&self, Hits(hits): &Hits) -> [u16; CELLS] {
         let Across { column, minor } = self.across();
         std::array::from_fn(|i| {
             let ray = self.first[usize::from(column[i])] + minor[i];
@@ -174,11 +171,7 @@ impl Bundle {
     }
 
     /// Does the same if some cells are not open: the steps to those that are in the way, too.
-    pub(in crate::parts::search) fn ranges_among(
-        &self,
-        Hits(mut hits): Hits,
-        cells: &[Cell; CELLS],
-    ) -> [u16; CELLS] {
+    pub(crate) fn ranges_among(&self, Hits(mut hits): Hits, cells: &[Cell; CELLS]) -> [u16; CELLS] {
         let Across { column, minor } = self.across();
         let mut ranges = [NO_RANGE; CELLS];
         for behind in (0..SIDE as u16).rev() {
@@ -199,7 +192,7 @@ impl Bundle {
 }
 
 /// Drops the hits of rays that end in an unknown cell that blocks them: they have no range.
-pub(in crate::parts::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, Hits(hits): &mut Hits) {
+pub(crate) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, Hits(hits): &mut Hits) {
     for (i, hit) in hits.iter_mut().enumerate() {
         if *hit == NO_RANGE {
             continue;

@@ -10,7 +10,7 @@ use crate::search::bounds::sectors;
 use crate::search::index::bits;
 use crate::search::index::intervals::CELLS;
 use crate::simd::{Kernel, Set, Simd};
-use crate::tables::{VoteTable, VoteTables};
+use crate::tables::VoteTable;
 
 /// A scan program laid out for counting in blocks; made again for each scan.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +19,6 @@ pub(crate) struct LeafProgram {
     /// Beams by sector, and their bearings.
     order: Vec<usize>,
     bearings: Vec<usize>,
-    tables: VoteTables,
     /// Class of each direction.
     classes: Vec<usize>,
 }
@@ -40,7 +39,6 @@ impl LeafProgram {
         let bearings = self.order.iter().map(|&beam| program.bearing(beam));
         self.bearings.clear();
         self.bearings.extend(bearings);
-        self.tables.make(program, directions);
         let classes = directions.all().iter().map(|direction| direction.class);
         self.classes.clear();
         self.classes.extend(classes);
@@ -57,6 +55,7 @@ impl LeafProgram {
     /// open mean nothing.
     pub(crate) fn add(
         &self,
+        scan: &ScanProgram,
         rays: (&mut BlockRanges, &View<'_>),
         (sector, voting): (usize, &[u64]),
         headings: (usize, u64),
@@ -65,6 +64,7 @@ impl LeafProgram {
         let beams = sectors::beams(sector, self.bearings.len());
         self.simd.run(Adding {
             program: self,
+            scan,
             rays,
             beams: (beams.start, &voting[beams]),
             headings,
@@ -76,6 +76,7 @@ impl LeafProgram {
     /// according to its intervals. The votes of cells that are not open mean nothing.
     pub(crate) fn count(
         &self,
+        scan: &ScanProgram,
         block_ranges: &mut BlockRanges,
         view: &View<'_>,
         heading: usize,
@@ -84,7 +85,7 @@ impl LeafProgram {
         for sector in 0..sectors::count(self.bearings.len()) {
             let beams = sectors::beams(sector, self.bearings.len());
             let may_vote = |beam: usize| {
-                let (direction, table) = self.place(beam, heading);
+                let (direction, table) = self.place(scan, beam, heading);
                 let spans = block_ranges.spans(view, direction);
                 spans.into_iter().any(|span| table.has_votes_in(span))
             };
@@ -94,6 +95,7 @@ impl LeafProgram {
             }
             self.simd.run(Adding {
                 program: self,
+                scan,
                 rays: (&mut *block_ranges, view),
                 beams: (beams.start, &voting[..beams.len()]),
                 headings: (heading, 1),
@@ -116,9 +118,14 @@ impl LeafProgram {
 
     /// Returns the direction of a beam at a heading, and the beam's table there.
     #[inline(always)]
-    fn place(&self, beam: usize, heading: usize) -> (usize, VoteTable<'_>) {
+    fn place<'a>(
+        &self,
+        scan: &'a ScanProgram,
+        beam: usize,
+        heading: usize,
+    ) -> (usize, VoteTable<'a>) {
         let direction = self.direction(beam, heading);
-        let table = self.tables.get(self.order[beam], self.classes[direction]);
+        let table = scan.table(self.order[beam], self.classes[direction]);
         (direction, table)
     }
 }
@@ -127,6 +134,7 @@ impl LeafProgram {
 /// on, each with a count.
 struct Adding<'a, 'b> {
     program: &'a LeafProgram,
+    scan: &'a ScanProgram,
     rays: (&'b mut BlockRanges, &'a View<'a>),
     beams: (usize, &'a [u64]),
     headings: (usize, u64),
@@ -140,6 +148,7 @@ impl Kernel for Adding<'_, '_> {
     fn run<S: Set>(self, set: S) {
         let Adding {
             program,
+            scan,
             rays: (block_ranges, view),
             beams: (first_beam, beams),
             headings: (first, headings),
@@ -155,7 +164,7 @@ impl Kernel for Adding<'_, '_> {
             let voting = beams.iter().enumerate();
             let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
             for beam in bits::ones(voting).map(|i| first_beam + i) {
-                let (direction, table) = program.place(beam, first + lane);
+                let (direction, table) = program.place(scan, beam, first + lane);
                 table.add(set, block_ranges.ranges(direction), &mut votes);
             }
             let open = votes.iter().zip(&block_ranges.open);
@@ -201,11 +210,11 @@ mod tests {
                 let mut counts = [Count::default()];
                 let all = vec![1; program.beams()];
                 for sector in 0..sectors::count(program.beams()) {
-                    leaf.add((&mut block_ranges, &view), (sector, &all), (heading, 1), &mut counts);
+                    leaf.add(&program, (&mut block_ranges, &view), (sector, &all), (heading, 1), &mut counts);
                 }
                 // The same with no more rays than needed.
                 block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
-                let sparing = leaf.count(&mut block_ranges, &view, heading);
+                let sparing = leaf.count(&program, &mut block_ranges, &view, heading);
                 for (i, counts) in counts[0].votes.into_iter().zip(sparing).enumerate() {
                     let (x, y) = block_ranges.cell(i);
                     if grid.is_open(x as i64, y as i64) {

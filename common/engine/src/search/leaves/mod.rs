@@ -2,6 +2,6 @@
 //!
 //! They equal those of the plain reference, to the last vote.
 
-pub(in crate::parts::search) mod block_ranges;
-pub(in crate::parts::search) mod bundle;
-pub(in crate::parts::search) mod leaf;
+pub(crate) mod block_ranges;
+pub(crate) mod bundle;
+pub(crate) mod leaf;

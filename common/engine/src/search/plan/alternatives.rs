@@ -30,7 +30,7 @@ const MIN_BOUND_RATIO: u32 = 31;
 /// Buffers for finding candidates on one thread, independent of how the search went; kept from
 /// scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::parts::search) struct Scratch {
+pub(crate) struct Scratch {
     bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
@@ -58,7 +58,7 @@ struct Spot {
 impl Scratch {
     /// Leaves poses of the `wanted` blocks with the highest bounds in the buffer, in no order.
     /// Blocks whose bounds are below `least` are not searched.
-    pub(in crate::parts::search) fn find(&mut self, task: &Task<'_>, wanted: usize, least: u16) {
+    pub(crate) fn find(&mut self, task: &Task<'_>, wanted: usize, least: u16) {
         self.bounds.fit(&task.programs.sets, task.headings());
         self.block_ranges.prepare(task.grid, &task.space.directions);
         let Scratch {
@@ -152,7 +152,10 @@ impl Scratch {
         let view = task.view();
         let block_ranges = &mut self.block_ranges;
         block_ranges.enter((&view, &index.within.limits), &index.intervals, block);
-        let counts = task.programs.leaf.count(block_ranges, &view, heading);
+        let counts = task
+            .programs
+            .leaf
+            .count(task.program, block_ranges, &view, heading);
         let votes = counts
             .iter()
             .zip(&block_ranges.open)

@@ -22,23 +22,14 @@ pub struct BlockBounds {
 
 impl BlockBounds {
     /// Blocks along y.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.bounds.len() / self.columns
     }
 }
 
 impl SearchIndex {
-    /// Returns upper bounds of the intensities in all coarse blocks: roughly where the robot
-    /// may be.
-    #[must_use]
-    pub fn block_bounds(&self, program: &ScanProgram, space: &Space) -> BlockBounds {
-        let (mut workspace, mut blocks) = (Workspace::default(), BlockBounds::default());
-        self.block_bounds_in(&mut workspace, (program, space), &mut blocks);
-        blocks
-    }
-
-    /// Fills in the same, in a workspace that may have served other scans and maps.
+    /// Fills in upper bounds of the intensities in all coarse blocks, in a workspace that may have
+    /// served other scans and maps.
     pub fn block_bounds_in(
         &self,
         workspace: &mut Workspace,
@@ -78,7 +69,8 @@ mod tests {
         ) {
             let space = space_of(&grid, headings * 8);
             let program = scan.program(&space);
-            let blocks = SearchIndex::new(&grid, &space).block_bounds(&program, &space);
+            let (mut workspace, mut blocks) = (Workspace::default(), BlockBounds::default());
+            SearchIndex::new(&grid, &space).block_bounds_in(&mut workspace, (&program, &space), &mut blocks);
             prop_assert_eq!(blocks.rows(), grid.height().div_ceil(blocks.side));
             let field = reference::field(&grid, &program, &space, heading % space.directions.count());
             for (i, &votes) in field.iter().enumerate() {

@@ -43,7 +43,7 @@ enum Level {
 
 /// Buffers of one thread's search, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::parts::search) struct Scratch {
+pub(crate) struct Scratch {
     set_bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
@@ -80,7 +80,7 @@ impl Scratch {
 }
 
 /// One thread's part of a search.
-pub(in crate::parts::search) struct Descent<'a> {
+pub(crate) struct Descent<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
     budget: Budget,
@@ -88,7 +88,7 @@ pub(in crate::parts::search) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     /// Starts with one of `parts` of the coarse blocks.
-    pub(in crate::parts::search) fn new(
+    pub(crate) fn new(
         task: &'a Task<'a>,
         scratch: &'a mut Scratch,
         (part, parts): (usize, usize),
@@ -105,7 +105,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Searches until there is nothing left that may matter.
-    pub(in crate::parts::search) fn run(mut self, stop: &dyn Fn() -> bool) -> End {
+    pub(crate) fn run(mut self, stop: &dyn Fn() -> bool) -> End {
         loop {
             if let Some(end) = self.step(0.0, stop) {
                 return end;
@@ -114,17 +114,13 @@ impl<'a> Descent<'a> {
     }
 
     /// Cost that was spent so far.
-    pub(in crate::parts::search) fn spent(&self) -> f64 {
+    pub(crate) fn spent(&self) -> f64 {
         self.budget.spent()
     }
 
     /// Searches the next block, and returns how the search ended, if it did. `elsewhere` is the
     /// cost that was spent on other maps that are searched with this one.
-    pub(in crate::parts::search) fn step(
-        &mut self,
-        elsewhere: f64,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<End> {
+    pub(crate) fn step(&mut self, elsewhere: f64, stop: &dyn Fn() -> bool) -> Option<End> {
         let Some(block) = self.next() else {
             return Some(End::Done);
         };
@@ -147,7 +143,7 @@ impl<'a> Descent<'a> {
         } = &mut *self.scratch;
         tally.reads = std::mem::take(&mut set_bounds.reads);
         tally.casts = std::mem::take(&mut block_ranges.casts);
-        let cost = std::mem::take(tally).cost(self.task.programs.beams);
+        let cost = std::mem::take(tally).cost(self.task.program.beams());
         self.budget.spend(cost);
         // Some pose has to be found: without any it would seem that no beam votes.
         if self.budget.is_used_up(elsewhere) && self.task.best() > 0 {
@@ -300,7 +296,8 @@ impl<'a> Descent<'a> {
             let rays = (&mut self.scratch.block_ranges, &view);
             let program = &self.task.programs.leaf;
             let beams = (sector, &voting[..]);
-            program.add(rays, beams, (first, alive), &mut self.scratch.counts);
+            let scan = self.task.program;
+            program.add(scan, rays, beams, (first, alive), &mut self.scratch.counts);
             let mut still = 0;
             for lane in bits::ones(alive) {
                 rest[lane] -= u16::from(bounds[lane]);

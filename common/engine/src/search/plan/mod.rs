@@ -11,8 +11,7 @@ mod block_bounds;
 mod descent;
 mod parts;
 mod search;
-mod together;
 
+pub(crate) use attempt::Attempt;
 pub use block_bounds::BlockBounds;
 pub use search::Workspace;
-pub use together::Searched;

@@ -9,11 +9,7 @@ use crate::threads;
 use crate::votes::VoteSet;
 
 /// Runs a search on as many threads as there are scratch buffers, the calling one included.
-pub(in crate::parts::search) fn run(
-    task: &Task<'_>,
-    scratches: &mut [Scratch],
-    stop: &dyn Fn() -> bool,
-) -> End {
+pub(crate) fn run(task: &Task<'_>, scratches: &mut [Scratch], stop: &dyn Fn() -> bool) -> End {
     let parts = scratches.len();
     let run = |part, scratch: &mut Scratch, stop: &dyn Fn() -> bool| {
         let descent = Descent::new(task, scratch, (part, parts));
@@ -47,7 +43,7 @@ fn run_together(descents: &mut [Descent<'_>], ends: &mut [Option<End>], stop: &d
 
 /// Does the same on as many threads as each map has scratch buffers; `None` if `stop`
 /// returned true before the end.
-pub(in crate::parts::search) fn run_all<'a>(
+pub(crate) fn run_all<'a>(
     maps: impl Iterator<Item = (&'a Task<'a>, &'a mut [Scratch])>,
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<End>> {
@@ -87,7 +83,7 @@ pub(in crate::parts::search) fn run_all<'a>(
 }
 
 /// Merges the results of all threads.
-pub(in crate::parts::search) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
+pub(crate) fn finish(scratches: &mut [Scratch], found: &mut VoteSet) {
     let (own, others) = scratches.split_first_mut().expect("a thread");
     for other in others {
         own.collector.merge(&other.collector);
@@ -110,11 +106,10 @@ mod orders {
     use crate::grid::{CellRules, Grid};
     use crate::instruction_set::InstructionSet;
     use crate::program::ScanProgram;
-    use crate::scan::Scan;
     use crate::search::index::SearchIndex;
     use crate::search::task::lead::Lead;
     use crate::simd::Simd;
-    use crate::testing::{plain_votes, space_of};
+    use crate::testing::{plain_votes, scan_from, space_of};
     use crate::votes::CollectConfig;
 
     /// Words of a thread's stack.
@@ -152,13 +147,7 @@ mod orders {
     fn the_poses_that_are_found_are_the_same_in_any_order() {
         let grid = leak(rooms());
         let space = leak(space_of(grid, 8));
-        let scan = Scan {
-            angle_min: 0.0,
-            angle_increment: 1.5,
-            range_min_m: 0.0,
-            range_max_m: 9.0,
-            ranges: &[0.2; 4],
-        };
+        let scan = scan_from(0.0, 1.5, &[0.2; 4]);
         let program = ScanProgram::new(&scan, 0.0, space, &Default::default()).unwrap();
         let config = CollectConfig::exact();
         let plain = plain_votes(grid, &program, space, config);

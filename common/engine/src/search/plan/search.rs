@@ -91,7 +91,7 @@ impl SearchIndex {
     }
 
     /// Prepares a search.
-    pub(in crate::parts::search) fn attempt<'a>(
+    pub(crate) fn attempt<'a>(
         &'a self,
         workspace: &'a mut Workspace,
         (instruction_set, threads): (InstructionSet, usize),
@@ -113,7 +113,6 @@ impl SearchIndex {
         shares.resize_with(threads, counting::Share::default);
         Attempt {
             task,
-            program: scan.0,
             scratches,
             alternatives,
             shares,
@@ -131,10 +130,10 @@ mod tests {
     use crate::grid::CellRules;
     use crate::program::VoteConfig;
     use crate::reference;
-    use crate::scan::{MAX_RANGES, Scan};
+    use crate::scan::MAX_RANGES;
     use crate::testing::{
         any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
-        space_of,
+        scan_from, space_of,
     };
     use crate::votes::{is_close, most_candidates};
     use messages::Vote;
@@ -306,13 +305,7 @@ mod tests {
     fn a_search_that_is_asked_to_stop_has_no_outcome() {
         let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
         let space = space_of(&grid, 8);
-        let scan = crate::scan::Scan {
-            angle_min: 0.0,
-            angle_increment: 1.0,
-            range_min_m: 0.0,
-            range_max_m: 9.0,
-            ranges: &[0.1, 0.1],
-        };
+        let scan = scan_from(0.0, 1.0, &[0.1, 0.1]);
         let program = ScanProgram::new(&scan, 0.0, &space, &Default::default()).unwrap();
         let index = SearchIndex::new(&grid, &space);
         let search =
@@ -334,13 +327,7 @@ mod tests {
         let ranges: Vec<f32> = (0..MAX_RANGES)
             .map(|i| 0.1 + 0.3 * (i as f32 / 9000.0).sin().abs())
             .collect();
-        let scan = Scan {
-            angle_min: -3.0,
-            angle_increment: std::f64::consts::TAU / MAX_RANGES as f64,
-            range_min_m: 0.0,
-            range_max_m: 30.0,
-            ranges: &ranges,
-        };
+        let scan = scan_from(-3.0, std::f64::consts::TAU / MAX_RANGES as f64, &ranges);
         let beams = BeamConfig {
             max_beams: u16::MAX.into(),
             beam_arc_m: 0.0,

@@ -11,7 +11,7 @@ use crate::votes::VoteShare;
 /// Share of the votes that the best pose has, in one word, so that threads need no lock. A
 /// caller that knows of a pose on another map may raise it while a search runs.
 #[derive(Debug)]
-pub struct Lead(AtomicU32);
+pub(crate) struct Lead(AtomicU32);
 
 impl Default for Lead {
     /// Returns a lead without any votes.
@@ -22,7 +22,7 @@ impl Default for Lead {
 
 impl Lead {
     /// Raises the lead to the share of a pose that was counted, if that is greater.
-    pub fn raise(&self, share: VoteShare) {
+    pub(crate) fn raise(&self, share: VoteShare) {
         let better = |now| share.compare(unpack(now)).is_gt().then(|| pack(share));
         // It only rises, in any order of the threads.
         let _ = self
@@ -31,14 +31,13 @@ impl Lead {
     }
 
     /// Returns the share of the best pose.
-    #[must_use]
-    pub fn share(&self) -> VoteShare {
+    pub(crate) fn share(&self) -> VoteShare {
         unpack(self.0.load(Ordering::Relaxed))
     }
 
     /// Returns the least number of votes that is as good as the best pose, on a map where
     /// `possible` votes are the most.
-    pub(in crate::parts::search) fn on(&self, possible: u16) -> u16 {
+    pub(crate) fn on(&self, possible: u16) -> u16 {
         let best = self.share();
         match best.possible == possible {
             true => best.votes,

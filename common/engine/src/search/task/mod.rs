@@ -3,28 +3,28 @@
 //! A task does not change while it is searched, except for bounds and the best pose so far,
 //! which only let threads skip work.
 
-pub(in crate::parts::search) mod budget;
-pub(in crate::parts::search) mod lead;
+pub(crate) mod budget;
+pub(crate) mod lead;
 
 use std::sync::atomic::AtomicU16;
 
 use crate::grid::Grid;
 use crate::program::ScanProgram;
-use crate::search::bounds::interval_program::IntervalProgram;
+use crate::search::bounds::interval_bounds::IntervalProgram;
 use crate::search::bounds::set_program::SetProgram;
 use crate::search::index::SearchIndex;
 use crate::search::leaves::block_ranges::View;
 use crate::search::leaves::leaf::LeafProgram;
-use crate::search::task::budget::Cost;
 use crate::search::task::lead::Lead;
 use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteShare};
 
 /// A scan to be searched on a map.
-pub(in crate::parts::search) struct Task<'a> {
+pub(crate) struct Task<'a> {
     pub index: &'a SearchIndex,
     pub grid: &'a Grid,
+    pub program: &'a ScanProgram,
     pub space: &'a Space,
     pub config: CollectConfig,
     pub programs: &'a Programs,
@@ -37,12 +37,12 @@ pub(in crate::parts::search) struct Task<'a> {
     /// Votes of a pose with which every beam agrees fully.
     possible: u16,
     /// Cost of counting every pose with all beams on one thread.
-    pub brute_force: Cost,
+    pub brute_force: f64,
 }
 
 /// End of a part of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::parts::search) enum End {
+pub(crate) enum End {
     /// All poses that matter were found, except for those in blocks that were left when the
     /// work limit was reached.
     Done,
@@ -54,7 +54,7 @@ pub(in crate::parts::search) enum End {
 
 /// Data that the threads of a search share, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::parts::search) struct Shared {
+pub(crate) struct Shared {
     pub programs: Programs,
     coarse_bounds: Vec<AtomicU16>,
     by_chunk: Vec<AtomicU16>,
@@ -62,11 +62,10 @@ pub(in crate::parts::search) struct Shared {
 
 /// A scan program laid out for each way in which blocks are bounded and counted.
 #[derive(Debug, Default)]
-pub(in crate::parts::search) struct Programs {
+pub(crate) struct Programs {
     pub sets: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
-    pub beams: usize,
     pub simd: Simd,
 }
 
@@ -77,18 +76,17 @@ impl Programs {
         self.leaf.make(program, directions, simd);
         let ordered = (program, self.leaf.order());
         self.interval.make(ordered, directions, bins, simd);
-        self.beams = program.beams();
         self.simd = simd;
     }
 }
 
 impl<'a> Task<'a> {
-    pub(in crate::parts::search) fn new(
+    pub(crate) fn new(
         shared: &'a mut Shared,
         simd: Simd,
         index: &'a SearchIndex,
         grid: &'a Grid,
-        (program, space): (&ScanProgram, &'a Space),
+        (program, space): (&'a ScanProgram, &'a Space),
         (config, lead): (CollectConfig, &'a Lead),
     ) -> Self {
         shared.programs.make(simd, index, program, space);
@@ -103,6 +101,7 @@ impl<'a> Task<'a> {
         Task {
             index,
             grid,
+            program,
             space,
             config,
             programs: &shared.programs,
@@ -110,33 +109,33 @@ impl<'a> Task<'a> {
             by_chunk: &shared.by_chunk,
             lead,
             possible: program.highest_possible() as u16,
-            brute_force: Cost::of_brute_force(grid, program, space),
+            brute_force: budget::of_brute_force(grid, program, space),
         }
     }
 
     /// Returns the same task with another lead; it is never given up.
     #[cfg(all(test, loom))]
-    pub(in crate::parts::search) fn anew(&self, lead: &'a Lead) -> Self {
+    pub(crate) fn anew(&self, lead: &'a Lead) -> Self {
         Task {
             lead,
-            brute_force: Cost(f64::INFINITY),
+            brute_force: f64::INFINITY,
             ..*self
         }
     }
 
     /// Returns the votes of the best pose so far or, if that is on another map, the least
     /// number that is as good here.
-    pub(in crate::parts::search) fn best(&self) -> u16 {
+    pub(crate) fn best(&self) -> u16 {
         self.lead.on(self.possible)
     }
 
     /// Takes the votes of a pose of this map.
-    pub(in crate::parts::search) fn raise_best(&self, votes: u16) {
+    pub(crate) fn raise_best(&self, votes: u16) {
         self.lead.raise(VoteShare::new(votes, self.possible));
     }
 
     /// Returns the map and tables for following rays.
-    pub(in crate::parts::search) fn view(&self) -> View<'a> {
+    pub(crate) fn view(&self) -> View<'a> {
         View {
             grid: self.grid,
             obstacles: &self.index.obstacles,
@@ -146,19 +145,19 @@ impl<'a> Task<'a> {
     }
 
     /// Returns the bounds of a coarse block in each chunk of headings.
-    pub(in crate::parts::search) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
+    pub(crate) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
         let chunks = self.by_chunk.len() / self.coarse_bounds.len();
         &self.by_chunk[block * chunks..][..chunks]
     }
 
     /// Returns the headings that are searched.
-    pub(in crate::parts::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
+    pub(crate) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
         let limits = &self.index.within.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
     /// Returns a bit for each heading that is searched, a word for each chunk.
-    pub(in crate::parts::search) fn headings(&self) -> impl Iterator<Item = u128> {
+    pub(crate) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }
 }

@@ -23,7 +23,7 @@ const LATE: f64 = 3.5;
 impl Places {
     /// Takes the places that a search found for this scan. They are scored again, because a search
     /// gives only an upper bound of the score of places far behind.
-    pub(in crate::parts::tracking) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
+    pub(crate) fn take(&mut self, seen: &[Seen<'_>], found: &[Candidate]) {
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|found| {
             let (pose, covariance) = found.at();
@@ -38,12 +38,7 @@ impl Places {
     }
 
     /// Takes the places that a search found for an earlier scan; `path` is the path since then.
-    pub(in crate::parts::tracking) fn take_ahead(
-        &mut self,
-        seen: &[Seen<'_>],
-        path: &DrivenPath,
-        found: &[Candidate],
-    ) {
+    pub(crate) fn take_ahead(&mut self, seen: &[Seen<'_>], path: &DrivenPath, found: &[Candidate]) {
         let noise = self.config.odometry_error;
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|candidate| {

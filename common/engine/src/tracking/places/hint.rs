@@ -19,7 +19,7 @@ const BETTER: f64 = 0.05;
 
 /// A pose at which an operator or another process expects the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::parts::tracking) struct Hint {
+pub(crate) struct Hint {
     /// Number of the map.
     pub map: u32,
     /// Pose and covariance in the map.
@@ -27,10 +27,7 @@ pub(in crate::parts::tracking) struct Hint {
 }
 
 impl Hint {
-    pub(in crate::parts::tracking) fn new(
-        (map, pose): (u32, Pose),
-        covariance: Covariance,
-    ) -> Self {
+    pub(crate) fn new((map, pose): (u32, Pose), covariance: Covariance) -> Self {
         Hint {
             map,
             at: (pose, covariance.into()),
@@ -38,7 +35,7 @@ impl Hint {
     }
 
     /// True if a pose on a map agrees with the hint.
-    pub(in crate::parts::tracking) fn is_near(&self, (map, pose): (u32, Pose)) -> bool {
+    pub(crate) fn is_near(&self, (map, pose): (u32, Pose)) -> bool {
         self.map == map
             && (self.at.0.is_within(pose, NEAR_M, NEAR_RADIANS) || self.off(pose) < WITHIN_95)
     }
@@ -54,7 +51,7 @@ impl Hint {
 
     /// Returns the hint after the robot drove this path.
     #[must_use]
-    pub(in crate::parts::tracking) fn after(&self, path: &DrivenPath, noise: f64) -> Self {
+    pub(crate) fn after(&self, path: &DrivenPath, noise: f64) -> Self {
         Hint {
             at: path.predict(self.at, noise),
             ..*self
@@ -72,23 +69,13 @@ pub(super) struct WeighedHint {
 impl Places {
     /// True if, by the last scan alone, the robot may be at a hint rather than at the believed
     /// place.
-    pub(in crate::parts::tracking) fn may_be_at(
-        &self,
-        hint: &Hint,
-        seen: &[Seen<'_>],
-        believed: u32,
-    ) -> bool {
+    pub(crate) fn may_be_at(&self, hint: &Hint, seen: &[Seen<'_>], believed: u32) -> bool {
         self.fit_hint(hint, seen, believed).is_some()
     }
 
     /// Makes the next [`Places::weigh`] weigh a hint against the believed place. Other places in
     /// its ellipse, kept or found by a search, become as likely as the hint.
-    pub(in crate::parts::tracking) fn expect_beside(
-        &mut self,
-        hint: Hint,
-        seen: &[Seen<'_>],
-        believed: u32,
-    ) {
+    pub(crate) fn expect_beside(&mut self, hint: Hint, seen: &[Seen<'_>], believed: u32) {
         if let Some((fitted, log_weight)) = self.fit_hint(&hint, seen, believed) {
             self.candidates.push((hint.map, fitted));
             let others = self.kept.iter_mut().filter(|place| place.id != believed);

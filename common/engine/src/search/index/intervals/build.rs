@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::pool::pool;
-use super::strip::{Row, RowLayout, StripMasks};
+use super::strip::{Row, StripMasks};
 use super::strip_blocks::StripBlocks;
 use super::transpose::{TILE, WORD, transpose};
 use super::wide::{Noting, WideView};
@@ -92,10 +92,9 @@ impl Kernel for Sweeping<'_> {
         let (majors, minors) = swap_unless(part.x_major, (width, height));
         let row_blocks = width.div_ceil(SIDE);
         let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
-        let layout = RowLayout::new(blocks);
-        let mut masks = StripMasks::new(layout);
-        let mut swept = vec![Row::new(layout); part.directions.len()];
-        let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(layout));
+        let mut masks = StripMasks::new(blocks);
+        let mut swept = vec![Row::new(blocks); part.directions.len()];
+        let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(blocks));
         let mut planes = Planes::new(part, blocks, source.directions.count());
         for i in 0..strips {
             let strip = if part.forward { strips - 1 - i } else { i };

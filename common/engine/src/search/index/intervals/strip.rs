@@ -19,77 +19,57 @@ const LINE: usize = 32;
 #[repr(C, align(64))]
 struct CacheLine([u16; LINE]);
 
-/// Layout of the cells of a row in memory.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RowLayout {
-    /// Blocks along the row, rounded up to whole cache lines.
-    pub lanes: usize,
-}
-
 /// Numbers of a row of cells, with a margin of [`NO_RANGE`] around each plane.
 #[derive(Debug, Clone)]
 pub(super) struct Row {
-    layout: RowLayout,
+    /// Blocks along the row, rounded up to whole cache lines.
+    lanes: usize,
     lines: Vec<CacheLine>,
 }
 
-impl RowLayout {
-    pub(super) fn new(blocks: usize) -> Self {
-        RowLayout {
-            lanes: blocks.next_multiple_of(LINE),
-        }
-    }
-
-    /// Returns the start of a plane, counted from the start of the row.
-    #[inline(always)]
-    fn plane(self, plane: usize) -> usize {
-        LINE + plane * (self.lanes + LINE)
-    }
-
-    /// Returns the start of the neighbours of a plane's cells, `shift` cells on along the row:
-    /// -1 to 1.
-    #[inline(always)]
-    fn beside(self, plane: usize, shift: i64) -> usize {
-        match (plane, shift) {
-            (0, -1) => self.plane(SIDE - 1) - 1,
-            (_, -1) => self.plane(plane - 1),
-            (plane, 1) if plane == SIDE - 1 => self.plane(0) + 1,
-            (_, 1) => self.plane(plane + 1),
-            _ => self.plane(plane),
-        }
-    }
+/// Returns the start of a plane, counted from the start of a row with this many lanes.
+#[inline(always)]
+fn start(lanes: usize, plane: usize) -> usize {
+    LINE + plane * (lanes + LINE)
 }
 
 impl Row {
-    /// Returns a row of cells that see nothing.
-    pub(super) fn new(layout: RowLayout) -> Self {
-        let lines = (layout.plane(SIDE)) / LINE;
+    /// Returns a row of cells that see nothing, of this many blocks.
+    pub(super) fn new(blocks: usize) -> Self {
+        let lanes = blocks.next_multiple_of(LINE);
         Row {
-            layout,
-            lines: vec![CacheLine([NO_RANGE; LINE]); lines],
+            lanes,
+            lines: vec![CacheLine([NO_RANGE; LINE]); start(lanes, SIDE) / LINE],
         }
     }
 
     #[inline(always)]
     pub(super) fn plane(&self, plane: usize) -> &[u16] {
-        &self.numbers()[self.layout.plane(plane)..][..self.layout.lanes]
+        self.lanes_from(start(self.lanes, plane))
     }
 
     #[inline(always)]
     fn plane_mut(&mut self, plane: usize) -> &mut [u16] {
-        let (start, lanes) = (self.layout.plane(plane), self.layout.lanes);
+        let (start, lanes) = (start(self.lanes, plane), self.lanes);
         &mut bytemuck::cast_slice_mut(&mut self.lines)[start..][..lanes]
     }
 
-    /// Returns the neighbours of a plane's cells, `shift` cells on.
+    /// Returns the neighbours of a plane's cells, `shift` cells on along the row: -1 to 1.
     #[inline(always)]
     fn beside(&self, plane: usize, shift: i64) -> &[u16] {
-        &self.numbers()[self.layout.beside(plane, shift)..][..self.layout.lanes]
+        let start = |plane| start(self.lanes, plane);
+        self.lanes_from(match (plane, shift) {
+            (0, -1) => start(SIDE - 1) - 1,
+            (_, -1) => start(plane - 1),
+            (plane, 1) if plane == SIDE - 1 => start(0) + 1,
+            (_, 1) => start(plane + 1),
+            _ => start(plane),
+        })
     }
 
     #[inline(always)]
-    fn numbers(&self) -> &[u16] {
-        bytemuck::cast_slice(&self.lines)
+    fn lanes_from(&self, start: usize) -> &[u16] {
+        &bytemuck::cast_slice(&self.lines)[start..][..self.lanes]
     }
 }
 
@@ -103,8 +83,8 @@ pub(super) struct StripMasks {
 }
 
 impl StripMasks {
-    pub(super) fn new(layout: RowLayout) -> Self {
-        let rows = || std::array::from_fn(|_| Row::new(layout));
+    pub(super) fn new(blocks: usize) -> Self {
+        let rows = || std::array::from_fn(|_| Row::new(blocks));
         StripMasks {
             pass: rows(),
             lose: rows(),

@@ -5,24 +5,18 @@ use std::ops::RangeInclusive;
 use crate::search::index::bins::Bins;
 use crate::search::index::intervals::{ROW_SHIFT, far_start, near_end};
 use crate::simd::Set;
-use crate::simd::numbers::MARKED;
+use crate::simd::numbers::{MARKED, MarkedRows};
 
 /// Number of directions that are marked at a time.
 pub(super) const CHUNK: usize = MARKED;
-
-/// Number of blocks that are joined.
-const BLOCKS: usize = 4;
-
-/// Number of their intervals: near and far.
-const INTERVALS: usize = 2 * BLOCKS;
 
 /// The intervals of joined blocks in 64 directions, for rows of some bins each.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
     /// First bin of each interval. If there is none it is 0, which is no bin.
-    firsts: [[u8; CHUNK]; INTERVALS],
+    firsts: MarkedRows,
     /// Largest distance from the first bin to the end of a row that meets the interval.
-    reaches: [[u8; CHUNK]; INTERVALS],
+    reaches: MarkedRows,
     nearest: [u8; CHUNK],
     farthest: [u8; CHUNK],
 }
@@ -35,8 +29,8 @@ impl Default for Chunk {
     #[inline(always)]
     fn default() -> Self {
         Chunk {
-            firsts: [[0; CHUNK]; INTERVALS],
-            reaches: [[0; CHUNK]; INTERVALS],
+            firsts: [[0; CHUNK]; _],
+            reaches: [[0; CHUNK]; _],
             nearest: [Bins::NOTHING; CHUNK],
             farthest: [0; CHUNK],
         }
