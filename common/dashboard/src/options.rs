@@ -66,8 +66,10 @@ mod tests {
     fn a_host_is_a_name_alone() {
         assert_eq!(host("Robot7.local").unwrap(), "robot7.local");
         for refused in ["http://a", "a:7440", "a/b", ""] {
-            let is_so = host(refused).unwrap_err().contains("name of a host");
-            assert!(is_so, "{refused}");
+            assert!(
+                host(refused).unwrap_err().contains("name of a host"),
+                "{refused}"
+            );
         }
     }
 }

@@ -21,6 +21,7 @@
 
 mod transition;
 
+use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -269,7 +270,7 @@ fn in_folder(folder: &Path, mut note: impl FnMut(&str)) -> Result<Vec<MapFile>, 
 
 fn check(path: &Path, maps: &[MapFile]) -> Result<(), MapError> {
     if maps.is_empty() {
-        return Err(refused(path, NO_MAPS.to_owned()));
+        return Err(refused(path, NO_MAPS));
     }
     if maps.len() > MAX_MAPS {
         let reason = format!("{} maps: allowed are {MAX_MAPS}", maps.len());
@@ -297,7 +298,7 @@ fn check(path: &Path, maps: &[MapFile]) -> Result<(), MapError> {
     Ok(())
 }
 
-fn refused(path: &Path, reason: String) -> MapError {
+fn refused(path: &Path, reason: impl Display) -> MapError {
     MapError::Invalid(format!("{}: {reason}", path.display()))
 }
 

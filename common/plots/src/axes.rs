@@ -224,12 +224,16 @@ mod tests {
                 draw_metres(&mut scene, &view, 1.0);
                 layout::check(&scene);
                 let labels = scene.labels();
-                let is_so = labels.len() >= 4;
-                assert!(is_so, "two names, and a number each: {labels:?}");
+                assert!(
+                    labels.len() >= 4,
+                    "two names, and a number each: {labels:?}"
+                );
                 // A pixel for the view, which begins on whole ones.
                 let area = area.shrunk(-1.0);
-                let is_so = labels.iter().all(|label| area.holds(&label.area));
-                assert!(is_so, "{labels:?}");
+                assert!(
+                    labels.iter().all(|label| area.holds(&label.area)),
+                    "{labels:?}"
+                );
             }
         }
     }
@@ -247,8 +251,10 @@ mod tests {
             draw_bar(&mut scene, bar, axis, theme::heat, 1.0);
             layout::check(&scene);
             for label in scene.labels() {
-                let is_so = area.holds(&label.area) && !rest.overlaps(&label.area);
-                assert!(is_so, "{label:?}");
+                assert!(
+                    area.holds(&label.area) && !rest.overlaps(&label.area),
+                    "{label:?}"
+                );
             }
         }
     }

@@ -203,7 +203,9 @@ mod tests {
         below.curves[0].points[0].interval = Some((0.0, 4.0));
         assert!(has(&texts(&below), "goes on below the axis"));
         below.by_decades = false;
-        let is_so = !has(&texts(&below), "goes on below the axis");
-        assert!(is_so, "0 is on this axis");
+        assert!(
+            !has(&texts(&below), "goes on below the axis"),
+            "0 is on this axis"
+        );
     }
 }

@@ -253,8 +253,10 @@ mod tests {
             for name in ["robot", "reading", "share of the most votes", "x, cells"] {
                 assert!(texts.contains(&name), "{name}: {texts:?}");
             }
-            let is_so = !texts.contains(&"boundary cell");
-            assert!(is_so, "none is drawn: {texts:?}");
+            assert!(
+                !texts.contains(&"boundary cell"),
+                "none is drawn: {texts:?}"
+            );
             scene.height()
         };
         assert_eq!(height(1), height(2));

@@ -6,13 +6,17 @@ use crate::drawing::Scene;
 pub(super) fn check(scene: &Scene) {
     let labels = scene.labels();
     for (i, label) in labels.iter().enumerate() {
-        let is_so = scene.area().holds(&label.area);
-        assert!(is_so, "beyond the picture: {label:?}");
+        assert!(
+            scene.area().holds(&label.area),
+            "beyond the picture: {label:?}"
+        );
         let side = label.area.width.min(label.area.height);
         assert!(label.text.is_empty() || side > 3.0, "too small: {label:?}");
         for other in &labels[i + 1..] {
-            let is_so = !label.area.overlaps(&other.area);
-            assert!(is_so, "{label:?} over {other:?}");
+            assert!(
+                !label.area.overlaps(&other.area),
+                "{label:?} over {other:?}"
+            );
         }
     }
 }

@@ -232,8 +232,10 @@ mod tests {
         for (i, label) in labels.iter().enumerate() {
             assert!(picture.holds(&label.area), "{label:?}");
             let mut others = labels[i + 1..].iter();
-            let is_so = others.all(|other| !other.area.overlaps(&label.area));
-            assert!(is_so, "{label:?}");
+            assert!(
+                others.all(|other| !other.area.overlaps(&label.area)),
+                "{label:?}"
+            );
         }
         let wide = Page::new(1200, 100.0, &heading("short")).unwrap();
         assert_eq!(wide.scene.labels().len(), 3);

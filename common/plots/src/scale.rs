@@ -146,8 +146,10 @@ mod tests {
             panic!("another scale");
         };
         // Roots and powers of ten round.
-        let is_so = (low - 0.2).abs() < 1e-9 && (high - 50.0).abs() < 1e-9;
-        assert!(is_so, "{low} {high}");
+        assert!(
+            (low - 0.2).abs() < 1e-9 && (high - 50.0).abs() < 1e-9,
+            "{low} {high}"
+        );
         let found = Scale::of_decades(std::iter::empty());
         assert_eq!(found, Scale::Decades(1.0, 10.0));
     }

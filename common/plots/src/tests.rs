@@ -91,8 +91,10 @@ fn check_legend(scene: &Scene) {
             .filter(|(.., pixel)| **pixel == wanted);
         let (above, below): (Vec<_>, Vec<_>) = found.partition(|(_, y, _)| *y < top);
         // A single pixel may be a blend of others.
-        let is_so = above.len() < 4 || !below.is_empty();
-        assert!(is_so, "{color:?} has no name");
+        assert!(
+            above.len() < 4 || !below.is_empty(),
+            "{color:?} has no name"
+        );
     }
 }
 

@@ -61,8 +61,8 @@
 //!
 //! # Memory
 //!
-//! A publisher has one sparse segment in `/dev/shm` for `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2
-//! + 1` chunks of its largest sample so far, rounded up to a power of two; only as many as are ever
+//! A publisher has one sparse segment in `/dev/shm` for
+//! `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2 + 1` chunks of its largest sample so far, rounded up to a power of two; only as many as are ever
 //! in use at the same time take memory. A map of 8 million cells takes 8 MiB, and 8 MiB more for each
 //! further map that a subscriber holds. A larger sample begins a new segment; the old one is freed
 //! with its last sample. Each pair of publisher and subscriber takes about 20 KiB.

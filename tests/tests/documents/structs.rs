@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use syn::parse::ParseBuffer;
 use syn::punctuated::Punctuated;
 use syn::{Attribute, Fields, Item, ItemStruct, LitStr, Meta, Token};
 use tests::{markdown, root};
@@ -33,7 +34,7 @@ fn serde_words(attributes: &[Attribute]) -> Vec<(String, Option<String>)> {
     let mut found = Vec::new();
     for attribute in attributes.iter().filter(|a| a.path().is_ident("serde")) {
         let _ = attribute.parse_nested_meta(|meta| {
-            let text = meta.value().and_then(|value| value.parse::<LitStr>());
+            let text = meta.value().and_then(ParseBuffer::parse::<LitStr>);
             let word = meta.path.require_ident()?.to_string();
             found.push((word, text.ok().map(|text| text.value())));
             Ok(())

@@ -126,8 +126,10 @@ mod tests {
                 for side in [100, 300] {
                     let world = World::generate(kind, (side, side), percent / 100.0, 1).unwrap();
                     let off = world.p_over_n() * 100.0 / percent;
-                    let is_so = (off - 1.0).abs() <= TOLERANCE;
-                    assert!(is_so, "{kind:?} {percent} {side}: {off}");
+                    assert!(
+                        (off - 1.0).abs() <= TOLERANCE,
+                        "{kind:?} {percent} {side}: {off}"
+                    );
                     assert_eq!(world.boundary, boundary::extract(&world.grid));
                 }
             }

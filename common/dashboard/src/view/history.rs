@@ -166,8 +166,10 @@ mod tests {
     #[test]
     fn silence_began_with_the_last_scan_and_ends_with_the_next() {
         let mut history = History::default();
-        let is_so = !history.look_for_silence(None, 9 * SECOND);
-        assert!(is_so, "nothing came yet");
+        assert!(
+            !history.look_for_silence(None, 9 * SECOND),
+            "nothing came yet"
+        );
         history.on_pose(&tracked(TrackState::Unique, 1.0), SECOND);
         assert!(!history.look_for_silence(Some(SECOND), 3 * SECOND));
         assert!(history.look_for_silence(Some(SECOND), 4 * SECOND));

@@ -181,8 +181,10 @@ mod tests {
         assert_eq!(names(&["x/b"]).unwrap(), ["b"]);
         assert_eq!(names(&["x", "y"]).unwrap(), ["x_a", "x_b", "y_a"]);
         let half = names(&["x", "z"]).unwrap_err();
-        let is_so = half.contains("z/c has expected.json, but no recording");
-        assert!(is_so, "{half}");
+        assert!(
+            half.contains("z/c has expected.json, but no recording"),
+            "{half}"
+        );
     }
 
     #[test]
@@ -201,8 +203,10 @@ mod tests {
         let without = RecordingWriter::create(case.recording(), Packing::Plain).unwrap();
         without.finish().unwrap();
         let neither = case.map().unwrap_err().to_string();
-        let is_so = neither.ends_with("has no map.yaml, and its recording no map");
-        assert!(is_so, "{neither}");
+        assert!(
+            neither.ends_with("has no map.yaml, and its recording no map"),
+            "{neither}"
+        );
         std::fs::write(folder.path().join(MAP), "").unwrap();
         assert_eq!(case.map().unwrap(), Some(folder.path().join(MAP)));
     }
@@ -229,8 +233,10 @@ mod tests {
         let later = r#"{"version": 1, "answers": [{"stamp_ns": 6, "new": {}}], "more": 0}"#;
         assert_eq!(read(later), Ok(6));
         let wrong = read(r#"{"version": 2, "answers": []}"#).unwrap_err();
-        let is_so = wrong.ends_with("has version 2, and this release knows 1");
-        assert!(is_so, "{wrong}");
+        assert!(
+            wrong.ends_with("has version 2, and this release knows 1"),
+            "{wrong}"
+        );
         let wrong = read("[{}]").unwrap_err();
         assert!(wrong.ends_with("does not say what is expected"), "{wrong}");
     }

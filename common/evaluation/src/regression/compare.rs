@@ -319,7 +319,8 @@ mod tests {
         fn pose(answer: &mut Answer) -> &mut TrackedPose {
             answer.pose.as_mut().unwrap()
         }
-        let cases: [(fn(&mut Answer), Option<&str>); 16] = [
+        type Spoils = fn(&mut Answer);
+        let cases: [(Spoils, Option<&str>); 16] = [
             (|_| {}, None),
             (|a| a.best += 1, Some("best")),
             (|a| a.verdict = "PoorFit".to_owned(), Some("verdict")),

@@ -216,8 +216,10 @@ pub(crate) mod tests {
         ];
         assert_eq!(names, expected);
         assert!(text.contains("a &lt;title&gt;"), "{text}");
-        let is_so = text.contains(r##"fill="#ff0000" fill-opacity="0.5""##);
-        assert!(is_so, "{text}");
+        assert!(
+            text.contains(r##"fill="#ff0000" fill-opacity="0.5""##),
+            "{text}"
+        );
         assert_eq!(text, to_svg(&everything()));
     }
 }

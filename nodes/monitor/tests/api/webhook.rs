@@ -22,8 +22,10 @@ fn take(listener: &TcpListener, status: &str) -> (String, Value) {
         assert!(lines.read_line(&mut head).unwrap() > 0, "{head}");
     }
     let head = head.to_ascii_lowercase();
-    let is_so = head.contains("content-type: application/json\r\n");
-    assert!(is_so, "{head}");
+    assert!(
+        head.contains("content-type: application/json\r\n"),
+        "{head}"
+    );
     let length = head.split("content-length: ").nth(1).unwrap();
     let length = length.lines().next().unwrap().parse().unwrap();
     let mut body = vec![0; length];
@@ -62,8 +64,10 @@ fn each_change_of_state_is_posted() {
         logged.starts_with("webhook: ")
     });
     assert!(logged.contains("webhook: 1 not posted"), "{logged}");
-    let is_so = logged.contains("500") && !logged.contains("key=7");
-    assert!(is_so, "{logged}");
+    assert!(
+        logged.contains("500") && !logged.contains("key=7"),
+        "{logged}"
+    );
     world.track(4, TrackState::Unique, 3.0, FRESH);
     let (_, found) = take(&listener, "200 OK");
     assert_eq!([&found["state"], &found["before"]], ["Unique", "Lost"]);

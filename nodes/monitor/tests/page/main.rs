@@ -103,8 +103,10 @@ fn while_several_places_fit_none_of_them_leads() {
     ));
     assert_eq!(shares, json!(["50 %", "30 %", "15 %"]));
     let trust = text(&browser, "trust");
-    let is_so = trust.contains("50 % probable, the best of 3 places");
-    assert!(is_so, "{trust}");
+    assert!(
+        trust.contains("50 % probable, the best of 3 places"),
+        "{trust}"
+    );
     assert!(text(&browser, "todo").contains("Drive a few metres"));
 
     // All places are in view although they are 90 m apart; the initial view covers about 34 m.
@@ -115,8 +117,10 @@ fn while_several_places_fit_none_of_them_leads() {
         }
     };
     let apart = |a: usize, b: usize| (spots[a].0 - spots[b].0).abs();
-    let is_so = apart(0, 1).max(apart(1, 2)).max(apart(0, 2)) > 500.0;
-    assert!(is_so, "{spots:?}");
+    assert!(
+        apart(0, 1).max(apart(1, 2)).max(apart(0, 2)) > 500.0,
+        "{spots:?}"
+    );
     // A click shows the numbers of a place, and the position of the pointer.
     click_map(&browser, spots[0]);
     assert!(text(&browser, "inspect-title").ends_with(" of 3"));
@@ -174,8 +178,10 @@ fn the_card_says_where_how_sure_and_how_exact() {
     click_map(&browser, ends[0]);
     assert!(text(&browser, "inspect-title").starts_with("Beam "));
     let shown = text(&browser, "inspect-facts");
-    let is_so = shown.contains("reading4.000 m") && shown.contains("on the map");
-    assert!(is_so, "{shown}");
+    assert!(
+        shown.contains("reading4.000 m") && shown.contains("on the map"),
+        "{shown}"
+    );
     let first = text(&browser, "inspect-title");
     click(&browser, "#beam-after");
     assert_ne!(text(&browser, "inspect-title"), first);

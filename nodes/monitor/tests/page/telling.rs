@@ -29,8 +29,10 @@ fn the_first_cause_is_named_first() {
         let found = causes(json!(nodes), map);
         let same = found.len() == expected.len();
         let all = found.iter().zip(expected);
-        let is_so = same && all.clone().all(|(line, part)| line.contains(part));
-        assert!(is_so, "{found:?}, expected {expected:?}");
+        assert!(
+            same && all.clone().all(|(line, part)| line.contains(part)),
+            "{found:?}, expected {expected:?}"
+        );
     };
     check(&[], Value::Null, &["is the graph started?"]);
     // Later nodes wait for the output of the first one.
@@ -82,8 +84,10 @@ fn the_card_knows_the_graph_and_not_the_tracker_alone() {
     let unique = || pose("Unique", "one place", 3.0, 20.0);
     let says = |store: Value, parts: &[&str]| {
         let words = card(store.clone());
-        let is_so = parts.iter().all(|part| words.contains(part));
-        assert!(is_so, "{store}: {words}");
+        assert!(
+            parts.iter().all(|part| words.contains(part)),
+            "{store}: {words}"
+        );
     };
     says(
         json!({ "fresh": true, "pose": unique(), "nodes": node("ready") }),
@@ -148,6 +152,8 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     stage.show(Scene::Silent);
     browser.wait_until("window.notified.length === 2");
     let notified = browser.run("return window.notified[1]");
-    let is_so = notified.as_str().unwrap().starts_with("r7: no data: ");
-    assert!(is_so, "{notified}");
+    assert!(
+        notified.as_str().unwrap().starts_with("r7: no data: "),
+        "{notified}"
+    );
 }

@@ -246,8 +246,10 @@ pub(super) mod tests {
         );
         for (cell, count) in counts.into_iter().enumerate() {
             let expected = if [0, 1, 4].contains(&cell) { each } else { 0.0 };
-            let is_so = (f64::from(count) - expected).abs() <= 5.0 * deviation;
-            assert!(is_so, "{counts:?}");
+            assert!(
+                (f64::from(count) - expected).abs() <= 5.0 * deviation,
+                "{counts:?}"
+            );
         }
         assert!(start(&[]).is_none());
         let full = distance_field(&["#?"]);

@@ -115,8 +115,10 @@ mod tests {
             let pose = GridPose { x, y, heading: 0.0 };
             let sensor = Sensor::new([(0.0, cells)], 2.0);
             let likelihood = sensor.log_likelihood(&distance_field(&MAP), pose).exp();
-            let is_so = (likelihood - expected).abs() < 1e-9;
-            assert!(is_so, "{pose:?} {cells}: {likelihood}");
+            assert!(
+                (likelihood - expected).abs() < 1e-9,
+                "{pose:?} {cells}: {likelihood}"
+            );
         }
         let many = Sensor::new([(0.0, 8.0); 32], 2.0);
         assert_eq!(many.weight, 0.5, "they count as 16");

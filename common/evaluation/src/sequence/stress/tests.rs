@@ -106,8 +106,10 @@ fn every_name_and_group_is_read_and_others_are_refused() {
     assert_eq!(groups.map(of).iter().sum::<usize>(), all().len());
     assert_eq!(of("map-drawn,view-60"), 2);
     let error = "view-61".parse::<Stress>().unwrap_err();
-    let is_so = error.contains("view-61") && error.contains("map-drawn");
-    assert!(is_so, "{error}");
+    assert!(
+        error.contains("view-61") && error.contains("map-drawn"),
+        "{error}"
+    );
 }
 
 #[test]
