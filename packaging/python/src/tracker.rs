@@ -80,6 +80,7 @@ impl Tracker {
     /// many as the first, in the same order; a laser without a new scan repeats the last.
     ///
     /// Raises ValueError if a scan is invalid; the tracker then stays as it was.
+    /// If a signal ends a search, as Ctrl-C does, the scan counts as one whose search has no answer.
     #[pyo3(signature = (
         ranges, angle_min=None, angle_increment=None, stamp_ns=None, *, odometry=None,
         range_min=0.0, range_max=None, mount=None, upside_down=false, time_increment=0.0

@@ -414,6 +414,7 @@ class Tracker:
         many as the first, in the same order; a laser without a new scan repeats the last.
 
         Raises ValueError if a scan is invalid; the tracker then stays as it was.
+        If a signal ends a search, as Ctrl-C does, the scan counts as one whose search has no answer.
         """
     @overload
     def update(
