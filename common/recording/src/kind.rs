@@ -4,8 +4,12 @@ use std::fmt;
 
 use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
-use crate::topics;
-
+pub const SCAN: &str = "/scan";
+pub const MAP: &str = "/map";
+pub const ODOM: &str = "/odom";
+/// Topic of the true poses of the scans: always this name, because any other pose has the same
+/// type.
+pub const GROUND_TRUTH: &str = "/ground_truth";
 /// Topic of the transforms that never change.
 pub const TF_STATIC: &str = "/tf_static";
 
@@ -53,10 +57,10 @@ impl Kind {
             [M::SCHEMA, M::DEFINITION, topic, option]
         }
         match self {
-            Kind::Scan => of::<LaserScan>(topics::SCAN, "--scan-topic"),
-            Kind::Map => of::<OccupancyGridMsg>(topics::MAP, "--map-topic"),
-            Kind::Odometry => of::<Odometry>(topics::ODOM, "--odom-topic"),
-            Kind::PoseStamped => of::<PoseStamped>(topics::GROUND_TRUTH, "--remap"),
+            Kind::Scan => of::<LaserScan>(SCAN, "--scan-topic"),
+            Kind::Map => of::<OccupancyGridMsg>(MAP, "--map-topic"),
+            Kind::Odometry => of::<Odometry>(ODOM, "--odom-topic"),
+            Kind::PoseStamped => of::<PoseStamped>(GROUND_TRUTH, "--remap"),
             Kind::StaticTransforms => of::<TfMessage>(TF_STATIC, "--remap"),
         }
     }

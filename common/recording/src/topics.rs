@@ -6,13 +6,6 @@ use std::sync::Arc;
 
 use crate::{Channel, Kind, RecordingError};
 
-pub const SCAN: &str = "/scan";
-pub const MAP: &str = "/map";
-pub const ODOM: &str = "/odom";
-/// Topic of the true poses of the scans: always this name, because any other pose has the same
-/// type.
-pub const GROUND_TRUTH: &str = "/ground_truth";
-
 /// Selects the channel with messages of a kind by the new names from `name_of`, which returns `None`
 /// to exclude a channel; returns its own name, or `None` if there is none.
 pub(crate) fn choose<'a>(
@@ -47,6 +40,7 @@ pub(crate) fn choose<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::GROUND_TRUTH;
 
     fn channel(topic: &str, kind: Kind, messages: u64) -> Channel {
         Channel {

@@ -2,12 +2,22 @@
 
 use geometry::Pose;
 
-use super::pull::{LANES, Lanes, lanes};
 use super::{FitConfig, GridPose, distance, drawing};
 use crate::EngineError;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
 use crate::simd::Simd;
+
+/// Number of ends in a group.
+pub(super) const LANES: usize = 8;
+
+pub(super) type Lanes = [f32; LANES];
+
+/// Computes one value for each lane.
+#[inline(always)]
+pub(super) fn lanes<T>(of: impl FnMut(usize) -> T) -> [T; LANES] {
+    std::array::from_fn(of)
+}
 
 /// Distances of the cells of a map to obstacles and to unknown cells.
 #[derive(Debug, Clone)]

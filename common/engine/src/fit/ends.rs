@@ -2,7 +2,8 @@
 
 use messages::Reading;
 
-use super::pull::{EndLanes, LANES};
+use super::distance_field::LANES;
+use super::pull::EndLanes;
 use crate::EngineError;
 use crate::beams::BeamConfig;
 use crate::fit::readings::{Readings, is_sound, still};

@@ -3,8 +3,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::distance_field::{Lanes, lanes};
 use super::ends::Ends;
-use super::pull::{Add, Lanes, Pull, Pulls, lanes};
+use super::pull::{Add, Pull, Pulls};
 use super::{DistanceField, FitConfig, GridPose};
 
 /// A refined pose and the quality of its fit.

@@ -6,7 +6,8 @@ use std::time::Duration;
 use png::{BlendOp, ColorType};
 use resvg::tiny_skia::Pixmap;
 
-use crate::drawing::raster::{encoder, pixels};
+use crate::drawing::encoding::encoder;
+use crate::drawing::raster::pixels;
 use crate::drawing::{DrawingError, Scene};
 
 /// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.

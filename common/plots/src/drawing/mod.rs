@@ -13,6 +13,7 @@
 
 mod animation;
 mod color;
+mod encoding;
 mod error;
 mod path;
 mod raster;

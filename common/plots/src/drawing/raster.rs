@@ -1,11 +1,9 @@
 //! Renders a scene as a PNG file.
 
-use std::io::{Cursor, Write};
-
-use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
+use crate::drawing::encoding::encoded;
 use crate::drawing::{DrawingError, Scene, to_svg};
 
 /// Encodes a PNG file with one pixel per unit of the scene.
@@ -25,32 +23,12 @@ pub(crate) fn pixels(scene: &Scene) -> Result<Pixmap, DrawingError> {
     Ok(pixels)
 }
 
-/// Encodes red, green and blue of each pixel, row by row from the top.
-pub(crate) fn encoded(sides: (u32, u32), rgb: &[u8]) -> Result<Vec<u8>, EncodingError> {
-    let mut bytes = Vec::new();
-    let encoder = encoder(Cursor::new(&mut bytes), sides, ColorType::Rgb);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgb)?;
-    writer.finish()?;
-    Ok(bytes)
-}
-
-pub(crate) fn encoder<W: Write>(
-    to: W,
-    (width, height): (u32, u32),
-    color: ColorType,
-) -> Encoder<'static, W> {
-    let mut encoder = Encoder::new(to, width, height);
-    encoder.set_color(color);
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::High);
-    // Areas of one colour compress best without a filter.
-    encoder.set_filter(Filter::NoFilter);
-    encoder
-}
-
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
+    use png::ColorType;
+
     use super::*;
     use crate::drawing::scene::tests::{RED, everything};
     use crate::drawing::{Anchor, Path, Rect, Stroke, TextStyle};

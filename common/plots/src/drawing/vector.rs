@@ -4,9 +4,9 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use svg::node::element::{Image, Path as PathElement, Rectangle};
 
+use crate::drawing::encoding::encoded;
 use crate::drawing::error::check_size;
 use crate::drawing::path::rounded;
-use crate::drawing::raster::encoded;
 use crate::drawing::{Color, DrawingError, Path, Rect};
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,8 @@ use proptest::prelude::*;
 
 use super::super::drawn::{distance_field, field_of};
 use super::*;
+use crate::fit::distance_field::{LANES, lanes};
 use crate::fit::ends::End;
-use crate::fit::pull::{LANES, lanes};
 use crate::instruction_set::InstructionSet;
 
 /// An L-shaped room, 20 cells wide.
