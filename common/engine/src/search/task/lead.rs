@@ -1,8 +1,8 @@
 //! The best pose so far, of all maps that are searched together.
 
-#[cfg(loom)]
+#[cfg(all(test, loom))]
 use loom::sync::atomic::AtomicU32;
-#[cfg(not(loom))]
+#[cfg(not(all(test, loom)))]
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering;
 
