@@ -14,9 +14,9 @@ use crate::worlds::World;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Of Markov localization ranges, squarings and Gaussians, n(2m + 1) by the formula; of reverse
-    /// projection obstacles found along θ - π and readings converted to cells and intensities,
-    /// without those that end behind an obstacle, 2mp at worst.
+    /// Operations: in Markov localization ranges, squarings and Gaussians, n(2m + 1) by the formula;
+    /// in reverse projection obstacles found along θ - π and readings converted to cells and
+    /// intensities, without those that end behind an obstacle, 2mp at worst.
     pub operations: u64,
     /// Additions and subtractions: 2mn, or kmp at worst.
     pub additions: u64,

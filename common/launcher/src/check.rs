@@ -29,7 +29,7 @@ pub struct Config {
     dataflow: PathBuf,
 }
 
-/// Checks the descriptor and what its nodes are told, and prints the graph.
+/// Checks the descriptor and the arguments of its nodes, and prints the graph.
 pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let Descriptor {
         dataflow,

@@ -24,7 +24,7 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     assert_eq!(put(&[json, wrong], body), 403);
     let basic = "Authorization: Basic 0123456789abcdef";
     assert_eq!(put(&[json, basic], body), 401);
-    assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
+    assert_eq!(put(&[json, &token], body), 409, "no node takes a region");
     assert_eq!(save().0, 409);
 
     let regions = world.graph.subscriber::<topic::Region>().unwrap();

@@ -142,7 +142,7 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     stage.show(UNIQUE);
     wait_for(&browser, "Unique");
     let notified = browser.run("return window.notified");
-    assert_eq!(notified, json!([]), "nobody asked");
+    assert_eq!(notified, json!([]), "notifications were not asked for");
     click(&browser, "#notify");
     browser.wait_until("document.getElementById('notify').ariaPressed === 'true'");
     stage.show(LOST);

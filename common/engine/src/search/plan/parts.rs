@@ -162,7 +162,7 @@ mod orders {
                 let how = (config, leak(Lead::default()));
                 Task::new(shared, simd, index, grid, (program, space), how)
             };
-            let task = leak(task.get_or_init(make).anew(leak(Lead::default())));
+            let task = leak(task.get_or_init(make).led_by(leak(Lead::default())));
             let search = |part| {
                 move || {
                     let mut scratch = Scratch::default();

@@ -115,7 +115,7 @@ impl<'a> Task<'a> {
 
     /// Returns the same task with another lead; it is never given up.
     #[cfg(all(test, loom))]
-    pub(crate) fn anew(&self, lead: &'a Lead) -> Self {
+    pub(crate) fn led_by(&self, lead: &'a Lead) -> Self {
         Task {
             lead,
             brute_force: f64::INFINITY,
