@@ -13,27 +13,32 @@ const SHARE_OF_LOOKS: f64 = 0.5;
 /// Log odds, without evidence, that the leading place is the right one.
 const LEADING: f64 = 0.7;
 
+/// Probability that the leading place is right although "nowhere" is: half of the faults that make
+/// every place unlikely are those of odometry or of a laser, not of the place.
+const RIGHT_AND_NOWHERE: f64 = 0.5;
+
 pub(super) fn is_elsewhere(place: &Place, best: &Place) -> bool {
     place.is_apart_from((best.map, best.pose))
 }
 
-/// Probability that the robot is at the best place, 0..=1: the odds of the weight of all places
-/// there against that of all others and "nowhere", calibrated on drives with faults of each kind
-/// (docs/tracking.md).
+/// Probability that the robot is at the best place, 0..=1: the weight of all places there against
+/// that of all others, times the probability that "nowhere" does not exclude it, by the same weight
+/// against that of "nowhere". Calibrated on drives with faults of each kind (docs/tracking.md).
 pub(super) fn probability(places: &Places) -> f64 {
     let Some(best) = places.all().first() else {
         return 0.0;
     };
     let weight = |place: &Place| (place.log_weight - best.log_weight).exp();
-    let nowhere = (places.nowhere() - best.log_weight).exp();
-    let (mut here, mut others) = (0.0, nowhere);
+    let (mut here, mut others) = (0.0, 0.0);
     for place in places.all() {
         match is_elsewhere(place, best) {
             true => others += weight(place),
             false => here += weight(place),
         }
     }
-    calibrated((here / others).ln())
+    let here = f64::ln(here);
+    let nowhere = 1.0 - calibrated(best.log_weight + here - places.nowhere());
+    calibrated(here - f64::ln(others)) * (1.0 - (1.0 - RIGHT_AND_NOWHERE) * nowhere)
 }
 
 /// Probability of a place whose weight gives these log odds.
