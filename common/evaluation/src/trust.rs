@@ -1,7 +1,5 @@
 //! Calibration: compares the probabilities of results with how often they were right. Pure.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -63,12 +61,6 @@ impl Trust {
     }
 }
 
-impl fmt::Display for Trust {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&table(&self.said()))
-    }
-}
-
 /// Formats a table of the ranges with results, highest probability first.
 pub(crate) fn table(ranges: &[Said]) -> String {
     let mut lines = "probability  answers  mean %  right %\n".to_owned();
@@ -92,7 +84,7 @@ mod tests {
             trust.add(probability, is_right);
         }
         assert_eq!(
-            format!("\n{trust}"),
+            format!("\n{}", table(&trust.said())),
             "
 probability  answers  mean %  right %
  0.99..1.00        1   100.0    100.0

@@ -51,10 +51,6 @@ impl Distribution {
         self.values.push_back(value);
     }
 
-    pub fn merge(&mut self, other: &Self) {
-        other.values.iter().for_each(|&value| self.add(value));
-    }
-
     /// Nearest-rank percentiles, in per cent 0..=100: the smallest value with at least that share
     /// of values at or below it. `None` without values.
     pub fn percentiles<const N: usize>(&self, percents: [f64; N]) -> [Option<f64>; N] {
@@ -77,6 +73,15 @@ impl Distribution {
     }
 }
 
+/// Keeps all values.
+impl FromIterator<f64> for Distribution {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        let mut all = Distribution::new(usize::MAX);
+        values.into_iter().for_each(|value| all.add(value));
+        all
+    }
+}
+
 /// Two percentiles of a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tail {
@@ -87,7 +92,7 @@ pub struct Tail {
 }
 
 /// Two percentiles of an error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Spread {
     /// Half of the values are at or below it.
     pub median: Option<f64>,
@@ -149,17 +154,6 @@ impl Accuracy {
         self.error_deg.add(truth.angle_to(*best).to_degrees());
     }
 
-    pub fn merge(&mut self, other: &Self) {
-        self.truths += other.truths;
-        self.successes += other.successes;
-        self.close_successes += other.close_successes;
-        self.recalled += other.recalled;
-        self.unique += other.unique;
-        self.unique_wrong += other.unique_wrong;
-        self.error_m.merge(&other.error_m);
-        self.error_deg.merge(&other.error_deg);
-    }
-
     pub fn figures(&self) -> Figures {
         let share = |count| (self.truths > 0).then(|| count as f64 / self.truths as f64);
         Figures {
@@ -207,9 +201,7 @@ mod tests {
     use super::*;
 
     fn distribution(values: &[f64]) -> Distribution {
-        let mut distribution = Distribution::new(1000);
-        values.iter().for_each(|v| distribution.add(*v));
-        distribution
+        values.iter().copied().collect()
     }
 
     #[test]
@@ -218,20 +210,9 @@ mod tests {
         let percents = [0.0, 5.0, 30.0, 40.0, 50.0, 99.0, 100.0];
         let expected = [15.0, 15.0, 20.0, 20.0, 35.0, 50.0, 50.0].map(Some);
         assert_eq!(five.percentiles(percents), expected);
-        assert_eq!(
-            distribution(&[7.0]).tail(),
-            Tail {
-                median: Some(7.0),
-                p99: Some(7.0)
-            }
-        );
-        assert_eq!(
-            distribution(&[]).spread(),
-            Spread {
-                median: None,
-                p90: None
-            }
-        );
+        let tail = distribution(&[7.0]).tail();
+        assert_eq!((tail.median, tail.p99), (Some(7.0), Some(7.0)));
+        assert_eq!(distribution(&[]).spread(), Spread::default());
     }
 
     #[test]

@@ -12,7 +12,7 @@ use serde::Serialize;
 use statistics::Spread;
 
 use super::given::{GivenPoses, seconds};
-use super::judge::{Effort, Evaluation, Judge};
+use super::judge::{Evaluation, Judged};
 use crate::sequence::{Errors, Samples, WRONG};
 use crate::text;
 use crate::trust::{self, Said};
@@ -106,7 +106,7 @@ pub(super) fn evaluate(
     let given = GivenPoses::parse(&text).map_err(|reason| anyhow!("{shown}:{reason}"))?;
     let (recording, truths) = truths.open(bag, options)?;
     let topics = options.topics.scans(&recording)?;
-    let (mut judge, mut pairs) = (Judge::new(), Vec::new());
+    let (mut judged, mut pairs) = (Vec::new(), Vec::new());
     let (mut scans, mut wrong_scans, mut first_ns) = (0, 0, None);
     for scan in Scans::of(&recording, topics, options.every) {
         let scan = scan?;
@@ -116,7 +116,7 @@ pub(super) fn evaluate(
         };
         first_ns = first_ns.or(Some(scan.stamp_ns));
         let Some(answer) = given.at(scan.stamp_ns, (config.answer_gap_s * 1e9) as i64) else {
-            judge.refusal(truth, "no answer".to_owned());
+            judged.push(Judged::refusal(truth, "no answer".to_owned()));
             continue;
         };
         let mount = scan
@@ -125,7 +125,7 @@ pub(super) fn evaluate(
         let pose = mount.map_or(answer.pose, |mount| answer.pose.then(mount));
         let is_far = !pose.is_within(truth, WRONG.0, WRONG.1.to_radians());
         wrong_scans += u64::from(answer.is_unique && is_far);
-        judge.given(truth, pose, (answer.is_unique, answer.probability));
+        judged.push(Judged::given(truth, pose, &answer));
         pairs.push((pose, truth));
     }
     let first_ns = first_ns.ok_or_else(|| no_truth_taken(bag, scans, truths.recorded()))?;
@@ -137,14 +137,13 @@ pub(super) fn evaluate(
             "{shown}: no pose, from {from} to {to} s, has the stamp of a scan with a true pose, the first of {bag} at {first} s; --answer-gap-s interpolates"
         ));
     }
-    let effort = Effort {
-        bag,
+    let costs = Evaluation {
         scans,
-        ..Effort::default()
+        ..Evaluation::default()
     };
-    let reached = judge.conclude(&effort);
+    let reached = costs.with(&judged);
     let figures = Figures {
-        bag: effort.bag,
+        bag,
         answers: given.count(),
         scans,
         truths: reached.truths,

@@ -10,7 +10,7 @@ use offline::{Accepted, Options, Session, World, no_truth_taken};
 use progress::{Progress, say};
 
 use super::answers::{self, AnswerOptions};
-use super::judge::{Effort, Evaluation, Judge, Total};
+use super::judge::{Evaluation, Judged, Total, complaint};
 use super::limits::Limits;
 use super::memory;
 use super::table::Table;
@@ -94,8 +94,8 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         sequence::evaluate(&task, &mut outcomes)?;
         return outcomes.finish();
     }
-    let mut printer = Printer::new(config.report.json, &config.bags);
-    let mut total = Total::new();
+    let (json, table) = (config.report.json, Table::of(&config.bags));
+    let mut total = Total::default();
     for (index, bag) in config.bags.iter().enumerate() {
         let name = bag.display().to_string();
         if let Err(error) = memory::forget_peak()
@@ -105,28 +105,35 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
                 "{name}: peak_rss_mb is that of all files so far: {error}"
             ));
         }
-        let (judge, effort) = match evaluate(bag, config, map.as_ref()) {
+        let (judged, costs) = match evaluate(bag, config, map.as_ref()) {
             Ok(judged) => judged,
             Err(error) => {
                 outcomes.failed(&name, &error, say);
                 continue;
             }
         };
-        total.add(&judge, &effort);
-        let evaluation = judge.conclude(&effort);
+        let evaluation = costs.with(&judged);
+        total.add(judged, &evaluation);
         if !config.report.total {
             outcomes.judged(&name, None, &config.missed(&evaluation), say);
         }
-        printer.file(&evaluation)?;
+        stdout::print(&match json {
+            true => json::object(&evaluation) + "\n",
+            false if total.files == 1 => table.header() + &table.row(&evaluation),
+            false => table.row(&evaluation),
+        })?;
     }
     let all = total.conclude();
     if config.report.total {
         outcomes.judged("total", None, &config.missed(&all), say);
     }
     if total.files > 1 {
-        printer.total(&all)?;
+        stdout::print(&match json {
+            true => total_line(&all),
+            false => table.row(&all),
+        })?;
     }
-    if !config.report.json && total.files > 0 {
+    if !json && total.files > 0 {
         stdout::print(&format!("\n{}", trust::table(&all.probabilities)))?;
     }
     outcomes.finish()
@@ -152,7 +159,7 @@ fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
     match answers::evaluate(file, bag, options) {
         Ok((figures, reached)) => {
             stdout::print(&match config.report.json {
-                true => format!("{}\n", json::object(&figures)),
+                true => json::object(&figures) + "\n",
                 false => figures.text(),
             })?;
             let missed = config.missed(&reached);
@@ -163,56 +170,23 @@ fn judge_answers(file: &Path, config: &Config) -> anyhow::Result<ExitCode> {
     outcomes.finish()
 }
 
-struct Printer {
-    /// `None` for JSON.
-    table: Option<Table>,
-    begun: bool,
-}
-
-impl Printer {
-    fn new(json: bool, bags: &[PathBuf]) -> Self {
-        Printer {
-            table: (!json).then(|| Table::of(bags)),
-            begun: false,
-        }
-    }
-
-    fn file(&mut self, evaluation: &Evaluation) -> anyhow::Result<()> {
-        let line = match &self.table {
-            Some(table) if self.begun => table.row(evaluation),
-            Some(table) => format!("{}\n{}", table.header(), table.row(evaluation)),
-            None => json::object(evaluation),
-        };
-        self.begun = true;
-        Ok(stdout::print(&format!("{line}\n"))?)
-    }
-
-    fn total(&mut self, total: &Evaluation) -> anyhow::Result<()> {
-        match self.table {
-            Some(_) => self.file(total),
-            None => Ok(stdout::print(&total_line(total))?),
-        }
-    }
-}
-
 fn evaluate(
     bag: &Path,
     config: &Config,
     map: Option<&OccupancyGrid>,
-) -> anyhow::Result<(Judge, Effort)> {
+) -> anyhow::Result<(Vec<Judged>, Evaluation)> {
     let (recording, truths) = config.truths.open(bag, &config.options)?;
     let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
-    let (judge, accepted, scans) = judge_all(&mut session, &truths, config.erase_place, &progress)?;
-    accepted.check(bag)?;
-    if let Some(complaint) = judge.complaint() {
+    let (judged, scans) = judge_all(&mut session, &truths, (bag, config), &progress)?;
+    if let Some(complaint) = complaint(&judged) {
         progress.say(&format!("{name}: {complaint}"));
     }
-    if judge.truths() == 0 {
+    if judged.is_empty() {
         return Err(no_truth_taken(bag, scans, truths.recorded()));
     }
-    let effort = Effort {
+    let costs = Evaluation {
         bag: name,
         map_cells: session.world().map_or(0, World::cells),
         scans,
@@ -221,38 +195,39 @@ fn evaluate(
             .context("cannot read the peak of memory from /proc/self/status")?,
         searchable_cells: session.world().map_or(0, World::searchable_cells),
         index_bytes: session.world().map_or(0, World::index_bytes),
+        ..Evaluation::default()
     };
-    Ok((judge, effort))
+    Ok((judged, costs))
 }
 
-/// Judges the scans with a true pose; also counts those accepted, rejected and read.
+/// Judges the scans with a true pose; also counts those read.
 fn judge_all(
     session: &mut Session<'_>,
     truths: &Truths,
-    erase_place: Option<f64>,
+    (bag, config): (&Path, &Config),
     progress: &Progress,
-) -> anyhow::Result<(Judge, Accepted, u64)> {
-    let mut judge = Judge::new();
+) -> anyhow::Result<(Vec<Judged>, u64)> {
+    let (mut judged, mut scans) = (Vec::new(), 0);
     let mut accepted = Accepted::default();
-    let mut scans = 0;
     while let Some(scan) = session.scans.next() {
         let scan = scan?;
         scans += 1;
         if let Some(truth) = truths.at(scan.stamp_ns) {
-            if let Some(radius_m) = erase_place {
+            if let Some(radius_m) = config.erase_place {
                 session.erase(&scan, truth, radius_m)?;
             }
             let reply = session.ask(&scan)?;
             accepted.count(&reply);
-            match reply.answer {
-                Ok(answer) => judge.answer(truth, answer.places, reply.cpu_ms),
-                Err(refusal) => judge.refusal(truth, format!("{refusal:#}")),
-            }
+            judged.push(match reply.answer {
+                Ok(answer) => Judged::answer(truth, answer.places, reply.cpu_ms),
+                Err(refusal) => Judged::refusal(truth, format!("{refusal:#}")),
+            });
         }
         for note in session.take_notes() {
             progress.say(&note);
         }
         progress.step();
     }
-    Ok((judge, accepted, scans))
+    accepted.check(bag)?;
+    Ok((judged, scans))
 }

@@ -7,75 +7,56 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use statistics::{Accuracy, Distribution, SUCCESS, Spread};
 
+use super::given::GivenPose;
 use crate::trust::{Said, Trust};
 
-/// Collects results of one file, or of several.
-pub(super) struct Judge {
-    accuracy: Accuracy,
-    cpu_ms: Distribution,
-    error_m: Distribution,
-    error_deg: Distribution,
-    trust: Trust,
-    /// Number of truths inside the 95 % ellipse of a result with the verdict Unique.
-    in_ellipse: u64,
-    refused: u64,
-    first_refusal: Option<String>,
+/// Result for a scan with a true pose.
+#[derive(Clone)]
+pub(super) struct Judged {
+    truth: Pose,
+    answer: statistics::Answer,
+    /// Probability of the best place, if it is known.
+    probability: Option<f64>,
+    /// CPU time of the search in milliseconds, if there was one.
+    cpu_ms: Option<f64>,
+    /// True if the verdict is Unique and the 95 % ellipse contains the truth.
+    is_held: bool,
+    /// Reason for the rejection of the scan, which counts as a failure.
+    refusal: Option<String>,
 }
 
-/// Properties and costs of an evaluation; of several files, the largest map and peak.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Effort {
-    pub(super) bag: String,
-    pub(super) map_cells: u64,
-    pub(super) scans: u64,
-    pub(super) prepare_cpu_ms: f64,
-    pub(super) peak_rss_mb: f64,
-    pub(super) searchable_cells: u64,
-    pub(super) index_bytes: u64,
-}
-
-impl Effort {
-    fn merge(&mut self, other: &Self) {
-        self.map_cells = self.map_cells.max(other.map_cells);
-        self.scans += other.scans;
-        self.prepare_cpu_ms += other.prepare_cpu_ms;
-        self.peak_rss_mb = self.peak_rss_mb.max(other.peak_rss_mb);
-        self.searchable_cells = self.searchable_cells.max(other.searchable_cells);
-        self.index_bytes = self.index_bytes.max(other.index_bytes);
-    }
-}
-
+/// Results of several files, with the largest map and peak.
+#[derive(Default)]
 pub(super) struct Total {
-    judge: Judge,
-    effort: Effort,
+    judged: Vec<Judged>,
+    costs: Evaluation,
     pub(super) files: u64,
 }
 
 impl Total {
-    pub(super) fn new() -> Self {
-        Total {
-            judge: Judge::new(),
-            effort: Effort {
-                bag: "total".to_owned(),
-                ..Effort::default()
-            },
-            files: 0,
-        }
-    }
-
-    pub(super) fn add(&mut self, judge: &Judge, effort: &Effort) {
-        self.judge.merge(judge);
-        self.effort.merge(effort);
+    pub(super) fn add(&mut self, judged: Vec<Judged>, of: &Evaluation) {
+        self.judged.extend(judged);
         self.files += 1;
+        let all = &mut self.costs;
+        all.map_cells = all.map_cells.max(of.map_cells);
+        all.scans += of.scans;
+        all.prepare_cpu_ms += of.prepare_cpu_ms;
+        all.peak_rss_mb = all.peak_rss_mb.max(of.peak_rss_mb);
+        all.searchable_cells = all.searchable_cells.max(of.searchable_cells);
+        all.index_bytes = all.index_bytes.max(of.index_bytes);
     }
 
     pub(super) fn conclude(&self) -> Evaluation {
-        self.judge.conclude(&self.effort)
+        let costs = Evaluation {
+            bag: "total".to_owned(),
+            ..self.costs.clone()
+        };
+        costs.with(&self.judged)
     }
 }
 
 /// Figures of one file or of all; shares are 0..=1 of `truths`.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Evaluation {
     /// The file, as given by the user.
     pub(super) bag: String,
@@ -115,116 +96,102 @@ pub(crate) struct Evaluation {
     pub(super) probabilities: Vec<Said>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Times {
     pub(super) median: Option<f64>,
     pub(super) p90: Option<f64>,
     pub(super) max: Option<f64>,
 }
 
-impl Judge {
-    pub(super) fn new() -> Self {
-        // Keeps all values, since a file is finite.
-        let all = || Distribution::new(usize::MAX);
-        Judge {
-            accuracy: Accuracy::new(usize::MAX),
-            cpu_ms: all(),
-            error_m: all(),
-            error_deg: all(),
-            trust: Trust::default(),
-            in_ellipse: 0,
-            refused: 0,
-            first_refusal: None,
-        }
-    }
-
-    pub(super) fn answer(&mut self, truth: Pose, found: &Places, cpu_ms: f64) {
+impl Judged {
+    pub(super) fn answer(truth: Pose, found: &Places, cpu_ms: f64) -> Self {
         let poses = found.places.iter().map(|place| place.map_from_laser);
-        let judged = statistics::Answer {
-            poses: poses.collect(),
-            verdict: Some(found.verdict),
-        };
-        self.cpu_ms.add(cpu_ms);
-        let place = found.places.first();
-        self.judge(truth, &judged, place.map(|place| place.probability));
-        if let Some(place) = place
-            && found.verdict == Verdict::Unique
-        {
-            let is_held = statistics::holds(place.covariance, place.map_from_laser, truth);
-            self.in_ellipse += u64::from(is_held);
+        let best = found.places.first();
+        let is_held =
+            best.is_some_and(|best| statistics::holds(best.covariance, best.map_from_laser, truth));
+        Judged {
+            truth,
+            answer: statistics::Answer {
+                poses: poses.collect(),
+                verdict: Some(found.verdict),
+            },
+            probability: best.map(|best| best.probability),
+            cpu_ms: Some(cpu_ms),
+            is_held: is_held && found.verdict == Verdict::Unique,
+            refusal: None,
         }
     }
 
-    pub(super) fn given(
-        &mut self,
-        truth: Pose,
-        pose: Pose,
-        (is_unique, probability): (bool, Option<f64>),
-    ) {
-        let verdict = match is_unique {
+    pub(super) fn given(truth: Pose, pose: Pose, given: &GivenPose) -> Self {
+        let verdict = match given.is_unique {
             true => Verdict::Unique,
             false => Verdict::Ambiguous,
         };
-        let judged = statistics::Answer {
-            poses: vec![pose],
-            verdict: Some(verdict),
-        };
-        self.judge(truth, &judged, probability);
-    }
-
-    fn judge(&mut self, truth: Pose, judged: &statistics::Answer, probability: Option<f64>) {
-        self.accuracy.add(truth, judged);
-        let Some(best) = judged.poses.first() else {
-            return;
-        };
-        let (metres, degrees) = SUCCESS;
-        let is_right = best.is_within(truth, metres, degrees.to_radians());
-        if is_right {
-            self.error_m.add(best.distance_to(truth));
-            self.error_deg.add(best.angle_to(truth).to_degrees());
-        }
-        if let Some(probability) = probability {
-            self.trust.add(probability, is_right);
+        Judged {
+            truth,
+            answer: statistics::Answer {
+                poses: vec![pose],
+                verdict: Some(verdict),
+            },
+            probability: given.probability,
+            cpu_ms: None,
+            is_held: false,
+            refusal: None,
         }
     }
 
-    /// Counts a rejected scan as a failure.
-    pub(super) fn refusal(&mut self, truth: Pose, reason: String) {
-        self.refused += 1;
-        self.first_refusal.get_or_insert(reason);
-        let nothing = statistics::Answer {
-            poses: Vec::new(),
-            verdict: None,
-        };
-        self.accuracy.add(truth, &nothing);
+    pub(super) fn refusal(truth: Pose, reason: String) -> Self {
+        Judged {
+            truth,
+            answer: statistics::Answer {
+                poses: Vec::new(),
+                verdict: None,
+            },
+            probability: None,
+            cpu_ms: None,
+            is_held: false,
+            refusal: Some(reason),
+        }
     }
+}
 
-    fn merge(&mut self, other: &Self) {
-        self.accuracy.merge(&other.accuracy);
-        self.cpu_ms.merge(&other.cpu_ms);
-        self.error_m.merge(&other.error_m);
-        self.error_deg.merge(&other.error_deg);
-        self.trust.merge(&other.trust);
-        self.in_ellipse += other.in_ellipse;
-    }
+/// Sentence on the rejected scans; `None` if there are none.
+pub(super) fn complaint(all: &[Judged]) -> Option<String> {
+    let refusals = all.iter().filter_map(|judged| judged.refusal.as_ref());
+    let refused = refusals.clone().count();
+    let reason = refusals.clone().next()?;
+    Some(format!("scans rejected: {refused}; the first: {reason}"))
+}
 
-    pub(super) fn truths(&self) -> u64 {
-        self.accuracy.figures().truths
-    }
-
-    pub(super) fn complaint(&self) -> Option<String> {
-        let reason = self.first_refusal.as_ref()?;
-        let refused = self.refused;
-        Some(format!("scans rejected: {refused}; the first: {reason}"))
-    }
-
-    pub(super) fn conclude(&self, effort: &Effort) -> Evaluation {
-        let figures = self.accuracy.figures();
-        let [median, p90, max] = self.cpu_ms.percentiles([50.0, 90.0, 100.0]);
+impl Evaluation {
+    /// Adds the figures of the results to properties and costs.
+    pub(super) fn with(self, all: &[Judged]) -> Self {
+        let (mut accuracy, mut trust) = (Accuracy::new(1), Trust::default());
+        let (mut error_m, mut error_deg) = (Vec::new(), Vec::new());
+        for Judged {
+            truth,
+            answer,
+            probability,
+            ..
+        } in all
+        {
+            accuracy.add(*truth, answer);
+            let Some(best) = answer.poses.first() else {
+                continue;
+            };
+            let is_right = best.is_within(*truth, SUCCESS.0, SUCCESS.1.to_radians());
+            if is_right {
+                error_m.push(best.distance_to(*truth));
+                error_deg.push(best.angle_to(*truth).to_degrees());
+            }
+            if let Some(probability) = *probability {
+                trust.add(probability, is_right);
+            }
+        }
+        let figures = accuracy.figures();
+        let times = Distribution::from_iter(all.iter().filter_map(|judged| judged.cpu_ms));
+        let [median, p90, max] = times.percentiles([50.0, 90.0, 100.0]);
         Evaluation {
-            bag: effort.bag.clone(),
-            map_cells: effort.map_cells,
-            scans: effort.scans,
             truths: figures.truths,
             success_50cm_10deg: figures.success_50cm_10deg,
             success_20cm_3deg: figures.success_20cm_3deg,
@@ -232,25 +199,20 @@ impl Judge {
             unique: figures.unique,
             unique_wrong: figures.unique_wrong,
             cpu_ms: Times { median, p90, max },
-            prepare_cpu_ms: effort.prepare_cpu_ms,
-            peak_rss_mb: effort.peak_rss_mb,
-            searchable_cells: effort.searchable_cells,
-            index_bytes: effort.index_bytes,
-            error_m: self.error_m.spread(),
-            error_deg: self.error_deg.spread(),
-            unique_in_ellipse: self.in_ellipse,
-            probabilities: self.trust.said().to_vec(),
+            error_m: Distribution::from_iter(error_m).spread(),
+            error_deg: Distribution::from_iter(error_deg).spread(),
+            unique_in_ellipse: all.iter().filter(|judged| judged.is_held).count() as u64,
+            probabilities: trust.said().to_vec(),
+            ..self
         }
     }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::*;
     use engine::peaks::Place;
     use geometry::Covariance;
-    use messages::Verdict;
-
-    use super::*;
 
     fn found(verdict: Verdict, poses: &[Pose]) -> Places {
         let place = |&map_from_laser: &Pose| Place {
@@ -275,17 +237,18 @@ pub(super) mod tests {
     }
 
     /// Five scans: one off by 0.1 m, one by 0.3 m, two at a wrong place, one rejected.
-    fn judged() -> (Judge, Effort) {
+    fn judged() -> (Vec<Judged>, Evaluation) {
         let truth = Pose::new(1.0, 2.0, 0.0);
         let beside = |x: f64| Pose::new(1.0 + x, 2.0, x.to_radians());
-        let mut judge = Judge::new();
-        judge.answer(truth, &found(Verdict::Unique, &[beside(0.1)]), 4.0);
-        judge.answer(truth, &found(Verdict::Unique, &[beside(0.3)]), 1.0);
-        judge.answer(truth, &found(Verdict::Unique, &[beside(5.0)]), 2.0);
         let second = found(Verdict::Ambiguous, &[beside(5.0), beside(0.0)]);
-        judge.answer(truth, &second, 3.0);
-        judge.refusal(truth, "empty".to_owned());
-        let effort = Effort {
+        let judged = vec![
+            Judged::answer(truth, &found(Verdict::Unique, &[beside(0.1)]), 4.0),
+            Judged::answer(truth, &found(Verdict::Unique, &[beside(0.3)]), 1.0),
+            Judged::answer(truth, &found(Verdict::Unique, &[beside(5.0)]), 2.0),
+            Judged::answer(truth, &second, 3.0),
+            Judged::refusal(truth, "empty".to_owned()),
+        ];
+        let costs = Evaluation {
             bag: "r.mcap".to_owned(),
             map_cells: 720,
             scans: 9,
@@ -293,25 +256,25 @@ pub(super) mod tests {
             peak_rss_mb: 34.5,
             searchable_cells: 300,
             index_bytes: 9000,
+            ..Evaluation::default()
         };
-        (judge, effort)
+        (judged, costs)
     }
 
     pub(crate) fn evaluation() -> Evaluation {
-        let (judge, effort) = judged();
-        judge.conclude(&effort)
+        let (judged, costs) = judged();
+        costs.with(&judged)
     }
 
     #[test]
     fn a_total_is_of_the_scans_of_all_files() {
-        let (judge, mut effort) = judged();
-        let mut total = Total::new();
-        total.add(&judge, &effort);
-        effort.map_cells = 700;
-        let mut other = Judge::new();
+        let (judged, mut costs) = judged();
+        let mut total = Total::default();
+        total.add(judged, &costs);
+        costs.map_cells = 700;
         let truth = Pose::new(1.0, 2.0, 0.0);
-        other.answer(truth, &found(Verdict::Unique, &[truth]), 9.0);
-        total.add(&other, &effort);
+        let other = Judged::answer(truth, &found(Verdict::Unique, &[truth]), 9.0);
+        total.add(vec![other], &costs);
         let all = total.conclude();
         assert_eq!((&*all.bag, total.files), ("total", 2));
         assert_eq!((all.map_cells, all.scans, all.truths), (720, 18, 6));
@@ -354,11 +317,10 @@ pub(super) mod tests {
 
     #[test]
     fn refused_scans_are_counted_and_the_first_reason_kept() {
-        let mut judge = Judge::new();
-        assert_eq!(judge.complaint(), None);
-        judge.refusal(Pose::IDENTITY, "empty".to_owned());
-        judge.refusal(Pose::IDENTITY, "too long".to_owned());
-        let complaint = judge.complaint().unwrap();
-        assert_eq!(complaint, "scans rejected: 2; the first: empty");
+        assert_eq!(complaint(&[]), None);
+        let refused =
+            ["empty", "too long"].map(|reason| Judged::refusal(Pose::IDENTITY, reason.to_owned()));
+        let expected = "scans rejected: 2; the first: empty";
+        assert_eq!(complaint(&refused).unwrap(), expected);
     }
 }

@@ -76,7 +76,7 @@ impl Table {
         for (cell, (_, width)) in cells.iter().zip(COLUMNS) {
             line.push_str(&format!("  {cell:>width$}"));
         }
-        line
+        line + "\n"
     }
 }
 
@@ -89,7 +89,7 @@ mod tests {
     fn columns_stand_under_their_names() {
         let table = Table::of(&["r.mcap".into(), "a/longer.mcap".into()]);
         let evaluation = judge::tests::evaluation();
-        let lines = format!("\n{}\n{}\n", table.header(), table.row(&evaluation));
+        let lines = format!("\n{}{}", table.header(), table.row(&evaluation));
         assert_eq!(
             lines,
             "

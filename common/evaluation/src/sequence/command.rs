@@ -10,6 +10,7 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::errors::Samples;
 use super::figures::{Figures, Judged};
+use super::limits::Reached;
 use super::run::Said;
 use super::{SequenceOptions, Task, course, drive, follow, interruption, starts, stress};
 use crate::outcomes::{Outcomes, total_line};
@@ -22,12 +23,11 @@ pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Resu
         return stress::evaluate(task, (&names, stress), outcomes);
     }
     let (mut total, mut drives) = (Judged::default(), 0);
-    let missed = |figures: &Figures| {
-        let truths = task.truths.missed(figures.truths).into_iter();
-        let limits = &task.sequence.limits;
-        truths
-            .chain(limits.missed(&figures.reached(), true))
-            .collect::<Vec<_>>()
+    let missed = |judged: &Judged| {
+        let truths = task.truths.missed(judged.truths).into_iter();
+        let reached = Reached::of(&judged.starts, &judged.followed);
+        let limits = task.sequence.limits.missed(&reached, true);
+        truths.chain(limits).collect::<Vec<_>>()
     };
     for (bag, file_name) in task.bags.iter().zip(&names) {
         let name = bag.display().to_string();
@@ -42,18 +42,18 @@ pub(crate) fn evaluate(task: &Task<'_>, outcomes: &mut Outcomes) -> anyhow::Resu
         drives += 1;
         let figures = Figures::of(name.clone(), &judged);
         stdout::print(&match task.report.json {
-            true => format!("{}\n", json::object(&figures)),
+            true => json::object(&figures) + "\n",
             false => figures.text(),
         })?;
         if !task.report.total {
-            outcomes.judged(&name, None, &missed(&figures), say);
+            outcomes.judged(&name, None, &missed(&judged), say);
         }
     }
-    let total = Figures::of("total".to_owned(), &total);
     if drives > 1 {
+        let figures = Figures::of("total".to_owned(), &total);
         stdout::print(&match task.report.json {
-            true => total_line(&total),
-            false => total.text(),
+            true => total_line(&figures),
+            false => figures.text(),
         })?;
     }
     if task.report.total {

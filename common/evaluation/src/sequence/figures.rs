@@ -7,7 +7,6 @@ use statistics::{Distribution, Spread};
 use super::errors::{Errors, Samples};
 use super::follow::Followed;
 use super::interruption::Interruptions;
-use super::limits::Reached;
 use super::starts::{After, Starts};
 use crate::text::{number, percent, share};
 
@@ -70,16 +69,11 @@ pub(crate) struct Figures {
     pub(super) cpu_ms_searching: Spread,
 }
 
-fn spread_of(times_ms: impl IntoIterator<Item = f64>) -> Spread {
-    let mut all = Distribution::new(usize::MAX);
-    times_ms.into_iter().for_each(|ms| all.add(ms));
-    all.spread()
-}
-
 impl Figures {
     pub(super) fn of(bag: String, judged: &Judged) -> Self {
         let (starts, followed) = (&judged.starts, &judged.followed);
         let (jumps, outages) = (&judged.jumps, &judged.outages);
+        let spread = |times_ms: &[f64]| Distribution::from_iter(times_ms.iter().copied()).spread();
         let hourly = |count: u64| count as f64 / followed.hours;
         Figures {
             bag,
@@ -105,18 +99,8 @@ impl Figures {
             outages_wrong: outages.wrong.len() as u64,
             from_first_scan: judged.from_first_scan.figures(),
             searched_share: share(starts.searches, starts.scans),
-            cpu_ms_tracking: spread_of(followed.tracking_ms.iter().copied()),
-            cpu_ms_searching: spread_of(judged.searching_ms.iter().copied()),
-        }
-    }
-
-    pub(super) fn reached(&self) -> Reached {
-        Reached {
-            wrong_starts: self.wrong_starts,
-            wrong_scans: self.wrong_scans,
-            losses: self.losses as u64,
-            rms_m: self.rms_m,
-            right: self.right.clone(),
+            cpu_ms_tracking: spread(&followed.tracking_ms),
+            cpu_ms_searching: spread(&judged.searching_ms),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use std::str::FromStr;
 
-use super::starts::{AFTER_M, After};
+use super::follow::Followed;
+use super::starts::{AFTER_M, After, Starts};
 
 /// Requirements on each drive and each variant of it; none by default.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -66,6 +67,18 @@ pub(super) struct Reached {
     pub(super) rms_m: Option<f64>,
     /// Share of the starts that are right, by metres.
     pub(super) right: After,
+}
+
+impl Reached {
+    pub(super) fn of(starts: &Starts, followed: &Followed) -> Self {
+        Reached {
+            wrong_starts: starts.wrong.len() as u64,
+            wrong_scans: starts.tally.wrong + followed.tally.wrong,
+            losses: followed.losses.len() as u64,
+            rms_m: followed.rms_m(),
+            right: After::of(&starts.right, &starts.judged),
+        }
+    }
 }
 
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {

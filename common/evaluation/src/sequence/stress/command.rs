@@ -9,14 +9,13 @@ use plots::draw_drive;
 use progress::{Progress, say};
 
 use super::super::limits::Reached;
-use super::super::starts::After;
 use super::super::{Task, course, drive};
 use super::figures::Figures;
 use super::material::Material;
 use super::trial::{Recorded, Trial, Wrong};
 use super::variants::{Stress, Variant};
 use crate::outcomes::Outcomes;
-use crate::trust::Trust;
+use crate::trust::{self, Trust};
 
 /// Evaluates the variants of the files; one that cannot be evaluated is reported, and skipped.
 pub(in super::super) fn evaluate(
@@ -41,7 +40,7 @@ pub(in super::super) fn evaluate(
         }
     }
     if !task.report.json {
-        stdout::print(&format!("\n{trust}"))?;
+        stdout::print(&format!("\n{}", trust::table(&trust.said())))?;
     }
     Ok(())
 }
@@ -103,13 +102,7 @@ fn one(
                 picture(folder, (file_name, variant.name), (&trial, wrong), options)?;
             }
         }
-        let reached = Reached {
-            wrong_starts: figures.wrong_starts,
-            wrong_scans: figures.wrong_scans,
-            losses: figures.losses,
-            rms_m: figures.rms_m,
-            right: After::of(&trial.starts.right, &trial.starts.judged),
-        };
+        let reached = Reached::of(&trial.starts, &trial.followed);
         // On a map where no pose is right there is nothing to follow.
         let has_truth = !trial.followed.said.is_empty();
         let missed = sequence.limits.missed(&reached, has_truth);
