@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::drawing::{DrawingError, Frame, Path, Scene, Stroke};
+use crate::drawing::{Frame, Path, Scene, Stroke};
 use geometry::Pose;
 use messages::Verdict;
 
@@ -73,10 +73,10 @@ impl Film<'_> {
         self.ground.draw(&mut page, &view)?;
         self.draw_places((&mut page.scene, &mut page.legend), &view, i);
         axes::draw_metres(&mut page.scene, &view, page.unit);
-        Ok(page.finish()?)
+        page.finish()
     }
 
-    fn page(&self, i: usize) -> Result<(Page, View), DrawingError> {
+    fn page(&self, i: usize) -> anyhow::Result<(Page, View)> {
         Page::of_map(self.width, self.extent, HEIGHTS, &self.heading(i))
     }
 

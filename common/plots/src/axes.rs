@@ -160,7 +160,7 @@ pub(super) fn draw(scene: &mut Scene, area: Rect, (x, y): (Axis<'_>, Axis<'_>), 
 
 /// Lines behind a chart at the ticks of both axes.
 pub(super) fn draw_grating(scene: &mut Scene, area: Rect, (x, y): (Axis<'_>, Axis<'_>), unit: f64) {
-    let mut lines = Path::new();
+    let mut lines = Path::default();
     for (along, _) in x.numbers(area.width, false, unit) {
         let at = area.x + along;
         lines.add_line((at, area.y), (at, area.bottom()));

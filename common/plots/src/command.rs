@@ -98,7 +98,6 @@ fn draw_map(
 
 struct Plot<'a> {
     config: &'a Config,
-    bag: &'a Path,
     recording: &'a Recording,
     session: Session<'a>,
     truths: BTreeMap<i64, GroundTruth>,
@@ -116,7 +115,6 @@ impl<'a> Plot<'a> {
         };
         Ok(Plot {
             config,
-            bag: recording.path(),
             session: Session::open(recording, &config.options, given)?,
             recording,
             truths,
@@ -131,7 +129,7 @@ impl<'a> Plot<'a> {
     }
 
     fn name(&self) -> String {
-        self.bag.display().to_string()
+        self.recording.path().display().to_string()
     }
 
     fn draw_scan(&mut self) -> anyhow::Result<Scene> {
@@ -163,7 +161,7 @@ impl<'a> Plot<'a> {
                 Err(error) => return Err(error.into()),
             }
         }
-        let file = self.bag.display();
+        let file = self.recording.path().display();
         bail!("{file}: there is no scan {number}; the scans taken are 1 to {seen}")
     }
 
@@ -180,7 +178,11 @@ impl<'a> Plot<'a> {
 
     fn field(&self, scan: &TakenScan, subject: &Subject) -> anyhow::Result<Field> {
         let Some(best) = subject.shown.first() else {
-            return Err(no_place(self.bag, subject.number, &subject.places));
+            return Err(no_place(
+                self.recording.path(),
+                subject.number,
+                &subject.places,
+            ));
         };
         let engine = &self.config.options.engine;
         let world = World::prepare(self.session.map()?, engine, Prior::Heading);
@@ -193,7 +195,7 @@ impl<'a> Plot<'a> {
             return Err(damage.into());
         }
         if self.truths.is_empty() {
-            return Err(no_truths(self.bag));
+            return Err(no_truths(self.recording.path()));
         }
         let progress = Progress::new("locating", self.session.scans.total());
         let (mut judged, mut scans) = (Vec::new(), 0);
@@ -206,7 +208,11 @@ impl<'a> Plot<'a> {
             progress.step();
         }
         if judged.is_empty() {
-            return Err(no_truth_taken(self.bag, scans, self.truths.len()));
+            return Err(no_truth_taken(
+                self.recording.path(),
+                scans,
+                self.truths.len(),
+            ));
         }
         errors::draw(&judged, &self.name(), self.config.width)
     }

@@ -68,7 +68,7 @@ pub fn draw(chart: &Curves) -> anyhow::Result<Scene> {
     }
     name_others(&mut page, chart, scales.1);
     axes::draw(&mut page.scene, area, (x, y), unit);
-    Ok(page.finish()?)
+    page.finish()
 }
 
 fn scales(chart: &Curves) -> (Scale, Scale) {
@@ -104,7 +104,7 @@ fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Sca
     let points = || curve.points.iter().map(|point| at(point.x, point.y));
     page.scene.stroke(Path::polyline(points()), line);
     let solid = Stroke::new(line.color, 1.4 * unit);
-    let (mut bars, mut beyond) = (Path::new(), Path::new());
+    let (mut bars, mut beyond) = (Path::default(), Path::default());
     for point in &curve.points {
         let (low, high) = point.interval.unwrap_or((point.y, point.y));
         bars.add_line(at(point.x, low), at(point.x, high));
@@ -187,12 +187,7 @@ mod tests {
 
     #[test]
     fn what_lies_below_the_axis_is_said() {
-        let texts = |chart: &Curves| -> Vec<String> {
-            let scene = draw(chart).unwrap();
-            layout::check(&scene);
-            let labels = scene.labels().iter();
-            labels.map(|label| label.text.clone()).collect()
-        };
+        let texts = |chart: &Curves| layout::texts(&draw(chart).unwrap());
         let has = |texts: &[String], name: &str| texts.iter().any(|text| text == name);
         let whole = texts(&chart());
         for name in ["a", "interval of 95 %", "p/n, %", "ratio"] {

@@ -28,12 +28,6 @@ impl Judged {
     }
 }
 
-const VERDICTS: [Verdict; 4] = [
-    Verdict::Unique,
-    Verdict::Ambiguous,
-    Verdict::PoorFit,
-    Verdict::NoScan,
-];
 /// The height of each chart as a share of the width.
 const HEIGHT: f64 = 0.24;
 const MARK: f64 = 4.2;
@@ -58,7 +52,7 @@ pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> anyhow::Result<S
         let area = Rect::new(left, area.y, right - left, area.height);
         series.draw(&mut page, judged, area);
     }
-    Ok(page.finish()?)
+    page.finish()
 }
 
 struct Series {
@@ -108,7 +102,7 @@ impl Series {
         let y = height(self.limit);
         let line = Path::line((area.x, y), (area.right(), y));
         page.scene.stroke(line, limit_stroke(unit));
-        for verdict in VERDICTS {
+        for verdict in theme::VERDICTS {
             let scans = judged.iter().filter(|scan| scan.verdict == verdict);
             let at = |scan: &Judged| {
                 let x = area.x + area.width * time.scale.share(seconds(judged, scan));
@@ -142,7 +136,7 @@ fn draw_marks(
     marks: impl Iterator<Item = ((f64, f64), Option<Shape>)>,
 ) {
     let (color, common) = theme::of_verdict(verdict);
-    let (mut filled, mut outlined) = (Path::new(), Path::new());
+    let (mut filled, mut outlined) = (Path::default(), Path::default());
     for (at, shape) in marks {
         let size = MARK * page.unit;
         match shape {
@@ -205,7 +199,7 @@ fn heading(judged: &[Judged], bag: &str) -> Heading {
 }
 
 fn name(legend: &mut Legend, judged: &[Judged], unit: f64) {
-    for verdict in VERDICTS {
+    for verdict in theme::VERDICTS {
         let scans = judged.iter().filter(|scan| scan.verdict == verdict);
         let count = scans.count();
         if count > 0 {
@@ -251,16 +245,13 @@ mod tests {
 
     #[test]
     fn what_has_no_error_or_one_below_the_axis_is_marked_and_named() {
-        let texts = |all: &[Judged]| -> Vec<String> {
-            let scene = draw(all, "r.mcap", 1200).unwrap();
-            layout::check(&scene);
-            let labels = scene.labels().iter();
-            labels.map(|label| label.text.clone()).collect()
-        };
         let far = judged(5, Verdict::Unique, Some((0.1, 1.0)));
         let below = "below the axis: less than 0.001 m or 0.01°";
         let nowhere = "no place, so no error";
-        let has = |all: &[Judged], name: &str| texts(all).iter().any(|text| text == name);
+        let has = |all: &[Judged], name: &str| {
+            let texts = layout::texts(&draw(all, "r.mcap", 1200).unwrap());
+            texts.contains(&name.to_owned())
+        };
         assert!(has(&[far], "Unique (1)") && has(&[far], "counts as found: 0.5 m, 10°"));
         assert!(!has(&[far], below) && !has(&[far], nowhere));
         assert!(has(
@@ -272,16 +263,10 @@ mod tests {
 
     #[test]
     fn stamps_from_a_damaged_clock_do_not_overflow() {
-        let all = [
-            Judged {
-                stamp_ns: i64::MIN,
-                ..judged(0, Verdict::Unique, Some((0.0, 0.0)))
-            },
-            Judged {
-                stamp_ns: i64::MAX,
-                ..judged(0, Verdict::Unique, Some((0.0, 0.0)))
-            },
-        ];
+        let all = [i64::MIN, i64::MAX].map(|stamp_ns| Judged {
+            stamp_ns,
+            ..judged(0, Verdict::Unique, Some((0.0, 0.0)))
+        });
         assert!(duration_s(&all).is_finite());
         assert!(draw(&all, "r.mcap", 300).is_ok());
     }

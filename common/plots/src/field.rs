@@ -146,7 +146,7 @@ pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
     });
     axes::draw_metres(&mut page.scene, &view, unit);
     axes::draw_bar(&mut page.scene, bar, votes.scale(), theme::heat, unit);
-    Ok(page.finish()?)
+    page.finish()
 }
 
 /// Where most votes meet, in the map, metres.

@@ -3,7 +3,7 @@
 //! A pixel shows all cells that lie under it, or the one cell that it is a part
 //! of: nothing that is thin is lost where many cells meet one pixel.
 
-use crate::drawing::{Color, DrawingError, Scene};
+use crate::drawing::{Color, Scene};
 use engine::fit::GridPose;
 use engine::grid::{CellRules, GridFrame};
 use map::OccupancyGrid;
@@ -77,7 +77,7 @@ pub(super) fn draw(
     (map, rules): (&OccupancyGrid, CellRules),
     view: &View,
     ink: impl Fn(usize) -> Option<Ink>,
-) -> Result<(), DrawingError> {
+) -> anyhow::Result<()> {
     let sampler = Sampler::new(view, frame_of(map), sides_of(map));
     let mut inks: Vec<Ink> = Vec::new();
     let mut seen = Pixel::default();

@@ -2,6 +2,13 @@
 
 use crate::drawing::Scene;
 
+/// Checks the labels of a picture, and returns their texts.
+pub(super) fn texts(scene: &Scene) -> Vec<String> {
+    check(scene);
+    let labels = scene.labels().iter();
+    labels.map(|label| label.text.clone()).collect()
+}
+
 /// Fails if a label overlaps another, reaches beyond the picture, or is too small to read.
 pub(super) fn check(scene: &Scene) {
     let labels = scene.labels();

@@ -47,7 +47,7 @@ pub(super) fn ellipse(
     let ellipse = covariance.ellipse();
     let pixels = |metres: f64| ELLIPSE_95 * metres * view.pixels_per_m();
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
-    let mut path = Path::new();
+    let mut path = Path::default();
     path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);
     scene.fill(path.clone(), stroke.color.with_opacity(INSIDE));
     scene.stroke(path, stroke);
@@ -58,14 +58,12 @@ pub(super) fn ends(
     view: &View,
     ends: impl Iterator<Item = (f64, f64)>,
     (shape, size, color): (Shape, f64, Color),
-) -> bool {
-    let mut path = Path::new();
+) {
+    let mut path = Path::default();
     for end in ends.filter(|&end| view.shows(end)) {
         shape.add_to(&mut path, view.at(end), size);
     }
-    let is_any = !path.is_empty();
     scene.fill(path, color);
-    is_any
 }
 
 /// An upright bar with ends, from a point down.

@@ -42,7 +42,7 @@ pub(super) fn draw(
         },
     )?;
     axes::draw_metres(&mut page.scene, &view, page.unit);
-    Ok(page.finish()?)
+    page.finish()
 }
 
 fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {

@@ -1,6 +1,6 @@
 //! What surrounds every picture: a title, what it says, and a legend.
 
-use crate::drawing::{Anchor, DrawingError, Path, Rect, Scene, TextStyle};
+use crate::drawing::{Anchor, Path, Rect, Scene, TextStyle};
 use messages::Verdict;
 
 use super::extent::Extent;
@@ -71,11 +71,7 @@ const LEAST_SIZE: f64 = 0.85;
 
 impl Page {
     /// A picture of this many pixels along x, whose body takes this many along y.
-    pub(super) fn new(
-        width: u32,
-        body_height: f64,
-        heading: &Heading,
-    ) -> Result<Self, DrawingError> {
+    pub(super) fn new(width: u32, body_height: f64, heading: &Heading) -> anyhow::Result<Self> {
         let unit = unit(width);
         let body_width = body_width(width);
         let before = chip_width(heading.verdict, unit);
@@ -102,7 +98,7 @@ impl Page {
         extent: Extent,
         (lowest, highest): (f64, f64),
         heading: &Heading,
-    ) -> Result<(Self, View), DrawingError> {
+    ) -> anyhow::Result<(Self, View)> {
         let ratio = (extent.height() / extent.width()).clamp(lowest, highest);
         let height = axes::height_for(ratio, body_width(width), unit(width));
         let page = Page::new(width, height, heading)?;
@@ -131,7 +127,7 @@ impl Page {
     }
 
     /// The picture, with its legend below.
-    pub(super) fn finish(mut self) -> Result<Scene, DrawingError> {
+    pub(super) fn finish(mut self) -> anyhow::Result<Scene> {
         let (unit, body) = (self.unit, self.body);
         let below = self.legend.height(body.width, unit) + MARGIN * unit;
         let bottom = body.bottom() + below;

@@ -84,7 +84,7 @@ pub(super) fn by_class(
     let from = view.at((pose.x, pose.y));
     for class in theme::CLASSES {
         let (color, shape, name) = theme::of_class(class);
-        let mut rays = Path::new();
+        let mut rays = Path::default();
         for end in of_class(scan, class) {
             rays.add_line(from, view.at(end.at));
         }

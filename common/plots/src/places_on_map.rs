@@ -48,5 +48,5 @@ pub fn draw(
         }
     });
     axes::draw_metres(&mut page.scene, &view, unit);
-    Ok(page.finish()?)
+    page.finish()
 }

@@ -68,7 +68,7 @@ pub(super) fn draw(
     if near.is_empty() {
         places::count(&mut page.legend, subject);
     }
-    Ok(page.finish()?)
+    page.finish()
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -46,7 +46,7 @@ impl Shape {
     }
 
     pub(super) fn at(self, at: (f64, f64), size: f64) -> Path {
-        let mut path = Path::new();
+        let mut path = Path::default();
         self.add_to(&mut path, at, size);
         path
     }

@@ -1,6 +1,5 @@
 //! Subject of a picture: a scan, its possible places, and the truth.
 
-use crate::drawing::DrawingError;
 use engine::EngineError;
 use engine::grid::CellRules;
 use engine::peaks::{Place, Places};
@@ -21,7 +20,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    pub(super) fn draw(&self, page: &mut Page, view: &View) -> Result<(), DrawingError> {
+    pub(super) fn draw(&self, page: &mut Page, view: &View) -> anyhow::Result<()> {
         let ink = ground::occupied(self.map, self.rules);
         let names = (&mut page.scene, &mut page.legend);
         ground::draw(names, (self.map, self.rules), view, ink)

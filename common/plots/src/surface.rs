@@ -186,7 +186,7 @@ pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
         draw_from(&mut page, (&relief, votes.scale()), camera, area);
     }
     axes::draw_bar(&mut page.scene, bar, votes.scale(), theme::heat, unit);
-    Ok(page.finish()?)
+    page.finish()
 }
 
 fn draw_from(page: &mut Page, (relief, up): (&Relief, Axis<'_>), camera: &Camera, area: Rect) {

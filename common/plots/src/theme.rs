@@ -79,6 +79,14 @@ pub(super) fn of_class(class: BeamClass) -> (Color, Shape, &'static str) {
     }
 }
 
+/// All verdicts, in the order in which legends name them.
+pub(super) const VERDICTS: [Verdict; 4] = [
+    Verdict::Unique,
+    Verdict::Ambiguous,
+    Verdict::PoorFit,
+    Verdict::NoScan,
+];
+
 pub(super) fn of_verdict(verdict: Verdict) -> (Color, Shape) {
     match verdict {
         Verdict::Unique => (CURVES[0], Shape::Circle),
@@ -138,13 +146,7 @@ mod tests {
     #[test]
     fn kinds_differ_in_colour_and_in_shape() {
         let classes = CLASSES.map(|class| (of_class(class).0, of_class(class).1));
-        let verdicts = [
-            Verdict::Unique,
-            Verdict::Ambiguous,
-            Verdict::PoorFit,
-            Verdict::NoScan,
-        ];
-        for kinds in [classes, verdicts.map(of_verdict)] {
+        for kinds in [classes, VERDICTS.map(of_verdict)] {
             for (i, (color, shape)) in kinds.iter().enumerate() {
                 let mut others = kinds[i + 1..].iter();
                 assert!(others.all(|other| other.0 != *color && other.1 != *shape));

@@ -3,12 +3,13 @@
 use std::io::Cursor;
 use std::time::Duration;
 
+use anyhow::{Context, bail};
 use png::{BlendOp, ColorType};
 use resvg::tiny_skia::Pixmap;
 
-use crate::drawing::encoding::encoder;
+use crate::drawing::Scene;
+use crate::drawing::encoding::{NOT_ENCODED, encoder};
 use crate::drawing::raster::pixels;
-use crate::drawing::{DrawingError, Scene};
 
 /// A scene and its duration, which is rounded down to milliseconds and limited to 65 s.
 pub type Frame = (Scene, Duration);
@@ -17,43 +18,46 @@ pub type Frame = (Scene, Duration);
 /// the first frame. Further frames store only changed pixels.
 /// Fails if there is no frame, one has another size than the first, or an item of `frames` is an
 /// error.
-pub fn to_animated_png<E: From<DrawingError>>(
-    mut frames: impl ExactSizeIterator<Item = Result<Frame, E>>,
-) -> Result<Vec<u8>, E> {
+pub fn to_animated_png(
+    mut frames: impl ExactSizeIterator<Item = anyhow::Result<Frame>>,
+) -> anyhow::Result<Vec<u8>> {
     let count = frames.len();
-    let (scene, shown) = frames.next().ok_or(DrawingError::NoFrame)??;
+    let (scene, shown) = frames
+        .next()
+        .context("an animation needs at least one picture")??;
     let mut before = pixels(&scene)?;
     let mut bytes = Vec::new();
     let sides = (scene.width(), scene.height());
     let mut encoder = encoder(Cursor::new(&mut bytes), sides, ColorType::Rgba);
-    let encoding = DrawingError::Encoding;
     let endless = 0;
     let count = u32::try_from(count).unwrap_or(u32::MAX);
-    encoder.set_animated(count, endless).map_err(encoding)?;
-    encoder.set_blend_op(BlendOp::Over).map_err(encoding)?;
-    let mut writer = encoder.write_header().map_err(encoding)?;
+    encoder.set_animated(count, endless).context(NOT_ENCODED)?;
+    encoder.set_blend_op(BlendOp::Over).context(NOT_ENCODED)?;
+    let mut writer = encoder.write_header().context(NOT_ENCODED)?;
     let milliseconds = |shown: Duration| u16::try_from(shown.as_millis()).unwrap_or(u16::MAX);
     let delay = milliseconds(shown);
-    writer.set_frame_delay(delay, 1000).map_err(encoding)?;
-    writer.write_image_data(before.data()).map_err(encoding)?;
+    writer.set_frame_delay(delay, 1000).context(NOT_ENCODED)?;
+    writer
+        .write_image_data(before.data())
+        .context(NOT_ENCODED)?;
     for frame in frames {
         let (scene, shown) = frame?;
         let now = pixels(&scene)?;
         let part = Part::changed(&before, &now)?;
         let delay = milliseconds(shown);
-        writer.set_frame_delay(delay, 1000).map_err(encoding)?;
+        writer.set_frame_delay(delay, 1000).context(NOT_ENCODED)?;
         // The encoder checks each position against the previous size.
-        writer.reset_frame_position().map_err(encoding)?;
+        writer.reset_frame_position().context(NOT_ENCODED)?;
         let (width, height) = part.sides;
         writer
             .set_frame_dimension(width, height)
-            .map_err(encoding)?;
+            .context(NOT_ENCODED)?;
         let (x, y) = part.corner;
-        writer.set_frame_position(x, y).map_err(encoding)?;
-        writer.write_image_data(&part.rgba).map_err(encoding)?;
+        writer.set_frame_position(x, y).context(NOT_ENCODED)?;
+        writer.write_image_data(&part.rgba).context(NOT_ENCODED)?;
         before = now;
     }
-    writer.finish().map_err(encoding)?;
+    writer.finish().context(NOT_ENCODED)?;
     Ok(bytes)
 }
 
@@ -65,10 +69,10 @@ struct Part {
 }
 
 impl Part {
-    fn changed(before: &Pixmap, now: &Pixmap) -> Result<Self, DrawingError> {
+    fn changed(before: &Pixmap, now: &Pixmap) -> anyhow::Result<Self> {
         let (width, height) = (now.width(), now.height());
         if (width, height) != (before.width(), before.height()) {
-            return Err(DrawingError::FrameSize { width, height });
+            bail!("a picture of {width} x {height} pixels in an animation of another size");
         }
         let differs = |x: u32, y: u32| before.pixel(x, y) != now.pixel(x, y);
         let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -109,7 +113,7 @@ mod tests {
         scene
     }
 
-    fn animated(scenes: &[Scene]) -> Result<Vec<u8>, DrawingError> {
+    fn animated(scenes: &[Scene]) -> anyhow::Result<Vec<u8>> {
         let frames = scenes
             .iter()
             .cloned()
@@ -159,6 +163,7 @@ mod tests {
         let other = Scene::new(9, 8, "").unwrap();
         let error = animated(&[scene(&[]), other]).unwrap_err().to_string();
         assert!(error.contains("9 x 8"), "{error}");
-        assert!(matches!(animated(&[]), Err(DrawingError::NoFrame)));
+        let error = animated(&[]).unwrap_err().to_string();
+        assert_eq!(error, "an animation needs at least one picture");
     }
 }

@@ -14,7 +14,6 @@
 mod animation;
 mod color;
 mod encoding;
-mod error;
 mod path;
 mod raster;
 mod scene;
@@ -23,9 +22,8 @@ mod vector;
 
 pub use animation::{Frame, to_animated_png};
 pub use color::Color;
-pub use error::{DrawingError, MAX_SIDE};
 pub use path::{Path, Rect};
 pub use raster::to_png;
-pub use scene::{Label, Scene, to_svg};
-pub use text::{Anchor, TextStyle, Weight};
+pub use scene::{Scene, to_svg};
+pub use text::{Anchor, TextStyle};
 pub use vector::Stroke;

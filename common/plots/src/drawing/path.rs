@@ -66,10 +66,6 @@ impl Rect {
 pub struct Path(String);
 
 impl Path {
-    pub fn new() -> Self {
-        Path::default()
-    }
-
     /// Adds a command of SVG with its numbers.
     pub(crate) fn push(&mut self, command: char, numbers: &[f64]) {
         self.0.push(command);
@@ -119,7 +115,7 @@ impl Path {
     }
 
     pub fn circle(center: (f64, f64), radius: f64) -> Self {
-        let mut path = Path::new();
+        let mut path = Path::default();
         path.add_circle(center, radius);
         path
     }
@@ -129,13 +125,13 @@ impl Path {
     }
 
     pub fn polyline(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let mut path = Path::new();
+        let mut path = Path::default();
         path.add_polyline(points);
         path
     }
 
     pub fn polygon(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let mut path = Path::new();
+        let mut path = Path::default();
         path.add_polygon(points);
         path
     }

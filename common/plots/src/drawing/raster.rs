@@ -1,24 +1,25 @@
 //! Renders a scene as a PNG file.
 
+use anyhow::Context;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
-use crate::drawing::encoding::encoded;
-use crate::drawing::{DrawingError, Scene, to_svg};
+use crate::drawing::encoding::{NOT_ENCODED, encoded};
+use crate::drawing::{Scene, to_svg};
 
 /// Encodes a PNG file with one pixel per unit of the scene.
-pub fn to_png(scene: &Scene) -> Result<Vec<u8>, DrawingError> {
+pub fn to_png(scene: &Scene) -> anyhow::Result<Vec<u8>> {
     let pixels = pixels(scene)?;
     let rgb = pixels.pixels().iter();
     let rgb: Vec<u8> = rgb.flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
-    Ok(encoded((scene.width(), scene.height()), &rgb)?)
+    encoded((scene.width(), scene.height()), &rgb).context(NOT_ENCODED)
 }
 
 /// Renders one pixel per unit of the scene; all are opaque.
-pub(crate) fn pixels(scene: &Scene) -> Result<Pixmap, DrawingError> {
-    let tree = Tree::from_str(&to_svg(scene), &Options::default())?;
-    let (width, height) = (scene.width(), scene.height());
-    let mut pixels = Pixmap::new(width, height).ok_or(DrawingError::Size { width, height })?;
+pub(crate) fn pixels(scene: &Scene) -> anyhow::Result<Pixmap> {
+    const NOT_RENDERED: &str = "the picture cannot be rendered";
+    let tree = Tree::from_str(&to_svg(scene), &Options::default()).context(NOT_RENDERED)?;
+    let mut pixels = Pixmap::new(scene.width(), scene.height()).context(NOT_RENDERED)?;
     resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
     Ok(pixels)
 }

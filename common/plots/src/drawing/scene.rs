@@ -5,10 +5,10 @@ use std::mem;
 use svg::node::element::{ClipPath, Group, Title};
 use svg::{Document, Node};
 
-use crate::drawing::error::check_size;
+use crate::drawing::encoding::check_size;
 use crate::drawing::path::rounded;
 use crate::drawing::vector::{filled, picture, rectangle, stroked};
-use crate::drawing::{Color, DrawingError, Path, Rect, Stroke, TextStyle, text};
+use crate::drawing::{Color, Path, Rect, Stroke, TextStyle, text};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
@@ -31,7 +31,7 @@ pub struct Scene {
 
 impl Scene {
     /// An empty picture of `width · height` pixels; SVG viewers show the title.
-    pub fn new(width: u32, height: u32, title: impl Into<String>) -> Result<Self, DrawingError> {
+    pub fn new(width: u32, height: u32, title: impl Into<String>) -> anyhow::Result<Self> {
         check_size(width, height)?;
         Ok(Scene {
             width,
@@ -60,18 +60,10 @@ impl Scene {
     }
 
     /// Crops or extends the picture at the bottom.
-    pub fn set_height(&mut self, height: u32) -> Result<(), DrawingError> {
+    pub fn set_height(&mut self, height: u32) -> anyhow::Result<()> {
         check_size(self.width, height)?;
         self.height = height;
         Ok(())
-    }
-
-    pub(crate) fn title(&self) -> &str {
-        &self.title
-    }
-
-    pub(crate) fn items(&self) -> &Group {
-        &self.items
     }
 
     pub fn fill(&mut self, path: Path, color: Color) {
@@ -92,7 +84,7 @@ impl Scene {
         &mut self,
         over: Rect,
         color: impl FnMut(u32, u32) -> Color,
-    ) -> Result<(), DrawingError> {
+    ) -> anyhow::Result<()> {
         self.items.append(picture(over, color)?);
         Ok(())
     }
@@ -132,7 +124,7 @@ impl Scene {
         self.clips += 1;
         let name = format!("clip{}", self.clips);
         let inside = Group::new().set("clip-path", format!("url(#{name})"));
-        let clip = ClipPath::new().set("id", name).add(rectangle(area));
+        let clip = ClipPath::default().set("id", name).add(rectangle(area));
         self.items.append(clip);
         self.grouped(inside, draw);
     }
@@ -147,14 +139,14 @@ impl Scene {
 
 /// Encodes an SVG file without external references.
 pub fn to_svg(scene: &Scene) -> String {
-    let (width, height) = (scene.width(), scene.height());
+    let (width, height) = (scene.width, scene.height);
     let document = Document::new()
         .set("width", width)
         .set("height", height)
         .set("viewBox", (0, 0, width, height))
-        .add(Title::new(scene.title()))
+        .add(Title::new(&*scene.title))
         .add(filled(Path::rect(scene.area()), Color::WHITE))
-        .add(scene.items().clone());
+        .add(scene.items.clone());
     format!("{document}\n")
 }
 
@@ -164,7 +156,7 @@ pub(crate) mod tests {
     use svg::parser::Event;
 
     use super::*;
-    use crate::drawing::MAX_SIDE;
+    use crate::drawing::encoding::MAX_SIDE;
 
     pub(crate) const RED: Color = Color::rgb(0xFF_0000);
     pub(crate) const BLUE: Color = Color::rgb(0x00_00FF);

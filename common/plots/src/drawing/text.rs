@@ -8,12 +8,6 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 use crate::drawing::{Color, Path, Rect};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Weight {
-    Regular,
-    Bold,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     Start,
     Middle,
@@ -24,7 +18,7 @@ pub enum Anchor {
 pub struct TextStyle {
     /// The em of the font, in pixels; capitals are 0.73 of it.
     pub size: f64,
-    pub weight: Weight,
+    pub is_bold: bool,
     pub anchor: Anchor,
     pub color: Color,
     /// Colour and width of a rim behind the letters, for legibility on any background.
@@ -36,7 +30,7 @@ impl TextStyle {
     pub const fn new(size: f64, color: Color) -> Self {
         TextStyle {
             size,
-            weight: Weight::Regular,
+            is_bold: false,
             anchor: Anchor::Start,
             color,
             halo: None,
@@ -45,7 +39,7 @@ impl TextStyle {
 
     pub const fn bold(self) -> Self {
         TextStyle {
-            weight: Weight::Bold,
+            is_bold: true,
             ..self
         }
     }
@@ -60,7 +54,7 @@ impl TextStyle {
     }
 
     pub fn width_of(&self, content: &str) -> f64 {
-        let face = face(self.weight);
+        let face = face(self.is_bold);
         let advances = content.chars().map(|letter| advance(face, letter).1);
         advances.sum::<f64>() * self.scale(face)
     }
@@ -88,9 +82,9 @@ impl TextStyle {
 
 /// Outlines of a line of text at a point of its baseline.
 pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> Path {
-    let face = face(style.weight);
+    let face = face(style.is_bold);
     let mut pen = Pen {
-        path: Path::new(),
+        path: Path::default(),
         at: (x - style.before(style.width_of(content)), y),
         scale: style.scale(face),
     };
@@ -103,13 +97,10 @@ pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> P
     pen.path
 }
 
-fn face(weight: Weight) -> &'static Face<'static> {
+fn face(is_bold: bool) -> &'static Face<'static> {
     static REGULAR: LazyLock<Face<'static>> = LazyLock::new(|| parse(dejavu::sans::regular()));
     static BOLD: LazyLock<Face<'static>> = LazyLock::new(|| parse(dejavu::sans::bold()));
-    match weight {
-        Weight::Regular => &REGULAR,
-        Weight::Bold => &BOLD,
-    }
+    if is_bold { &BOLD } else { &REGULAR }
 }
 
 fn parse(font: &'static [u8]) -> Face<'static> {
@@ -171,10 +162,10 @@ mod tests {
 
     #[test]
     fn both_weights_have_what_is_written() {
-        for weight in [Weight::Regular, Weight::Bold] {
-            let face = face(weight);
+        for is_bold in [false, true] {
+            let face = face(is_bold);
             for letter in "Az09 .,:%°±²·–−…≥σθ√#×".chars() {
-                assert!(face.glyph_index(letter).is_some(), "{weight:?} {letter}");
+                assert!(face.glyph_index(letter).is_some(), "{is_bold} {letter}");
             }
         }
         assert!(STYLE.bold().width_of("word") > STYLE.width_of("word"));

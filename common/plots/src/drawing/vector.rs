@@ -1,13 +1,13 @@
 //! Elements of SVG files.
 
+use anyhow::Context;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use svg::node::element::{Image, Path as PathElement, Rectangle};
 
-use crate::drawing::encoding::encoded;
-use crate::drawing::error::check_size;
+use crate::drawing::encoding::{NOT_ENCODED, check_size, encoded};
 use crate::drawing::path::rounded;
-use crate::drawing::{Color, DrawingError, Path, Rect};
+use crate::drawing::{Color, Path, Rect};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
@@ -48,7 +48,7 @@ pub(crate) fn stroked(path: Path, stroke: Stroke) -> PathElement {
 pub(crate) fn picture(
     over: Rect,
     mut color: impl FnMut(u32, u32) -> Color,
-) -> Result<Image, DrawingError> {
+) -> anyhow::Result<Image> {
     let (width, height) = (over.width as u32, over.height as u32);
     check_size(width, height)?;
     let mut rgb = Vec::with_capacity(3 * width as usize * height as usize);
@@ -58,7 +58,7 @@ pub(crate) fn picture(
             rgb.extend([color.red, color.green, color.blue]);
         }
     }
-    let png = STANDARD.encode(encoded((width, height), &rgb)?);
+    let png = STANDARD.encode(encoded((width, height), &rgb).context(NOT_ENCODED)?);
     Ok(Image::new()
         .set("x", rounded(over.x))
         .set("y", rounded(over.y))
