@@ -1,7 +1,7 @@
 //! Outcomes of the evaluated files: which requirements are missed, as lines, as exit code, and as a
 //! JUnit report for a build server.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -93,11 +93,7 @@ impl Outcomes {
     pub(crate) fn finish(self) -> anyhow::Result<ExitCode> {
         let mut report = Report::new("backcast evaluate");
         report.add_test_suites(self.suites);
-        if let Some(file) = &self.junit {
-            let text = report.to_string().map_err(std::io::Error::other);
-            text.and_then(|text| std::fs::write(file, text))
-                .with_context(|| format!("cannot write {}", file.display()))?;
-        }
+        write(&report, self.junit.as_deref())?;
         match report.failures + report.errors {
             0 => Ok(ExitCode::SUCCESS),
             _ => Ok(ExitCode::FAILURE),
@@ -112,6 +108,14 @@ impl Outcomes {
         suite.add_test_case(case);
         self.suites.push(suite);
     }
+}
+
+/// Writes a report, if a file is named.
+pub(crate) fn write(report: &Report, file: Option<&Path>) -> anyhow::Result<()> {
+    let Some(file) = file else { return Ok(()) };
+    let text = report.to_string().map_err(std::io::Error::other);
+    text.and_then(|text| std::fs::write(file, text))
+        .with_context(|| format!("cannot write {}", file.display()))
 }
 
 pub(crate) fn not_passed(kind: NonSuccessKind, message: String) -> TestCaseStatus {

@@ -141,7 +141,7 @@ pub(super) fn evaluate(
         scans,
         ..Evaluation::default()
     };
-    let reached = costs.with(&judged);
+    let reached = costs.with(&[judged]);
     let figures = Figures {
         bag,
         answers: given.count(),

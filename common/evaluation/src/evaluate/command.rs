@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::slice;
 
 use anyhow::Context;
 use command_line::{number, stdout, wrong_use};
@@ -112,14 +113,14 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
                 continue;
             }
         };
-        let evaluation = costs.with(&judged);
+        let evaluation = costs.with(slice::from_ref(&judged));
         total.add(judged, &evaluation);
         if !config.report.total {
             outcomes.judged(&name, None, &config.missed(&evaluation), say);
         }
         stdout::print(&match json {
             true => json::object(&evaluation) + "\n",
-            false if total.files == 1 => table.header() + &table.row(&evaluation),
+            false if total.files.len() == 1 => table.header() + &table.row(&evaluation),
             false => table.row(&evaluation),
         })?;
     }
@@ -127,13 +128,13 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
     if config.report.total {
         outcomes.judged("total", None, &config.missed(&all), say);
     }
-    if total.files > 1 {
+    if total.files.len() > 1 {
         stdout::print(&match json {
             true => total_line(&all),
             false => table.row(&all),
         })?;
     }
-    if !json && total.files > 0 {
+    if !json && !total.files.is_empty() {
         stdout::print(&format!("\n{}", trust::table(&all.probabilities)))?;
     }
     outcomes.finish()

@@ -11,7 +11,6 @@ use super::given::GivenPose;
 use crate::trust::{Said, Trust};
 
 /// Result for a scan with a true pose.
-#[derive(Clone)]
 pub(super) struct Judged {
     truth: Pose,
     answer: statistics::Answer,
@@ -28,15 +27,13 @@ pub(super) struct Judged {
 /// Results of several files, with the largest map and peak.
 #[derive(Default)]
 pub(super) struct Total {
-    judged: Vec<Judged>,
+    pub(super) files: Vec<Vec<Judged>>,
     costs: Evaluation,
-    pub(super) files: u64,
 }
 
 impl Total {
     pub(super) fn add(&mut self, judged: Vec<Judged>, of: &Evaluation) {
-        self.judged.extend(judged);
-        self.files += 1;
+        self.files.push(judged);
         let all = &mut self.costs;
         all.map_cells = all.map_cells.max(of.map_cells);
         all.scans += of.scans;
@@ -51,7 +48,7 @@ impl Total {
             bag: "total".to_owned(),
             ..self.costs.clone()
         };
-        costs.with(&self.judged)
+        costs.with(&self.files)
     }
 }
 
@@ -165,31 +162,31 @@ pub(super) fn complaint(all: &[Judged]) -> Option<String> {
 
 impl Evaluation {
     /// Adds the figures of the results to properties and costs.
-    pub(super) fn with(self, all: &[Judged]) -> Self {
+    pub(super) fn with(self, files: &[Vec<Judged>]) -> Self {
         let (mut accuracy, mut trust) = (Accuracy::new(1), Trust::default());
         let (mut error_m, mut error_deg) = (Vec::new(), Vec::new());
-        for Judged {
-            truth,
-            answer,
-            probability,
-            ..
-        } in all
-        {
-            accuracy.add(*truth, answer);
-            let Some(best) = answer.poses.first() else {
-                continue;
-            };
-            let is_right = best.is_within(*truth, SUCCESS.0, SUCCESS.1.to_radians());
-            if is_right {
-                error_m.push(best.distance_to(*truth));
-                error_deg.push(best.angle_to(*truth).to_degrees());
+        for file in files {
+            // A mean of several files is that of their sums, which are rounded.
+            let mut of_file = Trust::default();
+            for judged in file {
+                accuracy.add(judged.truth, &judged.answer);
+                let Some(best) = judged.answer.poses.first() else {
+                    continue;
+                };
+                let is_right = best.is_within(judged.truth, SUCCESS.0, SUCCESS.1.to_radians());
+                if is_right {
+                    error_m.push(best.distance_to(judged.truth));
+                    error_deg.push(best.angle_to(judged.truth).to_degrees());
+                }
+                if let Some(probability) = judged.probability {
+                    of_file.add(probability, is_right);
+                }
             }
-            if let Some(probability) = *probability {
-                trust.add(probability, is_right);
-            }
+            trust.merge(&of_file);
         }
+        let all = || files.iter().flatten();
         let figures = accuracy.figures();
-        let times = Distribution::from_iter(all.iter().filter_map(|judged| judged.cpu_ms));
+        let times = Distribution::from_iter(all().filter_map(|judged| judged.cpu_ms));
         let [median, p90, max] = times.percentiles([50.0, 90.0, 100.0]);
         Evaluation {
             truths: figures.truths,
@@ -201,7 +198,7 @@ impl Evaluation {
             cpu_ms: Times { median, p90, max },
             error_m: Distribution::from_iter(error_m).spread(),
             error_deg: Distribution::from_iter(error_deg).spread(),
-            unique_in_ellipse: all.iter().filter(|judged| judged.is_held).count() as u64,
+            unique_in_ellipse: all().filter(|judged| judged.is_held).count() as u64,
             probabilities: trust.said().to_vec(),
             ..self
         }
@@ -263,7 +260,7 @@ pub(super) mod tests {
 
     pub(crate) fn evaluation() -> Evaluation {
         let (judged, costs) = judged();
-        costs.with(&judged)
+        costs.with(&[judged])
     }
 
     #[test]
@@ -276,7 +273,7 @@ pub(super) mod tests {
         let other = Judged::answer(truth, &found(Verdict::Unique, &[truth]), 9.0);
         total.add(vec![other], &costs);
         let all = total.conclude();
-        assert_eq!((&*all.bag, total.files), ("total", 2));
+        assert_eq!((&*all.bag, total.files.len()), ("total", 2));
         assert_eq!((all.map_cells, all.scans, all.truths), (720, 18, 6));
         assert_eq!(all.success_50cm_10deg, Some(0.5));
         assert_eq!((all.unique, all.unique_in_ellipse), (4, 2));

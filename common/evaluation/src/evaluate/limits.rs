@@ -34,54 +34,47 @@ pub(super) struct Limits {
 impl Limits {
     /// Requirements that the file misses, one sentence each; an unknown figure misses its own.
     pub(super) fn missed(&self, found: &Evaluation) -> Vec<String> {
-        let percent = |share: Option<f64>| share.map(|share| 100.0 * share);
         let text = |found: Option<f64>, unit: &str| match found {
             Some(found) => format!("{found:.1} {unit}"),
             None => "not known, as no answer is right".to_owned(),
         };
-        let mut missed = Vec::new();
+        let at_least = |what: &str, found: Option<f64>, option: &str, least: Option<f64>| {
+            let found = found.map(|share| 100.0 * share);
+            let least = least.filter(|&least| found.is_none_or(|found| found < least))?;
+            Some(format!("{what} {}, --{option} {least}", text(found, "%")))
+        };
+        let at_most =
+            |what: &str, found: Option<f64>, unit: &str, option: &str, most: Option<f64>| {
+                let most = most.filter(|&most| found.is_none_or(|found| found > most))?;
+                Some(format!(
+                    "{what} is {}, --{option} {most}",
+                    text(found, unit)
+                ))
+            };
+        let (success, wrong) = (found.success_50cm_10deg, found.unique_wrong);
         let unique = share(found.unique, found.truths);
-        for (what, found, option, least) in [
-            (
-                "success is",
-                found.success_50cm_10deg,
-                "min-success",
-                self.min_success,
-            ),
-            ("Unique are", unique, "min-unique", self.min_unique),
-        ] {
-            let found = percent(found);
-            if let Some(least) = least.filter(|&least| found.is_none_or(|found| found < least)) {
-                let found = text(found, "%");
-                missed.push(format!("{what} {found}, --{option} {least}"));
-            }
-        }
-        if let Some(most) = self.max_wrong.filter(|&most| found.unique_wrong > most) {
-            let found = found.unique_wrong;
-            missed.push(format!("Unique and wrong are {found}, --max-wrong {most}"));
-        }
+        let too_many = self.max_wrong.filter(|&most| wrong > most);
+        let p90 = found.cpu_ms.p90;
         let error_cm = found.error_m.median.map(|metres| 100.0 * metres);
-        for (what, found, unit, option, most) in [
-            (
+        let missed = [
+            at_least("success is", success, "min-success", self.min_success),
+            at_least("Unique are", unique, "min-unique", self.min_unique),
+            too_many.map(|most| format!("Unique and wrong are {wrong}, --max-wrong {most}")),
+            at_most(
                 "the 90th percentile",
-                found.cpu_ms.p90,
+                p90,
                 "ms",
                 "max-p90-ms",
                 self.max_p90_ms,
             ),
-            (
+            at_most(
                 "the median error",
                 error_cm,
                 "cm",
                 "max-error-cm",
                 self.max_error_cm,
             ),
-        ] {
-            if let Some(most) = most.filter(|&most| found.is_none_or(|found| found > most)) {
-                let found = text(found, unit);
-                missed.push(format!("{what} is {found}, --{option} {most}"));
-            }
-        }
-        missed
+        ];
+        missed.into_iter().flatten().collect()
     }
 }

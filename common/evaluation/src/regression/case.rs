@@ -140,7 +140,7 @@ impl Case {
     }
 }
 
-pub(super) fn failed(action: &str, file: &Path) -> String {
+fn failed(action: &str, file: &Path) -> String {
     format!("cannot {action} {}", file.display())
 }
 

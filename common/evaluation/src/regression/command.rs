@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use command_line::{output, stdout, wrong_use};
 use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
@@ -93,12 +93,7 @@ pub fn run(config: &Config) -> anyhow::Result<ExitCode> {
         })?;
         outcomes.push(outcome);
     }
-    if let Some(file) = &config.junit {
-        let report = outcome::report(&outcomes).map_err(std::io::Error::other);
-        report
-            .and_then(|text| std::fs::write(file, text))
-            .with_context(|| case::failed("write", file))?;
-    }
+    crate::outcomes::write(&outcome::report(&outcomes), config.junit.as_deref())?;
     let is_good = |outcome: &Outcome| match config.accept {
         true => outcome.result.is_ok(),
         false => outcome.is_as_expected(),

@@ -65,11 +65,11 @@ impl<'a> Object<'a> {
     }
 }
 
-/// Formats a JUnit report: a suite per recording, and a test case per scan and per error.
-pub(super) fn report(outcomes: &[Outcome]) -> Result<String, quick_junit::SerializeError> {
+/// JUnit report: a suite per recording, and a test case per scan and per error.
+pub(super) fn report(outcomes: &[Outcome]) -> Report {
     let mut report = Report::new("backcast regress");
     report.add_test_suites(outcomes.iter().map(suite));
-    report.to_string()
+    report
 }
 
 fn suite(outcome: &Outcome) -> TestSuite {
@@ -139,7 +139,7 @@ mod tests {
             outcome("changed", &[7_000_000_001, 8_000_000_000], Ok(differences)),
             outcome("broken", &[], Err("no map".to_owned())),
         ];
-        let text = report(&outcomes).unwrap();
+        let text = report(&outcomes).to_string().unwrap();
         for part in [
             "tests=\"6\"",
             "failures=\"2\"",

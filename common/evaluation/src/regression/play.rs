@@ -37,14 +37,11 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> anyhow::Result
     for option in ["--map", "--maps", "--on", "--recorded", "--played"] {
         unset(server, option, true);
     }
-    match case.map()? {
-        Some(map) => set(server, "--map", Some(&map.to_string_lossy())),
-        None => set(
-            server,
-            "--recorded",
-            Some(&case.recording().to_string_lossy()),
-        ),
-    }
+    let (option, file) = match case.map()? {
+        Some(map) => ("--map", map),
+        None => ("--recorded", case.recording()),
+    };
+    set(server, option, Some(&file.to_string_lossy()));
     tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
         // Logs problems only; results are in the table.
@@ -100,13 +97,9 @@ fn look_at(path: &Path) -> anyhow::Result<(usize, BTreeMap<i64, Pose>, Option<St
     let of_topic = recording.channels().filter(|it| it.topic == topic);
     let scans = of_topic.map(|channel| channel.messages as usize).sum();
     let truths = recording.ground_truths()?.into_iter();
-    Ok((
-        scans,
-        truths
-            .map(|(stamp_ns, truth)| (stamp_ns, truth.pose))
-            .collect(),
-        recording.damage_error().map(|error| error.to_string()),
-    ))
+    let truths = truths.map(|(stamp_ns, truth)| (stamp_ns, truth.pose));
+    let damage = recording.damage_error().map(|error| error.to_string());
+    Ok((scans, truths.collect(), damage))
 }
 
 fn collect(

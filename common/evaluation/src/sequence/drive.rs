@@ -89,12 +89,11 @@ pub(super) fn search(
     accepted.count(&reply);
     let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
     let hypotheses = reply.answer.map(|answer| {
-        let target = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
-        let places = &answer.places;
-        (
-            places.verdict,
-            places.places.iter().map(target).collect::<Vec<_>>(),
-        )
+        // They stay poses of the first laser, as in the graph.
+        let of_laser = Target::of(None, false);
+        let places = answer.places.places.iter();
+        let hypotheses = places.map(|place| place.hypothesis(map_id, of_laser));
+        (answer.places.verdict, hypotheses.collect::<Vec<_>>())
     });
     let Ok((verdict, hypotheses)) = hypotheses else {
         return Ok(None);
@@ -114,11 +113,6 @@ pub(super) fn search(
         gone_m: 0.0,
         view: Arc::new(view),
     }))
-}
-
-/// Target for hypotheses that stay poses of the first laser, as in the graph.
-fn of_laser() -> Target {
-    Target::of(None, false)
 }
 
 /// Fills in the motion between moments, from odometry with its error scaled by `noise`.
