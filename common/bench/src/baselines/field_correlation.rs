@@ -3,15 +3,12 @@
 //! along the beam.
 
 use engine::fit::distance;
-use engine::grid::Cell;
-use engine::instruction_set::InstructionSet;
 use engine::space::Space;
 
 use super::Baseline;
-use super::best::{Best, Estimate};
-use super::padded::Padded;
+use super::best::Estimate;
+use super::correlation::{Correlation, Together};
 use super::reading::Readings;
-use super::row_sums::{self, Group};
 use crate::worlds::World;
 
 /// Likelihood of an end point at an obstacle: four bits, the resolution of the engine's votes.
@@ -21,59 +18,38 @@ const FULL: u8 = 15;
 const TOGETHER: usize = (u8::MAX / FULL) as usize;
 
 #[derive(Debug, Clone)]
-pub struct FieldCorrelation {
-    space: Space,
-    field: Padded,
-    open: Vec<bool>,
-    instructions: InstructionSet,
-}
+pub struct FieldCorrelation(Correlation);
 
 impl FieldCorrelation {
     /// Prepares a map for readings with one standard deviation, in cells.
     pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
-        let grid = &world.grid;
-        let field = likelihood(world, sigma_cells);
-        FieldCorrelation {
-            space: space.clone(),
-            field: Padded::new(grid.width(), field.into_iter()),
-            open: grid.cells().iter().map(|&it| it == Cell::Open).collect(),
-            instructions: InstructionSet::best(),
-        }
+        FieldCorrelation(Correlation::new(
+            world,
+            space,
+            likelihood(world, sigma_cells),
+        ))
     }
 }
 
 impl Baseline for FieldCorrelation {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
-        let mut best = Best::default();
-        let mut sums = vec![0; self.field.row];
-        let (mut offsets, mut groups) = (Vec::new(), Vec::new());
-        for &heading in headings {
-            let ends = end_points(readings, &self.space, heading);
-            for y in 0..self.field.height {
-                offsets.clear();
-                offsets.extend(ends.iter().filter_map(|&end| self.field.shifted(y, end)));
-                groups.clear();
-                groups.extend((0..offsets.len()).step_by(TOGETHER).map(|start| Group {
-                    start,
-                    end: (start + TOGETHER).min(offsets.len()),
-                    weight: 1,
-                }));
-                let bytes = self.field.bytes();
-                row_sums::fill(self.instructions, bytes, &offsets, &groups, &mut sums);
-                let open = &self.open[y * self.field.width..][..self.field.width];
-                take_row(&mut best, &sums, open, y, heading);
-            }
-        }
-        best.get()
+        self.0.best(headings, |heading| {
+            let ends = end_points(readings, &self.0.space, heading);
+            let together = |cells: &[(i32, i32)]| Together {
+                cells: cells.to_vec(),
+                weight: 1,
+            };
+            ends.chunks(TOGETHER).map(together).collect()
+        })
     }
 
     fn bytes(&self) -> usize {
-        self.field.bytes().len() + self.open.len()
+        self.0.bytes()
     }
 }
 
 /// End points of the beams at one heading, in cells from the laser.
-pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> Vec<(i32, i32)> {
+fn end_points(readings: &Readings, space: &Space, heading: usize) -> Vec<(i32, i32)> {
     let end = |reading: &super::Reading| {
         let angle = (heading + reading.bearing) as f64 * space.directions.spacing();
         let (sin, cos) = angle.sin_cos();
@@ -81,25 +57,6 @@ pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> 
         (cells(cos), cells(sin))
     };
     readings.beams.iter().map(end).collect()
-}
-
-/// Adds the best pose of a row, if it is better. Rows come in order, so ties go to the first.
-pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, heading: usize) {
-    let score = best.score();
-    // Most rows contain nothing better, which one pass decides.
-    let both = sums.iter().zip(open);
-    let most = both.map(|(&sum, &open)| sum * u16::from(open)).max();
-    if most.is_none_or(|most| f32::from(most) <= score) {
-        return;
-    }
-    for (x, (&sum, _)) in sums
-        .iter()
-        .zip(open)
-        .enumerate()
-        .filter(|(_, (_, open))| **open)
-    {
-        best.take(Estimate::new(x, y, heading, f32::from(sum)));
-    }
 }
 
 /// Likelihood of an end point in each cell, up to [`FULL`].
@@ -121,10 +78,7 @@ fn level(square: u32, sigma_cells: f64) -> u8 {
 /// Squared distance of each cell to the nearest boundary cell: no beam ends inside obstacles.
 fn square_distances(world: &World) -> impl Iterator<Item = u32> {
     let (width, height) = (world.grid.width(), world.grid.height());
-    let mut is_boundary = vec![false; width * height];
-    for cell in &world.boundary {
-        is_boundary[usize::from(cell.y) * width + usize::from(cell.x)] = true;
-    }
+    let is_boundary = world.is_boundary();
     let distances = distance::transform(width, height, |i| is_boundary[i]);
     // Squares that matter are small, so that rounding restores them exactly.
     let square = |distance: f32| (distance * distance).round() as u32;
@@ -133,6 +87,8 @@ fn square_distances(world: &World) -> impl Iterator<Item = u32> {
 
 #[cfg(test)]
 mod tests {
+    use engine::instruction_set::InstructionSet;
+
     use super::super::tests::{best_of, noisy};
     use super::*;
     use crate::worlds::Kind;
@@ -172,7 +128,7 @@ mod tests {
                 }
             });
             for set in InstructionSet::available() {
-                correlation.instructions = set;
+                correlation.0.instructions = set;
                 assert_eq!(correlation.locate(&readings, &headings), plain, "{set}");
             }
         }

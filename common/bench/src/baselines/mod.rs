@@ -16,6 +16,7 @@
 
 mod best;
 mod clearance;
+mod correlation;
 mod field_correlation;
 mod monte_carlo;
 mod padded;
@@ -99,13 +100,13 @@ pub(crate) mod tests {
     /// Checks four scans in each kind of world, with and without their heading: all but `missed` of
     /// 24 are found within this many cells and one heading.
     #[track_caller]
-    fn check(cells: usize, missed: usize, make: impl Fn(&World) -> Box<dyn Baseline>) {
+    fn check<B: Baseline>(cells: usize, missed: usize, make: impl Fn(&World, &Space) -> B) {
         let mut far_off = Vec::new();
         for kind in [Kind::Rooms, Kind::Corridors, Kind::Boxes] {
             let world = World::generate(kind, (72, 60), 0.2, 5).unwrap();
             let space = world.space(48).unwrap();
             let votes = EXACT.votes(TaperShape::Trapezoid);
-            let mut baseline = make(&world);
+            let mut baseline = make(&world, &space);
             for scan in simulate(&world, &space, &EXACT, 4, 3).unwrap() {
                 let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
                 for headings in [vec![scan.heading], (0..48).collect()] {
@@ -123,27 +124,19 @@ pub(crate) mod tests {
 
     #[test]
     fn markov_localization_finds_the_true_pose() {
-        check(0, 0, |world| {
-            Box::new(RayCasting::new(world, &world.space(48).unwrap()))
-        });
-        check(0, 0, |world| {
-            Box::new(RangeTable::new(world, &world.space(48).unwrap()))
-        });
+        check(0, 0, RayCasting::new);
+        check(0, 0, RangeTable::new);
     }
 
     // These methods ignore obstacles along the beams, which misleads them now and then; and their
     // end points are rounded to cells.
     #[test]
     fn methods_that_see_through_walls_mostly_find_the_true_pose() {
-        check(1, 4, |world| {
-            Box::new(PatchCorrelation::new(world, &world.space(48).unwrap()))
+        check(1, 4, PatchCorrelation::new);
+        check(1, 2, |world, space| {
+            FieldCorrelation::new(world, space, 1.0)
         });
-        check(1, 2, |world| {
-            Box::new(FieldCorrelation::new(world, &world.space(48).unwrap(), 1.0))
-        });
-        check(3, 6, |world| {
-            Box::new(MonteCarlo::new(world, &world.space(48).unwrap(), 1.0))
-        });
+        check(3, 6, |world, space| MonteCarlo::new(world, space, 1.0));
     }
 
     #[test]

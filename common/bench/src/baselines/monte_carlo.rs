@@ -104,11 +104,13 @@ impl MonteCarlo {
 /// Distance field of the world. No beam ends inside an obstacle, so the inside counts as unknown.
 fn distance_field(world: &World, resolution_m: f64) -> DistanceField {
     let (width, height) = (world.grid.width(), world.grid.height());
-    let inner = |&cell: &Cell| if cell == Cell::Open { 0 } else { UNKNOWN };
-    let mut occupancy: Vec<u8> = world.grid.cells().iter().map(inner).collect();
-    for cell in &world.boundary {
-        occupancy[usize::from(cell.y) * width + usize::from(cell.x)] = 100;
-    }
+    let occupancy = |(&cell, is_boundary): (&Cell, bool)| match cell {
+        _ if is_boundary => 100,
+        Cell::Open => 0,
+        _ => UNKNOWN,
+    };
+    let cells = world.grid.cells().iter().zip(world.is_boundary());
+    let occupancy: Vec<u8> = cells.map(occupancy).collect();
     let frame = GridFrame {
         resolution_m,
         map_from_grid: Pose::IDENTITY,

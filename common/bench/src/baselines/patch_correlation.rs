@@ -4,16 +4,12 @@
 
 use std::collections::HashMap;
 
-use engine::grid::Cell;
-use engine::instruction_set::InstructionSet;
 use engine::space::Space;
 
 use super::Baseline;
 use super::best::{Best, Estimate};
-use super::field_correlation::take_row;
-use super::padded::Padded;
+use super::correlation::{Correlation, Together};
 use super::reading::Readings;
-use super::row_sums::{self, Group};
 use crate::worlds::World;
 
 const FULL: u16 = 15;
@@ -22,12 +18,7 @@ const FULL: u16 = 15;
 const TOGETHER: usize = u8::MAX as usize;
 
 #[derive(Debug, Clone)]
-pub struct PatchCorrelation {
-    space: Space,
-    boundary: Padded,
-    open: Vec<bool>,
-    instructions: InstructionSet,
-}
+pub struct PatchCorrelation(Correlation);
 
 /// A cell of the patch, relative to the laser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -40,18 +31,8 @@ struct PatchCell {
 impl PatchCorrelation {
     /// Prepares a map. Only its boundary counts, since no beam ends inside an obstacle.
     pub fn new(world: &World, space: &Space) -> Self {
-        let cells = world.grid.cells();
-        let width = world.grid.width();
-        let mut boundary = vec![0; cells.len()];
-        for cell in &world.boundary {
-            boundary[usize::from(cell.y) * width + usize::from(cell.x)] = 1;
-        }
-        PatchCorrelation {
-            space: space.clone(),
-            boundary: Padded::new(width, boundary.into_iter()),
-            open: cells.iter().map(|&cell| cell == Cell::Open).collect(),
-            instructions: InstructionSet::best(),
-        }
+        let boundary = world.is_boundary().into_iter().map(u8::from);
+        PatchCorrelation(Correlation::new(world, space, boundary.collect()))
     }
 }
 
@@ -67,17 +48,18 @@ impl PlainCorrelation {
 
 impl Baseline for PlainCorrelation {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
-        let (space, boundary, open) = (&self.0.space, &self.0.boundary, &self.0.open);
+        let PatchCorrelation(correlation) = &self.0;
+        let boundary = &correlation.image;
         let mut best = Best::default();
         for &heading in headings {
-            let patch = patch(readings, space, heading);
+            let patch = patch(readings, &correlation.space, heading);
             for y in 0..boundary.height {
                 let shifted = |cell: &PatchCell| {
                     Some((boundary.shifted(y, (cell.dx, cell.dy))?, cell.weight))
                 };
                 let cells: Vec<(usize, u16)> = patch.iter().filter_map(shifted).collect();
-                let row = &open[y * boundary.width..][..boundary.width];
-                for (x, _) in row.iter().enumerate().filter(|&(_, &open)| open) {
+                let row = correlation.open(y).iter().enumerate();
+                for (x, _) in row.filter(|&(_, &open)| open) {
                     let votes =
                         |&(at, weight): &(usize, u16)| weight * u16::from(boundary.bytes()[at + x]);
                     let sum: u16 = cells.iter().map(votes).sum();
@@ -95,35 +77,21 @@ impl Baseline for PlainCorrelation {
 
 impl Baseline for PatchCorrelation {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
-        let mut best = Best::default();
-        let mut sums = vec![0; self.boundary.row];
-        let (mut offsets, mut groups) = (Vec::new(), Vec::new());
-        for &heading in headings {
-            let patch = patch(readings, &self.space, heading);
-            for y in 0..self.boundary.height {
-                offsets.clear();
-                groups.clear();
-                for same in patch.chunk_by(|a, b| a.weight == b.weight) {
-                    for cells in same.chunks(TOGETHER) {
-                        let start = offsets.len();
-                        let shifted =
-                            |cell: &PatchCell| self.boundary.shifted(y, (cell.dx, cell.dy));
-                        offsets.extend(cells.iter().filter_map(shifted));
-                        let (end, weight) = (offsets.len(), same[0].weight);
-                        groups.push(Group { start, end, weight });
-                    }
-                }
-                let bytes = self.boundary.bytes();
-                row_sums::fill(self.instructions, bytes, &offsets, &groups, &mut sums);
-                let open = &self.open[y * self.boundary.width..][..self.boundary.width];
-                take_row(&mut best, &sums, open, y, heading);
-            }
-        }
-        best.get()
+        self.0.best(headings, |heading| {
+            let patch = patch(readings, &self.0.space, heading);
+            let same = patch.chunk_by(|a, b| a.weight == b.weight);
+            let together = |cells: &[PatchCell]| Together {
+                cells: cells.iter().map(|cell| (cell.dx, cell.dy)).collect(),
+                weight: cells[0].weight,
+            };
+            same.flat_map(|same| same.chunks(TOGETHER))
+                .map(together)
+                .collect()
+        })
     }
 
     fn bytes(&self) -> usize {
-        self.boundary.bytes().len() + self.open.len()
+        self.0.bytes()
     }
 }
 
@@ -172,6 +140,8 @@ fn patch(readings: &Readings, space: &Space, heading: usize) -> Vec<PatchCell> {
 mod tests {
     use std::collections::HashSet;
 
+    use engine::instruction_set::InstructionSet;
+
     use super::super::tests::{best_of, noisy};
     use super::*;
 
@@ -197,7 +167,7 @@ mod tests {
             let found = PlainCorrelation(correlation.clone()).locate(&readings, &headings);
             assert_eq!(found, plain);
             for set in InstructionSet::available() {
-                correlation.instructions = set;
+                correlation.0.instructions = set;
                 assert_eq!(correlation.locate(&readings, &headings), plain, "{set}");
             }
         }

@@ -6,7 +6,7 @@ use engine::space::Space;
 
 use super::Baseline;
 use super::best::{Best, Estimate};
-use super::reading::{MAX_DEVIATIONS, Readings};
+use super::reading::{Expected, Readings};
 use crate::worlds::World;
 
 /// Number of cells scored together: their ranges in 360 directions fit the L2 cache.
@@ -30,20 +30,15 @@ pub struct RangeTable {
 impl RangeTable {
     pub fn new(world: &World, space: &Space) -> Self {
         let cells = world.grid.cells();
+        let blocked = |&cell: &Cell| match cell {
+            Cell::Open => 0.0,
+            _ => f32::INFINITY,
+        };
         let mut table = RangeTable {
             space: space.clone(),
             width: world.grid.width(),
             ranges: Vec::new(),
-            blocked: cells
-                .iter()
-                .map(|&cell| {
-                    if cell == Cell::Open {
-                        0.0
-                    } else {
-                        f32::INFINITY
-                    }
-                })
-                .collect(),
+            blocked: cells.iter().map(blocked).collect(),
             instructions: InstructionSet::best(),
         };
         (0..space.directions.count()).for_each(|direction| table.push(world, direction));
@@ -98,11 +93,8 @@ impl RangeTable {
             let direction = (heading + reading.bearing) % count;
             let steps_per_cell = self.space.directions.get(direction).steps_per_cell;
             let ranges = &self.ranges(direction)[tile..][..len];
-            let errors = Errors {
-                scale: (1.0 / (steps_per_cell * reading.sigma_cells)) as f32,
-                reading: (reading.cells / reading.sigma_cells) as f32,
-            };
-            errors.add(self.instructions, ranges, costs);
+            let expected = reading.along(steps_per_cell);
+            add(self.instructions, expected, ranges, costs);
         }
     }
 }
@@ -131,38 +123,27 @@ impl Baseline for RangeTable {
     }
 }
 
-/// Adds the squared error of one reading over many ranges.
-#[derive(Debug, Clone, Copy)]
-struct Errors {
-    /// Standard deviations per step of range.
-    scale: f32,
-    /// The reading in standard deviations.
-    reading: f32,
+/// Adds the penalty of one reading over many ranges.
+fn add(instructions: InstructionSet, expected: Expected, ranges: &[u16], costs: &mut [f32]) {
+    match instructions {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the processor has what was detected.
+        InstructionSet::Avx2 => unsafe { add_avx2(expected, ranges, costs) },
+        _ => add_plain(expected, ranges, costs),
+    }
 }
 
-impl Errors {
-    fn add(self, instructions: InstructionSet, ranges: &[u16], costs: &mut [f32]) {
-        match instructions {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the processor has what was detected.
-            InstructionSet::Avx2 => unsafe { self.add_avx2(ranges, costs) },
-            _ => self.add_plain(ranges, costs),
-        }
-    }
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn add_avx2(expected: Expected, ranges: &[u16], costs: &mut [f32]) {
+    add_plain(expected, ranges, costs);
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn add_avx2(self, ranges: &[u16], costs: &mut [f32]) {
-        self.add_plain(ranges, costs);
-    }
-
-    /// Compiled separately for each instruction set.
-    #[inline(always)]
-    fn add_plain(self, ranges: &[u16], costs: &mut [f32]) {
-        for (cost, &range) in costs.iter_mut().zip(ranges) {
-            let deviations = f32::from(range) * self.scale - self.reading;
-            *cost += (deviations * deviations).min(MAX_DEVIATIONS * MAX_DEVIATIONS);
-        }
+/// Compiled separately for each instruction set.
+#[inline(always)]
+fn add_plain(expected: Expected, ranges: &[u16], costs: &mut [f32]) {
+    for (cost, &range) in costs.iter_mut().zip(ranges) {
+        *cost += expected.penalty(f32::from(range));
     }
 }
 

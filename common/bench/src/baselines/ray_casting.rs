@@ -2,12 +2,11 @@
 //! reading, and sums the squared errors.
 
 use engine::space::Space;
-use messages::BoundaryCell;
 
 use super::Baseline;
 use super::best::{Best, Estimate};
 use super::clearance::Clearance;
-use super::reading::{MAX_DEVIATIONS, Readings};
+use super::reading::{Expected, MAX_DEVIATIONS, MAX_PENALTY, Readings};
 use crate::worlds::World;
 
 /// Markov localization by ray casts, without pruning. Rays skip free space.
@@ -16,16 +15,13 @@ pub struct RayCasting {
     space: Space,
     clearance: Clearance,
     /// Cells in which the robot can be.
-    free: Vec<BoundaryCell>,
+    free: Vec<(u16, u16)>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Beam {
     direction: usize,
-    /// Standard deviations per step of range.
-    scale: f32,
-    /// The reading in standard deviations.
-    reading: f32,
+    expected: Expected,
     /// Number of steps from which the error is at its maximum.
     limit: i64,
 }
@@ -39,10 +35,7 @@ impl RayCasting {
             clearance: Clearance::new(world),
             free: cells
                 .filter(|&(x, y)| grid.is_open(x as i64, y as i64))
-                .map(|(x, y)| BoundaryCell {
-                    x: x as u16,
-                    y: y as u16,
-                })
+                .map(|(x, y)| (x as u16, y as u16))
                 .collect(),
         }
     }
@@ -63,8 +56,7 @@ impl RayCasting {
             let farthest = reading.cells + f64::from(MAX_DEVIATIONS) * reading.sigma_cells;
             Beam {
                 direction,
-                scale: (1.0 / (steps_per_cell * reading.sigma_cells)) as f32,
-                reading: (reading.cells / reading.sigma_cells) as f32,
+                expected: reading.along(steps_per_cell),
                 limit: (farthest * steps_per_cell).ceil() as i64,
             }
         };
@@ -76,16 +68,11 @@ impl RayCasting {
         let error = |beam: &Beam| {
             let direction = self.space.directions.get(beam.direction);
             let range = self.clearance.range(x, y, direction, beam.limit);
-            let deviations = range.map_or(MAX_DEVIATIONS, |steps| {
-                steps as f32 * beam.scale - beam.reading
-            });
-            (deviations * deviations).min(MAX_DEVIATIONS * MAX_DEVIATIONS)
+            range.map_or(MAX_PENALTY, |steps| beam.expected.penalty(steps as f32))
         };
         beams.iter().map(error).sum()
     }
-}
 
-impl RayCasting {
     /// Returns the best of some poses, given as column, row and heading of free cells. Sorting them
     /// by heading is fastest, since the beams are prepared per heading.
     pub fn locate_among(
@@ -111,8 +98,8 @@ impl Baseline for RayCasting {
         let mut best = Best::default();
         for &heading in headings {
             let beams = self.beams(readings, heading);
-            for cell in &self.free {
-                let (x, y) = (usize::from(cell.x), usize::from(cell.y));
+            for &(x, y) in &self.free {
+                let (x, y) = (usize::from(x), usize::from(y));
                 let score = -self.cost(x, y, &beams);
                 if score >= best.score() {
                     best.take(Estimate::new(x, y, heading, score));
@@ -123,6 +110,6 @@ impl Baseline for RayCasting {
     }
 
     fn bytes(&self) -> usize {
-        self.clearance.bytes() + self.free.len() * size_of::<BoundaryCell>()
+        self.clearance.bytes() + size_of_val(&self.free[..])
     }
 }

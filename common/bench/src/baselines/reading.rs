@@ -7,6 +7,7 @@ use engine::space::Space;
 /// Error in standard deviations at which a reading's penalty saturates: the flat part of a sensor
 /// model, for objects that are not on the map.
 pub(super) const MAX_DEVIATIONS: f32 = 3.0;
+pub(super) const MAX_PENALTY: f32 = MAX_DEVIATIONS * MAX_DEVIATIONS;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
@@ -15,6 +16,33 @@ pub struct Reading {
     pub cells: f64,
     /// Standard deviation of the range, at least one cell.
     pub sigma_cells: f64,
+}
+
+/// A reading to be compared with ranges along a direction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Expected {
+    /// Standard deviations per step of range.
+    scale: f32,
+    /// The reading in standard deviations.
+    reading: f32,
+}
+
+impl Reading {
+    pub(super) fn along(&self, steps_per_cell: f64) -> Expected {
+        Expected {
+            scale: (1.0 / (steps_per_cell * self.sigma_cells)) as f32,
+            reading: (self.cells / self.sigma_cells) as f32,
+        }
+    }
+}
+
+impl Expected {
+    /// Squared deviation of a range in steps, up to the highest penalty.
+    #[inline(always)]
+    pub(super) fn penalty(self, steps: f32) -> f32 {
+        let deviations = steps * self.scale - self.reading;
+        (deviations * deviations).min(MAX_PENALTY)
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -79,6 +79,15 @@ impl World {
         )
     }
 
+    /// True at boundary cells, row by row.
+    pub(crate) fn is_boundary(&self) -> Vec<bool> {
+        let mut is_boundary = vec![false; self.grid.cells().len()];
+        for cell in &self.boundary {
+            is_boundary[usize::from(cell.y) * self.grid.width() + usize::from(cell.x)] = true;
+        }
+        is_boundary
+    }
+
     pub fn p_over_n(&self) -> f64 {
         self.boundary.len() as f64 / self.grid.free_cells() as f64
     }
