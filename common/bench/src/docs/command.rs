@@ -55,9 +55,6 @@ fn places() -> Vec<Place> {
 }
 
 /// Measures, and writes the figures into the pages or compares them.
-///
-/// # Errors
-/// The folders are not what they should be, a page lacks a place, or a command fails.
 pub(in super::super) fn run(config: &Config) -> anyhow::Result<ExitCode> {
     let root = config.root.clone().unwrap_or_else(|| ".".into());
     let mut pages = Pages::read(&root, &places())?;

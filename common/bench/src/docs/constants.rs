@@ -57,9 +57,6 @@ impl Outcome {
 }
 
 /// Evaluates each constant of the table with the values that are there.
-///
-/// # Errors
-/// The page has no such table, or a command fails.
 pub(super) fn measure(folders: &Folders, pages: &Pages) -> anyhow::Result<Written> {
     let data = folders.data.clone().unwrap_or_default();
     let queries = QUERIES.iter().map(|(_, file)| data.join(file));

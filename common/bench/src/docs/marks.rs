@@ -1,6 +1,5 @@
 //! Marks in the text of a page, and the figures between them. Pure.
 
-use std::fmt;
 use std::ops::Range;
 
 use anyhow::{Context, bail};
@@ -31,37 +30,9 @@ pub(super) enum Figures {
 /// Columns with figures, the first cell being column 1.
 pub(super) type Cells = Vec<(usize, String)>;
 
-/// Figure that is another one on the page.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) struct Difference {
-    place: Place,
-    /// Name of the row and title of the column; empty for a figure in a sentence.
-    cell: String,
-    found: String,
-    measured: String,
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (page, mark) = self.place;
-        let Difference {
-            cell,
-            found,
-            measured,
-            ..
-        } = self;
-        write!(
-            f,
-            "{page}: {mark}{cell}: {found:?} on the page, {measured:?} measured"
-        )
-    }
-}
-
 /// Cells of the rows of a table, as they are on the page; the first one is empty, as is what stands
 /// before the first `|`.
-///
-/// # Errors
-/// A mark of the page is not closed.
+/// Fails if a mark of the page is not closed.
 pub(super) fn rows(text: &str, mark: &str) -> anyhow::Result<Vec<Vec<String>>> {
     let mut rows = Vec::new();
     for (_, range) in places(text)?.into_iter().filter(|(name, _)| name == mark) {
@@ -72,11 +43,9 @@ pub(super) fn rows(text: &str, mark: &str) -> anyhow::Result<Vec<Vec<String>>> {
     Ok(rows)
 }
 
-/// Writes figures into the text of their page. Returns those that were others there.
-///
-/// # Errors
-/// The page has no such row or column.
-pub(super) fn write(text: &mut String, written: &Written) -> anyhow::Result<Vec<Difference>> {
+/// Writes figures into the text of their page. Returns a sentence on each that was another one there.
+/// Fails if the page has no such row or column.
+pub(super) fn write(text: &mut String, written: &Written) -> anyhow::Result<Vec<String>> {
     let (_, mark) = written.place;
     let mut differences = Vec::new();
     for (_, range) in places(text)?
@@ -122,9 +91,7 @@ fn places(text: &str) -> anyhow::Result<Vec<(String, Range<usize>)>> {
 }
 
 /// Checks that a page has the marks of its places, and no others.
-///
-/// # Errors
-/// Names the mark that is missing, unknown or not closed.
+/// The error names the mark that is missing, unknown or not closed.
 pub(super) fn check(page: &str, text: &str, known: &[Place]) -> anyhow::Result<()> {
     let found = places(text).with_context(|| page.to_owned())?;
     let of_page = known.iter().filter(|(of, _)| *of == page);
@@ -152,7 +119,7 @@ fn table(
     place: Place,
     text: &str,
     rows: &[(String, Cells)],
-) -> anyhow::Result<(String, Vec<Difference>)> {
+) -> anyhow::Result<(String, Vec<String>)> {
     let (page, mark) = place;
     let mut lines: Vec<String> = text.split('\n').map(str::to_owned).collect();
     let titles = lines.iter().find(|line| line.starts_with('|'));
@@ -188,13 +155,10 @@ fn is_row(line: &str, name: &str) -> bool {
     rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || "-_.".contains(c)))
 }
 
-fn differs(place: Place, cell: &str, found: &str, measured: &str) -> Option<Difference> {
-    (found != measured).then(|| Difference {
-        place,
-        cell: cell.to_owned(),
-        found: found.to_owned(),
-        measured: measured.to_owned(),
-    })
+/// Sentence on a figure that differs. `cell` names row and column, and is empty in a sentence.
+fn differs((page, mark): Place, cell: &str, found: &str, measured: &str) -> Option<String> {
+    (found != measured)
+        .then(|| format!("{page}: {mark}{cell}: {found:?} on the page, {measured:?} measured"))
 }
 
 #[cfg(test)]
@@ -227,10 +191,7 @@ Again <!-- figures: all -->5<!-- /figures -->.
     #[test]
     fn figures_that_differ_are_named_and_written() {
         let mut page = PAGE.to_owned();
-        let mut take = |written: &Written| -> Vec<String> {
-            let others = write(&mut page, written).unwrap();
-            others.iter().map(ToString::to_string).collect()
-        };
+        let mut take = |written: &Written| write(&mut page, written).unwrap();
         assert_eq!(take(&row("glass-through", 2, "1")), [""; 0]);
         assert_eq!(take(&row("glass", 2, "3")), [""; 0]);
         let expected =

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Context;
-use serde_json::{Map, Value};
+use serde_json::{Value, json};
 
 use super::marks::Written;
 use super::recordings::{DRIVES, Folders, Named, QUERIES, SHIPPED};
@@ -14,9 +14,6 @@ use super::tables::{
 };
 
 /// Measures the shipped recordings, and the evaluation data if they are given.
-///
-/// # Errors
-/// A command fails.
 pub(super) fn measure(folders: &Folders) -> anyhow::Result<Vec<Written>> {
     let mut runs = Runs::default();
     let of_data = folders
@@ -132,28 +129,27 @@ impl Data {
 
     /// Counts the verdicts on the scans of each building, and on all.
     fn verdicts(&self, found: &[Lines]) -> Rows {
-        let mut total = Map::new();
-        let mut rows = Rows::new();
+        let counts = |answers: &[&Value]| {
+            let count = |verdict: &str| {
+                let answers = answers.iter();
+                answers
+                    .filter(|answer| answer["verdict"] == verdict)
+                    .count()
+            };
+            json!({
+                "scans": answers.len(),
+                "Unique": count("Unique"),
+                "Ambiguous": count("Ambiguous"),
+                "PoorFit": count("PoorFit"),
+            })
+        };
+        let (mut all, mut rows) = (Vec::new(), Rows::new());
         for ((name, _), runs) in QUERIES.iter().zip(self.elsewhere) {
-            let mut counts = Map::new();
-            for answer in runs.iter().flat_map(|run| &found[*run]) {
-                for counted in ["scans", answer["verdict"].as_str().unwrap_or_default()] {
-                    for counts in [&mut counts, &mut total] {
-                        let count = counts.get(counted).and_then(Value::as_u64);
-                        counts.insert(counted.to_owned(), (count.unwrap_or(0) + 1).into());
-                    }
-                }
-            }
-            rows.push(((*name).to_owned(), Value::Object(counts)));
+            let answers: Vec<&Value> = runs.iter().flat_map(|run| &found[*run]).collect();
+            rows.push(((*name).to_owned(), counts(&answers)));
+            all.extend(answers);
         }
-        rows.push(("all".to_owned(), Value::Object(total)));
-        for (_, counts) in &mut rows {
-            for verdict in ["Unique", "Ambiguous", "PoorFit"] {
-                if counts[verdict].is_null() {
-                    counts[verdict] = 0.into();
-                }
-            }
-        }
+        rows.push(("all".to_owned(), counts(&all)));
         rows
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use command_line::wrong_use;
 
-use super::marks::{self, Difference, Place, Written};
+use super::marks::{self, Place, Written};
 
 /// All pages, by their paths in the checkout.
 pub(super) struct Pages {
@@ -19,9 +19,6 @@ pub(super) struct Pages {
 impl Pages {
     /// Reads the pages of a checkout, and checks that they have the marks of these places and no
     /// others.
-    ///
-    /// # Errors
-    /// It is no checkout, a page cannot be read, or a mark is missing, unknown or not closed.
     pub(super) fn read(root: &Path, places: &[Place]) -> anyhow::Result<Self> {
         for needed in ["README.md", "docs", "recordings"] {
             if !root.join(needed).exists() {
@@ -53,19 +50,13 @@ impl Pages {
     }
 
     /// Text of a page as it was read.
-    ///
-    /// # Errors
-    /// There is no such page.
     pub(super) fn text(&self, page: &str) -> anyhow::Result<&str> {
         let text = self.texts.get(page);
         Ok(text.with_context(|| format!("there is no page {page}"))?)
     }
 
-    /// Takes figures into the text of their page. Returns those that are others there.
-    ///
-    /// # Errors
-    /// The page has no such row or column.
-    pub(super) fn take(&mut self, written: &Written) -> anyhow::Result<Vec<Difference>> {
+    /// Takes figures into the text of their page. Returns a sentence on each that is another one there.
+    pub(super) fn take(&mut self, written: &Written) -> anyhow::Result<Vec<String>> {
         let (page, _) = written.place;
         let text = self.written.get_mut(page);
         let text = text.with_context(|| format!("there is no page {page}"))?;
@@ -73,9 +64,6 @@ impl Pages {
     }
 
     /// Writes the pages that have changed; returns their names.
-    ///
-    /// # Errors
-    /// One cannot be written.
     pub(super) fn save(&self) -> anyhow::Result<Vec<&str>> {
         let changed = self
             .written

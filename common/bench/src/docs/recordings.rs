@@ -44,9 +44,6 @@ pub(super) struct Folders {
 
 impl Folders {
     /// The recordings of a checkout, and `evaluation` in the folder of data.
-    ///
-    /// # Errors
-    /// A recording of the data is missing.
     pub(super) fn new(root: &Path, data: Option<&Path>) -> anyhow::Result<Self> {
         let evaluation = data.map(|data| data.join("evaluation"));
         for (_, file) in QUERIES.iter().chain(&DRIVES) {

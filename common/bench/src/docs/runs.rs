@@ -44,9 +44,6 @@ impl Runs {
     }
 
     /// Runs all, this many at the same time; returns what each printed.
-    ///
-    /// # Errors
-    /// One cannot be run, fails, or prints something else than JSON.
     pub(super) fn run(&self, at_once: usize) -> anyhow::Result<Vec<Lines>> {
         let progress = Progress::counting("measuring", "runs", self.0.len() as u64);
         let next = AtomicUsize::new(0);

@@ -66,9 +66,6 @@ impl Counts {
 }
 
 /// Evaluates the variants of the shipped corridor, and of seven drives where there are data.
-///
-/// # Errors
-/// A command fails.
 pub(super) fn measure(folders: &Folders) -> anyhow::Result<Vec<Written>> {
     const STRESS: [&str; 3] = ["--sequence", "--stress", "--starts"];
     let [corridor, courtyard, _] = folders.shipped();
@@ -95,17 +92,9 @@ pub(super) fn measure(folders: &Folders) -> anyhow::Result<Vec<Written>> {
     let mut written = vec![of_corridor(&found[first])];
     if let Some((others, drives)) = drives.split_last() {
         let is_other = |of: &&Value| of["variant"] == "map-other";
-        let mut columns = vec![
-            found[first]
-                .iter()
-                .filter(|of| !is_other(of))
-                .collect::<Vec<_>>(),
-        ];
-        columns.extend(
-            drives
-                .iter()
-                .map(|&run| found[run].iter().collect::<Vec<_>>()),
-        );
+        let corridor = found[first].iter().filter(|of| !is_other(of));
+        let mut columns: Vec<Vec<&Value>> = vec![corridor.collect()];
+        columns.extend(drives.iter().map(|&run| found[run].iter().collect()));
         for (column, other) in columns.iter_mut().zip(&found[*others]) {
             column.push(other);
         }
@@ -177,10 +166,8 @@ fn of_drives(columns: &[Vec<&Value>]) -> Written {
 fn probabilities<'a>(lines: impl Iterator<Item = &'a Value>) -> Written {
     // By the lower end in per cent: scans, sum of the probabilities, and scans that were right.
     let mut ranges: BTreeMap<u64, (u64, f64, u64)> = BTreeMap::new();
-    for range in lines
-        .filter_map(|of| of["probabilities"].as_array())
-        .flatten()
-    {
+    let all = lines.filter_map(|of| of["probabilities"].as_array());
+    for range in all.flatten() {
         let from = (100.0 * range["from"].as_f64().unwrap_or_default()).round() as u64;
         let answers = range["answers"].as_u64().unwrap_or_default();
         let mean = range["mean"].as_f64().unwrap_or_default();

@@ -15,8 +15,6 @@ use super::tables::{SHIPPED_TIMES, TIMES};
 /// Marks that hold machine and commit.
 pub(super) const PLACES: [Place; 2] = [("README.md", "machine"), ("docs/accuracy.md", "machine")];
 
-/// # Errors
-/// A command fails, or machine and commit cannot be found out.
 pub(super) fn measure(root: &Path, folders: &Folders) -> anyhow::Result<Vec<Written>> {
     let mut runs = Runs::default();
     let shipped = folders.shipped().map(|file| runs.evaluate(&[], &[file]));
