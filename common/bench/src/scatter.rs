@@ -7,7 +7,8 @@
 use engine::accumulator::{Accumulator, Query};
 use engine::directions::Direction;
 use engine::grid::{Cell, Grid};
-use engine::program::Taper;
+use engine::program::{ScanProgram, Taper};
+use engine::space::Space;
 use messages::BoundaryCell;
 
 /// Counts votes from the boundary cells outward.
@@ -21,6 +22,19 @@ impl<'a> Scatter<'a> {
     /// Projects from cells of [`engine::boundary::extract`], all or some.
     pub fn new(grid: &'a Grid, boundary: &'a [BoundaryCell]) -> Self {
         Scatter { grid, boundary }
+    }
+
+    /// Votes of each cell at a heading, row by row from the lowest y.
+    pub fn field(&self, program: &ScanProgram, space: &Space, heading: usize) -> Vec<u16> {
+        let query = Query {
+            program,
+            space,
+            heading,
+        };
+        let (mut scatter, mut field) = (*self, Vec::new());
+        // Nothing stops it, so it fills the field.
+        let _ = scatter.fill(query, &mut field, &|| false);
+        field
     }
 
     fn project(&self, direction: &Direction, taper: Taper<'_>, field: &mut [u16]) {
@@ -60,7 +74,6 @@ impl Accumulator for Scatter<'_> {
 
 #[cfg(test)]
 mod tests {
-    use engine::program::ScanProgram;
     use engine::reference;
     use engine::taper::TaperShape;
 
@@ -82,6 +95,7 @@ mod tests {
                     &ScanProgram::new(&scan.scan(), 0.0, space, &config.votes(shape)).unwrap();
                 // Lemma 1: no beam reaches a pose from two boundary cells.
                 let most = program.highest_possible();
+                let mut scatter = Scatter::new(&world.grid, &world.boundary);
                 let mut field = vec![7; 5];
                 for heading in [0, 31, scan.heading] {
                     let query = Query {
@@ -89,10 +103,7 @@ mod tests {
                         space,
                         heading,
                     };
-                    let filled =
-                        Scatter::new(&world.grid, &world.boundary)
-                            .fill(query, &mut field, &|| false);
-                    assert!(filled.is_some());
+                    assert!(scatter.fill(query, &mut field, &|| false).is_some());
                     let plain = reference::field(&world.grid, program, space, heading);
                     assert_eq!(field, plain);
                     assert!(field.iter().all(|&votes| u32::from(votes) <= most));

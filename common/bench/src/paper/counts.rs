@@ -82,9 +82,10 @@ fn count_in(p_over_n: u32, side: usize, scans: usize, seed: u64) -> anyhow::Resu
             heading: scan.heading,
         };
         counted.markov += counted::markov(&world, &readings, query).1;
-        let (_, reverse) = counted::reverse_projection(&world, query);
-        counted.reverse += reverse;
-        counted.most_votes = counted.most_votes.max(counted::most_beams(&world, query));
+        let mut beams = vec![0; world.grid.cells().len()];
+        let count = |index: usize, _| beams[index] += 1;
+        counted.reverse += counted::reverse_projection(&world, query, count);
+        counted.most_votes = beams.into_iter().fold(counted.most_votes, u16::max);
     }
     Ok(counted)
 }

@@ -3,7 +3,6 @@
 
 use crate::scatter::Scatter;
 use engine::EngineError;
-use engine::accumulator::{Accumulator, Query};
 use engine::boundary;
 use engine::directions::Direction;
 use engine::grid::{self, CellRules, Grid};
@@ -27,6 +26,14 @@ struct Example {
     /// Cells of the map, exact; infinite beside `looks`.
     readings: [f32; BEAMS],
     votes: VoteConfig,
+}
+
+/// Intensities of some beams from some boundary cells; none where nothing is projected.
+#[derive(Default)]
+struct Field {
+    intensities: Vec<u16>,
+    /// The highest one that is possible.
+    highest: u32,
 }
 
 impl Example {
@@ -67,12 +74,7 @@ impl Example {
         (0..BEAMS).filter(|&beam| self.readings[beam].is_finite())
     }
 
-    /// Intensities of some beams from some boundary cells; and the highest possible one.
-    fn field(
-        &self,
-        beams: &[usize],
-        boundary: &[BoundaryCell],
-    ) -> Result<(Vec<u16>, u32), EngineError> {
+    fn field(&self, beams: &[usize], boundary: &[BoundaryCell]) -> Result<Field, EngineError> {
         let reading = |beam| match beams.contains(&beam) {
             true => self.readings[beam],
             false => f32::INFINITY,
@@ -86,40 +88,30 @@ impl Example {
             ranges: &ranges,
         };
         let program = ScanProgram::new(&scan, 0.0, &self.space, &self.votes)?;
-        let query = Query {
-            program: &program,
-            space: &self.space,
-            heading: 0,
-        };
-        let mut field = Vec::new();
-        // Nothing stops it, so it fills the field.
-        let filled = Scatter::new(&self.grid, boundary).fill(query, &mut field, &|| false);
-        debug_assert!(filled.is_some());
-        Ok((field, program.highest_possible()))
+        let field = Scatter::new(&self.grid, boundary).field(&program, &self.space, 0);
+        Ok(Field {
+            intensities: field,
+            highest: program.highest_possible(),
+        })
     }
 
-    /// Cells shaded by a field, 1 the highest intensity that is possible.
-    fn cells(&self, field: &[u16], highest: u32) -> Vec<Cell> {
-        let cells = self.grid.cells().iter().enumerate();
+    /// The map, its cells shaded by a field: 1 is the highest intensity that is possible.
+    fn panel(&self, caption: &str, field: &Field, arrows: Vec<Arrow>) -> Panel {
         let cell = |(index, &cell): (usize, &grid::Cell)| {
             let (x, y) = (index % self.grid.width(), index / self.grid.width());
             match cell {
                 grid::Cell::Open => {
-                    let votes = field.get(index).copied().unwrap_or(0);
-                    Cell::Free(f64::from(votes) / f64::from(highest.max(1)))
+                    let votes = field.intensities.get(index).copied().unwrap_or(0);
+                    Cell::Free(f64::from(votes) / f64::from(field.highest.max(1)))
                 }
                 _ if self.grid.touches_open(x as i64, y as i64) => Cell::Boundary,
                 _ => Cell::Obstacle,
             }
         };
-        cells.map(cell).collect()
-    }
-
-    fn panel(&self, caption: &str, cells: Vec<Cell>, arrows: Vec<Arrow>) -> Panel {
         Panel {
             caption: caption.to_owned(),
             sides: (self.grid.width(), self.grid.height()),
-            cells,
+            cells: self.grid.cells().iter().enumerate().map(cell).collect(),
             arrows,
             robot: None,
         }
@@ -196,11 +188,10 @@ const SQUARE: [&str; 14] = {
 pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
     let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let beams: Vec<usize> = example.looks().collect();
-    let field = example.field(&beams, &example.boundary);
-    let (field, highest) = field?;
-    let empty = || example.cells(&[], 1);
+    let (none, field) = (Field::default(), example.field(&beams, &example.boundary)?);
     let own = beams.iter();
     let own = own.map(|&beam| example.forward(example.robot, beam, Some(Role::Reading)));
+    let own = example.panel("a: the robot takes four readings", &none, own.collect());
     // No two share a row or a column, so that no arrows lie on one another.
     let places = [(2, 11), (4, 9), (6, 2), (8, 6), (10, 4), (12, 8)];
     let forward = places.into_iter().flat_map(|from| {
@@ -209,27 +200,14 @@ pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
             .map(|&beam| example.forward(from, beam, None))
             .collect::<Vec<_>>()
     });
+    let tried = "b: forward: tried from every free cell (six are drawn)";
+    let reverse = "d: reverse: projected from the boundary cells";
+    let backward = example.backward_from(&example.boundary, &beams);
     let panels = vec![
-        example.with_robot(example.panel(
-            "a: the robot takes four readings",
-            empty(),
-            own.collect(),
-        )),
-        example.panel(
-            "b: forward: tried from every free cell (six are drawn)",
-            empty(),
-            forward.collect(),
-        ),
-        example.panel(
-            "c: the possible poses",
-            example.cells(&field, highest),
-            Vec::new(),
-        ),
-        example.panel(
-            "d: reverse: projected from the boundary cells",
-            example.cells(&field, highest),
-            example.backward_from(&example.boundary, &beams),
-        ),
+        example.with_robot(own),
+        example.panel(tried, &none, forward.collect()),
+        example.panel("c: the possible poses", &field, Vec::new()),
+        example.panel(reverse, &field, backward),
     ];
     plots::draw_diagram(&Diagram {
         title: "Figure 1: forward and reverse projection".into(),
@@ -246,34 +224,22 @@ pub(super) fn draw_figure_1() -> anyhow::Result<Scene> {
 pub(super) fn draw_figure_2() -> anyhow::Result<Scene> {
     let example = Example::new(&SQUARE, (4, 9), &[0, 2, 4, 6])?;
     let step = |caption: &str, beams: &[usize], from: &[BoundaryCell]| {
-        let (field, highest) = example.field(beams, from)?;
+        let field = example.field(beams, from)?;
         let arrows = example.backward_from(from, beams);
-        Ok(example.panel(caption, example.cells(&field, highest), arrows))
+        Ok::<Panel, EngineError>(example.panel(caption, &field, arrows))
     };
-    let left: Vec<BoundaryCell> = example
-        .boundary
-        .iter()
-        .copied()
-        .filter(|cell| cell.x == 0)
-        .collect();
-    let one: Vec<BoundaryCell> = left.iter().copied().filter(|cell| cell.y == 9).collect();
-    let all = &example.boundary;
-    let panels: Result<Vec<Panel>, EngineError> = [
-        step("a: one reading from one boundary cell, k = 5", &[4], &one),
-        step("b: the same reading from all of them", &[4], all),
-        step("c: a second reading is added", &[4, 2], all),
-        step(
-            "d: all four: most votes where the arrows meet",
-            &[0, 2, 4, 6],
-            all,
-        ),
-    ]
-    .into_iter()
-    .collect();
+    let (one, all) = ([BoundaryCell { x: 0, y: 9 }], &example.boundary);
+    let every = "d: all four: most votes where the arrows meet";
+    let panels = vec![
+        step("a: one reading from one boundary cell, k = 5", &[4], &one)?,
+        step("b: the same reading from all of them", &[4], all)?,
+        step("c: a second reading is added", &[4, 2], all)?,
+        step(every, &[0, 2, 4, 6], all)?,
+    ];
     plots::draw_diagram(&Diagram {
         title: "Figure 2: taper and superposition".into(),
         says: "each reading adds the most votes where it falls, and fewer before and behind".into(),
-        panels: panels?,
+        panels,
     })
 }
 
@@ -303,24 +269,17 @@ pub(super) fn draw_figure_3() -> anyhow::Result<Scene> {
     let arrows = example.backward_from(&some, &looks);
     let blocked = arrows.iter().filter(|arrow| arrow.role == Role::Rejected);
     let blocked = blocked.count();
-    let field = example.field(&looks, &example.boundary);
-    let (field, highest) = field?;
     let says = format!(
         "of {} projections from {} boundary cells {blocked} meet an obstacle first, and count nothing",
         arrows.len(),
         some.len()
     );
+    let field = example.field(&looks, &example.boundary)?;
+    let votes = example.panel("b: the votes of all boundary cells", &field, Vec::new());
+    let projections = "a: projections from some boundary cells";
     let panels = vec![
-        example.panel(
-            "a: projections from some boundary cells",
-            example.cells(&[], 1),
-            arrows,
-        ),
-        example.with_robot(example.panel(
-            "b: the votes of all boundary cells",
-            example.cells(&field, highest),
-            Vec::new(),
-        )),
+        example.panel(projections, &Field::default(), arrows),
+        example.with_robot(votes),
     ];
     plots::draw_diagram(&Diagram {
         title: "Figure 3: visibility".into(),

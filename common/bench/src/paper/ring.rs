@@ -4,7 +4,6 @@
 
 use crate::scatter::Scatter;
 use crate::worlds::World;
-use engine::accumulator::{Accumulator, Query};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::scan::Scan;
 use engine::space::Space;
@@ -30,19 +29,10 @@ pub(super) fn intensities(
     let sigma = projection.bearing_sigma_deg;
     let most = (DEVIATIONS * sigma).floor() as i32;
     let mut sums = vec![0.0; world.grid.cells().len()];
-    let mut field = Vec::new();
     for degrees in -most..=most {
         let turn = f64::from(degrees).to_radians();
         let program = ScanProgram::new(scan, turn, space, &projection.votes)?;
-        let query = Query {
-            program: &program,
-            space,
-            heading,
-        };
-        let mut scatter = Scatter::new(&world.grid, &world.boundary);
-        if scatter.fill(query, &mut field, &|| false).is_none() {
-            continue;
-        }
+        let field = Scatter::new(&world.grid, &world.boundary).field(&program, space, heading);
         let weight = match degrees {
             0 => 1.0,
             _ => (-0.5 * (f64::from(degrees) / sigma).powi(2)).exp(),
