@@ -6,8 +6,9 @@ use command_line::wrong_use;
 use engine::instruction_set::InstructionSet;
 use progress::Progress;
 
-use super::contest::{Contest, Effort};
+use super::contest::{self, Effort};
 use super::docs;
+use super::line_up::LineUp;
 use super::paper;
 use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases, name_of};
@@ -148,7 +149,7 @@ fn run_table(config: &Config, table: Table) -> anyhow::Result<ExitCode> {
     let cases = cases(table, config.quick, &config.filter);
     config.check(&cases)?;
     let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
-    let measurements = sights * Contest::rows(table);
+    let measurements = sights * contest::rows(table);
     let progress = Progress::counting("measuring", "measurements", measurements as u64);
     if !config.json {
         let instructions = InstructionSet::best().to_string();
@@ -156,10 +157,10 @@ fn run_table(config: &Config, table: Table) -> anyhow::Result<ExitCode> {
     }
     for (place, sights) in cases {
         progress.show(format!("{} is prepared", name(&place)));
-        let mut contest = Contest::new(table, place, config.seed)?;
+        let mut line_up = LineUp::new(table, place, config.seed)?;
         for sight in sights {
             progress.show(format!("{}, {} beams", name(&place), sight.beams));
-            let rows = contest.run(&sight, config.effort(), || progress.step())?;
+            let rows = line_up.run(&sight, config.effort(), || progress.step())?;
             progress.write(&printed(&rows, config.json))?;
         }
     }

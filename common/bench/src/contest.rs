@@ -11,7 +11,7 @@ use super::line_up::{Contestant, LineUp};
 use super::measure::{Task, measure};
 use super::method::{Method, Sizes};
 use super::row::Row;
-use super::scope::{Place, Sight, Table, name_of};
+use super::scope::{Sight, Table, name_of};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Effort {
@@ -24,30 +24,16 @@ pub(super) struct Effort {
     pub(super) seed: u64,
 }
 
-pub(super) struct Contest {
-    table: Table,
-    place: Place,
-    line_up: LineUp,
+/// How many rows each case of a table has.
+pub(super) fn rows(table: Table) -> usize {
+    match table {
+        Table::Table1 => 9,
+        Table::Table2 => 10,
+        Table::Search => 4,
+    }
 }
 
-impl Contest {
-    /// How many rows each case of a table has.
-    pub(super) fn rows(table: Table) -> usize {
-        match table {
-            Table::Table1 => 9,
-            Table::Table2 => 10,
-            Table::Search => 4,
-        }
-    }
-
-    pub(super) fn new(table: Table, place: Place, seed: u64) -> anyhow::Result<Self> {
-        Ok(Contest {
-            table,
-            place,
-            line_up: LineUp::new(table, place, seed)?,
-        })
-    }
-
+impl LineUp {
     /// Measures every method on the same scans; `step` is called for each.
     pub(super) fn run(
         &mut self,
@@ -56,8 +42,7 @@ impl Contest {
         mut step: impl FnMut(),
     ) -> anyhow::Result<Vec<Row>> {
         let config = ScanConfig::new(sight.beams as usize, sight.noise_percent);
-        let space = self.line_up.space.clone();
-        let world = &self.line_up.world;
+        let (world, space) = (&self.world, self.space.clone());
         let scans = simulate(world, &space, &config, effort.scans, effort.seed)?;
         let tasks = tasks(self.table, &scans, &space, sight, &config)?;
         let template = self.template(sight, &tasks)?;
@@ -71,10 +56,9 @@ impl Contest {
         let sigmas = tasks.iter().map(|task| task.readings.median_sigma_cells());
         let sigma_cells = median(sigmas.collect());
         let mut rows = Vec::new();
-        for mut contestant in self.line_up.contestants(sigma_cells, effort.patience_s) {
+        for mut contestant in self.contestants(sigma_cells, effort.patience_s) {
             let Contestant { method, .. } = contestant;
-            let least = method.least_headings();
-            let measured = measure(&mut contestant.locate, &tasks, effort.budget_ms, least)?;
+            let limits = (effort.budget_ms, method.least_headings());
             let counts = method.counts(&sizes);
             let row = Row {
                 operations: counts.map(|counts| counts.0),
@@ -83,13 +67,11 @@ impl Contest {
                 map_bytes: contestant.map_bytes,
                 ..template.of(method)
             };
-            rows.push(match measured {
-                Some(measured) => row.with(&measured),
-                None => row.without(format!(
-                    "not done within {} s and a million poses",
-                    effort.patience_s
-                )),
-            });
+            let measured = measure(&mut contestant.locate, &tasks, limits, row.clone())?;
+            rows.push(measured.unwrap_or_else(|| {
+                let seconds = effort.patience_s;
+                row.without(format!("not done within {seconds} s and a million poses"))
+            }));
             step();
         }
         if let Some(skipped) = self.left_out_table(&template) {
@@ -104,33 +86,22 @@ impl Contest {
     fn template(&self, sight: &Sight, tasks: &[Task<'_>]) -> anyhow::Result<Row> {
         Ok(Row {
             table: name_of(&self.table),
-            method: "",
-            label: "",
             kind: name_of(&self.place.kind),
             size: self.place.size,
             beams: sight.beams,
             headings: tasks.first().map_or(0, |task| task.headings.len()),
-            p_over_n: self.line_up.world.p_over_n(),
+            p_over_n: self.world.p_over_n(),
             noise_percent: sight.noise_percent,
             taper: name_of(&sight.taper),
             k: taper_cells(tasks)?,
-            cpu_ms: None,
-            ratio_to_reverse_projection: None,
-            scans: 0,
-            found: None,
-            scaled_from_headings: None,
-            operations: None,
-            additions: None,
-            prepare_cpu_ms: 0.0,
-            map_bytes: 0,
             instruction_set: InstructionSet::best().to_string(),
-            skipped: None,
+            ..Row::default()
         })
     }
 
     /// A row in place of a range table that would take too much memory.
     fn left_out_table(&self, template: &Row) -> Option<Row> {
-        let bytes = self.line_up.left_out_table_bytes()?;
+        let bytes = self.left_out_table_bytes()?;
         let row = Row {
             map_bytes: bytes,
             ..template.of(Method::RangeTable)

@@ -4,7 +4,6 @@ use std::cmp::Reverse;
 use std::time::Instant;
 
 use crate::baselines::Estimate;
-use crate::scatter::Scatter;
 use crate::worlds::World;
 use engine::accumulator::{Accumulator, Query};
 use engine::instruction_set::InstructionSet;
@@ -17,7 +16,8 @@ use messages::Vote;
 
 use super::measure::{Answer, Locate, Task};
 
-const ARGMAX: CollectConfig = CollectConfig {
+/// Collects only the best pose.
+pub(super) const ARGMAX: CollectConfig = CollectConfig {
     floor_share: 1.0,
     max_votes: 1,
     candidates: 0,
@@ -30,7 +30,7 @@ fn program(task: &Task<'_>) -> anyhow::Result<ScanProgram> {
 }
 
 /// By the fields of an accumulator at some headings.
-fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'a> {
+pub(super) fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'a> {
     let (mut accumulator, mut field) = (accumulator, Vec::new());
     let width = world.grid.width();
     Box::new(move |task, headings| {
@@ -53,28 +53,12 @@ fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'
     })
 }
 
-/// The paper's own way: from boundary cells.
-pub(super) fn scatter(world: &World) -> Locate<'_> {
-    fields(world, Scatter::new(&world.grid, &world.boundary))
-}
-
-/// By sweeps along the lines of each beam.
-pub(super) fn sweep<'a>(world: &'a World, sweeps: &'a FieldSweep) -> Locate<'a> {
-    fields(world, sweeps.accumulator())
-}
-
-/// By bounds, only the best pose.
-pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
-    collecting(world, index, ARGMAX)
-}
-
-/// By bounds, with candidates as the graph has them by default.
-pub(super) fn candidates<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
-    collecting(world, index, CollectConfig::default())
-}
-
-/// In a workspace that is kept from scan to scan, as the graph does it.
-fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConfig) -> Locate<'a> {
+/// By bounds, in a workspace that is kept from scan to scan, as the graph does it.
+pub(super) fn search<'a>(
+    world: &'a World,
+    index: &'a SearchIndex,
+    collect: CollectConfig,
+) -> Locate<'a> {
     let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
     Box::new(move |task, _| {
         let (how, program) = ((InstructionSet::best(), 1), program(task)?);

@@ -4,11 +4,13 @@ use crate::baselines::{
     Baseline, FieldCorrelation, MonteCarlo, PatchCorrelation, PlainCorrelation, RangeTable,
     RayCasting,
 };
+use crate::scatter::Scatter;
 use crate::timing::cpu_ms;
 use crate::worlds::World;
 use engine::search::SearchIndex;
 use engine::space::Space;
 use engine::sweep::FieldSweep;
+use engine::votes::CollectConfig;
 
 use super::engine_methods as reverse;
 use super::measure::{Answer, Locate, Task};
@@ -19,7 +21,8 @@ use super::scope::{Place, Table};
 const MAX_TABLE_BYTES: usize = 4 << 30;
 
 pub(super) struct LineUp {
-    table: Table,
+    pub(super) table: Table,
+    pub(super) place: Place,
     pub(super) world: World,
     pub(super) space: Space,
     /// Those that do not depend on the readings; none in the table of searches.
@@ -77,6 +80,7 @@ impl LineUp {
         }
         Ok(LineUp {
             table,
+            place,
             baselines,
             sweeps: Prepared::new(|| FieldSweep::new(&world.grid)),
             index: (table != Table::Table1)
@@ -115,23 +119,26 @@ impl LineUp {
         };
         if table != Table::Search {
             let bytes = size_of_val(&world.boundary[..]) + world.grid.cells().len();
-            add(Method::Scatter, reverse::scatter(world), 0.0, bytes);
+            let scatter = Scatter::new(&world.grid, &world.boundary);
+            add(Method::Scatter, reverse::fields(world, scatter), 0.0, bytes);
         }
         let method = match table {
             Table::Table1 => Method::Sweep,
             _ => Method::Exhaustive,
         };
         let sweeps = &self.sweeps.value;
-        let locate = reverse::sweep(world, sweeps);
+        let locate = reverse::fields(world, sweeps.accumulator());
         add(method, locate, self.sweeps.cpu_ms, sweeps.bytes());
         if let Some(prepared) = &self.index {
             let (index, cpu_ms) = (&prepared.value, &prepared.cpu_ms);
             let mut add = |method, locate| add(method, locate, *cpu_ms, index.bytes());
-            add(Method::Search, reverse::search(world, index));
+            let search = |collect| reverse::search(world, index, collect);
+            add(Method::Search, search(reverse::ARGMAX));
             if table == Table::Search {
                 let sixteen = reverse::top_sixteen(world, sweeps, patience_s);
                 add(Method::TopSixteen, sixteen);
-                add(Method::Candidates, reverse::candidates(world, index));
+                // As the graph has them by default.
+                add(Method::Candidates, search(CollectConfig::default()));
             }
         }
         all

@@ -6,6 +6,8 @@ use crate::timing::{cpu_ms, median};
 use engine::program::VoteConfig;
 use engine::space::Space;
 
+use super::row::Row;
+
 /// One scan of a case, and what all methods read from it.
 #[derive(Debug)]
 pub(super) struct Task<'a> {
@@ -27,27 +29,16 @@ pub(super) enum Answer {
 /// A method that is ready for a case; takes a scan and the headings to search.
 pub(super) type Locate<'a> = Box<dyn FnMut(&Task<'_>, &[usize]) -> anyhow::Result<Answer> + 'a>;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Measured {
-    /// Median over the scans, for all headings.
-    pub(super) cpu_ms: f64,
-    pub(super) scans: usize,
-    /// Scans located to 0.5 m and 10°; `None` where only some headings were searched.
-    pub(super) found: Option<usize>,
-    /// Headings that were measured, if the time was scaled up from them.
-    pub(super) scaled_from_headings: Option<usize>,
-}
-
 /// Locates scans until they are through or the budget is spent, one at least.
 /// A method that would spend it on one scan alone is measured on as many
 /// headings as fit, but not on fewer than `least_headings`, evenly spread, and
-/// its time scaled up. `None` if it gave up.
+/// its time scaled up. Returns the row with these figures; `None` if the method gave up.
 pub(super) fn measure(
     locate: &mut Locate<'_>,
     tasks: &[Task<'_>],
-    budget_ms: f64,
-    least_headings: Option<usize>,
-) -> anyhow::Result<Option<Measured>> {
+    (budget_ms, least_headings): (f64, Option<usize>),
+    row: Row,
+) -> anyhow::Result<Option<Row>> {
     let all = tasks.first().map_or(0, |task| task.headings.len());
     let mut count = all;
     if let Some(least) = least_headings.filter(|&least| least < all) {
@@ -56,24 +47,25 @@ pub(super) fn measure(
         outcome?;
         count = ((budget_ms / one_ms) as usize).clamp(least, all);
     }
-    let (mut costs, mut found) = (Vec::new(), 0);
+    let (mut costs, mut found) = (Vec::new(), 0u32);
     for task in tasks {
         let some: Vec<usize> = (0..count).map(|i| task.headings[i * all / count]).collect();
         let (answer, cost) = cpu_ms(|| locate(task, &some));
         let Answer::Best(pose) = answer? else {
             return Ok(None);
         };
-        found += usize::from(pose.is_some_and(|pose| task.scan.is_found_at(&pose, task.space)));
+        found += u32::from(pose.is_some_and(|pose| task.scan.is_found_at(&pose, task.space)));
         costs.push(cost * all as f64 / count as f64);
         if costs.iter().sum::<f64>() * count as f64 / all as f64 >= budget_ms {
             break;
         }
     }
-    Ok(Some(Measured {
+    Ok(Some(Row {
         scans: costs.len(),
-        cpu_ms: median(costs),
-        found: (count == all).then_some(found),
+        found: (count == all).then(|| f64::from(found) / costs.len() as f64),
         scaled_from_headings: (count < all).then_some(count),
+        cpu_ms: Some(median(costs)),
+        ..row
     }))
 }
 
@@ -103,7 +95,7 @@ mod tests {
     }
 
     /// Measures a method that only spins, so long for each heading.
-    fn measured(headings: usize, ms_a_heading: f64, budget_ms: f64) -> Measured {
+    fn measured(headings: usize, ms_a_heading: f64, budget_ms: f64) -> Row {
         let mut locate: Locate<'_> = Box::new(|task, headings| {
             let spin = || (0..200).map(|i| f64::from(i).sqrt()).sum::<f64>();
             let mut spent = 0.0;
@@ -114,7 +106,7 @@ mod tests {
             Ok(Answer::Best(Some(Estimate::new(x, y, heading, 1.0))))
         });
         let measured = on_tasks(headings, |tasks| {
-            measure(&mut locate, tasks, budget_ms, Some(1))
+            measure(&mut locate, tasks, (budget_ms, Some(1)), Row::default())
         });
         measured.unwrap().unwrap()
     }
@@ -122,7 +114,7 @@ mod tests {
     #[test]
     fn what_fits_is_measured_in_full() {
         let measured = measured(4, 0.01, 1000.0);
-        assert_eq!((measured.scans, measured.found), (3, Some(3)));
+        assert_eq!((measured.scans, measured.found), (3, Some(1.0)));
         assert_eq!(measured.scaled_from_headings, None);
     }
 
@@ -130,7 +122,8 @@ mod tests {
     fn what_takes_too_long_has_no_figure() {
         let mut locate: Locate<'_> = Box::new(|_, _| Ok(Answer::GaveUp));
         on_tasks(1, |tasks| {
-            assert_eq!(measure(&mut locate, tasks, 1.0, None).unwrap(), None);
+            let measured = measure(&mut locate, tasks, (1.0, None), Row::default());
+            assert_eq!(measured.unwrap(), None);
         });
     }
 
@@ -140,6 +133,6 @@ mod tests {
         let some = measured.scaled_from_headings.unwrap();
         assert!((1..=8).contains(&some), "{some}");
         assert_eq!(measured.found, None);
-        assert!(measured.cpu_ms >= 72.0, "{}", measured.cpu_ms);
+        assert!(measured.cpu_ms >= Some(72.0), "{:?}", measured.cpu_ms);
     }
 }

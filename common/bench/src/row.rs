@@ -3,11 +3,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::measure::Measured;
 use super::method::Method;
 
 /// One line of JSON, and one of the table.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Row {
     pub(super) table: String,
     pub(super) method: &'static str,
@@ -56,18 +55,6 @@ impl Row {
             method,
             label,
             ..self.clone()
-        }
-    }
-
-    pub(super) fn with(self, measured: &Measured) -> Self {
-        Row {
-            cpu_ms: Some(measured.cpu_ms),
-            scans: measured.scans,
-            found: measured
-                .found
-                .map(|found| found as f64 / measured.scans as f64),
-            scaled_from_headings: measured.scaled_from_headings,
-            ..self
         }
     }
 

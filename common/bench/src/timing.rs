@@ -1,15 +1,16 @@
 //! CPU time of this thread: the cost of a computation, independent of the load of the machine.
 
+use statistics::Distribution;
+
 /// Runs `work` and returns its result, with the CPU time of this thread in milliseconds.
 pub fn cpu_ms<T>(work: impl FnOnce() -> T) -> (T, f64) {
     offline::cpu::timed(work).expect("a thread has a clock")
 }
 
 /// Median of the values, the lower of the two middle ones; NaN without values.
-pub fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let middle = values.len().saturating_sub(1) / 2;
-    values.get(middle).copied().unwrap_or(f64::NAN)
+pub fn median(values: Vec<f64>) -> f64 {
+    let [median] = Distribution::from_iter(values).percentiles([50.0]);
+    median.unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -56,61 +56,6 @@ struct Scope {
     seed: u64,
 }
 
-impl Scope {
-    /// Sides of the worlds, and scans in each.
-    fn counts(self) -> (usize, usize) {
-        if self.is_quick { (150, 5) } else { (400, 10) }
-    }
-
-    /// For each map and variant.
-    fn sonar_poses(self) -> usize {
-        if self.is_quick { 200 } else { 1000 }
-    }
-
-    /// All scans are measured, for their successes are compared, too.
-    fn table_1(self) -> tables::Extent {
-        let (size, worlds) = if self.is_quick { (200, 6) } else { (1200, 5) };
-        self.table((size, worlds), f64::INFINITY)
-    }
-
-    /// The paper's size in both. Methods that take long are measured at some headings.
-    fn table_2(self) -> tables::Extent {
-        let (worlds, budget_ms) = if self.is_quick {
-            (6, 150.0)
-        } else {
-            (10, 1500.0)
-        };
-        self.table((100, worlds), budget_ms)
-    }
-
-    fn table(self, (size, worlds): (u32, u64), budget_ms: f64) -> tables::Extent {
-        tables::Extent {
-            size,
-            worlds,
-            effort: Effort {
-                scans: if self.is_quick { 5 } else { 10 },
-                budget_ms,
-                patience_s: 60.0,
-                seed: self.seed,
-            },
-        }
-    }
-
-    fn aid(self) -> aid::Extent {
-        let (size, worlds, scans) = if self.is_quick {
-            (80, 3, 4)
-        } else {
-            (150, 5, 10)
-        };
-        aid::Extent {
-            size,
-            beams: 24,
-            worlds,
-            scans,
-        }
-    }
-}
-
 pub(in super::super) fn run(
     config: &Config,
     is_quick: bool,
@@ -133,8 +78,8 @@ pub(in super::super) fn run(
             Part::Method => method_part(&folder)?,
             Part::Counts => counts_part(&folder, scope)?,
             Part::Sonar => sonar_part(&folder, scope, say)?,
-            Part::Table1 => table_part(&folder, Table::Table1, scope.table_1(), say)?,
-            Part::Table2 => table_part(&folder, Table::Table2, scope.table_2(), say)?,
+            Part::Table1 => table_part(&folder, Table::Table1, scope, say)?,
+            Part::Table2 => table_part(&folder, Table::Table2, scope, say)?,
             Part::Corridor => corridor_part(&folder, config)?,
             Part::Aid => aid_part(&folder, scope, say)?,
         }
@@ -151,7 +96,7 @@ fn method_part(folder: &Folder) -> anyhow::Result<()> {
 }
 
 fn counts_part(folder: &Folder, scope: Scope) -> anyhow::Result<()> {
-    let (side, scans) = scope.counts();
+    let (side, scans) = if scope.is_quick { (150, 5) } else { (400, 10) };
     let counted = counts::count(side, scans, scope.seed)?;
     folder.table("counts.csv", &counts::csv(&counted))?;
     folder.picture("counts.png", &counts::draw(&counted)?)
@@ -159,7 +104,8 @@ fn counts_part(folder: &Folder, scope: Scope) -> anyhow::Result<()> {
 
 fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> anyhow::Result<()> {
     let mut done = 0;
-    let judged = sonar::judge(scope.sonar_poses(), scope.seed, || {
+    let poses = if scope.is_quick { 200 } else { 1000 };
+    let judged = sonar::judge(poses, scope.seed, || {
         done += 1;
         say(format!("eight sonars, {done} cases done"));
     })?;
@@ -177,9 +123,27 @@ fn sonar_part(folder: &Folder, scope: Scope, say: impl Fn(String)) -> anyhow::Re
 fn table_part(
     folder: &Folder,
     table: Table,
-    extent: tables::Extent,
+    scope: Scope,
     say: impl Fn(String),
 ) -> anyhow::Result<()> {
+    let (size, worlds, budget_ms) = match (table, scope.is_quick) {
+        // All scans are measured, for their successes are compared, too.
+        (Table::Table1, true) => (200, 6, f64::INFINITY),
+        (Table::Table1, false) => (1200, 5, f64::INFINITY),
+        // The paper's size in both. Methods that take long are measured at some headings.
+        (_, true) => (100, 6, 150.0),
+        (_, false) => (100, 10, 1500.0),
+    };
+    let extent = tables::Extent {
+        size,
+        worlds,
+        effort: Effort {
+            scans: if scope.is_quick { 5 } else { 10 },
+            budget_ms,
+            patience_s: 60.0,
+            seed: scope.seed,
+        },
+    };
     let measured = tables::measure(table, extent, say)?;
     let name = name_of(&table);
     folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
@@ -201,7 +165,16 @@ fn corridor_part(folder: &Folder, config: &Config) -> anyhow::Result<()> {
 }
 
 fn aid_part(folder: &Folder, scope: Scope, say: impl FnMut(String)) -> anyhow::Result<()> {
-    let extent = scope.aid();
+    let (size, worlds, scans) = match scope.is_quick {
+        true => (80, 3, 4),
+        false => (150, 5, 10),
+    };
+    let extent = aid::Extent {
+        size,
+        beams: 24,
+        worlds,
+        scans,
+    };
     let saved = aid::measure(extent, scope.seed, say)?;
     folder.table("aid.csv", &aid::csv(&saved))?;
     folder.picture("aid.png", &aid::draw(extent, &saved)?)

@@ -8,7 +8,7 @@
 //!            ┌─ method    figures 1 to 3
 //!            ├─ counts    operations against the formulas of section II B
 //! command ───┼─ sonar     section IV: eight sonars ──────────── folder
-//!            ├─ tables    tables 1 and 2 (through `contest`)
+//!            ├─ tables    tables 1 and 2 (through `line_up`)
 //!            ├─ corridor  section V
 //!            └─ aid       what the votes save Markov localization and particles
 //! ```

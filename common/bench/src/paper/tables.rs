@@ -8,7 +8,8 @@ use engine::taper::TaperShape;
 use plots::drawing::Scene;
 use plots::{Curve, CurvePoint, Curves};
 
-use super::super::contest::{Contest, Effort};
+use super::super::contest::Effort;
+use super::super::line_up::LineUp;
 use super::super::method::Method;
 use super::super::row::Row;
 use super::super::scope::{Place, Sight, Table, name_of};
@@ -72,7 +73,7 @@ pub(super) fn measure(
                 seed: extent.effort.seed + world,
                 ..extent.effort
             };
-            let mut contest = Contest::new(table, place, effort.seed)?;
+            let mut line_up = LineUp::new(table, place, effort.seed)?;
             let noises = match table {
                 Table::Table1 if !BEYOND.contains(&p_over_n) => &NOISE[..],
                 _ => &[COMMON_NOISE],
@@ -84,7 +85,7 @@ pub(super) fn measure(
                     taper: TaperShape::Trapezoid,
                 };
                 let case = rows.entry((p_over_n, noise)).or_default();
-                case.push(contest.run(&sight, effort, || {})?);
+                case.push(line_up.run(&sight, effort, || {})?);
             }
         }
     }
