@@ -7,10 +7,11 @@ use geometry::Pose;
 use messages::Verdict;
 
 use super::extent::Extent;
+use super::ground::Ground;
 use super::legend::{Legend, Sample};
 use super::page::{self, Heading, Page};
 use super::scan::Size;
-use super::subject::{Ground, Subject};
+use super::subject::Subject;
 use super::view::View;
 use super::{axes, places, theme};
 
@@ -86,7 +87,7 @@ impl Film<'_> {
         if way.len() > 1 {
             let stroke = Stroke::new(theme::BEST.with_opacity(0.6), WAY * unit);
             legend.add(Sample::Line(stroke), "path of unique places");
-            scene.clipped(view.area(), |scene| {
+            scene.clipped(view.area, |scene| {
                 scene.stroke(Path::polyline(way), stroke);
             });
         }

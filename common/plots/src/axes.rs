@@ -118,11 +118,11 @@ pub(super) fn view_within(extent: Extent, area: Rect, unit: f64) -> View {
 /// The axes of the map around a view, metres.
 pub(super) fn draw_metres(scene: &mut Scene, view: &View, unit: f64) {
     let [x, y] = axes_of(view);
-    draw(scene, view.area(), (x, y), unit);
+    draw(scene, view.area, (x, y), unit);
 }
 
 fn axes_of(view: &View) -> [Axis<'static>; 2] {
-    let area = view.area();
+    let area = view.area;
     let (left, top) = view.metres_at((area.x, area.y));
     let (right, bottom) = view.metres_at((area.right(), area.bottom()));
     let axis = |from, to, name| Axis {

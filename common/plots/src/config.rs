@@ -7,8 +7,8 @@ use command_line::wrong_use;
 use map::OccupancyGrid;
 use offline::Options;
 
+use super::ground::Ground;
 use super::scan::Size;
-use super::subject::Ground;
 
 pub const NOTES: &str = "\
 Ends of beams: a green dot is at an obstacle, an orange triangle before one, a red cross behind

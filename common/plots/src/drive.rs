@@ -7,9 +7,9 @@ use map::OccupancyGrid;
 use messages::TrackState;
 
 use super::extent::Extent;
+use super::ground::Ground;
 use super::legend::{Legend, Sample};
 use super::page::{self, Heading, Page};
-use super::subject::Ground;
 use super::view::View;
 use super::{axes, theme};
 
@@ -49,7 +49,7 @@ pub fn draw(
     let ground = Ground { map, rules };
     ground.draw(&mut page, &view)?;
     let Page { scene, legend, .. } = &mut page;
-    scene.clipped(view.area(), |scene| {
+    scene.clipped(view.area, |scene| {
         draw_path((scene, legend), &view, stops, unit);
         for state in STATES {
             draw_state((scene, legend), &view, (stops, state), unit);

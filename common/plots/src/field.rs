@@ -8,13 +8,13 @@ use offline::{Field, frame_of, sides_of};
 
 use super::axes::{self, Axis};
 use super::extent::Extent;
-use super::ground::Sampler;
+use super::ground::{Ground, Sampler};
 use super::legend::Sample;
 use super::marks;
 use super::page::{self, Heading, Page};
 use super::scale::Scale;
 use super::scan::Size;
-use super::subject::{Ground, Subject};
+use super::subject::Subject;
 use super::theme;
 use super::view::View;
 
@@ -132,7 +132,7 @@ pub fn draw(votes: &Votes<'_>) -> anyhow::Result<Scene> {
         page.legend.add(Sample::Area(WALL), "obstacle");
     }
     let Page { scene, legend, .. } = &mut page;
-    scene.clipped(view.area(), |scene| {
+    scene.clipped(view.area, |scene| {
         if let Some(best) = best_position(votes.field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);
             scene.stroke(ring.clone(), Stroke::new(Color::WHITE, 6.0 * unit));
@@ -160,7 +160,7 @@ pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
 /// Fills a view with the votes and the walls; whether there is a wall.
 fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> anyhow::Result<bool> {
     let (sampled, mut any_wall) = (votes.sampler(view), false);
-    scene.image(view.area(), |column, row| {
+    scene.image(view.area, |column, row| {
         let (share, walls) = sampled(column, row);
         any_wall |= walls > 0.0;
         theme::heat(share).towards(WALL, walls)

@@ -3,13 +3,15 @@
 //! A pixel shows all cells that lie under it, or the one cell that it is a part
 //! of: nothing that is thin is lost where many cells meet one pixel.
 
-use crate::drawing::{Color, Scene};
+use crate::drawing::Color;
 use engine::fit::GridPose;
 use engine::grid::{CellRules, GridFrame};
 use map::OccupancyGrid;
 use offline::{frame_of, sides_of};
 
-use super::legend::{Legend, Sample};
+use super::extent::Extent;
+use super::legend::Sample;
+use super::page::Page;
 use super::theme;
 use super::view::View;
 
@@ -29,7 +31,7 @@ pub(super) struct Sampler {
 
 impl Sampler {
     pub(super) fn new(view: &View, frame: GridFrame, sides: (usize, usize)) -> Self {
-        let cells_per_pixel = 1.0 / (view.pixels_per_m() * frame.resolution_m);
+        let cells_per_pixel = 1.0 / (view.pixels_per_m * frame.resolution_m);
         let looks = (1.5 * cells_per_pixel).ceil().clamp(1.0, MAX_LOOKS);
         let step = cells_per_pixel / looks;
         let GridPose { x, y, heading } = GridPose::of(frame, view.map_from_corner());
@@ -71,17 +73,48 @@ impl Sampler {
 /// Cells of a kind, their colour and their name.
 pub(super) type Ink = (Color, &'static str);
 
+/// A map, and which of its cells are free and occupied.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground<'a> {
+    pub(super) map: &'a OccupancyGrid,
+    pub(super) rules: CellRules,
+}
+
+/// Around what is shown, as a share of its longer side.
+const MARGIN: f64 = 0.02;
+
+impl Ground<'_> {
+    pub(super) fn draw(&self, page: &mut Page, view: &View) -> anyhow::Result<()> {
+        draw(page, *self, view, |index| self.occupied(index))
+    }
+
+    pub(super) fn occupied(&self, index: usize) -> Option<Ink> {
+        let value = *self.map.cells.get(index)?;
+        let is_occupied = self.rules.is_occupied(value);
+        is_occupied.then_some((theme::OCCUPIED, "obstacle"))
+    }
+
+    /// All that is known of the map, with a margin.
+    pub(super) fn known(&self) -> Extent {
+        Extent::of_known(self.map, self.rules).with_rim(MARGIN, 0.0)
+    }
+
+    pub(super) fn whole(&self) -> Extent {
+        Extent::of_map(self.map).with_rim(MARGIN, 0.0)
+    }
+}
+
 /// Draws the map, and names what is seen; `ink` is of occupied cells, however small.
 pub(super) fn draw(
-    (scene, legend): (&mut Scene, &mut Legend),
-    (map, rules): (&OccupancyGrid, CellRules),
+    page: &mut Page,
+    Ground { map, rules }: Ground<'_>,
     view: &View,
     ink: impl Fn(usize) -> Option<Ink>,
 ) -> anyhow::Result<()> {
     let sampler = Sampler::new(view, frame_of(map), sides_of(map));
     let mut inks: Vec<Ink> = Vec::new();
     let mut seen = Pixel::default();
-    scene.image(view.area(), |column, row| {
+    page.scene.image(view.area, |column, row| {
         let mut pixel = Pixel::default();
         sampler.each(column, row, |index| {
             let cell = index.and_then(|index| Some((index, *map.cells.get(index)?)));
@@ -114,17 +147,9 @@ pub(super) fn draw(
     let least = 1e-3 * (seen.free + seen.unknown + seen.outside);
     let grounds = grounds.into_iter().filter(|(count, _)| *count > least);
     for (color, name) in inks.into_iter().chain(grounds.map(|(_, ink)| ink)) {
-        legend.add(Sample::Area(color), name);
+        page.legend.add(Sample::Area(color), name);
     }
     Ok(())
-}
-
-pub(super) fn occupied(map: &OccupancyGrid, rules: CellRules) -> impl Fn(usize) -> Option<Ink> {
-    move |index| {
-        let value = *map.cells.get(index)?;
-        let is_occupied = rules.is_occupied(value);
-        is_occupied.then_some((theme::OCCUPIED, "obstacle"))
-    }
 }
 
 /// What was met under a pixel, how often.
@@ -162,7 +187,6 @@ mod tests {
     use crate::drawing::Rect;
     use geometry::Pose;
 
-    use super::super::extent::Extent;
     use map::UNKNOWN;
 
     use super::*;

@@ -45,7 +45,7 @@ pub(super) fn ellipse(
     stroke: Stroke,
 ) {
     let ellipse = covariance.ellipse();
-    let pixels = |metres: f64| ELLIPSE_95 * metres * view.pixels_per_m();
+    let pixels = |metres: f64| ELLIPSE_95 * metres * view.pixels_per_m;
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
     let mut path = Path::default();
     path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);

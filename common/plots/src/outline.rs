@@ -5,10 +5,9 @@ use engine::boundary;
 use engine::grid::Grid;
 
 use super::axes;
-use super::ground;
+use super::ground::{self, Ground};
 use super::page::{Heading, Page};
 use super::scan::Size;
-use super::subject::Ground;
 use super::theme;
 
 /// Limits of the body's height as a share of its width.
@@ -29,25 +28,22 @@ pub(super) fn draw(
             *mark = true;
         }
     }
-    let heading = heading(ground, grid, name);
+    let heading = heading(ground, (grid, boundary.len()), name);
     let (mut page, view) = Page::of_map(size.width, ground.known(), HEIGHTS, &heading)?;
-    let occupied = ground::occupied(ground.map, ground.rules);
-    ground::draw(
-        (&mut page.scene, &mut page.legend),
-        (ground.map, ground.rules),
-        &view,
-        |index| match is_boundary.get(index) {
+    ground::draw(&mut page, *ground, &view, |index| {
+        match is_boundary.get(index) {
             Some(true) => Some((theme::BOUNDARY, "boundary cell")),
-            _ => occupied(index).map(|(color, _)| (color, "obstacle behind it")),
-        },
-    )?;
+            _ => ground
+                .occupied(index)
+                .map(|(color, _)| (color, "obstacle behind it")),
+        }
+    })?;
     axes::draw_metres(&mut page.scene, &view, page.unit);
     page.finish()
 }
 
-fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {
+fn heading(ground: &Ground<'_>, (grid, boundary): (&Grid, usize), name: &str) -> Heading {
     let map = ground.map;
-    let boundary = boundary::extract(grid).len();
     let share = 100.0 * boundary as f64 / grid.free_cells().max(1) as f64;
     let metres = |cells: u32| f64::from(cells) * map.resolution_m;
     Heading::plain(

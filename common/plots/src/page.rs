@@ -146,21 +146,13 @@ fn broken(text: &str, (before, width): (f64, f64), unit: f64) -> Vec<String> {
     }
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
-        let room = if lines.len() == 1 {
-            width - before
-        } else {
-            width
-        };
-        let Some(line) = lines.last_mut() else { break };
-        let longer = if line.is_empty() {
-            word.to_owned()
-        } else {
-            format!("{line} {word}")
-        };
-        if line.is_empty() || style.width_of(&longer) <= room {
-            *line = longer;
-        } else {
-            lines.push(word.to_owned());
+        let room = width - if lines.len() == 1 { before } else { 0.0 };
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if style.width_of(&format!("{line} {word}")) <= room => {
+                *line += &format!(" {word}");
+            }
+            _ => lines.push(word.to_owned()),
         }
     }
     lines

@@ -28,7 +28,7 @@ pub(super) fn draw(
     unit: f64,
 ) {
     name(legend, subject);
-    scene.clipped(view.area(), |scene| {
+    scene.clipped(view.area, |scene| {
         if let Some(truth) = subject.missed_truth() {
             dots(scene, view, &truth.scan, (FAINT_DOT * unit, AT_TRUTH));
         }
@@ -125,7 +125,7 @@ fn mark(scene: &mut Scene, view: &View, shown: &Shown, unit: f64) {
 /// Writes the ranks of all places but the best beside their marks.
 fn number(scene: &mut Scene, view: &View, subject: &Subject, unit: f64) {
     let place = |shown: &Shown| (shown.place.map_from_laser.x, shown.place.map_from_laser.y);
-    let mut numbers = Numbers::new(view.area());
+    let mut numbers = Numbers::new(view.area);
     for shown in &subject.shown {
         numbers.keep_free(view.at(place(shown)), ROBOT * unit);
     }

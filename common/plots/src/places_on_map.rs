@@ -6,10 +6,10 @@ use geometry::Pose;
 use map::OccupancyGrid;
 
 use super::extent::Extent;
+use super::ground::Ground;
 use super::legend::Sample;
 use super::numbers::Numbers;
 use super::page::{self, Heading, Page};
-use super::subject::Ground;
 use super::{axes, marks, theme};
 
 /// The body's height as a share of its width.
@@ -34,9 +34,9 @@ pub fn draw(
     page.legend.add(Sample::Robot(theme::BEST), "found");
     page.legend.add(Sample::Truth, "truth");
     let at = |pose: &Pose| view.at((pose.x, pose.y));
-    page.scene.clipped(view.area(), |scene| {
+    page.scene.clipped(view.area, |scene| {
         scene.stroke(Path::polyline(path.iter().map(at)), way);
-        let mut numbers = Numbers::new(view.area());
+        let mut numbers = Numbers::new(view.area);
         let poses = places.iter().flat_map(|(found, truth)| [found, truth]);
         poses.for_each(|pose| numbers.keep_free(at(pose), 18.0 * unit));
         for (number, (found, truth)) in (1..).zip(places) {

@@ -6,8 +6,9 @@ use geometry::Pose;
 use offline::ScanAt;
 
 use super::extent::Extent;
+use super::ground::Ground;
 use super::page::{self, Page};
-use super::subject::{Ground, Subject};
+use super::subject::Subject;
 use super::{axes, marks, places, theme};
 
 /// Most places that are shown from near.
@@ -180,7 +181,7 @@ fn draw_near(
     let view = axes::view_within(Extent::around(near.pose, reach), rest, unit);
     ground.draw(page, &view)?;
     let Page { scene, legend, .. } = page;
-    scene.clipped(view.area(), |scene| {
+    scene.clipped(view.area, |scene| {
         places::by_class((scene, legend), &view, (near.pose, near.scan), unit);
         let placement = marks::placement(&view, near.pose);
         let size = places::ROBOT * unit;

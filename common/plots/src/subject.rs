@@ -1,43 +1,14 @@
 //! Subject of a picture: a scan, its possible places, and the truth.
 
 use engine::EngineError;
-use engine::grid::CellRules;
 use engine::peaks::{Place, Places};
 use geometry::Pose;
-use map::OccupancyGrid;
 use offline::{BeamEnd, ScanAt, TakenScan, World};
 use statistics::SUCCESS;
 
 use super::extent::Extent;
-use super::ground;
-use super::page::{Heading, Page};
-use super::view::View;
-
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ground<'a> {
-    pub(super) map: &'a OccupancyGrid,
-    pub(super) rules: CellRules,
-}
-
-impl Ground<'_> {
-    pub(super) fn draw(&self, page: &mut Page, view: &View) -> anyhow::Result<()> {
-        let ink = ground::occupied(self.map, self.rules);
-        let names = (&mut page.scene, &mut page.legend);
-        ground::draw(names, (self.map, self.rules), view, ink)
-    }
-
-    /// All that is known of the map, with a margin.
-    pub(super) fn known(&self) -> Extent {
-        Extent::of_known(self.map, self.rules).with_rim(MARGIN, 0.0)
-    }
-
-    pub(super) fn whole(&self) -> Extent {
-        Extent::of_map(self.map).with_rim(MARGIN, 0.0)
-    }
-}
-
-/// Around what is shown, as a share of its longer side.
-const MARGIN: f64 = 0.02;
+use super::ground::Ground;
+use super::page::Heading;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Shown {

@@ -8,8 +8,9 @@ use engine::grid::{CellRules, Grid};
 use geometry::Pose;
 use map::{OccupancyGrid, UNKNOWN};
 
+use super::ground::Ground;
 use super::scan::Size;
-use super::subject::{Ground, Shown, Subject};
+use super::subject::{Shown, Subject};
 use super::{animation, layout, outline, places, scan, theme};
 
 const WIDTHS: [u32; 3] = [300, 600, 1200];

@@ -8,8 +8,8 @@ use super::extent::Extent;
 /// A part of the map shown in a part of the picture, x to the right and y up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
-    area: Rect,
-    pixels_per_m: f64,
+    pub(super) area: Rect,
+    pub(super) pixels_per_m: f64,
     /// Of the area, metres.
     center: (f64, f64),
 }
@@ -30,14 +30,6 @@ impl View {
             pixels_per_m: scale,
             center: extent.center(),
         }
-    }
-
-    pub(super) fn area(&self) -> Rect {
-        self.area
-    }
-
-    pub(super) fn pixels_per_m(&self) -> f64 {
-        self.pixels_per_m
     }
 
     /// Where a point of the map, metres, lies in the picture.
@@ -82,7 +74,7 @@ mod tests {
     fn the_extent_lies_in_the_middle_with_y_upwards() {
         let extent = Extent::of([(10.0, 20.0), (14.0, 21.0)]);
         let view = View::fitting(extent, Rect::new(100.0, 50.0, 400.0, 300.0));
-        assert_eq!(view.pixels_per_m(), 100.0);
+        assert_eq!(view.pixels_per_m, 100.0);
         assert_eq!(view.at((10.0, 20.5)), (100.0, 200.0));
         assert_eq!(view.at((14.0, 21.5)), (500.0, 100.0), "up is less");
         assert!(view.shows((13.9, 20.0)) && !view.shows((14.1, 20.0)));
