@@ -106,8 +106,7 @@ impl Course {
         // The graph may be built first, which may take any time.
         while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             if self.status().is_some() {
-                self.failures
-                    .push(format!("no Unique pose within {TIMEOUT:?}"));
+                self.fail(format!("no Unique pose within {TIMEOUT:?}"));
                 break;
             }
         }
@@ -122,23 +121,23 @@ impl Course {
             };
             self.suffer(fault)?;
             if self.watch(TIMEOUT, Tally::has_recovered) == Watched::Late {
-                self.failures
-                    .push(format!("no pose within {TIMEOUT:?} after {fault:?}"));
+                self.fail(format!("no pose within {TIMEOUT:?} after {fault:?}"));
             }
             let gap_s = self.tally.last_gap_s();
             if gap_s > LONG_GAP_S {
-                say(
-                    "soak",
-                    &format!("the next pose was received after {gap_s:.2} s"),
-                );
+                let gap = format!("the next pose was received after {gap_s:.2} s");
+                say("soak", &gap);
             }
         }
         if self.failures.is_empty() && self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             let open = self.tally.not_overcome();
-            self.failures
-                .push(format!("no Unique pose within {TIMEOUT:?} after {open:?}"));
+            self.fail(format!("no Unique pose within {TIMEOUT:?} after {open:?}"));
         }
         self.finish()
+    }
+
+    fn fail(&mut self, reason: String) {
+        self.failures.push(reason);
     }
 
     /// Processes output until the condition is met or the time is over.
@@ -162,7 +161,7 @@ impl Course {
                 Ok(printed) => self.take(&printed),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
-                    self.failures.push("the graph ended by itself".to_owned());
+                    self.fail("the graph ended by itself".to_owned());
                     return Watched::Over;
                 }
             }
@@ -211,28 +210,21 @@ impl Course {
         let pids = self.choose(fault.nodes());
         let words: Vec<_> = pids.iter().map(|(id, _)| id.as_str()).collect();
         let seconds = self.begin.elapsed().as_secs();
-        say(
-            "soak",
-            &format!("{seconds} s: {fault:?} {}", words.join(" ")),
-        );
+        let words = format!("{seconds} s: {fault:?} {}", words.join(" "));
+        say("soak", &words);
+        let send = |number| pids.iter().try_for_each(|(_, pid)| signal(*pid, number));
         let mut over_ns = monotonic_ns();
         let mut killed = 0;
         match fault {
             Fault::Kill | Fault::Pair => {
-                for (_, pid) in &pids {
-                    signal(*pid, Signal::SIGKILL)?;
-                }
+                send(Signal::SIGKILL)?;
                 killed = pids.len();
             }
             Fault::Stop => {
-                for (_, pid) in &pids {
-                    signal(*pid, Signal::SIGSTOP)?;
-                }
+                send(Signal::SIGSTOP)?;
                 self.watch(fault.lasts(), |_| false);
                 over_ns = monotonic_ns();
-                for (_, pid) in &pids {
-                    signal(*pid, Signal::SIGCONT)?;
-                }
+                send(Signal::SIGCONT)?;
             }
             Fault::Map => self.maps.swap()?,
             Fault::Tmp => self.remove_files(),
@@ -301,8 +293,7 @@ impl Course {
         };
         while self.nodes.iter().any(lives) {
             if killed.elapsed() > TIMEOUT {
-                self.failures
-                    .push("nodes went on without their launcher".to_owned());
+                self.fail("nodes went on without their launcher".to_owned());
                 break;
             }
             std::thread::sleep(TICK / 10);
@@ -324,8 +315,7 @@ impl Course {
         }
         let status = self.launched.wait()?;
         if !status.success() {
-            self.failures
-                .push(format!("the launcher ended with {status}"));
+            self.fail(format!("the launcher ended with {status}"));
         }
         let record = self.plan.record.as_deref();
         let recorded = record.map(|file| Recorded::read(file, &mut self.failures));
