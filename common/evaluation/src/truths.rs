@@ -6,7 +6,7 @@ use std::path::Path;
 use command_line::number;
 use geometry::Pose;
 use offline::{Options, no_truths};
-use recording::{GroundTruth, Recording};
+use recording::Recording;
 
 /// Options about true poses.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -43,7 +43,8 @@ impl TruthOptions {
         if let Some(damage) = recording.damage_error() {
             return Err(damage.into());
         }
-        let known = recording.ground_truths()?;
+        let known = recording.ground_truths()?.into_iter();
+        let known: BTreeMap<i64, Pose> = known.map(|(ns, truth)| (ns, truth.pose)).collect();
         let gap_ns = (self.truth_gap_s * 1e9) as i64;
         match known.is_empty() {
             true => Err(no_truths(bag)),
@@ -54,7 +55,7 @@ impl TruthOptions {
 
 pub(crate) struct Truths {
     /// By stamp, in nanoseconds; at least one.
-    known: BTreeMap<i64, GroundTruth>,
+    known: BTreeMap<i64, Pose>,
     gap_ns: i64,
 }
 
@@ -84,10 +85,9 @@ impl Truths {
 
     /// The last truth up to a time, and the first from it on.
     fn around(&self, stamp_ns: i64) -> [Option<(i64, Pose)>; 2] {
-        let pose = |(&stamp_ns, truth): (&i64, &GroundTruth)| (stamp_ns, truth.pose);
         let before = self.known.range(..=stamp_ns).next_back();
         let after = self.known.range(stamp_ns..).next();
-        [before.map(pose), after.map(pose)]
+        [before, after].map(|truth| truth.map(|(&stamp_ns, &truth)| (stamp_ns, truth)))
     }
 }
 
@@ -97,11 +97,7 @@ mod tests {
 
     #[test]
     fn a_truth_is_interpolated_within_the_gap_alone() {
-        let truth = |(stamp_ns, x)| {
-            let pose = Pose::new(x, 0.0, 0.0);
-            let frame = "map".to_owned();
-            (stamp_ns, GroundTruth { frame, pose })
-        };
+        let truth = |(stamp_ns, x)| (stamp_ns, Pose::new(x, 0.0, 0.0));
         let known: BTreeMap<_, _> = [(100, 1.0), (200, 2.0), (400, 3.0)].map(truth).into();
         let x = |gap_ns, stamp_ns| {
             let known = known.clone();
