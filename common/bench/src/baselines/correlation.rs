@@ -14,7 +14,7 @@ use crate::worlds::World;
 pub(super) struct Correlation {
     pub(super) space: Space,
     pub(super) image: Padded,
-    pub(super) open: Vec<bool>,
+    open: Vec<bool>,
     pub(super) instructions: InstructionSet,
 }
 
@@ -83,12 +83,8 @@ fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, heading: usi
     if most.is_none_or(|most| f32::from(most) <= score) {
         return;
     }
-    for (x, (&sum, _)) in sums
-        .iter()
-        .zip(open)
-        .enumerate()
-        .filter(|(_, (_, open))| **open)
-    {
+    let cells = sums.iter().zip(open).enumerate();
+    for (x, (&sum, _)) in cells.filter(|(_, (_, open))| **open) {
         best.take(Estimate::new(x, y, heading, f32::from(sum)));
     }
 }

@@ -23,11 +23,8 @@ pub struct FieldCorrelation(Correlation);
 impl FieldCorrelation {
     /// Prepares a map for readings with one standard deviation, in cells.
     pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
-        FieldCorrelation(Correlation::new(
-            world,
-            space,
-            likelihood(world, sigma_cells),
-        ))
+        let field = likelihood(world, sigma_cells);
+        FieldCorrelation(Correlation::new(world, space, field))
     }
 }
 

@@ -133,9 +133,8 @@ pub(crate) mod tests {
     #[test]
     fn methods_that_see_through_walls_mostly_find_the_true_pose() {
         check(1, 4, PatchCorrelation::new);
-        check(1, 2, |world, space| {
-            FieldCorrelation::new(world, space, 1.0)
-        });
+        let field = |world: &World, space: &Space| FieldCorrelation::new(world, space, 1.0);
+        check(1, 2, field);
         check(3, 6, |world, space| MonteCarlo::new(world, space, 1.0));
     }
 
