@@ -138,8 +138,7 @@ fn draw_sample(scene: &mut Scene, sample: Sample, at: (f64, f64), unit: f64) {
             scene.stroke(ring, Stroke::new(color, 2.2 * unit));
         }
         Sample::Ellipse(color) => {
-            let mut path = Path::default();
-            path.add_ellipse(at, (10.0 * unit, 5.0 * unit), 0.0);
+            let path = Path::ellipse(at, (10.0 * unit, 5.0 * unit), 0.0);
             scene.fill(path.clone(), color.with_opacity(marks::INSIDE));
             scene.stroke(path, Stroke::new(color, 1.6 * unit));
         }

@@ -47,8 +47,7 @@ pub(super) fn ellipse(
     let ellipse = covariance.ellipse();
     let pixels = |metres: f64| ELLIPSE_95 * metres * view.pixels_per_m;
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
-    let mut path = Path::default();
-    path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);
+    let path = Path::ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);
     scene.fill(path.clone(), stroke.color.with_opacity(INSIDE));
     scene.stroke(path, stroke);
 }
@@ -61,7 +60,7 @@ pub(super) fn ends(
 ) {
     let mut path = Path::default();
     for end in ends.filter(|&end| view.shows(end)) {
-        shape.add_to(&mut path, view.at(end), size);
+        path.add(shape.at(view.at(end), size));
     }
     scene.fill(path, color);
 }
@@ -85,7 +84,7 @@ pub(super) fn arrow_down(scene: &mut Scene, (x, tip): (f64, f64), length: f64, s
         (x, tip),
         (x + barb, tip - 1.5 * barb),
     ];
-    path.add_polyline(barbs);
+    path.add(Path::polyline(barbs));
     let rim = Stroke::new(Color::WHITE, 2.3 * stroke.width);
     scene.stroke(path.clone(), rim);
     scene.stroke(path, stroke);

@@ -30,14 +30,11 @@ pub(super) fn draw(
     }
     let heading = heading(ground, (grid, boundary.len()), name);
     let (mut page, view) = Page::of_map(size.width, ground.known(), HEIGHTS, &heading)?;
-    ground::draw(&mut page, *ground, &view, |index| {
-        match is_boundary.get(index) {
-            Some(true) => Some((theme::BOUNDARY, "boundary cell")),
-            _ => ground
-                .occupied(index)
-                .map(|(color, _)| (color, "obstacle behind it")),
-        }
-    })?;
+    let ink = |index: usize| match (is_boundary.get(index), ground.occupied(index)) {
+        (Some(true), _) => Some((theme::BOUNDARY, "boundary cell")),
+        (_, occupied) => occupied.map(|(color, _)| (color, "obstacle behind it")),
+    };
+    ground::draw(&mut page, *ground, &view, ink)?;
     axes::draw_metres(&mut page.scene, &view, page.unit);
     page.finish()
 }

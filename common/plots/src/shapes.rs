@@ -26,29 +26,20 @@ impl Shape {
         Shape::Plus,
     ];
 
-    /// Adds the shape around a point; all of a size cover about the same area as a circle.
-    pub(super) fn add_to(self, path: &mut Path, (x, y): (f64, f64), size: f64) {
-        let mut polygon = |corners: &[(f64, f64)]| {
-            path.add_polygon(corners.iter().map(|(u, v)| (x + size * u, y + size * v)));
+    /// The shape around a point; all of a size cover about the same area as a circle.
+    pub(super) fn at(self, (x, y): (f64, f64), size: f64) -> Path {
+        let polygon = |corners: &[(f64, f64)]| {
+            Path::polygon(corners.iter().map(|(u, v)| (x + size * u, y + size * v)))
         };
         match self {
-            Shape::Circle => path.add_circle((x, y), size),
+            Shape::Circle => Path::circle((x, y), size),
             Shape::Square => polygon(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
             Shape::Triangle => polygon(&[(0.0, -1.4), (1.3, 0.9), (-1.3, 0.9)]),
             Shape::Down => polygon(&[(0.0, 1.4), (-1.3, -0.9), (1.3, -0.9)]),
             Shape::Diamond => polygon(&[(0.0, -1.4), (1.4, 0.0), (0.0, 1.4), (-1.4, 0.0)]),
             Shape::Plus => polygon(&PLUS),
-            Shape::Cross => {
-                let turned = PLUS.map(|(u, v)| (0.71 * (u - v), 0.71 * (u + v)));
-                polygon(&turned);
-            }
+            Shape::Cross => polygon(&PLUS.map(|(u, v)| (0.71 * (u - v), 0.71 * (u + v)))),
         }
-    }
-
-    pub(super) fn at(self, at: (f64, f64), size: f64) -> Path {
-        let mut path = Path::default();
-        self.add_to(&mut path, at, size);
-        path
     }
 }
 

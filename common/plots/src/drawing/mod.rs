@@ -9,7 +9,7 @@
 //! font: nothing has to be installed to create or view a picture, and an SVG contains no text that
 //! could render differently. Coordinates are pixels from the upper left corner, y downwards.
 //!
-//! The crate is independent of maps, robots and files.
+//! It is independent of maps, robots and files.
 
 mod animation;
 mod color;

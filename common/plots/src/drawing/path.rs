@@ -76,36 +76,32 @@ impl Path {
         }
     }
 
+    /// Adds the outlines of another path.
+    pub fn add(&mut self, other: Path) {
+        self.0.push_str(&other.0);
+    }
+
     pub fn add_line(&mut self, from: (f64, f64), to: (f64, f64)) {
-        self.add_polyline([from, to]);
+        self.add(Path::line(from, to));
     }
 
-    /// Adds an open line through points.
-    pub fn add_polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
+    pub fn line(from: (f64, f64), to: (f64, f64)) -> Self {
+        Path::polyline([from, to])
+    }
+
+    /// An open line through points.
+    pub fn polyline(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut path = Path::default();
         for (i, (x, y)) in points.into_iter().enumerate() {
-            self.push(if i == 0 { 'M' } else { 'L' }, &[x, y]);
+            path.push(if i == 0 { 'M' } else { 'L' }, &[x, y]);
         }
+        path
     }
 
-    pub fn add_polygon(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
-        self.add_polyline(points);
-        self.push('Z', &[]);
-    }
-
-    pub fn add_circle(&mut self, center: (f64, f64), radius: f64) {
-        self.add_ellipse(center, (radius, radius), 0.0);
-    }
-
-    /// Adds an ellipse of two half axes, the first of them turned by `angle` radians from the
-    /// picture's x axis towards its y axis, which appears clockwise.
-    pub fn add_ellipse(&mut self, (x, y): (f64, f64), (a, b): (f64, f64), angle: f64) {
-        let (along_x, along_y) = (a * angle.cos(), a * angle.sin());
-        let (start, middle) = ((x + along_x, y + along_y), (x - along_x, y - along_y));
-        self.push('M', &[start.0, start.1]);
-        for (x, y) in [middle, start] {
-            self.push('A', &[a, b, angle.to_degrees(), 0.0, 1.0, x, y]);
-        }
-        self.push('Z', &[]);
+    pub fn polygon(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut path = Path::polyline(points);
+        path.push('Z', &[]);
+        path
     }
 
     pub fn rect(rect: Rect) -> Self {
@@ -115,24 +111,20 @@ impl Path {
     }
 
     pub fn circle(center: (f64, f64), radius: f64) -> Self {
-        let mut path = Path::default();
-        path.add_circle(center, radius);
-        path
+        Path::ellipse(center, (radius, radius), 0.0)
     }
 
-    pub fn line(from: (f64, f64), to: (f64, f64)) -> Self {
-        Path::polyline([from, to])
-    }
-
-    pub fn polyline(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+    /// An ellipse of two half axes, the first of them turned by `angle` radians from the picture's
+    /// x axis towards its y axis, which appears clockwise.
+    pub fn ellipse((x, y): (f64, f64), (a, b): (f64, f64), angle: f64) -> Self {
+        let (along_x, along_y) = (a * angle.cos(), a * angle.sin());
+        let (start, middle) = ((x + along_x, y + along_y), (x - along_x, y - along_y));
         let mut path = Path::default();
-        path.add_polyline(points);
-        path
-    }
-
-    pub fn polygon(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let mut path = Path::default();
-        path.add_polygon(points);
+        path.push('M', &[start.0, start.1]);
+        for (x, y) in [middle, start] {
+            path.push('A', &[a, b, angle.to_degrees(), 0.0, 1.0, x, y]);
+        }
+        path.push('Z', &[]);
         path
     }
 
@@ -166,7 +158,8 @@ mod tests {
     #[test]
     fn an_ellipse_begins_and_turns_back_at_the_ends_of_its_first_axis() {
         let mut path = Path::line((0.0, 0.5), (1.234, -2.0));
-        path.add_ellipse((10.0, 20.0), (4.0, 1.0), std::f64::consts::FRAC_PI_2);
+        let quarter = std::f64::consts::FRAC_PI_2;
+        path.add(Path::ellipse((10.0, 20.0), (4.0, 1.0), quarter));
         let expected = "M0,0.5L1.23,-2M10,24A4,1,90,0,1,10,16A4,1,90,0,1,10,24Z";
         assert_eq!(path.into_data(), expected);
     }

@@ -124,7 +124,7 @@ impl Scene {
         self.clips += 1;
         let name = format!("clip{}", self.clips);
         let inside = Group::new().set("clip-path", format!("url(#{name})"));
-        let clip = ClipPath::default().set("id", name).add(rectangle(area));
+        let clip = ClipPath::new().set("id", name).add(rectangle(area));
         self.items.append(clip);
         self.grouped(inside, draw);
     }
