@@ -220,23 +220,26 @@ pub(super) fn csv(all: &[Judged]) -> Csv {
 pub(super) fn draw_errors(all: &[Judged]) -> anyhow::Result<Scene> {
     let mut curves = Vec::new();
     for (color, place) in PLACES.into_iter().enumerate() {
-        let mut mean = |what: &str, color, of: fn(&Judged) -> Interval| {
-            let here = all.iter().filter(|judged| judged.place == place);
-            let plain = here.filter_map(|judged| {
-                let noise = judged.variant.noise_percent;
-                let is_plain = judged.variant == Variant::plain(noise);
-                is_plain.then(|| of(judged).at(noise.into()))
-            });
+        let plain = || {
+            let here = all.iter().filter(move |judged| judged.place == place);
+            here.filter(|judged| judged.variant == Variant::plain(judged.variant.noise_percent))
+        };
+        let name = |what: &str| format!("map like figure {}: {what}", place.figure);
+        let x = |judged: &Judged| f64::from(judged.variant.noise_percent);
+        let mut mean = |what, color, of: fn(&Judged) -> Interval| {
             curves.push(Curve {
-                name: format!("map like figure {}: {what}", place.figure),
+                name: name(what),
                 color,
                 is_dashed: false,
-                points: plain.collect(),
+                points: plain().map(|judged| of(judged).at(x(judged))).collect(),
             });
         };
         mean("mean of all poses", color, |judged| judged.mean_percent);
-        let (found, color) = ("mean of those found within 0.5 m", color + PLACES.len());
-        mean(found, color, |judged| judged.found_mean_percent);
+        mean(
+            "mean of those found within 0.5 m",
+            color + PLACES.len(),
+            |judged| judged.found_mean_percent,
+        );
     }
     let equal = NOISE.map(|noise| CurvePoint {
         x: f64::from(noise),
@@ -289,13 +292,8 @@ fn occupancy(world: &World, resolution_m: f64) -> anyhow::Result<OccupancyGrid> 
     let cells = cells.map(|&cell| if cell == Cell::Open { 0 } else { 100 });
     let (width, height) = (world.grid.width() as u32, world.grid.height() as u32);
     let (cells, origin) = (cells.collect(), Pose::IDENTITY);
-    Ok(OccupancyGrid::from_parts(
-        width,
-        height,
-        resolution_m,
-        origin,
-        cells,
-    )?)
+    let map = OccupancyGrid::from_parts(width, height, resolution_m, origin, cells)?;
+    Ok(map)
 }
 
 fn field_of(
