@@ -2,20 +2,21 @@
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
+use std::sync::Arc;
 
 /// Wakes the event loop of its graph; may be sent to any thread.
-#[derive(Debug)]
-pub struct Waker(UnixStream);
+#[derive(Debug, Clone)]
+pub struct Waker(Arc<UnixStream>);
 
 impl Waker {
     pub(crate) fn new(end: UnixStream) -> Self {
-        Waker(end)
+        Waker(Arc::new(end))
     }
 
     /// Makes [`crate::Graph::run`] call its step once more, at once or after the current one.
     pub fn wake(&self) {
         // If the socket is full, wake-ups are pending already; if closed, there is no loop.
-        let _ = (&self.0).write(&[0]);
+        let _ = (&*self.0).write(&[0]);
     }
 }
 

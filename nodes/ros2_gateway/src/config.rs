@@ -220,6 +220,14 @@ impl Config {
         }
     }
 
+    /// Returns the namespace of relative names, with no slash behind it unless it is the root.
+    pub(crate) fn namespace(&self) -> &str {
+        match self.namespace.trim_end_matches('/') {
+            "" => "/",
+            namespace => namespace,
+        }
+    }
+
     /// Returns the gateway's name among the robot's nodes.
     #[must_use]
     pub fn node(&self) -> &str {

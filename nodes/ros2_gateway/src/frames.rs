@@ -24,7 +24,7 @@ const MAX_NAME: usize = 256;
 /// Largest number of mounts kept: a robot has some lasers, each with one frame.
 const MAX_MOUNTS: usize = 64;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Frames {
     fixed: TransformTree,
     /// Child frames whose rotation was repaired; each is logged once.
@@ -41,23 +41,12 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    pub(crate) fn new(given: Vec<Mount>) -> Self {
+    /// Uses these mounts, and the frame `base` as the base if the transforms connect it to the laser.
+    pub(crate) fn new(given: Vec<Mount>, base: Option<String>) -> Self {
         Frames {
-            fixed: TransformTree::default(),
-            mended: BTreeSet::new(),
-            base: None,
+            base,
             given,
-            mounts: BTreeMap::new(),
-            first: None,
-            odometry: VecDeque::with_capacity(KEPT),
-        }
-    }
-
-    /// Uses this frame as the base if the transforms connect it to the laser.
-    pub(crate) fn with_base(self, base: String) -> Self {
-        Frames {
-            base: Some(base),
-            ..self
+            ..Frames::default()
         }
     }
 

@@ -7,18 +7,18 @@ use ros::{
     PoseWithCovarianceStamped, Quaternion, RosMessage, TfMessage,
 };
 use serde::de::DeserializeOwned;
-use transport::{Graph, TransportError, monotonic_ns};
+use transport::{TransportError, monotonic_ns};
 use zenoh_session::Report;
 
 use crate::broadcast::Sent;
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
-use crate::config::{Brought, Config};
+use crate::config::Brought;
 use crate::frames::Frames;
+use crate::joined::Joined;
 use crate::outlet::Outlet;
 use crate::rmw::{Keeping, Member, Subscription, Watch};
 use crate::role::Role;
 use crate::seeding::Belief;
-use crate::topics::Topics;
 use crate::{GatewayError, Seed};
 
 /// Largest size of a scan, odometry, a pose or transforms, bytes.
@@ -59,52 +59,44 @@ pub(crate) struct Incoming {
 
 impl Incoming {
     pub(crate) fn open(
-        graph: &Graph,
-        member: &Member,
-        config: &Config,
-        topics: &Topics,
-        (watch, sent): (&mut Watch, Sent),
+        joined: Joined<'_>,
+        watch: &mut Watch,
+        sent: Sent,
     ) -> Result<Self, GatewayError> {
-        let mut open = Opening {
-            graph,
+        let Joined {
             member,
-            watch,
-        };
+            config,
+            topics,
+            ..
+        } = joined;
+        let mut open = Opening { member, watch };
         let brings = |topic| config.brings(topic);
-        let (odometry, by_topic) = match config.amcl.role {
-            Role::Seed => (brings(Brought::Odometry), brings(Brought::Odometry)),
-            // From /tf, like AMCL: wheel odometry may differ from the output of the robot's own
-            // filter, and the transform from the map refers to that output.
-            Role::Amcl => (brings(Brought::Odometry), false),
-        };
-        let reliable = Keeping::Reliable;
-        let sizes = (MAX_BYTES, MAX_MAP_BYTES);
+        let odometry = brings(Brought::Odometry);
+        // In AMCL's place from /tf alone, like AMCL: wheel odometry may differ from the output of
+        // the robot's own filter, and the transform from the map refers to that output.
+        let by_topic = odometry && config.amcl.role == Role::Seed;
+        let is_lost = config.seed == Seed::Lost;
+        let (fresh, reliable, kept) = (Keeping::Fresh, Keeping::Reliable, Keeping::Kept);
         let mut scans = Vec::with_capacity(topics.scans.len());
         let mut clouds = None;
         for of_laser in topics.scans.iter().filter(|_| brings(Brought::Scan)) {
-            let (topic, keeping) = (&of_laser.topic, Keeping::Fresh);
+            let topic = &of_laser.topic;
             match config.cloud.cloud_topic {
-                Some(_) => clouds = Some(open.subscribe(topic, keeping, 5, MAX_CLOUD_BYTES)?),
-                None => scans.push(open.subscribe(topic, keeping, 5, sizes.0)?),
+                Some(_) => clouds = Some(open.subscribe(topic, fresh, 5, MAX_CLOUD_BYTES)?),
+                None => scans.push(open.subscribe(topic, fresh, 5, MAX_BYTES)?),
             }
         }
         Ok(Incoming {
             scans,
             clouds,
             cloud: config.cloud.clone(),
-            fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
-            moving: open.wanted(odometry, &topics.tf, reliable, 100, sizes.0)?,
+            fixed: open.subscribe(&topics.tf_static, kept, 100, MAX_BYTES)?,
+            moving: open.wanted(odometry, &topics.tf, reliable, 100, MAX_BYTES)?,
             // `Fresh` also accepts robots whose odometry is best effort.
-            odometry: open.wanted(by_topic, &topics.odom, Keeping::Fresh, 16, sizes.0)?,
-            maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
-            beliefs: open.wanted(
-                config.seed == Seed::Lost,
-                &topics.amcl_pose,
-                reliable,
-                10,
-                sizes.0,
-            )?,
-            outlet: Outlet::open(graph, config, &topics.scans)?,
+            odometry: open.wanted(by_topic, &topics.odom, fresh, 16, MAX_BYTES)?,
+            maps: open.wanted(brings(Brought::Map), &topics.map, kept, 1, MAX_MAP_BYTES)?,
+            beliefs: open.wanted(is_lost, &topics.amcl_pose, reliable, 10, MAX_BYTES)?,
+            outlet: Outlet::open(joined)?,
             odom_frame: config.odom_frame().to_owned(),
             odometry_ns: None,
             map_frame: None,
@@ -122,10 +114,10 @@ impl Incoming {
         mut on_belief: impl FnMut(Belief),
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        take(&mut self.fixed, report, |message, _| {
+        take(Some(&mut self.fixed), report, |message, _| {
             frames.on_static_transforms(&message)
         })?;
-        take_if(&mut self.odometry, report, |message, report| {
+        take(self.odometry.as_mut(), report, |message, report| {
             let odometry = sound_odometry(&message)?;
             note(
                 "the odometry",
@@ -139,7 +131,7 @@ impl Incoming {
         let alone = self
             .odometry_ns
             .is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
-        take_if(&mut self.moving, report, |message, report| {
+        take(self.moving.as_mut(), report, |message, report| {
             // The other transforms of the message are used.
             let mut second = None;
             for transform in message.transforms {
@@ -161,23 +153,23 @@ impl Incoming {
             }
             second.map_or(Ok(()), Err)
         })?;
-        take_if(&mut self.maps, report, |message, report| {
+        take(self.maps.as_mut(), report, |message, report| {
             let frame = message.header.frame_id.clone();
             self.outlet.send_map(&message, report)?;
             self.map_frame = Some(frame).filter(|frame| !frame.is_empty());
             Ok(())
         })?;
         for (laser, scans) in self.scans.iter_mut().enumerate() {
-            take(scans, report, |message, report| {
+            take(Some(scans), report, |message, report| {
                 self.outlet.send_scan(laser, &message, frames, report)
             })?;
         }
-        take_if(&mut self.clouds, report, |message, report| {
+        take(self.clouds.as_mut(), report, |message, report| {
             let mount = frames.cloud_mount(self.cloud.cloud_mount, &message.header.frame_id)?;
             let scan = Cloud::Points(message).scan(&mount, self.cloud.heights)?;
             self.outlet.send_scan(0, &scan, frames, report)
         })?;
-        take_if(&mut self.beliefs, report, |message, _| {
+        take(self.beliefs.as_mut(), report, |message, _| {
             let turn = message.pose.pose.orientation;
             on_belief(Belief {
                 measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
@@ -199,7 +191,6 @@ fn note(whose: &'static str, turn: Quaternion, mended: &mut BTreeSet<&'static st
 }
 
 struct Opening<'a> {
-    graph: &'a Graph,
     member: &'a Member,
     watch: &'a mut Watch,
 }
@@ -213,7 +204,7 @@ impl Opening<'_> {
         max_bytes: usize,
     ) -> Result<Subscription<M>, GatewayError> {
         self.watch.expected.expect::<M>(topic)?;
-        Subscription::open(self.graph, self.member, topic, keeping, depth, max_bytes)
+        Subscription::open(self.member, topic, keeping, depth, max_bytes)
     }
 
     fn wanted<M: RosMessage + DeserializeOwned>(
@@ -224,36 +215,23 @@ impl Opening<'_> {
         depth: usize,
         max_bytes: usize,
     ) -> Result<Option<Subscription<M>>, GatewayError> {
-        if !is_wanted {
-            return Ok(None);
-        }
-        let subscription = self.subscribe(topic, keeping, depth, max_bytes)?;
-        Ok(Some(subscription))
+        is_wanted
+            .then(|| self.subscribe(topic, keeping, depth, max_bytes))
+            .transpose()
     }
 }
 
-fn take_if<M: RosMessage + DeserializeOwned>(
-    subscription: &mut Option<Subscription<M>>,
-    report: &mut Report,
-    each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
-) -> Result<(), TransportError> {
-    match subscription {
-        Some(subscription) => take(subscription, report, each),
-        None => Ok(()),
-    }
-}
-
-/// Passes queued messages to `each` and counts rejected ones; fails only if the graph fails.
+/// Passes queued messages to `each`, if there is a subscription, and counts rejected ones; fails only
+/// if the graph fails.
 pub(crate) fn take<M: RosMessage + DeserializeOwned>(
-    subscription: &mut Subscription<M>,
+    subscription: Option<&mut Subscription<M>>,
     report: &mut Report,
     mut each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
 ) -> Result<(), TransportError> {
+    let Some(subscription) = subscription else {
+        return Ok(());
+    };
     report.dropped(subscription.dropped());
-    while let Some(error) = subscription.next_too_long() {
-        report.received();
-        report.refused(&error)?;
-    }
     for _ in 0..subscription.depth() {
         let Some(received) = subscription.next() else {
             break;

@@ -6,7 +6,8 @@ use zenoh_session::Report;
 
 use crate::config::{Brought, Config};
 use crate::incoming::Incoming;
-use crate::rmw::{Member, Watch};
+use crate::joined::Joined;
+use crate::rmw::Watch;
 use crate::role::Role;
 use crate::topics::Topics;
 use crate::waiting::{Input, Status, Waiting};
@@ -34,8 +35,7 @@ impl Inputs {
     /// gateway itself waits. `taken` is `None` while no input is open.
     pub(crate) fn look(
         &mut self,
-        (config, topics): (&Config, &Topics),
-        member: &Member,
+        joined: Joined<'_>,
         taken: Option<Taken<'_>>,
         itself: Option<&str>,
         report: &mut Report,
@@ -46,9 +46,9 @@ impl Inputs {
             return Ok(());
         }
         let is_first = self.looked_ns.replace(now_ns).is_none();
-        member.tick();
-        let inputs = taken.map(|taken| taken.inputs(config, topics));
-        let missing = member.missing();
+        joined.member.tick();
+        let inputs = taken.map(|taken| taken.inputs(joined.config, joined.topics));
+        let missing = joined.member.missing();
         let status = match &inputs {
             _ if !missing.is_empty() => Status::Waits(&missing),
             None => itself.map_or(Status::Begins, Status::Waits),

@@ -18,6 +18,7 @@ mod error;
 mod frames;
 mod incoming;
 mod inputs;
+mod joined;
 mod look;
 mod middleware;
 mod outgoing;

@@ -9,7 +9,7 @@ use transport::{Flow, Graph, TransportError};
 use zenoh_session::Report;
 
 use crate::middleware::Rmw;
-use crate::rmw::{Member, Seen, Watch};
+use crate::rmw::{self, Member, Seen, Watch};
 use crate::{Config, GatewayError};
 
 /// Longest time between two looks at the discovered entities.
@@ -53,17 +53,17 @@ pub(crate) fn look(graph: &Graph, config: &Config, seconds: f64) -> Result<(), G
             rmw: Some(rmw),
             ..config.clone()
         };
-        let joined = match Member::join(graph, &of_rmw, &mut report) {
+        let joined = match rmw::join(graph, &of_rmw, &mut report) {
             // Another process is the router of this machine: connect to it.
             Err(_) if rmw == Rmw::Zenoh && is_alone(config) => {
                 let mut called = of_rmw.clone();
                 called.network.connect.push(ROUTER.to_owned());
-                Member::join(graph, &called, &mut report)
+                rmw::join(graph, &called, &mut report)
             }
             joined => joined,
         };
         match joined {
-            Ok(Some(member)) => look_at(graph, (&member, rmw), seconds, &mut found)?,
+            Ok(Some(member)) => look_at(graph, (&*member, rmw), seconds, &mut found)?,
             Ok(None) => return Ok(()),
             // The robot may use the other middleware.
             Err(error) => tracing::warn!("{}", transport::with_causes(&error)),
@@ -85,12 +85,12 @@ fn look_at(
     seconds: f64,
     found: &mut BTreeSet<Published>,
 ) -> Result<(), GatewayError> {
-    let mut watch = Watch::open(graph, member, "")?;
+    let mut watch = Watch::open(member, "")?;
     watch.expected.is_everything = true;
     let end = Instant::now() + Duration::from_secs_f64(seconds);
     graph.run(&[], TICK, |_| {
         member.tick();
-        while let Some(seen) = watch.next(member) {
+        while let Some(seen) = watch.next() {
             let Seen::Publisher { node, topic, kind } = seen else {
                 continue;
             };

@@ -7,13 +7,13 @@ use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::broadcast::{Broadcaster, Sent};
-use crate::config::{Config, Reach};
+use crate::config::Reach;
 use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
-use crate::rmw::{Keeping, Member, Publisher};
+use crate::joined::Joined;
+use crate::rmw::{Keeping, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
 use crate::stamps::in_map;
-use crate::topics::Topics;
 
 /// Minimum probability of a hypothesis that the filter's pose is compared with: of up to 64
 /// hypotheses, one is near any pose.
@@ -34,12 +34,13 @@ pub(crate) struct Outgoing {
 }
 
 impl Outgoing {
-    pub(crate) fn open(
-        member: &Member,
-        config: &Config,
-        topics: &Topics,
-        sent: Sent,
-    ) -> Result<Self, GatewayError> {
+    pub(crate) fn open(joined: Joined<'_>, sent: Sent) -> Result<Self, GatewayError> {
+        let Joined {
+            member,
+            config,
+            topics,
+            ..
+        } = joined;
         let broadcaster = config
             .broadcast_tf
             .then(|| Broadcaster::open(member, &topics.tf, sent));

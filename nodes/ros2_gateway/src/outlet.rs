@@ -4,15 +4,15 @@ use map::MemoryLimit;
 use messages::topic::{self, Topic};
 use messages::{CellRules, MapHeader, Name, Odometry, ScanHeader, Stamp};
 use ros::{LaserScan, OccupancyGridMsg, measurements};
-use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use transport::{Publisher, TransportError, monotonic_ns};
 use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::checks::{check_scan, measured_ns};
-use crate::config::{Brought, Config};
+use crate::config::Brought;
 use crate::frames::Frames;
+use crate::joined::Joined;
 use crate::stamps::Forward;
-use crate::topics::Scans;
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Rules {
@@ -66,15 +66,12 @@ pub(crate) struct Outlet {
 }
 
 impl Outlet {
-    pub(crate) fn open(
-        graph: &Graph,
-        config: &Config,
-        scans: &[Scans],
-    ) -> Result<Self, TransportError> {
+    pub(crate) fn open(joined: Joined<'_>) -> Result<Self, TransportError> {
+        let (config, scans) = (joined.config, &joined.topics.scans);
         Ok(Outlet {
-            scans: brought(graph, config, Brought::Scan)?,
-            odometry: brought(graph, config, Brought::Odometry)?,
-            maps: brought(graph, config, Brought::Map)?,
+            scans: brought(joined, Brought::Scan)?,
+            odometry: brought(joined, Brought::Odometry)?,
+            maps: brought(joined, Brought::Map)?,
             memory_limit: config.memory.limit(),
             cells: config.cells,
             lasers: scans.iter().map(|scans| Laser::new(scans.laser)).collect(),
@@ -199,12 +196,11 @@ impl Outlet {
 }
 
 fn brought<T: Topic>(
-    graph: &Graph,
-    config: &Config,
+    joined: Joined<'_>,
     what: Brought,
 ) -> Result<Option<Publisher<T>>, TransportError> {
-    let is_brought = config.brings(what);
-    is_brought.then(|| graph.publisher()).transpose()
+    let is_brought = joined.config.brings(what);
+    is_brought.then(|| joined.graph.publisher()).transpose()
 }
 
 fn entering(stamp: Stamp, counter: u64) -> Stamp {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use messages::InitialPoseKind;
 
 use crate::GatewayError;
 
@@ -34,6 +35,14 @@ pub struct Options {
 }
 
 impl Options {
+    /// Returns the kind of an initial pose that a user or another node gives.
+    pub(crate) fn kind(&self) -> InitialPoseKind {
+        match self.believe_initial_pose {
+            true => InitialPoseKind::Believed,
+            false => InitialPoseKind::Hint,
+        }
+    }
+
     /// Rejects options of the AMCL role in the other role.
     pub(crate) fn check(&self) -> Result<(), GatewayError> {
         let given = [

@@ -2,39 +2,24 @@
 
 mod parts;
 
-use messages::{InitialPose, topic};
-use transport::{Graph, Subscriber, TransportError};
+use messages::InitialPose;
+use transport::TransportError;
 use zenoh_session::Report;
 
 use super::bond::Bond;
 use super::hint;
-use super::hints;
 use super::lifecycle::{Change, Primary};
 use super::parameters::Parameters;
 use super::saved_pose;
+use crate::GatewayError;
+use crate::config::MAP_FRAME;
 use crate::inputs::Inputs;
-use crate::rmw::Member;
-use crate::topics::Topics;
-use crate::{Config, GatewayError};
+use crate::joined::{Joined, Results};
 use parts::Parts;
-
-pub(super) struct Said {
-    pub(super) hypotheses: Subscriber<topic::Hypotheses>,
-    pub(super) poses: Subscriber<topic::Tracked>,
-    pub(super) health: Subscriber<topic::Health>,
-}
-
-#[derive(Clone, Copy)]
-pub(super) struct Joined<'a> {
-    pub(super) graph: &'a Graph,
-    pub(super) member: &'a Member,
-    pub(super) config: &'a Config,
-    pub(super) topics: &'a Topics,
-}
 
 pub(super) struct Body<'a> {
     joined: Joined<'a>,
-    map_frame: String,
+    map_frame: &'a str,
     inputs: Inputs,
     parts: Option<Parts>,
     bond: Option<Bond>,
@@ -45,11 +30,11 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(joined: Joined<'a>, map_frame: String, inputs: Inputs) -> Self {
+    pub(super) fn new(joined: Joined<'a>) -> Self {
         Body {
             joined,
-            map_frame,
-            inputs,
+            map_frame: joined.config.map_frame.as_deref().unwrap_or(MAP_FRAME),
+            inputs: Inputs::default(),
             parts: None,
             bond: None,
             pending: None,
@@ -61,7 +46,9 @@ impl<'a> Body<'a> {
     /// Carries out a transition; returns true if that succeeded, which a shutdown always does.
     pub(super) fn change(&mut self, change: Change, parameters: &Parameters) -> bool {
         let outcome = match change {
-            Change::Configure => self.configure(parameters),
+            Change::Configure => Parts::open(self.joined, parameters).map(|parts| {
+                self.parts = Some(parts);
+            }),
             Change::Activate => self.activate(parameters),
             Change::Deactivate => self.deactivate(parameters),
             Change::Cleanup => {
@@ -78,11 +65,6 @@ impl<'a> Body<'a> {
             tracing::error!("{change:?} failed: {}", transport::with_causes(error));
         }
         outcome.is_ok() || change == Change::Shutdown
-    }
-
-    fn configure(&mut self, parameters: &Parameters) -> Result<(), GatewayError> {
-        self.parts = Some(Parts::open(self.joined, parameters)?);
-        Ok(())
     }
 
     fn activate(&mut self, parameters: &Parameters) -> Result<(), GatewayError> {
@@ -117,8 +99,8 @@ impl<'a> Body<'a> {
         let is_again = is_first || parameters.is_on("always_reset_initial_pose");
         let is_said = parameters.is_on("set_initial_pose") && is_again;
         is_said.then(|| {
-            let kind = hints::kind(self.joined.config.amcl.believe_initial_pose);
-            hint::of_kind(kind, hint::of_parameters(parameters.initial_pose()))
+            let pose = hint::of_parameters(parameters.initial_pose());
+            hint::of_kind(self.joined.config.amcl.kind(), pose)
         })
     }
 
@@ -128,7 +110,7 @@ impl<'a> Body<'a> {
         }
         let path = parameters.saved_pose_file()?;
         let file = path.display();
-        match saved_pose::load(path, &self.map_frame) {
+        match saved_pose::load(path, self.map_frame) {
             Ok(Some(pose)) => {
                 tracing::info!(
                     %file,
@@ -151,7 +133,7 @@ impl<'a> Body<'a> {
     fn deactivate(&mut self, parameters: &Parameters) -> Result<(), GatewayError> {
         self.is_active = false;
         if let Some(parts) = &mut self.parts {
-            parts.rest(parameters, &self.map_frame);
+            parts.rest(parameters, self.map_frame);
         }
         self.bond.take().map_or(Ok(()), Bond::end)
     }
@@ -159,26 +141,24 @@ impl<'a> Body<'a> {
     /// Handles all queued messages, according to the lifecycle state.
     pub(super) fn step(
         &mut self,
-        said: &Said,
+        results: &Results,
         state: Primary,
         parameters: &Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let joined = self.joined;
-        let (map_frame, pending) = (&self.map_frame, &mut self.pending);
+        let (map_frame, pending) = (self.map_frame, &mut self.pending);
         if let Some(parts) = &mut self.parts {
-            parts.take(joined.member, parameters, map_frame, pending, report)?;
+            parts.take(parameters, map_frame, pending, report)?;
         }
         match &mut self.parts {
             Some(parts) if self.is_active => {
-                parts.send(said, map_frame, parameters, pending, report)?;
+                parts.send(results, map_frame, parameters, pending, report)?;
             }
-            _ => drain(said)?,
+            _ => drain(results)?,
         }
         let taken = self.parts.as_ref().map(Parts::taken);
-        let place = (joined.config, joined.topics);
         self.inputs
-            .look(place, joined.member, taken, missing(state), report)?;
+            .look(self.joined, taken, missing(state), report)?;
         if let Some(bond) = &mut self.bond
             && let Err(error) = bond.tick()
         {
@@ -200,9 +180,9 @@ fn missing(state: Primary) -> Option<&'static str> {
     }
 }
 
-fn drain(said: &Said) -> Result<(), TransportError> {
-    while said.hypotheses.receive()?.is_some() {}
-    while said.poses.receive()?.is_some() {}
-    while said.health.receive()?.is_some() {}
+fn drain(results: &Results) -> Result<(), TransportError> {
+    while results.hypotheses.receive()?.is_some() {}
+    while results.poses.receive()?.is_some() {}
+    while results.health.receive()?.is_some() {}
     Ok(())
 }

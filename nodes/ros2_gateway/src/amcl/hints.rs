@@ -3,15 +3,15 @@
 use messages::{InitialPose, InitialPoseKind, topic};
 use ros::nav2_msgs::SetInitialPose;
 use ros::{Empty, Nothing, PoseWithCovarianceStamped};
-use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use transport::{Publisher, TransportError, monotonic_ns};
 use zenoh_session::Report;
 
 use super::hint;
 use crate::GatewayError;
 use crate::frames::Frames;
 use crate::incoming::{MAX_BYTES, take};
-use crate::rmw::{Keeping, Member, Service, Subscription, Watch};
-use crate::topics::Topics;
+use crate::joined::Joined;
+use crate::rmw::{Keeping, Service, Subscription, Watch};
 
 pub(super) struct Hints {
     initial_poses: Subscription<PoseWithCovarianceStamped>,
@@ -23,24 +23,18 @@ pub(super) struct Hints {
 }
 
 impl Hints {
-    /// Opens the topic and services; with `are_believed`, poses need no scan that confirms them.
-    pub(super) fn open(
-        graph: &Graph,
-        member: &Member,
-        topics: &Topics,
-        watch: &mut Watch,
-        are_believed: bool,
-    ) -> Result<Self, GatewayError> {
+    pub(super) fn open(joined: Joined<'_>, watch: &mut Watch) -> Result<Self, GatewayError> {
+        let (member, topics) = (joined.member, joined.topics);
         let topic = &topics.initial_pose;
         watch.expected.expect::<PoseWithCovarianceStamped>(topic)?;
         let reliable = Keeping::Reliable;
         Ok(Hints {
-            initial_poses: Subscription::open(graph, member, topic, reliable, 10, MAX_BYTES)?,
-            set_initial_pose: Service::open(graph, member, &topics.set_initial_pose)?,
-            reinitialize: Service::open(graph, member, &topics.reinitialize)?,
-            publisher: graph.publisher()?,
+            initial_poses: Subscription::open(member, topic, reliable, 10, MAX_BYTES)?,
+            set_initial_pose: Service::open(member, &topics.set_initial_pose)?,
+            reinitialize: Service::open(member, &topics.reinitialize)?,
+            publisher: joined.graph.publisher()?,
             sent: 0,
-            kind: kind(are_believed),
+            kind: joined.config.amcl.kind(),
         })
     }
 
@@ -63,7 +57,7 @@ impl Hints {
             tracing::info!("an initial pose came: {how}");
             Ok(hint::of_kind(kind, pose))
         };
-        take(&mut self.initial_poses, report, |message, _| {
+        take(Some(&mut self.initial_poses), report, |message, _| {
             *pending = Some(said(&message)?);
             Ok(())
         })?;
@@ -103,12 +97,5 @@ impl Hints {
         self.publisher.send(said, &[])?;
         self.sent += 1;
         Ok(InitialPoseKind::from_code(said.kind))
-    }
-}
-
-pub(super) fn kind(are_believed: bool) -> InitialPoseKind {
-    match are_believed {
-        true => InitialPoseKind::Believed,
-        false => InitialPoseKind::Hint,
     }
 }

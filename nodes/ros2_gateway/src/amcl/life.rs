@@ -6,7 +6,7 @@ use ros::lifecycle_msgs::{
     GetAvailableTransitions, GetAvailableTransitionsResponse, GetState, GetStateResponse,
     TransitionEvent,
 };
-use transport::{Graph, TransportError, wall_ns};
+use transport::{TransportError, wall_ns};
 use zenoh_session::Report;
 
 use super::lifecycle::{self, Change, Lifecycle};
@@ -24,15 +24,15 @@ pub(super) struct Life {
 }
 
 impl Life {
-    pub(super) fn open(graph: &Graph, member: &Member, node: &str) -> Result<Self, GatewayError> {
+    pub(super) fn open(member: &Member, node: &str) -> Result<Self, GatewayError> {
         let name = |service: &str| format!("{node}/{service}");
         Ok(Life {
             lifecycle: Lifecycle::new(),
-            change: Service::open(graph, member, &name("change_state"))?,
-            state: Service::open(graph, member, &name("get_state"))?,
-            states: Service::open(graph, member, &name("get_available_states"))?,
-            transitions: Service::open(graph, member, &name("get_available_transitions"))?,
-            graph: Service::open(graph, member, &name("get_transition_graph"))?,
+            change: Service::open(member, &name("change_state"))?,
+            state: Service::open(member, &name("get_state"))?,
+            states: Service::open(member, &name("get_available_states"))?,
+            transitions: Service::open(member, &name("get_available_transitions"))?,
+            graph: Service::open(member, &name("get_transition_graph"))?,
             events: Publisher::open_blocking(member, &name("transition_event"), 10)?,
         })
     }

@@ -29,11 +29,11 @@ use transport::{Flow, Graph};
 use zenoh_session::Report;
 
 use crate::GatewayError;
-use crate::config::{Config, MAP_FRAME, Seed};
-use crate::inputs::Inputs;
-use crate::rmw::{self, Member};
+use crate::config::{Config, Seed};
+use crate::joined::{Joined, Results};
+use crate::rmw;
 use crate::topics::Topics;
-use body::{Body, Joined, Said};
+use body::Body;
 use life::Life;
 use parameter_services::ParameterServices;
 use parameters::Parameters;
@@ -63,40 +63,35 @@ pub(crate) fn run(graph: &Graph, config: &Config, tick: Duration) -> Result<(), 
     let domain = config.domain()?;
     config.mounts()?;
     let mut report = Report::new(graph.health()?);
-    let inputs = Inputs::default();
-    let Some(member) = Member::join(graph, &config, &mut report)? else {
+    let Some(member) = rmw::join(graph, &config, &mut report)? else {
         return Ok(());
     };
-    let mut life = Life::open(graph, &member, &node)?;
-    let events = &topics.parameter_events;
-    let mut services = ParameterServices::open(graph, &member, &node, events)?;
-    let mut rosout = Rosout::open(graph, &member, &topics.rosout, &node)?;
-    let map_frame = config
-        .map_frame
-        .clone()
-        .unwrap_or_else(|| MAP_FRAME.to_owned());
+    let mut life = Life::open(&*member, &node)?;
+    let mut services = ParameterServices::open(&*member, &node, &topics.parameter_events)?;
+    let mut rosout = Rosout::open(graph, &*member, &topics.rosout, &node)?;
     let joined = Joined {
         graph,
-        member: &member,
+        member: &*member,
         config: &config,
         topics: &topics,
     };
-    let mut body = Body::new(joined, map_frame, inputs);
-    let said = Said {
-        hypotheses: graph.subscriber()?,
-        poses: graph.subscriber()?,
-        health: graph.subscriber()?,
-    };
+    let mut body = Body::new(joined);
+    let results = Results::open(graph)?;
+    let Results {
+        hypotheses,
+        poses,
+        health,
+    } = &results;
     tracing::info!(domain, node, "joined the robot's domain in AMCL's place");
     if config.amcl.autostart || parameters.is_on("autostart_node") {
         life.start(|change| body.change(change, &parameters));
     }
-    graph.run(&[&said.hypotheses, &said.poses, &said.health], tick, |_| {
+    graph.run(&[hypotheses, poses, health], tick, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
         rosout.send(&mut report)?;
         let state = life.lifecycle.state;
-        body.step(&said, state, &parameters, &mut report)?;
+        body.step(&results, state, &parameters, &mut report)?;
         report.tick()?;
         Ok(Flow::Continue)
     })

@@ -13,10 +13,10 @@ use super::standing::Standing;
 use crate::GatewayError;
 use crate::broadcast::{Broadcaster, Sent};
 use crate::diagnostics::Diagnostics;
+use crate::joined::Joined;
 use crate::outgoing::odometry_of;
-use crate::rmw::{Keeping, Member, Publisher};
+use crate::rmw::{Keeping, Publisher};
 use crate::stamps::in_map;
-use crate::topics::Topics;
 use crate::verdict::Verdict;
 
 pub(super) struct Outgoing {
@@ -39,11 +39,11 @@ pub(super) struct Outgoing {
 
 impl Outgoing {
     pub(super) fn open(
-        member: &Member,
-        topics: &Topics,
+        joined: Joined<'_>,
         uses_sim_time: bool,
         sent: Sent,
     ) -> Result<Self, GatewayError> {
+        let (member, topics) = (joined.member, joined.topics);
         Ok(Outgoing {
             pose: Publisher::open(member, &topics.amcl_pose, Keeping::Kept, 1)?,
             cloud: Publisher::open(member, &topics.particle_cloud, Keeping::Fresh, 5)?,

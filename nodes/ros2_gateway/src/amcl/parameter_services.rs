@@ -9,7 +9,7 @@ use ros::rcl_interfaces::{
     SetParametersResponse,
 };
 use ros::type_description_interfaces::{GetTypeDescription, GetTypeDescriptionResponse};
-use transport::{Graph, TransportError, wall_ns};
+use transport::{TransportError, wall_ns};
 use zenoh_session::Report;
 
 use super::parameters::Parameters;
@@ -34,21 +34,16 @@ pub(super) struct ParameterServices {
 }
 
 impl ParameterServices {
-    pub(super) fn open(
-        graph: &Graph,
-        member: &Member,
-        node: &str,
-        events: &str,
-    ) -> Result<Self, GatewayError> {
+    pub(super) fn open(member: &Member, node: &str, events: &str) -> Result<Self, GatewayError> {
         let name = |service: &str| format!("{node}/{service}");
         Ok(ParameterServices {
-            describe: Service::open(graph, member, &name("describe_parameters"))?,
-            get: Service::open(graph, member, &name("get_parameters"))?,
-            types: Service::open(graph, member, &name("get_parameter_types"))?,
-            list: Service::open(graph, member, &name("list_parameters"))?,
-            set: Service::open(graph, member, &name("set_parameters"))?,
-            set_all: Service::open(graph, member, &name("set_parameters_atomically"))?,
-            descriptions: Service::open(graph, member, &name("get_type_description"))?,
+            describe: Service::open(member, &name("describe_parameters"))?,
+            get: Service::open(member, &name("get_parameters"))?,
+            types: Service::open(member, &name("get_parameter_types"))?,
+            list: Service::open(member, &name("list_parameters"))?,
+            set: Service::open(member, &name("set_parameters"))?,
+            set_all: Service::open(member, &name("set_parameters_atomically"))?,
+            descriptions: Service::open(member, &name("get_type_description"))?,
             events: Publisher::open_blocking(member, events, EVENTS)?,
             node: node.to_owned(),
         })

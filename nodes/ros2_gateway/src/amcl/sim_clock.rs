@@ -1,14 +1,13 @@
 //! Simulation time, from topic `/clock`.
 
 use ros::Clock;
-use transport::{Graph, TransportError};
+use transport::TransportError;
 use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::checks::measured_ns;
 use crate::incoming::{MAX_BYTES, take};
 use crate::rmw::{Keeping, Member, Subscription, Watch};
-use crate::topics::Topics;
 
 pub(super) struct SimClock {
     clocks: Subscription<Clock>,
@@ -19,21 +18,20 @@ pub(super) struct SimClock {
 
 impl SimClock {
     pub(super) fn open(
-        graph: &Graph,
         member: &Member,
-        topics: &Topics,
+        topic: &str,
         watch: &mut Watch,
     ) -> Result<Self, GatewayError> {
-        watch.expected.expect::<Clock>(&topics.clock)?;
+        watch.expected.expect::<Clock>(topic)?;
         Ok(SimClock {
-            clocks: Subscription::open(graph, member, &topics.clock, Keeping::Fresh, 1, MAX_BYTES)?,
+            clocks: Subscription::open(member, topic, Keeping::Fresh, 1, MAX_BYTES)?,
             now_ns: None,
             received: 0,
         })
     }
 
     pub(super) fn take(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        take(&mut self.clocks, report, |message, _| {
+        take(Some(&mut self.clocks), report, |message, _| {
             self.now_ns = Some(measured_ns("the clock", message.clock)?);
             self.received += 1;
             Ok(())

@@ -51,12 +51,12 @@ fn check_mount(frames: &mut Frames, index: usize, laser: &str, expected: Option<
 
 #[test]
 fn the_mount_comes_with_the_transforms_or_from_the_user() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     check_mount(&mut frames, 0, "laser", None);
     let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&mount).unwrap();
     check_mount(&mut frames, 0, "laser", Some(mounted(0.5)));
-    let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)]);
+    let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)], None);
     frames.on_static_transforms(&mount).unwrap();
     for (index, expected) in [9.0, 8.0].into_iter().enumerate() {
         check_mount(&mut frames, index, "laser", Some(mounted(expected)));
@@ -73,7 +73,7 @@ const OVER: Quaternion = Quaternion {
 
 #[test]
 fn the_base_that_is_named_counts_where_it_is_connected() {
-    let mut frames = Frames::new(Vec::new()).with_base("base_footprint".to_owned());
+    let mut frames = Frames::new(Vec::new(), Some("base_footprint".to_owned()));
     let laser = fixed("base_link", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&laser).unwrap();
     check_mount(&mut frames, 0, "laser", Some(mounted(0.5)));
@@ -84,7 +84,7 @@ fn the_base_that_is_named_counts_where_it_is_connected() {
 
 #[test]
 fn odometry_names_the_base() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let laser = fixed("chassis", "laser", 0.5, Quaternion::default());
     frames.on_static_transforms(&laser).unwrap();
     check_mount(&mut frames, 0, "laser", None);
@@ -94,7 +94,7 @@ fn odometry_names_the_base() {
 
 #[test]
 fn what_the_robot_moved_is_known_as_far_as_odometry_goes_back() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     assert_eq!(frames.moved_since(5), None);
     for second in 1..4 {
         let mut odometry = odometry("base_link", f64::from(second));
@@ -108,7 +108,7 @@ fn what_the_robot_moved_is_known_as_far_as_odometry_goes_back() {
 
 #[test]
 fn each_laser_has_its_own_mount_also_upside_down() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let front = fixed("base_link", "front", 0.5, Quaternion::default());
     let rear = fixed("base_link", "rear", -0.4, OVER);
     let transforms = [front.transforms, rear.transforms].concat();
@@ -135,7 +135,7 @@ fn each_laser_has_its_own_mount_also_upside_down() {
 
 #[test]
 fn a_transform_that_is_none_does_not_stop_the_rest() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let scaled = |w: f64| Quaternion {
         w,
         ..Quaternion::default()
@@ -162,7 +162,7 @@ fn a_transform_that_is_none_does_not_stop_the_rest() {
 
 #[test]
 fn a_frame_may_have_the_longest_name_of_a_message() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let long = "f".repeat(FrameName::CAPACITY);
     let mount = fixed("base_link", &long, 0.5, Quaternion::default());
     frames.on_static_transforms(&mount).unwrap();
@@ -171,7 +171,7 @@ fn a_frame_may_have_the_longest_name_of_a_message() {
 
 #[test]
 fn a_tilted_laser_and_too_many_frames_are_refused() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let half = 0.5f64.sqrt();
     let tilted = Quaternion {
         x: half,
@@ -207,7 +207,7 @@ fn the_odometry_lies_where_the_hypothesis_says() {
         ..Hypothesis::zeroed()
     };
     let check = |child: &str, expected: Option<f64>, header: &HypothesesHeader| {
-        let mut frames = Frames::new(Vec::new());
+        let mut frames = Frames::default();
         for (index, laser, x) in [(0, "laser", 0.5), (1, "rear", -0.4)] {
             let mount = fixed("base_link", laser, x, Quaternion::default());
             frames.on_static_transforms(&mount).unwrap();
@@ -223,13 +223,13 @@ fn the_odometry_lies_where_the_hypothesis_says() {
     check("rear", Some(5.1), &header);
     check("base_footprint", Some(5.5), &header);
     check("base_footprint", None, &HypothesesHeader::zeroed());
-    let nobody = Frames::new(Vec::new());
+    let nobody = Frames::default();
     assert_eq!(nobody.map_from_odom(&header, &best), None);
 }
 
 #[test]
 fn a_lidar_may_be_tilted_and_must_have_a_mount() {
-    let mut frames = Frames::new(Vec::new());
+    let mut frames = Frames::default();
     let error = frames.cloud_mount(None, "lidar").unwrap_err();
     assert!(error.to_string().contains("--cloud-mount"), "{error}");
     // On its side, which no laser may be.

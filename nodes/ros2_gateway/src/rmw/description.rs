@@ -17,7 +17,7 @@ use crate::GatewayError;
 
 /// Type name and hash, in the form that all middlewares use.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct TypeInfo {
+pub(crate) struct TypeInfo {
     /// Name, such as `std_msgs::msg::dds_::String_`.
     pub(super) name: String,
     /// Hash: `RIHS01_` and 64 digits.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use zenoh::bytes::ZBytes;
+
 use crate::GatewayError;
 
 /// Number of senders of a topic whose sequence numbers are followed; with more of them, losses are
@@ -12,6 +14,14 @@ const MAX_SENDERS: usize = 64;
 pub(crate) struct Received<M> {
     pub(crate) message: Result<M, GatewayError>,
     pub(crate) lost: u64,
+}
+
+/// A message as it came.
+pub(crate) struct Sample {
+    /// Message in CDR with its header.
+    pub(super) bytes: ZBytes,
+    /// The sender, if it is known.
+    pub(super) identity: Option<Identity>,
 }
 
 /// Sender of a message, and its number among those of the sender.

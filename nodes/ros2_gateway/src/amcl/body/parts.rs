@@ -5,7 +5,6 @@ use ros::{Empty, Nothing};
 use transport::{TransportError, monotonic_ns};
 use zenoh_session::Report;
 
-use super::{Joined, Said};
 use crate::GatewayError;
 use crate::amcl::hints::Hints;
 use crate::amcl::outgoing::Outgoing;
@@ -16,8 +15,9 @@ use crate::broadcast::Sent;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::inputs::Taken;
+use crate::joined::{Joined, Results};
 use crate::outlet::Rules;
-use crate::rmw::{Member, Service, Watch};
+use crate::rmw::{Service, Watch};
 
 /// Inputs and outputs that exist from configuration to cleanup.
 pub(super) struct Parts {
@@ -36,31 +36,22 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn open(joined: Joined<'_>, parameters: &Parameters) -> Result<Self, GatewayError> {
-        let Joined {
-            graph,
-            member,
-            config,
-            topics,
-        } = joined;
+        let (member, topics) = (joined.member, joined.topics);
         let uses_sim_time = parameters.is_on("use_sim_time");
         let sent = Sent::default();
-        let outgoing = Outgoing::open(member, topics, uses_sim_time, sent.clone())?;
-        let mut watch = Watch::open(graph, member, &topics.initial_pose)?;
-        let mut incoming = Incoming::open(graph, member, config, topics, (&mut watch, sent))?;
+        let outgoing = Outgoing::open(joined, uses_sim_time, sent.clone())?;
+        let mut watch = Watch::open(member, &topics.initial_pose)?;
+        let mut incoming = Incoming::open(joined, &mut watch, sent)?;
         incoming.outlet.rules = rules(parameters);
-        let are_believed = config.amcl.believe_initial_pose;
-        let hints = Hints::open(graph, member, topics, &mut watch, are_believed)?;
-        let clock = match uses_sim_time {
-            true => Some(SimClock::open(graph, member, topics, &mut watch)?),
-            false => None,
-        };
+        let hints = Hints::open(joined, &mut watch)?;
+        let clock = uses_sim_time.then(|| SimClock::open(member, &topics.clock, &mut watch));
         let base = parameters.text("base_frame_id").to_owned();
         Ok(Parts {
-            nomotion: Service::open(graph, member, &topics.nomotion)?,
-            frames: Frames::new(config.mounts()?).with_base(base),
+            nomotion: Service::open(member, &topics.nomotion)?,
+            frames: Frames::new(joined.config.mounts()?, Some(base)),
             saved: SavedPose::default(),
             offered: None,
-            clock,
+            clock: clock.transpose()?,
             hints,
             outgoing,
             watch,
@@ -71,7 +62,6 @@ impl Parts {
     /// Handles the robot's messages; an initial pose among them goes to `pending`.
     pub(super) fn take(
         &mut self,
-        member: &Member,
         parameters: &Parameters,
         map_frame: &str,
         pending: &mut Option<InitialPose>,
@@ -86,7 +76,7 @@ impl Parts {
         self.incoming.outlet.rules = rules(parameters);
         // No particle filter is seeded.
         self.incoming.step(&mut self.frames, |_| {}, report)?;
-        self.watch.look(member, report, |_| {})?;
+        self.watch.look(report, |_| {})?;
         self.hints.take(&self.frames, map_frame, pending, report)?;
         // Each scan is an update anyway, even while the robot stands still.
         self.nomotion.serve(report, |_| Nothing::default())?;
@@ -105,26 +95,24 @@ impl Parts {
     /// active.
     pub(super) fn send(
         &mut self,
-        said: &Said,
+        results: &Results,
         map_frame: &str,
         parameters: &Parameters,
         pending: &mut Option<InitialPose>,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let handed_on = self.hints.hand_on(pending)?;
-        if handed_on.is_some() {
+        if let Some(kind) = self.hints.hand_on(pending)? {
             self.offered = None;
-        }
-        match handed_on {
-            None => {}
-            Some(InitialPoseKind::Anywhere) => {
-                self.outgoing.start_over();
-                self.saved.forget();
+            match kind {
+                InitialPoseKind::Anywhere => {
+                    self.outgoing.start_over();
+                    self.saved.forget();
+                }
+                InitialPoseKind::Hint | InitialPoseKind::Believed => self.outgoing.go_on(),
             }
-            Some(InitialPoseKind::Hint | InitialPoseKind::Believed) => self.outgoing.go_on(),
         }
         let outgoing = &mut self.outgoing;
-        while let Some(sample) = said.poses.receive()? {
+        while let Some(sample) = results.poses.receive()? {
             report.received();
             let header = sample.header();
             outgoing.tracked((header, sample.items()), map_frame, report)?;
@@ -136,11 +124,11 @@ impl Parts {
             // Each scan gets its transform, even if several results arrive at once.
             outgoing.tick(map_frame, parameters, report)?;
         }
-        while let Some(sample) = said.hypotheses.receive()? {
+        while let Some(sample) = results.hypotheses.receive()? {
             report.received();
             outgoing.found(sample.header(), sample.items(), map_frame, report)?;
         }
-        while let Some(sample) = said.health.receive()? {
+        while let Some(sample) = results.health.receive()? {
             let diagnostics = &mut outgoing.diagnostics;
             diagnostics.health(sample.header(), sample.items(), report)?;
         }

@@ -11,6 +11,7 @@
 //! they are decoded on the thread that owns the graph.
 
 mod discovery;
+mod domain;
 mod entities;
 mod member;
 mod node;
@@ -21,7 +22,37 @@ mod service;
 mod topic;
 mod watch;
 
+use super::description::TypeInfo;
+use super::{Calls, Discovery, Middleware, Sink, Source, Topic};
+use crate::GatewayError;
 pub(super) use member::Member;
-pub(super) use service::Service;
-pub(super) use topic::{Publisher, Subscription};
-pub(super) use watch::Watch;
+use service::Service;
+use topic::{Publisher, Subscription};
+use watch::Watch;
+
+impl Middleware for Member {
+    fn domain(&self) -> u32 {
+        self.id
+    }
+
+    /// Exchanges lists of nodes and their topics with other participants.
+    fn tick(&self) {
+        self.node.tick();
+    }
+
+    fn sink(&self, topic: &Topic<'_>, blocks: bool) -> Result<Box<dyn Sink>, GatewayError> {
+        Ok(Box::new(Publisher::open(self, topic, blocks)?))
+    }
+
+    fn source(&self, topic: &Topic<'_>, max_bytes: usize) -> Result<Box<dyn Source>, GatewayError> {
+        Ok(Box::new(Subscription::open(self, topic, max_bytes)?))
+    }
+
+    fn calls(&self, name: &str, info: &TypeInfo) -> Result<Box<dyn Calls>, GatewayError> {
+        Ok(Box::new(Service::open(self, name, info)?))
+    }
+
+    fn discovery(&self) -> Result<Box<dyn Discovery>, GatewayError> {
+        Ok(Box::new(Watch::open(self)))
+    }
+}

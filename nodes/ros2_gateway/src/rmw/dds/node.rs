@@ -4,13 +4,23 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use rustdds::GUID;
 use rustdds::bytes::Bytes;
 use rustdds::no_key::DataWriter;
+use rustdds::{GUID, RTPSEntity};
 
+use super::domain::Domain;
 use super::entities::{self, Format, Gid};
+use super::quality;
 use super::raw::{Raw, fields};
 use super::reader::Reader;
+use crate::GatewayError;
+use crate::rmw::Keeping;
+
+/// Largest size of a participant's message about its nodes, bytes.
+const MAX_INFO_BYTES: usize = 1 << 20;
+
+/// Number of such messages that are queued until the next tick.
+const MAX_INFOS: usize = 256;
 
 /// Largest number of endpoints of others whose nodes are known; a large robot has some thousand.
 const MAX_NAMES: usize = 16384;
@@ -39,28 +49,27 @@ pub(super) struct Shown {
 }
 
 impl Node {
-    pub(super) fn new(
-        participant: GUID,
-        (namespace, name): (&str, &str),
-        infos: Reader,
-        writer: DataWriter<Bytes, Raw>,
-    ) -> Self {
+    pub(super) fn open(domain: &Domain, namespace: &str, name: &str) -> Result<Self, GatewayError> {
+        let (topic, kind) = (entities::TOPIC, entities::TYPE);
+        let requested = quality::requested(Keeping::Kept, MAX_INFOS);
+        let infos = domain.reader((topic, kind, topic), &requested, None, MAX_INFO_BYTES)?;
+        let offered = quality::offered(Keeping::Kept, 1, false);
         let own = entities::Node {
             namespace: namespace.to_owned(),
             name: name.to_owned(),
             ..entities::Node::default()
         };
-        Node {
-            participant: participant.to_bytes(),
+        Ok(Node {
+            participant: domain.participant.guid().to_bytes(),
             infos,
-            writer,
+            writer: domain.writer(topic, kind, &offered)?,
             state: RefCell::new(State {
                 own,
                 format: None,
                 is_changed: true,
                 names: BTreeMap::new(),
             }),
-        }
+        })
     }
 
     pub(super) fn show_reader(self: &Rc<Self>, guid: GUID) -> Shown {

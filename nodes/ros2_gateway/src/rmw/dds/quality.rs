@@ -8,19 +8,19 @@ use crate::rmw::Keeping;
 /// Time that a message that must arrive waits for a slow network.
 const MAX_BLOCKING: Duration = Duration::from_millis(100);
 
-pub(super) fn offered((keeping, depth): (Keeping, usize), blocks: bool) -> QosPolicies {
+pub(super) fn offered(keeping: Keeping, depth: usize, blocks: bool) -> QosPolicies {
     let wait = match blocks {
         true => MAX_BLOCKING,
         false => Duration::ZERO,
     };
-    common((keeping, depth), wait).build()
+    common(keeping, depth, wait).build()
 }
 
 /// Returns the policies of a topic that is subscribed to; `rustdds` keeps at most `depth` messages
 /// of all senders together.
-pub(super) fn requested((keeping, depth): (Keeping, usize)) -> QosPolicies {
+pub(super) fn requested(keeping: Keeping, depth: usize) -> QosPolicies {
     let depth_i32 = i32::try_from(depth).unwrap_or(i32::MAX);
-    common((keeping, depth), MAX_BLOCKING)
+    common(keeping, depth, MAX_BLOCKING)
         .resource_limits(ResourceLimits {
             max_samples: depth_i32,
             max_instances: 1,
@@ -29,7 +29,7 @@ pub(super) fn requested((keeping, depth): (Keeping, usize)) -> QosPolicies {
         .build()
 }
 
-fn common((keeping, depth): (Keeping, usize), wait: Duration) -> QosPolicyBuilder {
+fn common(keeping: Keeping, depth: usize, wait: Duration) -> QosPolicyBuilder {
     let (durability, reliability) = match keeping {
         Keeping::Fresh => (Durability::Volatile, Reliability::BestEffort),
         Keeping::Reliable => (Durability::Volatile, reliable(wait)),

@@ -5,17 +5,15 @@
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
-use std::marker::PhantomData;
 use std::time::{Duration, Instant};
 
-use ros::RosService;
 use rustdds::bytes::Bytes;
 use rustdds::no_key::DataWriter;
 use rustdds::with_key::WriteOptionsBuilder;
 use rustdds::{
     DomainParticipant, GUID, RTPSEntity, SampleIdentity, SequenceNumber, TopicDescription,
 };
-use transport::{Graph, TransportError};
+use transport::TransportError;
 use zenoh_session::Report;
 
 use super::node::Shown;
@@ -23,7 +21,8 @@ use super::raw::{HEADER, Raw, fields};
 use super::reader::{Reader, Sample};
 use super::{Member, quality};
 use crate::GatewayError;
-use crate::rmw::{Keeping, call, description};
+use crate::rmw::description::TypeInfo;
+use crate::rmw::{Calls, Keeping, MAX_REQUEST_BYTES, Respond};
 
 /// Largest number of queued requests, of all clients together, and of queued responses.
 const MAX_WAITING: usize = 128;
@@ -40,14 +39,13 @@ const CYCLONE: [u8; 2] = [0x01, 0x10];
 /// Number of bytes before the fields, on Cyclone DDS.
 const CALL: usize = 16;
 
-pub(crate) struct Service<S> {
+pub(super) struct Service {
     topic: String,
     participant: DomainParticipant,
     requests: Reader,
     responses: DataWriter<Bytes, Raw>,
     state: RefCell<State>,
     _shown: [Shown; 2],
-    service: PhantomData<S>,
 }
 
 #[derive(Default)]
@@ -64,19 +62,23 @@ struct Response {
     since: Instant,
 }
 
-impl<S: RosService> Service<S> {
-    pub(crate) fn open(graph: &Graph, member: &Member, topic: &str) -> Result<Self, GatewayError> {
-        let info = description::of_service(S::NAME, S::REQUEST, S::RESPONSE)?;
-        let (request, response) = (
+impl Service {
+    pub(super) fn open(
+        member: &Member,
+        topic: &str,
+        info: &TypeInfo,
+    ) -> Result<Self, GatewayError> {
+        let domain = &member.domain;
+        let quality = quality::offered(Keeping::Reliable, MAX_WAITING, true);
+        let (name, kind) = (format!("rr{topic}Reply"), format!("{}Response_", info.name));
+        let responses = domain.writer(&name, &kind, &quality)?;
+        let quality = quality::requested(Keeping::Reliable, MAX_WAITING);
+        let (name, kind) = (
+            format!("rq{topic}Request"),
             format!("{}Request_", info.name),
-            format!("{}Response_", info.name),
         );
-        let quality = quality::offered((Keeping::Reliable, MAX_WAITING), true);
-        let names = (&*format!("rr{topic}Reply"), &*response);
-        let responses = member.writer(names, &quality)?;
-        let quality = quality::requested((Keeping::Reliable, MAX_WAITING));
-        let names = (&*format!("rq{topic}Request"), &*request, topic);
-        let requests = member.reader(graph, names, &quality, call::MAX_BYTES)?;
+        let (names, waker) = ((&*name, &*kind, topic), Some(member.waker.clone()));
+        let requests = domain.reader(names, &quality, waker, MAX_REQUEST_BYTES)?;
         let node = &member.node;
         let _shown = [
             node.show_writer(responses.guid()),
@@ -84,55 +86,18 @@ impl<S: RosService> Service<S> {
         ];
         Ok(Service {
             topic: topic.to_owned(),
-            participant: member.participant.clone(),
+            participant: domain.participant.clone(),
             requests,
             responses,
             state: RefCell::default(),
             _shown,
-            service: PhantomData,
         })
-    }
-
-    /// Answers the queued calls with `respond`, and counts them; returns the number of answers.
-    pub(crate) fn serve(
-        &self,
-        report: &mut Report,
-        mut respond: impl FnMut(S::Request) -> S::Response,
-    ) -> Result<u64, TransportError> {
-        let mut answered = 0;
-        let mut state = self.state.borrow_mut();
-        for _ in 0..MAX_WAITING {
-            let Some(request) = self.requests.next() else {
-                break;
-            };
-            report.received();
-            match request.and_then(|request| self.answer(&request, &mut respond)) {
-                Ok(response) => {
-                    answered += 1;
-                    state.waiting.push_back(response);
-                }
-                Err(error) => report.refused(&error)?,
-            }
-        }
-        if state.waiting.iter().any(|response| !state.is_due(response)) {
-            self.look_for_readers(&mut state);
-        }
-        for response in std::mem::take(&mut state.waiting) {
-            if state.is_due(&response) {
-                if let Err(error) = self.send(response) {
-                    report.refused(&error)?;
-                }
-            } else if state.waiting.len() < MAX_WAITING {
-                state.waiting.push_back(response);
-            }
-        }
-        Ok(answered)
     }
 
     fn answer(
         &self,
         request: &Sample,
-        respond: impl FnOnce(S::Request) -> S::Response,
+        respond: &mut Respond<'_>,
     ) -> Result<Response, GatewayError> {
         let since = Instant::now();
         let is_prefixed =
@@ -140,17 +105,15 @@ impl<S: RosService> Service<S> {
         let bytes = &request.bytes;
         if let (true, Some((start, rest))) = (is_prefixed, bytes.split_at_checked(HEADER + CALL)) {
             let (header, prefix) = start.split_at(HEADER);
-            let response = call::answer::<S>(&self.topic, &[header, rest].concat(), respond)?;
-            let response = fields(response);
+            let response = fields(respond(&[header, rest].concat())?);
             return Ok(Response {
                 fields: [prefix, &response].concat().into(),
                 request: request.identity,
                 since,
             });
         }
-        let response = call::answer::<S>(&self.topic, bytes, respond)?;
         Ok(Response {
-            fields: fields(response),
+            fields: fields(respond(bytes)?),
             request: called(request),
             since,
         })
@@ -178,6 +141,39 @@ impl<S: RosService> Service<S> {
             .map(|data| data.key());
         let since = |guid| (guid, state.readers.get(&guid).copied().unwrap_or(now));
         state.readers = found.map(since).collect();
+    }
+}
+
+impl Calls for Service {
+    fn serve(&self, report: &mut Report, respond: &mut Respond<'_>) -> Result<u64, TransportError> {
+        let mut answered = 0;
+        let mut state = self.state.borrow_mut();
+        for _ in 0..MAX_WAITING {
+            let Some(request) = self.requests.next() else {
+                break;
+            };
+            report.received();
+            match request.and_then(|request| self.answer(&request, respond)) {
+                Ok(response) => {
+                    answered += 1;
+                    state.waiting.push_back(response);
+                }
+                Err(error) => report.refused(&error)?,
+            }
+        }
+        if state.waiting.iter().any(|response| !state.is_due(response)) {
+            self.look_for_readers(&mut state);
+        }
+        for response in std::mem::take(&mut state.waiting) {
+            if state.is_due(&response) {
+                if let Err(error) = self.send(response) {
+                    report.refused(&error)?;
+                }
+            } else if state.waiting.len() < MAX_WAITING {
+                state.waiting.push_back(response);
+            }
+        }
+        Ok(answered)
     }
 }
 

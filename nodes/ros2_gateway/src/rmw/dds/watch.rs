@@ -1,18 +1,20 @@
 //! Watch of the robot's domain, by the discovery of DDS.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use rustdds::{
-    DomainParticipantStatusEvent as Event, DomainParticipantStatusListener, EndpointDescription,
-    GUID, RTPSEntity, StatusEvented,
+    DomainParticipant, DomainParticipantStatusEvent as Event, DomainParticipantStatusListener,
+    EndpointDescription, GUID, RTPSEntity, StatusEvented,
 };
 
+use super::node::Node;
 use super::{Member, quality};
 use crate::GatewayError;
-use crate::rmw::Seen;
+use crate::rmw::Discovery;
 use crate::rmw::description::TypeInfo;
-use crate::rmw::expected::{Endpoint, Expected};
+use crate::rmw::expected::{Endpoint, Expected, Seen};
 use crate::waiting::Publishing;
 
 /// Time that an endpoint waits for reports about its quality of service.
@@ -21,12 +23,10 @@ const SETTLED: Duration = Duration::from_millis(50);
 /// Time that an endpoint waits for the name of its node.
 const NAMED: Duration = Duration::from_secs(3);
 
-/// The first bytes of an endpoint's number are those of its participant.
-const PARTICIPANT: usize = 12;
-
-pub(crate) struct Watch {
+pub(super) struct Watch {
+    node: Rc<Node>,
+    participant: DomainParticipant,
     listener: DomainParticipantStatusListener,
-    own: [u8; 16],
     /// True once the endpoints that were there before were looked at.
     has_begun: bool,
     /// Endpoints that were looked at: discovery repeats everything.
@@ -37,62 +37,32 @@ pub(crate) struct Watch {
 struct Pending {
     guid: GUID,
     since: Instant,
-    is_publisher: bool,
-    topic: String,
-    info: TypeInfo,
+    /// The endpoint, whose node is not named yet.
+    endpoint: Endpoint,
     /// Offered and requested quality of service, if they do not match.
     mismatch: Option<[String; 2]>,
 }
 
 impl Watch {
-    pub(crate) fn open(member: &Member) -> Self {
-        let listener = member.participant.status_listener();
+    pub(super) fn open(member: &Member) -> Self {
+        let participant = member.domain.participant.clone();
         Watch {
-            listener,
-            own: member.participant.guid().to_bytes(),
+            node: Rc::clone(&member.node),
+            listener: participant.status_listener(),
+            participant,
             has_begun: false,
             known: BTreeSet::new(),
             pending: Vec::new(),
         }
     }
 
-    pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
-        if !std::mem::replace(&mut self.has_begun, true) {
-            self.begin(member, expected);
-        }
-        while let Some(event) = self.listener.try_recv_status() {
-            match event {
-                Event::ReaderDetected { reader } => self.add_described(expected, false, &reader),
-                Event::WriterDetected { writer } => self.add_described(expected, true, &writer),
-                Event::ReaderLost { guid, .. } | Event::WriterLost { guid, .. } => {
-                    self.known.remove(&guid);
-                    self.pending.retain(|pending| pending.guid != guid);
-                }
-                Event::RemoteWriterQosIncompatible {
-                    remote_writer,
-                    requested_qos,
-                    offered_qos,
-                    ..
-                } => {
-                    let is_it = |pending: &&mut Pending| pending.guid == remote_writer;
-                    if let Some(pending) = self.pending.iter_mut().find(is_it) {
-                        let words = [&*offered_qos, &*requested_qos].map(quality::in_words);
-                        pending.mismatch = Some(words);
-                    }
-                }
-                _ => {}
-            }
-        }
-        self.settle(member, expected)
-    }
-
-    fn begin(&mut self, member: &Member, expected: &Expected) {
-        for reader in member.participant.discovered_readers() {
+    fn begin(&mut self, expected: &Expected) {
+        for reader in self.participant.discovered_readers() {
             let data = &reader.subscription_topic_data;
             let names = (data.topic_name().as_str(), data.type_name().as_str());
             self.add(expected, data.key(), false, names, &reader.user_data);
         }
-        for writer in member.participant.discovered_writers() {
+        for writer in self.participant.discovered_writers() {
             let data = &writer.publication_topic_data;
             let names = (data.topic_name.as_str(), data.type_name.as_str());
             self.add(expected, data.key, true, names, &writer.user_data);
@@ -123,7 +93,7 @@ impl Watch {
         (topic, kind): (&str, &str),
         user_data: &[u8],
     ) {
-        let is_own = guid.to_bytes()[..PARTICIPANT] == self.own[..PARTICIPANT];
+        let is_own = guid.prefix == self.participant.guid().prefix;
         let topic = topic.strip_prefix("rt").filter(|_| !is_own);
         if let Some(topic) = topic
             && expected.concerns(is_publisher, topic)
@@ -132,11 +102,14 @@ impl Watch {
             self.pending.push(Pending {
                 guid,
                 since: Instant::now(),
-                is_publisher,
-                topic: topic.to_owned(),
-                info: TypeInfo {
-                    name: kind.to_owned(),
-                    hash: type_hash(user_data),
+                endpoint: Endpoint {
+                    is_publisher,
+                    node: String::new(),
+                    topic: topic.to_owned(),
+                    info: TypeInfo {
+                        name: kind.to_owned(),
+                        hash: type_hash(user_data),
+                    },
                 },
                 mismatch: None,
             });
@@ -144,18 +117,33 @@ impl Watch {
     }
 
     /// Returns the next event of an endpoint that is fully known, or has waited long enough.
-    fn settle(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
+    fn settle(&mut self, expected: &mut Expected) -> Option<Seen> {
         let mut index = 0;
         while let Some(pending) = self.pending.get(index) {
             let waited = pending.since.elapsed();
-            let name = member.node.name_of(pending.guid);
+            let name = self.node.name_of(pending.guid);
             if waited < SETTLED || (name.is_none() && waited < NAMED) {
                 index += 1;
                 continue;
             }
-            let pending = self.pending.remove(index);
-            let name = name.unwrap_or_else(|| "a node without a name".to_owned());
-            let seen = judge(pending, name, expected);
+            let Pending {
+                mut endpoint,
+                mismatch,
+                ..
+            } = self.pending.remove(index);
+            endpoint.node = name.unwrap_or_else(|| "a node without a name".to_owned());
+            let seen = match mismatch {
+                None => expected.note(&endpoint),
+                Some([found, wanted]) => {
+                    expected.found_as(&endpoint.topic, Publishing::OtherQuality);
+                    Some(Seen::Stranger(GatewayError::Stranger {
+                        node: endpoint.node,
+                        topic: endpoint.topic,
+                        found,
+                        expected: wanted,
+                    }))
+                }
+            };
             if seen.is_some() {
                 return seen;
             }
@@ -164,29 +152,36 @@ impl Watch {
     }
 }
 
-fn judge(pending: Pending, node: String, awaited: &mut Expected) -> Option<Seen> {
-    let Pending {
-        is_publisher,
-        topic,
-        info,
-        mismatch,
-        ..
-    } = pending;
-    if let Some([found, expected]) = mismatch {
-        awaited.found_as(&topic, Publishing::OtherQuality);
-        return Some(Seen::Stranger(GatewayError::Stranger {
-            node,
-            topic,
-            found,
-            expected,
-        }));
+impl Discovery for Watch {
+    fn next(&mut self, expected: &mut Expected) -> Option<Seen> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.begin(expected);
+        }
+        while let Some(event) = self.listener.try_recv_status() {
+            match event {
+                Event::ReaderDetected { reader } => self.add_described(expected, false, &reader),
+                Event::WriterDetected { writer } => self.add_described(expected, true, &writer),
+                Event::ReaderLost { guid, .. } | Event::WriterLost { guid, .. } => {
+                    self.known.remove(&guid);
+                    self.pending.retain(|pending| pending.guid != guid);
+                }
+                Event::RemoteWriterQosIncompatible {
+                    remote_writer,
+                    requested_qos,
+                    offered_qos,
+                    ..
+                } => {
+                    let is_it = |pending: &&mut Pending| pending.guid == remote_writer;
+                    if let Some(pending) = self.pending.iter_mut().find(is_it) {
+                        let words = [&*offered_qos, &*requested_qos].map(quality::in_words);
+                        pending.mismatch = Some(words);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.settle(expected)
     }
-    awaited.note(&Endpoint {
-        is_publisher,
-        node,
-        topic,
-        info,
-    })
 }
 
 /// Returns the type hash in an endpoint's user data, given as `typehash=RIHS01_…;`, if there is

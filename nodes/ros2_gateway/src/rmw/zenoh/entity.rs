@@ -10,14 +10,14 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use transport::Graph;
+use transport::{Graph, Waker};
 use twox_hash::XxHash3_128;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
 use zenoh_session::{KeyError, Report, Routers};
 
-use crate::rmw::Keeping;
 use crate::rmw::description::TypeInfo;
+use crate::rmw::{Keeping, Topic};
 use crate::{Config, GatewayError};
 
 const TOKENS: &str = "@ros2_lv";
@@ -44,13 +44,14 @@ impl Kind {
 
 /// The gateway as a node of ROS that others see, until this is dropped.
 pub(crate) struct Member {
-    pub(crate) session: Session,
-    pub(crate) domain: u32,
+    pub(super) session: Session,
+    pub(super) domain: u32,
     /// Namespace and name.
     pub(super) node: String,
     /// Namespace and name, mangled.
     who: String,
-    routers: Routers,
+    pub(super) routers: Routers,
+    pub(super) waker: Waker,
     _token: LivelinessToken,
     /// Number of the next entity; the node itself has 0.
     next: AtomicUsize,
@@ -80,10 +81,7 @@ impl Member {
         let Some(session) = session else {
             return Ok(None);
         };
-        let namespace = match config.namespace.trim_end_matches('/') {
-            "" => "/",
-            namespace => namespace,
-        };
+        let namespace = config.namespace();
         let who = format!("{}/{}", mangled(namespace), config.node());
         let key = format!("{TOKENS}/{domain}/{}/0/0/NN/%/{who}", session.zid());
         Ok(Some(Member {
@@ -93,12 +91,9 @@ impl Member {
             node: format!("{}/{}", namespace.trim_end_matches('/'), config.node()),
             who,
             routers,
+            waker: graph.waker()?,
             next: AtomicUsize::new(1),
         }))
-    }
-
-    pub(crate) fn missing(&self) -> String {
-        self.routers.missing(&self.session)
     }
 
     /// Returns the key expression of all tokens on the domain.
@@ -106,20 +101,15 @@ impl Member {
         format!("{TOKENS}/{}/**", self.domain)
     }
 
-    pub(super) fn endpoint(
-        &self,
-        kind: Kind,
-        topic: &str,
-        info: &TypeInfo,
-        quality: (Keeping, usize),
-    ) -> Endpoint {
+    pub(super) fn endpoint(&self, kind: Kind, topic: &Topic<'_>) -> Endpoint {
         let (domain, who, kind) = (self.domain, &self.who, kind.code());
         let (session, entity) = (
             self.session.zid(),
             self.next.fetch_add(1, Ordering::Relaxed),
         );
-        let (name, quality) = (mangled(topic), encoded(quality));
-        let of_type = format!("{domain}/{}/{}", topic.trim_matches('/'), info.name);
+        let (name, info) = (mangled(topic.name), topic.info);
+        let quality = encoded(topic.keeping, topic.depth);
+        let of_type = format!("{domain}/{}/{}", topic.name.trim_matches('/'), info.name);
         let token = format!(
             "{TOKENS}/{domain}/{session}/0/{entity}/{kind}/%/{who}/{name}/{info}/{quality}"
         );
@@ -149,7 +139,7 @@ fn mangled(name: &str) -> String {
 
 /// Encodes reliability, durability, history, deadline, lifespan and liveliness; values that are the
 /// defaults of ROS are left out.
-fn encoded((keeping, depth): (Keeping, usize)) -> String {
+fn encoded(keeping: Keeping, depth: usize) -> String {
     let start = match keeping {
         Keeping::Fresh => "2:",
         Keeping::Reliable => ":",
@@ -234,8 +224,8 @@ mod tests {
 
     #[test]
     fn qualities_stand_as_rmw_zenoh_writes_them() {
-        assert_eq!(encoded((Keeping::Reliable, 7)), "::,7:,:,:,,");
-        assert_eq!(encoded((Keeping::Fresh, 5)), "2::,5:,:,:,,");
-        assert_eq!(encoded((Keeping::Kept, 1)), ":1:,1:,:,:,,");
+        assert_eq!(encoded(Keeping::Reliable, 7), "::,7:,:,:,,");
+        assert_eq!(encoded(Keeping::Fresh, 5), "2::,5:,:,:,,");
+        assert_eq!(encoded(Keeping::Kept, 1), ":1:,1:,:,:,,");
     }
 }

@@ -1,6 +1,6 @@
 //! A topic to the robot, and a topic from it.
 
-use transport::{Graph, wall_ns};
+use transport::wall_ns;
 use zenoh::Wait;
 use zenoh::bytes::ZBytes;
 use zenoh::liveliness::LivelinessToken;
@@ -12,11 +12,10 @@ use zenoh_session::{KeyError, Past, Queue, QueueLimits};
 use super::entity::{Endpoint, Kind};
 use super::{Attachment, Member};
 use crate::GatewayError;
-use crate::rmw::Keeping;
-use crate::rmw::description::TypeInfo;
-use crate::rmw::received::Identity;
+use crate::rmw::received::Sample;
+use crate::rmw::{self, Keeping, Topic};
 
-pub(crate) struct Publisher {
+pub(super) struct Publisher {
     endpoint: Endpoint,
     /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     sinks: [Sink; 2],
@@ -32,28 +31,27 @@ enum Sink {
 impl Publisher {
     /// Opens the topic. On a slow network, one that blocks waits until Zenoh closes the connection;
     /// others drop the message.
-    pub(crate) fn open(
+    pub(super) fn open(
         member: &Member,
-        (topic, info): (&str, &TypeInfo),
-        quality: (Keeping, usize),
+        topic: &Topic<'_>,
         blocks: bool,
     ) -> Result<Self, GatewayError> {
         let congestion = match blocks {
             true => CongestionControl::Block,
             false => CongestionControl::Drop,
         };
-        let endpoint = member.endpoint(Kind::Publisher, topic, info, quality);
+        let endpoint = member.endpoint(Kind::Publisher, topic);
         let declare = |key: &String| -> zenoh::Result<Sink> {
             let publisher = member.session.declare_publisher(key.clone());
             // Not express: each message would take one of the two batches of its priority, so that
             // a third one at once is dropped, and Zenoh may go on dropping.
             let publisher = publisher.congestion_control(congestion);
-            Ok(match quality {
-                (Keeping::Fresh | Keeping::Reliable, _) => Sink::Volatile(publisher.wait()?),
-                (Keeping::Kept, depth) => {
+            Ok(match topic.keeping {
+                Keeping::Fresh | Keeping::Reliable => Sink::Volatile(publisher.wait()?),
+                Keeping::Kept => {
                     let publisher = publisher
                         .advanced()
-                        .cache(CacheConfig::default().max_samples(depth))
+                        .cache(CacheConfig::default().max_samples(topic.depth))
                         // Otherwise each message would need a time of Zenoh's clock.
                         .sample_miss_detection(MissDetectionConfig::default())
                         // Lets subscribers that were connected late ask for the messages they
@@ -73,8 +71,10 @@ impl Publisher {
             sequence: 1,
         })
     }
+}
 
-    pub(crate) fn send(&mut self, bytes: Vec<u8>) -> Result<(), GatewayError> {
+impl rmw::Sink for Publisher {
+    fn send(&mut self, bytes: Vec<u8>) -> Result<(), GatewayError> {
         let attachment = Attachment {
             sequence: self.sequence,
             sent_ns: wall_ns(),
@@ -94,7 +94,7 @@ impl Publisher {
     }
 }
 
-pub(crate) struct Subscription {
+pub(super) struct Subscription {
     topic: String,
     /// One for nodes that know the type's hash, and one for those of ROS 2 Humble.
     queues: [Queue; 2],
@@ -103,44 +103,30 @@ pub(crate) struct Subscription {
 
 impl Subscription {
     /// Takes messages of at most `max_bytes`, and queues at most `depth` of them.
-    pub(crate) fn open(
-        graph: &Graph,
+    pub(super) fn open(
         member: &Member,
-        (topic, info): (&str, &TypeInfo),
-        (keeping, depth): (Keeping, usize),
+        topic: &Topic<'_>,
         max_bytes: usize,
     ) -> Result<Self, GatewayError> {
-        let endpoint = member.endpoint(Kind::Subscription, topic, info, (keeping, depth));
-        let past = match keeping {
+        let endpoint = member.endpoint(Kind::Subscription, topic);
+        let past = match topic.keeping {
             Keeping::Fresh | Keeping::Reliable => Past::Gone,
-            Keeping::Kept => Past::Last(depth),
+            Keeping::Kept => Past::Last(topic.depth),
         };
-        let limits = QueueLimits::for_any(depth, max_bytes);
+        let limits = QueueLimits::for_any(topic.depth, max_bytes);
         let open = |key: &str| -> Result<Queue, GatewayError> {
-            let waker = graph.waker()?;
+            let waker = member.waker.clone();
             Ok(Queue::open(&member.session, key, past, limits, waker)?)
         };
         Ok(Subscription {
-            topic: topic.to_owned(),
+            topic: topic.name.to_owned(),
             queues: [open(&endpoint.key)?, open(&endpoint.humble_key)?],
             _token: member.show(&endpoint)?,
         })
     }
 
-    /// Returns the number of messages lost since the last call because the queue was full.
-    pub(crate) fn dropped(&self) -> u64 {
-        self.queues.iter().map(Queue::dropped).sum()
-    }
-
-    pub(crate) fn depth(&self) -> usize {
-        self.queues
-            .iter()
-            .map(|queue| queue.limits().messages)
-            .sum()
-    }
-
     /// Returns an error for each message that was too long to be queued.
-    pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
+    fn next_too_long(&self) -> Option<GatewayError> {
         let mut queues = self.queues.iter();
         let (found, most) = queues
             .find_map(|queue| Some((queue.next_too_long()?, queue.limits().message_bytes)))?;
@@ -150,18 +136,31 @@ impl Subscription {
             most,
         })
     }
+}
 
-    pub(crate) fn next<M>(
-        &self,
-        decode: impl FnOnce(&[u8], Option<Identity>) -> Result<M, GatewayError>,
-    ) -> Option<Result<M, GatewayError>> {
+impl rmw::Source for Subscription {
+    fn dropped(&self) -> u64 {
+        self.queues.iter().map(Queue::dropped).sum()
+    }
+
+    fn depth(&self) -> usize {
+        self.queues
+            .iter()
+            .map(|queue| queue.limits().messages)
+            .sum()
+    }
+
+    fn next(&self) -> Option<Result<Sample, GatewayError>> {
+        if let Some(error) = self.next_too_long() {
+            return Some(Err(error));
+        }
         let sample = self.queues.iter().find_map(Queue::next)?;
         // Scripts that use plain Zenoh may leave it out.
         let attachment = sample.attachment();
         let attachment = attachment.map(|bytes| Attachment::decode(&self.topic, bytes));
-        Some(attachment.transpose().and_then(|attachment| {
-            let identity = attachment.map(|of| (of.sender, of.sequence));
-            decode(&sample.payload().to_bytes(), identity)
+        Some(attachment.transpose().map(|attachment| Sample {
+            bytes: sample.payload().clone(),
+            identity: attachment.map(|of| (of.sender, of.sequence)),
         }))
     }
 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam::queue::ArrayQueue;
-use transport::Graph;
 use zenoh::Wait;
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
@@ -13,23 +12,27 @@ use zenoh_session::KeyError;
 use super::Member;
 use super::entity::{Kind, Token};
 use crate::GatewayError;
-use crate::rmw::Seen;
-use crate::rmw::expected::{Endpoint, Expected};
+use crate::rmw::Discovery;
+use crate::rmw::expected::{Endpoint, Expected, Seen};
 
 /// Largest number of queued tokens: a large robot has some hundred.
 const MAX_WAITING: usize = 4096;
 
-pub(crate) struct Watch {
+pub(super) struct Watch {
+    /// Id of the gateway's own session.
+    mine: String,
+    /// Namespace and name of the gateway's own node.
+    node: String,
     tokens: Arc<ArrayQueue<String>>,
     dropped: Arc<AtomicU64>,
     _subscriber: Subscriber<()>,
 }
 
 impl Watch {
-    pub(crate) fn open(graph: &Graph, member: &Member) -> Result<Self, GatewayError> {
+    pub(super) fn open(member: &Member) -> Result<Self, GatewayError> {
         let tokens = Arc::new(ArrayQueue::new(MAX_WAITING));
         let dropped = Arc::new(AtomicU64::new(0));
-        let waker = graph.waker()?;
+        let waker = member.waker.clone();
         let key = member.tokens();
         let put = {
             let (tokens, dropped) = (Arc::clone(&tokens), Arc::clone(&dropped));
@@ -48,25 +51,27 @@ impl Watch {
         let subscriber = subscriber.callback(put).wait();
         let subscriber = subscriber.map_err(KeyError::when("watch", &key))?;
         Ok(Watch {
+            mine: member.session.zid().to_string(),
+            node: member.node.clone(),
             tokens,
             dropped,
             _subscriber: subscriber,
         })
     }
+}
 
-    /// Returns the number of tokens dropped since the last call because there were too many.
-    pub(crate) fn dropped(&self) -> u64 {
+impl Discovery for Watch {
+    fn dropped(&self) -> u64 {
         self.dropped.swap(0, Ordering::Relaxed)
     }
 
     /// Returns the next event of interest; a token that cannot be read is none.
-    pub(crate) fn next(&mut self, member: &Member, expected: &mut Expected) -> Option<Seen> {
-        let mine = member.session.zid().to_string();
+    fn next(&mut self, expected: &mut Expected) -> Option<Seen> {
         while let Some(key) = self.tokens.pop() {
-            let Some(token) = Token::read(&key).filter(|token| token.session != mine) else {
+            let Some(token) = Token::read(&key).filter(|token| token.session != self.mine) else {
                 continue;
             };
-            if is_second(&token, &member.node) {
+            if is_second(&token, &self.node) {
                 return Some(Seen::Stranger(GatewayError::SecondNode(token.node)));
             }
             let seen = endpoint(token).and_then(|other| expected.note(&other));
