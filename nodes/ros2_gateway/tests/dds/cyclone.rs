@@ -15,10 +15,11 @@ pub(super) fn cyclone(domain: &str, namespace: &str) -> Option<Robot> {
 #[test]
 fn nodes_on_cyclone_dds_feed_the_graph_and_get_the_pose() {
     let options = ["--as", "amcl", "--autostart"];
-    let Some(mut joined) = Joined::new("dds-cyclone", "/r2", &options) else {
+    let domain = domain();
+    let Some(mut joined) = join_in(&domain, "dds-cyclone", "/r2", &options) else {
         return;
     };
-    let Some(mut cyclone) = cyclone(&joined.domain, "/r2") else {
+    let Some(mut cyclone) = cyclone(&domain, "/r2") else {
         return;
     };
     let graph = &joined.graph;
@@ -51,8 +52,7 @@ fn nodes_on_cyclone_dds_feed_the_graph_and_get_the_pose() {
     assert_eq!(hint, pose2(3.0, 1.0, 0.0));
 
     // The pose, its transform, and what a master control gets.
-    let poses = graph.publisher_for::<topic::Tracked>(PoseHeader::WORDS_CAPACITY);
-    let poses = poses.unwrap();
+    let poses = poses_of(graph);
     for topic in ["tf", "amcl_pose", "localization/vda5050"] {
         cyclone.order("subscribe", json!({ "topic": topic }));
     }
@@ -63,8 +63,6 @@ fn nodes_on_cyclone_dds_feed_the_graph_and_get_the_pose() {
                 measured_ns: last + counter,
                 ..stamp(counter as u64)
             },
-            odom_known: 1,
-            odom_frame: messages::FrameName::new("odom"),
             map_from_odom: pose2(1.5, 1.0, 0.0),
             ..tracked()
         };

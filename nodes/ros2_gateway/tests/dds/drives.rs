@@ -9,13 +9,6 @@ use super::*;
 /// The recorded robot's laser ahead of its base, metres.
 const MOUNT_M: f64 = 0.78;
 
-const ENGINE: [&str; 4] = [
-    "boundary_extractor",
-    "accumulator",
-    "peak_extractor",
-    "tracker",
-];
-
 /// How often something is repeated: as `BACKCAST_ROUNDS` says, else `usual` times.
 fn rounds(usual: usize) -> usize {
     let rounds = std::env::var("BACKCAST_ROUNDS").ok();
@@ -27,6 +20,7 @@ struct Driven {
     nodes: Vec<NodeProcess>,
     transforms: Robot,
     joined: Joined,
+    domain: String,
     /// Step of the drive at which the robot starts again: it has not moved.
     step: u64,
 }
@@ -34,14 +28,14 @@ struct Driven {
 impl Driven {
     /// The graph waits for the robot, which has not begun to drive.
     fn new(tag: &str) -> Option<Self> {
-        let joined = Joined::new(tag, "/", &["--as", "amcl", "--mount", "0.78,0,0"])?;
-        let transforms = cyclone(&joined.domain, "/")?;
-        let start = |name: &&str| executables::start(name, &joined.graph, &[]);
-        let nodes = ENGINE.iter().map(start).collect();
+        let domain = domain();
+        let options = ["--as", "amcl", "--mount", "0.78,0,0"];
+        let joined = join_in(&domain, tag, "/", &options)?;
         let mut driven = Driven {
-            nodes,
-            transforms,
+            nodes: start_nodes(&joined.graph, &NODES),
+            transforms: cyclone(&domain, "/")?,
             joined,
+            domain,
             step: 0,
         };
         driven.prepare();
@@ -57,14 +51,9 @@ impl Driven {
     fn restart_robot(&mut self) {
         self.joined.robot.order("step", json!({}));
         self.step = self.joined.robot.wait_for("step")["step"].as_u64().unwrap();
-        self.joined.robot = robot(&self.joined.domain, "/").unwrap();
-        self.transforms = cyclone(&self.joined.domain, "/").unwrap();
+        self.joined.robot = robot(&self.domain, "/").unwrap();
+        self.transforms = cyclone(&self.domain, "/").unwrap();
         self.prepare();
-    }
-
-    fn restart_gateway(&mut self) {
-        self.joined.stop();
-        self.joined.start();
     }
 
     /// Activates us.
@@ -120,7 +109,7 @@ fn a_robot_that_drives_gets_its_pose_whichever_side_starts_anew() {
         match round {
             0 => {}
             _ if robot_is_new => driven.restart_robot(),
-            _ => driven.restart_gateway(),
+            _ => restart_gateway(&mut driven.joined),
         }
         driven.bring_up();
         // From when both are there.

@@ -7,16 +7,19 @@
 
 mod cyclone;
 mod drives;
+#[path = "../shared/mod.rs"]
+mod shared;
 
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use bytemuck::Zeroable;
 use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, NodeState, Odometry, Pose2, PoseHeader, ScanHeader,
-    Stamp, TrackState, Verdict, topic,
+    HypothesesHeader, Hypothesis, MapHeader, Odometry, PoseHeader, ScanHeader, Stamp, Verdict,
+    topic,
 };
 use serde_json::json;
+use shared::{Joined, NODES, pose2, poses_of, start_gateway, start_nodes, wait_until_waiting};
 use tests::needs::Need;
 use tests::robot::Robot;
 use tests::{executables, python};
@@ -52,55 +55,20 @@ fn domain() -> String {
     (101 + 16 * (std::process::id() % 8) + number).to_string()
 }
 
-/// A graph with a gateway, and a robot in the same domain.
-struct Joined {
-    robot: Robot,
-    gateway: Option<NodeProcess>,
-    graph: Graph,
-    domain: String,
-    namespace: &'static str,
-    options: Vec<&'static str>,
-    // Behind the graph, so that it is dropped after it.
-    _isolated: Isolated,
+/// Joins a robot to a gateway in a domain of their own; returns `None` if ROS is not available.
+fn join(tag: &str, namespace: &str, options: &[&str]) -> Option<Joined> {
+    join_in(&domain(), tag, namespace, options)
 }
 
-impl Joined {
-    /// Returns `None` if ROS is not available.
-    fn new(tag: &str, namespace: &'static str, options: &[&'static str]) -> Option<Self> {
-        let isolated = Isolated::new(tag);
-        let graph = isolated.join("test");
-        let domain = domain();
-        let robot = robot(&domain, namespace)?;
-        let mut joined = Joined {
-            robot,
-            gateway: None,
-            graph,
-            domain,
-            namespace,
-            options: options.to_vec(),
-            _isolated: isolated,
-        };
-        joined.start();
-        Some(joined)
-    }
+fn join_in(domain: &str, tag: &str, namespace: &str, options: &[&str]) -> Option<Joined> {
+    let common = ["--rmw", "dds", "--domain", domain, "--namespace", namespace];
+    let arguments = [&common, options].concat();
+    Joined::new(Isolated::new(tag), &arguments, |_| robot(domain, namespace))
+}
 
-    fn start(&mut self) {
-        let common = [
-            "--rmw",
-            "dds",
-            "--domain",
-            &self.domain,
-            "--namespace",
-            self.namespace,
-        ];
-        let arguments = common.iter().chain(&self.options);
-        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-        self.gateway = Some(NodeProcess::start(executable, &self.graph, arguments));
-    }
-
-    fn stop(&mut self) {
-        self.gateway.take().unwrap().stop();
-    }
+fn restart_gateway(joined: &mut Joined) {
+    joined.stop();
+    joined.gateway = Some(start_gateway(&joined.graph, &joined.arguments));
 }
 
 fn robot(domain: &str, namespace: &str) -> Option<Robot> {
@@ -167,10 +135,6 @@ fn until_both(graph: &Graph, mut drive: impl FnMut(i64)) -> (ScanHeader, Vec<f32
 /// Stamp of the first scan, nanoseconds.
 const START_NS: i64 = 1_700_000_000_000_000_000;
 
-fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
-    Pose2 { x, y, yaw }
-}
-
 fn stamp(counter: u64) -> Stamp {
     Stamp {
         measured_ns: START_NS,
@@ -179,35 +143,17 @@ fn stamp(counter: u64) -> Stamp {
     }
 }
 
-/// What a tracker says that is sure of the robot's place.
+/// Returns the pose of a tracker that is sure of it.
 fn tracked() -> PoseHeader {
     PoseHeader {
-        stamp: stamp(0),
-        probability: 0.75,
-        places: 1,
-        state: TrackState::Unique as u32,
-        from_scan: 1,
-        pose_known: 1,
-        mount_known: 1,
         map_from_base: pose2(3.0, 1.0, 0.0),
-        map_from_laser: pose2(3.2, 1.0, 0.0),
-        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
-        ..PoseHeader::zeroed()
+        ..shared::tracked(stamp(0))
     }
-}
-
-fn wait_until_waiting(graph: &Graph, words: &str) {
-    let health = graph.subscriber::<topic::Health>().unwrap();
-    wait_for(graph, &health, |report, error| {
-        let is_waiting = report.state == NodeState::Waiting as u32;
-        let is_said = String::from_utf8_lossy(error).contains(words);
-        (is_waiting && is_said).then_some(())
-    });
 }
 
 #[test]
 fn scan_odometry_and_a_large_map_enter_the_graph() {
-    let Some(mut joined) = Joined::new("dds-in", "/r2", &MOUNT) else {
+    let Some(mut joined) = join("dds-in", "/r2", &MOUNT) else {
         return;
     };
     wait_until_waiting(&joined.graph, "/r2/scan: no publisher");
@@ -234,8 +180,7 @@ fn scan_odometry_and_a_large_map_enter_the_graph() {
     assert_eq!(occupied, 4000);
 
     // A gateway that starts again gets the map without being sent it again.
-    joined.stop();
-    joined.start();
+    restart_gateway(&mut joined);
     let again: MapHeader = wait_for(&joined.graph, &maps, |header, _| Some(*header));
     assert_eq!(again.map_id, header.map_id);
     drive(&mut joined, START_NS);
@@ -244,7 +189,7 @@ fn scan_odometry_and_a_large_map_enter_the_graph() {
 
 #[test]
 fn what_the_graph_says_reaches_the_robot() {
-    let Some(mut joined) = Joined::new("dds-out", "/", &MOUNT) else {
+    let Some(mut joined) = join("dds-out", "/", &MOUNT) else {
         return;
     };
     drive(&mut joined, START_NS);
@@ -300,7 +245,7 @@ fn what_the_graph_says_reaches_the_robot() {
 
 #[test]
 fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
-    let Some(mut joined) = Joined::new("dds-amcl", "/", &["--as", "amcl"]) else {
+    let Some(mut joined) = join("dds-amcl", "/", &["--as", "amcl"]) else {
         return;
     };
     let robot = &mut joined.robot;
@@ -332,10 +277,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
         .order("click", json!({ "ns": START_NS, "x": 3.0, "y": 1.0 }));
     let hint = wait_for(&joined.graph, &hints, |hint, _| Some(hint.map_from_base));
     assert_eq!(hint, pose2(3.0, 1.0, 0.0));
-    let poses = joined
-        .graph
-        .publisher_for::<topic::Tracked>(PoseHeader::WORDS_CAPACITY)
-        .unwrap();
+    let poses = poses_of(&joined.graph);
     poses.send(tracked(), &[]).unwrap();
     // Kept for late subscribers.
     joined
@@ -348,7 +290,7 @@ fn a_lifecycle_manager_configures_and_activates_us_in_amcls_place() {
 
 #[test]
 fn publishers_that_cannot_be_received_are_named() {
-    let Some(mut joined) = Joined::new("dds-strange", "/", &MOUNT) else {
+    let Some(mut joined) = join("dds-strange", "/", &MOUNT) else {
         return;
     };
     let graph = &joined.graph;
@@ -394,25 +336,25 @@ fn a_robot_is_found_and_checked_while_it_drives() {
 
 #[test]
 fn nothing_crosses_to_another_domain_or_namespace() {
-    let Some(mut joined) = Joined::new("dds-own", "/", &MOUNT) else {
+    let (own, next) = (domain(), domain());
+    let Some(mut joined) = join_in(&own, "dds-own", "/", &MOUNT) else {
         return;
     };
-    let (own, next) = (joined.domain.clone(), domain());
     let others = [("dds-other", &next, "/"), ("dds-second", &own, "/r2")];
     let others = others.map(|(tag, domain, namespace)| {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
         let options = ["--rmw", "dds", "--domain", domain, "--namespace", namespace];
-        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-        let gateway = NodeProcess::start(executable, &graph, options.iter().chain(&MOUNT));
+        let options = [&options, &MOUNT[..]].concat();
+        let options: Vec<String> = options.into_iter().map(str::to_owned).collect();
+        let gateway = start_gateway(&graph, &options);
         let scans = graph.subscriber::<topic::Scan>().unwrap();
         (isolated, graph, scans, gateway, namespace)
     });
     // Repeated while that robot's own gateway is restarted.
     for _ in 0..3 {
         drive(&mut joined, START_NS);
-        joined.stop();
-        joined.start();
+        restart_gateway(&mut joined);
     }
     for (_isolated, graph, scans, gateway, namespace) in others {
         let topic = format!("{}/scan", namespace.trim_end_matches('/'));

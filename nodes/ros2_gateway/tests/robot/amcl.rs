@@ -4,8 +4,8 @@ use std::path::Path;
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::client::{active, ask, join, of_scan, state, until_now};
-use super::tracked::{poses_of, send_pose, tracked};
+use super::client::{active, ask, of_scan, set_initial_pose, settle, state, subscribe, until_now};
+use super::tracked::send_pose;
 use super::*;
 
 /// Returns a stamp of no scan, at milliseconds of the robot's clock.
@@ -24,7 +24,7 @@ fn a_master_control_is_told_in_the_words_of_vda_5050() {
     };
     let robot = &mut joined.robot;
     robot.order("fleet", json!({}));
-    join(robot, "docking", "localization");
+    subscribe(robot, "docking", "localization");
     // Once its call is answered, its subscription has arrived.
     assert_eq!(state(robot), "active");
     let poses = poses_of(&joined.graph);
@@ -41,7 +41,7 @@ fn a_master_control_is_told_in_the_words_of_vda_5050() {
     assert_eq!(verdict["pose"]["pose"]["position"]["x"], 3.0);
     assert_eq!(verdict["pose"]["covariance"][7], 1e-2);
     // A late subscriber gets the last one at once.
-    join(robot, "late", "localization");
+    subscribe(robot, "late", "localization");
     of_scan(robot, "localization", sent.stamp.measured_ns);
     let lost = PoseHeader {
         state: TrackState::Lost as u32,
@@ -70,9 +70,7 @@ fn the_first_map_stays_where_parameters_say_so() {
     let (_, first) = next();
     // Another map, which is ignored.
     robot.order("other_map", json!({ "cell": 0 }));
-    for _ in 0..2 {
-        assert_eq!(state(robot), "active");
-    }
+    settle(robot, "active");
     let off = json!({ "name": "first_map_only", "value": { "type": 1, "bool_value": false } });
     ask(
         robot,
@@ -147,9 +145,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
         "a scan must confirm it"
     );
     assert_eq!(first.map_from_base, pose2(1.25, -2.5, 0.5));
-    let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
-        "position": { "x": 7.0 }, "orientation": { "w": 1.0 } } } } });
-    ask(robot, "set_initial_pose", &pose);
+    set_initial_pose(robot, 7.0);
     let said = hint(graph, &hints);
     assert_eq!(
         (said.kind, said.map_from_base.x),
@@ -159,8 +155,8 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     assert_eq!(hint(graph, &hints).kind, InitialPoseKind::Anywhere as u64);
 
     // The pose that the tracker still believes is from before, and is neither sent nor saved.
-    join(robot, "rviz", "amcl_pose");
-    join(robot, "docking", "localization");
+    subscribe(robot, "rviz", "amcl_pose");
+    subscribe(robot, "docking", "localization");
     assert_eq!(state(robot), "active");
     let before = tracked(stamp(0));
     send_pose(&poses, &before);
@@ -175,10 +171,7 @@ fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wan
     let sure = tracked(stamp(200));
     send_pose(&poses, &sure);
     of_scan(robot, "amcl_pose", sure.stamp.measured_ns);
-    // These calls are answered in later steps than the one that sent the pose.
-    for _ in 0..2 {
-        assert_eq!(state(robot), "active");
-    }
+    settle(robot, "active");
     let text = std::fs::read_to_string(&saved).unwrap();
     assert!(
         text.contains("\nx: 3.0\ny: 1.0\nz: 0.0\nyaw: 0.25\n"),

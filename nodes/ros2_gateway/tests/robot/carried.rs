@@ -1,15 +1,10 @@
 //! A robot that is carried away, with the gateway in AMCL's place.
 
-use super::client::{active, join, of_scan, planar, state, until_now};
-use super::filter::{NODES, start, wait_until_all_ready};
-use super::*;
-
-/// Pose of the laser on the recorded robot.
-const MOUNT: Pose = Pose {
-    x: 0.78,
-    y: 0.0,
-    yaw: 0.0,
+use super::client::{
+    MOUNT, active, assert_true, drive, of_scan, planar, settle, subscribe, transform_of, until_now,
 };
+use super::filter::wait_until_all_ready;
+use super::*;
 
 /// Number of recorded scans that are left out while it is carried: some metres.
 const CARRIED: usize = 8;
@@ -19,12 +14,12 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
     let Some(mut joined) = active("ros-carried", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
-    let nodes = start(&joined.graph, &NODES);
+    let nodes = start_nodes(&joined.graph, &NODES);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let robot = &mut joined.robot;
     robot.order("follow", json!({}));
-    join(robot, "docking", "localization");
+    subscribe(robot, "docking", "localization");
     robot.order("arrive", json!({}));
     wait_until_all_ready(graph, &NODES);
     let truths = World::of("malaga_corridor").truths();
@@ -37,11 +32,7 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
     let drive = |robot: &mut Robot, index: usize, time: usize, odom: Pose| -> PoseHeader {
         let Pose { x, y, yaw } = odom;
         let how = json!({ "index": index, "time": time, "odom": [x, y, yaw] });
-        robot.order("drive", how);
-        wait_for(graph, &poses, |header: &PoseHeader, _| {
-            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp(time);
-            is_this.then_some(*header)
-        })
+        drive(graph, robot, &poses, how, stamp(time))
     };
     // It finds itself, and drives on for a while.
     let (mut sure, mut index) = (0, 0);
@@ -66,22 +57,14 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
         of_scan(robot, "localization", stamp(index));
         if pose.is_unique() {
             assert!(was_lost, "a place elsewhere is not the same");
-            let transform = loop {
-                let transform = robot.wait_for("tf");
-                if transform["stamp"].as_i64().unwrap() >= stamp(index) + 500_000_000 {
-                    break transform;
-                }
-            };
+            let transform = transform_of(robot, stamp(index));
             let laser = planar(&transform["pose"]).then(odom).then(MOUNT);
-            let truth = truths[&stamp(from)].pose;
-            assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+            assert_true(laser, truths[&stamp(from)].pose);
             found += 1;
         } else if !pose.is_believed() {
             was_lost = true;
             until_now(robot);
-            for _ in 0..2 {
-                assert_eq!(state(robot), "active");
-            }
+            settle(robot, "active");
             let said = until_now(robot);
             let is_transform = |said: &Value| said["event"] == "tf";
             assert!(!said.iter().any(is_transform), "{said:?}");

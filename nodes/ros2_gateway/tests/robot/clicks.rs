@@ -2,8 +2,8 @@
 
 use messages::InitialPose;
 
-use super::client::{active, join, of_scan, planar};
-use super::filter::{NODES, start, wait_until_all_ready};
+use super::client::{MOUNT, active, drive, of_scan, planar, subscribe};
+use super::filter::wait_until_all_ready;
 use super::*;
 
 /// Number of clicks between two scans, as by Simple Commander and an impatient operator.
@@ -14,25 +14,21 @@ fn clicks_leave_a_pose_that_is_right_whether_they_are_right_or_wrong() {
     let Some(mut joined) = active("ros-clicks", "/", &["save_pose_rate: 0.0"], &[]) else {
         return;
     };
-    let nodes = start(&joined.graph, &NODES);
+    let nodes = start_nodes(&joined.graph, &NODES);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
     let robot = &mut joined.robot;
-    join(robot, "rviz", "amcl_pose");
+    subscribe(robot, "rviz", "amcl_pose");
     robot.order("arrive", json!({}));
     wait_until_all_ready(graph, &NODES);
     let truths = World::of("malaga_corridor").truths();
-    let mount = Pose::new(0.78, 0.0, 0.0);
     let scans = scans();
     let stamp = |index: usize| scans[index].header.stamp.as_ns();
-    let truth = |index: usize| truths[&stamp(index)].pose.then(mount.inverse());
+    let truth = |index: usize| truths[&stamp(index)].pose.then(MOUNT.inverse());
     let drive = |robot: &mut Robot, index: usize| -> PoseHeader {
-        robot.order("drive", json!({ "index": index }));
-        wait_for(graph, &poses, |header: &PoseHeader, _| {
-            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp(index);
-            is_this.then_some(*header)
-        })
+        let how = json!({ "index": index });
+        drive(graph, robot, &poses, how, stamp(index))
     };
     // The last click has reached the tracker as soon as it has arrived here.
     let click = |robot: &mut Robot, at: Pose| {

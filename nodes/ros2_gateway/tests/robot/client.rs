@@ -4,6 +4,13 @@ use std::path::PathBuf;
 
 use super::*;
 
+/// Pose of the laser on the recorded robot.
+pub(super) const MOUNT: Pose = Pose {
+    x: 0.78,
+    y: 0.0,
+    yaw: 0.0,
+};
+
 /// The parameters of `nav2_bringup`, with a tolerance that differs from the default.
 const PARAMETERS: &str = "\
 amcl:
@@ -36,14 +43,9 @@ pub(super) fn active(
     options: &[&str],
 ) -> Option<Joined> {
     let file = parameters(&format!("{tag}.yaml"), more);
-    let common = [
-        "--as",
-        "amcl",
-        "--autostart",
-        "--params-file",
-        file.to_str().unwrap(),
-    ];
-    Joined::new(tag, namespace, &[&common, options].concat())
+    let common = ["--as", "amcl", "--autostart", "--params-file"];
+    let common = [&common, &[file.to_str().unwrap()][..]].concat();
+    super::join(tag, namespace, &[&*common, options].concat())
 }
 
 /// Calls a service and returns its response.
@@ -70,6 +72,51 @@ pub(super) fn state(robot: &mut Robot) -> String {
     state["current_state"]["label"].as_str().unwrap().to_owned()
 }
 
+/// Makes two calls, after which all messages have come that were sent before.
+pub(super) fn settle(robot: &mut Robot, expected: &str) {
+    for _ in 0..2 {
+        assert_eq!(state(robot), expected);
+    }
+}
+
+/// Sets the initial pose by a service, at this place on the x axis.
+pub(super) fn set_initial_pose(robot: &mut Robot, x: f64) {
+    let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
+        "position": { "x": x }, "orientation": { "w": 1.0 } } } } });
+    ask(robot, "set_initial_pose", &pose);
+}
+
+/// Lets the robot drive to a recorded scan; returns the tracker's pose at the scan with this stamp,
+/// nanoseconds.
+pub(super) fn drive(
+    graph: &Graph,
+    robot: &mut Robot,
+    poses: &Subscriber<topic::Tracked>,
+    how: Value,
+    stamp: i64,
+) -> PoseHeader {
+    robot.order("drive", how);
+    wait_for(graph, poses, |header: &PoseHeader, _| {
+        let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp;
+        is_this.then_some(*header)
+    })
+}
+
+/// Waits for the transform to the odometry of a scan with this stamp, nanoseconds.
+pub(super) fn transform_of(robot: &mut Robot, stamp: i64) -> Value {
+    loop {
+        let transform = robot.wait_for("tf");
+        if transform["stamp"].as_i64().unwrap() >= stamp + 500_000_000 {
+            return transform;
+        }
+    }
+}
+
+/// Checks the pose of the laser with the accuracy of all results on this recording.
+pub(super) fn assert_true(laser: Pose, truth: Pose) {
+    assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+}
+
 /// Returns all events up to now.
 pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
     robot.order("mark", json!({}));
@@ -84,7 +131,7 @@ pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
 }
 
 /// Starts a subscriber of that name, which also wants the last message.
-pub(super) fn join(robot: &mut Robot, name: &str, topic: &str) {
+pub(super) fn subscribe(robot: &mut Robot, name: &str, topic: &str) {
     robot.order("join", json!({ "name": name, "topic": topic }));
 }
 

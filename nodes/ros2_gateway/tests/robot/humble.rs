@@ -1,7 +1,7 @@
 //! A robot of ROS 2 Humble, whose types have no hashes.
 
-use super::client::{active, ask, join, of_scan, state};
-use super::tracked::{poses_of, send_pose, tracked};
+use super::client::{active, ask, of_scan, state, subscribe};
+use super::tracked::send_pose;
 use super::*;
 
 #[test]
@@ -35,7 +35,7 @@ fn a_robot_whose_types_have_no_hashes_is_understood_and_understands() {
     of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
     assert_eq!(robot.wait_for("tf")["same"], true);
     // A late subscriber gets the last pose.
-    join(robot, "late", "amcl_pose");
+    subscribe(robot, "late", "amcl_pose");
     of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
     joined.stop();
 }

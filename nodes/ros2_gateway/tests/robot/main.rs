@@ -13,19 +13,23 @@ mod filter;
 mod humble;
 mod nav2;
 mod refusals;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod tracked;
 mod waiting;
 
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{
-    FrameName, HypothesesHeader, Hypothesis, MapHeader, NodeState, Odometry, Pose2, PoseHeader,
+    FrameName, HypothesesHeader, Hypothesis, MapHeader, NodeState, Odometry, PoseHeader,
     ScanHeader, Stamp, TrackState, Verdict, topic,
 };
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
 use serde_json::{Value, json};
-use tests::executables;
+use shared::{
+    Joined, NODES, pose2, poses_of, start_gateway, start_nodes, tracked, wait_until_waiting,
+};
 use tests::robot::Robot;
 use tests::world::World;
 use transport::testing::{
@@ -33,58 +37,18 @@ use transport::testing::{
 };
 use transport::{Graph, Publisher, Subscriber};
 
-/// A graph with a gateway, and a robot that has joined it.
-struct Joined {
-    robot: Robot,
-    gateway: Option<NodeProcess>,
-    graph: Graph,
-    // Declared after the graph, so that it is dropped after it.
-    _isolated: Isolated,
-}
-
-impl Joined {
-    /// Returns `None` if the robot's libraries are missing.
-    fn new(tag: &str, namespace: &str, options: &[&str]) -> Option<Self> {
-        let isolated = Isolated::new(tag);
-        let graph = isolated.join("test");
-        let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
-        let common = [
-            "--domain",
-            "0",
-            "--namespace",
-            namespace,
-            "--listen",
-            &endpoint,
-        ];
-        let arguments = common.iter().chain(options);
-        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-        let gateway = NodeProcess::start(executable, &graph, arguments);
+/// Joins a robot to a gateway that is its router; returns `None` if its libraries are missing.
+fn join(tag: &str, namespace: &str, options: &[&str]) -> Option<Joined> {
+    let isolated = Isolated::new(tag);
+    let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+    let common = ["--domain", "0", "--namespace", namespace, "--listen"];
+    let arguments = [&common[..], &[&*endpoint], options].concat();
+    Joined::new(isolated, &arguments, |graph| {
         // It has joined as soon as it says what it waits for.
-        wait_until_waiting(&graph, "waiting for");
+        wait_until_waiting(graph, "waiting for");
         let recording = World::of("malaga_corridor").recording();
-        let robot = Robot::start(&endpoint, &recording, namespace)?;
-        Some(Joined {
-            robot,
-            gateway: Some(gateway),
-            graph,
-            _isolated: isolated,
-        })
-    }
-
-    fn stop(&mut self) {
-        self.gateway.take().unwrap().stop();
-    }
-}
-
-/// Waits until the gateway reports that it waits, with these words among others.
-fn wait_until_waiting(graph: &Graph, words: &str) {
-    let health = graph.subscriber::<topic::Health>().unwrap();
-    wait_for(graph, &health, |report, error| {
-        let is_waiting = report.state == NodeState::Waiting as u32;
-        let is_gateway = report.node.as_str() == "ros2_gateway";
-        let is_said = String::from_utf8_lossy(error).contains(words);
-        (is_gateway && is_waiting && is_said).then_some(())
-    });
+        Robot::start(&endpoint, &recording, namespace)
+    })
 }
 
 /// Waits until the gateway is ready, by reports from when `health` joined.
@@ -106,10 +70,6 @@ fn scans() -> Vec<LaserScan> {
     World::of("malaga_corridor").scans()
 }
 
-fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
-    Pose2 { x, y, yaw }
-}
-
 /// Compares a pose that other libraries have converted: quaternions give back a yaw to a few units
 /// in the last place.
 fn assert_near(found: &Value, expected: Pose) {
@@ -122,7 +82,7 @@ fn assert_near(found: &Value, expected: Pose) {
 
 #[test]
 fn what_the_robot_sends_enters_the_graph_as_it_is() {
-    let Some(mut joined) = Joined::new("ros-in", "/r2", &[]) else {
+    let Some(mut joined) = join("ros-in", "/r2", &[]) else {
         return;
     };
     let graph = &joined.graph;
@@ -173,7 +133,7 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
 #[test]
 fn several_lasers_enter_by_their_names_and_mounts() {
     let options = ["--scan", "front/scan", "--scan", "rear/scan"];
-    let Some(mut joined) = Joined::new("ros-lasers", "/r2", &options) else {
+    let Some(mut joined) = join("ros-lasers", "/r2", &options) else {
         return;
     };
     let graph = &joined.graph;
@@ -236,8 +196,7 @@ fn send(
 
 #[test]
 fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
-    let Some(mut joined) = Joined::new("ros-out", "/", &["--broadcast-tf", "--odom-frame", "odom"])
-    else {
+    let Some(mut joined) = join("ros-out", "/", &["--broadcast-tf", "--odom-frame", "odom"]) else {
         return;
     };
     let publisher = joined.graph.publisher::<topic::Hypotheses>().unwrap();

@@ -2,18 +2,21 @@
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::client::{active, ask, change, join, of_scan, parameters, planar, state, until_now};
-use super::filter::{NODES, start, wait_until_all_ready};
+use super::client::{
+    MOUNT, active, ask, assert_true, change, drive, of_scan, parameters, planar, set_initial_pose,
+    settle, state, subscribe, transform_of, until_now,
+};
+use super::filter::wait_until_all_ready;
 use super::*;
 
 #[test]
 fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let file = parameters("nav2.yaml", &["save_pose_rate: 0.0"]);
     let options = ["--as", "amcl", "--params-file", file.to_str().unwrap()];
-    let Some(mut joined) = Joined::new("ros-nav2", "/", &options) else {
+    let Some(mut joined) = join("ros-nav2", "/", &options) else {
         return;
     };
-    let nodes = start(&joined.graph, &NODES);
+    let nodes = start_nodes(&joined.graph, &NODES);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
@@ -38,7 +41,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     assert_eq!(bond["id"], "amcl");
     assert_eq!(bond["active"], true);
     assert_eq!(bond["same"], true);
-    join(robot, "docking", "localization");
+    subscribe(robot, "docking", "localization");
     robot.order("fleet", json!({}));
 
     // It drives, and gets a pose.
@@ -46,12 +49,8 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let odometry = recorded(Kind::Odometry);
     let scans = scans();
     let drive = |robot: &mut Robot, index: usize| -> bool {
-        robot.order("drive", json!({ "index": index }));
-        let stamp = scans[index].header.stamp.as_ns();
-        wait_for(graph, &poses, |header: &PoseHeader, _| {
-            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp;
-            is_this.then(|| header.is_believed())
-        })
+        let (how, stamp) = (json!({ "index": index }), scans[index].header.stamp.as_ns());
+        drive(graph, robot, &poses, how, stamp).is_believed()
     };
     let (mut right, mut index) = (0, 0);
     let reports = graph.subscriber::<topic::Health>().unwrap();
@@ -67,27 +66,15 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
             assert_eq!(pose["stamp"], stamp);
             assert_eq!(pose["frame"], "map");
             assert_eq!(pose["same"], true);
-            // The laser is 0.78 m ahead of the base.
-            let mount = Pose::new(0.78, 0.0, 0.0);
-            let base = planar(&pose["pose"]);
             let truth = truths[&stamp].pose;
-            assert!(
-                base.then(mount).is_within(truth, 0.2, 0.05),
-                "{base:?} {truth:?}"
-            );
+            assert_true(planar(&pose["pose"]).then(MOUNT), truth);
             // The transforms give the same pose.
-            let tf = loop {
-                let tf = robot.wait_for("tf");
-                if tf["stamp"].as_i64().unwrap() >= stamp + 500_000_000 {
-                    break tf;
-                }
-            };
+            let tf = transform_of(robot, stamp);
             let Message::Odometry(odometry) = &odometry[index] else {
                 panic!("no odometry");
             };
             let odom_from_base = odometry.pose.pose.planar().unwrap();
-            let by_tf = planar(&tf["pose"]).then(odom_from_base).then(mount);
-            assert!(by_tf.is_within(truth, 0.2, 0.05), "{by_tf:?} {truth:?}");
+            assert_true(planar(&tf["pose"]).then(odom_from_base).then(MOUNT), truth);
             // So do the verdict and the position for a master control.
             let verdict = of_scan(robot, "localization", stamp);
             assert!(
@@ -123,7 +110,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     until_now(robot);
 
     // A late subscriber gets the last pose at once.
-    join(robot, "late", "amcl_pose");
+    subscribe(robot, "late", "amcl_pose");
     let last = robot.wait_for("amcl_pose");
     assert_eq!(last["stamp"], scans[index - 1].header.stamp.as_ns());
 
@@ -147,9 +134,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     };
     robot.order("point", json!({ "frame": "map", "x": 1.0, "y": 2.0 }));
     assert_eq!(hint(1.0).map_from_base.y, 2.0);
-    let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
-        "position": { "x": 7.0 }, "orientation": { "w": 1.0 } } } } });
-    ask(robot, "set_initial_pose", &pose);
+    set_initial_pose(robot, 7.0);
     hint(7.0);
     ask(robot, "request_nomotion_update", &json!({}));
 
@@ -159,10 +144,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     wait_for(graph, &hints, |hint, _| {
         (hint.kind == anywhere).then_some(())
     });
-    // Messages that were sent before the response have arrived after these calls.
-    for _ in 0..2 {
-        assert_eq!(state(robot), "active");
-    }
+    settle(robot, "active");
     until_now(robot);
     let searched = scans[index].header.stamp.as_ns();
     assert!(!drive(robot, index), "the pose is forgotten");
@@ -180,8 +162,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     }
     let stamp = scans[index].header.stamp.as_ns();
     let base = planar(&of_scan(robot, "amcl_pose", stamp)["pose"]);
-    let (laser, truth) = (base.then(Pose::new(0.78, 0.0, 0.0)), truths[&stamp].pose);
-    assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+    assert_true(base.then(MOUNT), truths[&stamp].pose);
     index += 1;
 
     // Nothing is published while it is not active.
@@ -190,10 +171,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let last_bond = ended.iter().rfind(|said| said["event"] == "bond");
     assert_eq!(last_bond.unwrap()["active"], false);
     drive(robot, index);
-    // The pose came before these calls.
-    for _ in 0..2 {
-        assert_eq!(state(robot), "inactive");
-    }
+    settle(robot, "inactive");
     let quiet = until_now(robot);
     let events: Vec<&Value> = quiet.iter().map(|said| &said["event"]).collect();
     let is_quiet = |event: &&Value| **event == "/diagnostics";
@@ -264,7 +242,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     assert!(reason.contains("std_msgs/msg/String"), "{reason}");
 
     // A late subscriber gets the log of the start.
-    join(robot, "console", "/rosout");
+    subscribe(robot, "console", "/rosout");
     let line = robot.wait_for("/rosout");
     assert_eq!(line["same"], true);
     assert_eq!(line["name"], "amcl");

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn bytes_of_no_meaning_are_refused_and_counted() {
-    let Some(mut joined) = Joined::new("ros-bad", "/", &[]) else {
+    let Some(mut joined) = join("ros-bad", "/", &[]) else {
         return;
     };
     let health = joined.graph.subscriber::<topic::Health>().unwrap();

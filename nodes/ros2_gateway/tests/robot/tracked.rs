@@ -1,33 +1,7 @@
 //! A graph with a tracker.
 
-use super::client::join;
+use super::client::subscribe;
 use super::*;
-
-/// Returns the pose of a tracker that is sure of it.
-pub(super) fn tracked(stamp: Stamp) -> PoseHeader {
-    PoseHeader {
-        stamp,
-        map_id: 0xff,
-        since_ns: 5_000_000_000,
-        probability: 0.75,
-        places: 1,
-        state: TrackState::Unique as u32,
-        from_scan: 1,
-        pose_known: 1,
-        mount_known: 1,
-        odom_known: 1,
-        odom_frame: FrameName::new("odom"),
-        map_from_base: pose2(3.0, 1.0, 0.25),
-        map_from_laser: pose2(3.5, 1.0, 0.25),
-        map_from_odom: pose2(-2.0, 0.5, 0.25),
-        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
-        ..PoseHeader::zeroed()
-    }
-}
-
-pub(super) fn poses_of(graph: &Graph) -> Publisher<topic::Tracked> {
-    graph.publisher_for(PoseHeader::WORDS_CAPACITY).unwrap()
-}
 
 pub(super) fn send_pose(publisher: &Publisher<topic::Tracked>, header: &PoseHeader) {
     let words = b"one place";
@@ -37,7 +11,7 @@ pub(super) fn send_pose(publisher: &Publisher<topic::Tracked>, header: &PoseHead
 #[test]
 fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     let options = ["--broadcast-tf", "--odom-frame", "odom"];
-    let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
+    let Some(mut joined) = join("ros-pose", "/", &options) else {
         return;
     };
     let answers = joined.graph.publisher::<topic::Hypotheses>().unwrap();
@@ -64,7 +38,7 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
         String::from_utf8_lossy(error).contains(named).then_some(())
     });
     // The verdict is a topic as soon as there is a tracker.
-    join(&mut joined.robot, "fleet", "localization");
+    subscribe(&mut joined.robot, "fleet", "localization");
     let said = joined.robot.wait_for("localization");
     assert_eq!((&said["same"], &said["state"]), (&json!(true), &json!(1)));
     assert_eq!(said["reason"], "one place");

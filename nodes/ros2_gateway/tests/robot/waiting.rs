@@ -8,13 +8,12 @@ fn a_router_that_is_not_there_is_named_until_it_is() {
     let isolated = Isolated::new("ros-router");
     let graph = isolated.join("test");
     let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
-    let executable = env!("CARGO_BIN_EXE_ros2_gateway");
-    let gateway = NodeProcess::start(executable, &graph, ["--connect", &endpoint]);
+    let gateway = start_gateway(&graph, &["--connect".to_owned(), endpoint.clone()]);
     wait_until_waiting(&graph, &format!("waiting for a router: none at {endpoint}"));
     // Another gateway is a router.
     let elsewhere = Isolated::new("ros-elsewhere");
     let other = elsewhere.join("other");
-    let router = NodeProcess::start(executable, &other, ["--listen", &endpoint]);
+    let router = start_gateway(&other, &["--listen".to_owned(), endpoint.clone()]);
     wait_until_waiting(
         &graph,
         "waiting for /map: no publisher, /scan: no publisher",
